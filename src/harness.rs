@@ -1,0 +1,4 @@
+//! Cases, load paths, runs, verdicts.
+
+pub mod case;
+pub mod record;

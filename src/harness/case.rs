@@ -1,0 +1,355 @@
+//! A case: one problem of mechanics with its sweep and its expected numbers, as read from a TOML file.
+//!
+//! [`read`] turns a file into a checked [`Case`]; everything after it may rely on the ranges stated here. What only the
+//! discretisation can find wrong (a crack outside the mesh, a piece without support) is reported through
+//! [`Case::error`] at the same file, line and column. The format is documented for users in `docs/case-format.md`.
+
+mod condition;
+mod error;
+mod parse;
+
+pub use condition::Condition;
+pub use error::CaseError;
+pub use parse::{parse, read};
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// Byte range of a key's value in the case file, for error messages.
+pub type Span = Range<usize>;
+
+/// One checked case file.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// File stem, the identifier in every table.
+    pub name: String,
+    /// File as given on the command line.
+    pub file: PathBuf,
+    /// Full text of the file; spans index into it.
+    pub source: String,
+    /// One-line title.
+    pub title: String,
+    /// Kinematics: plane strain, plane stress or a 3D solid.
+    pub model: Model,
+    /// Isotropic linear elasticity.
+    pub material: Material,
+    /// Structured mesh.
+    pub mesh: MeshSpec,
+    /// Cracks, in file order.
+    pub cracks: Vec<CrackSpec>,
+    /// Prescribed displacements, in file order; at a node and component named twice the later one wins.
+    pub supports: Vec<SupportSpec>,
+    /// Loads, in file order; they add up.
+    pub loads: Vec<LoadSpec>,
+    /// Quadrature of cut cells.
+    pub quadrature: Quadrature,
+    /// Load path.
+    pub path: PathSpec,
+    /// What the case is run for.
+    pub sweep: Sweep,
+    /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
+    pub methods: Vec<MethodSpec>,
+    /// Default tier of the case.
+    pub tier: String,
+    /// Named places whose displacement is recorded.
+    pub probes: Vec<ProbeSpec>,
+    /// Numbers the case must reproduce.
+    pub expects: Vec<Expect>,
+}
+
+/// Kinematics of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// ε_zz = 0; quad4, quantities per metre of thickness.
+    PlaneStrain,
+    /// σ_zz = 0; quad4, quantities per metre of thickness.
+    PlaneStress,
+    /// Three-dimensional; hex8.
+    Solid,
+}
+
+impl Model {
+    /// Space dimension, 2 or 3.
+    pub fn dim(self) -> usize {
+        if self == Model::Solid { 3 } else { 2 }
+    }
+}
+
+/// Isotropic linear elastic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Young's modulus E > 0 [Pa].
+    pub young: f64,
+    /// Poisson's ratio, 0 <= ν < 0.5 (the upper end is excluded: the solid is then incompressible).
+    pub poisson: f64,
+}
+
+/// A structured box mesh. Unused third entries (2D) are zero and one cell.
+#[derive(Debug, Clone)]
+pub struct MeshSpec {
+    /// Where `mesh` stands in the file.
+    pub span: Span,
+    /// Grid-line coordinates per axis, strictly increasing, at least two each; `dim` axes [m].
+    pub lines: Vec<Vec<f64>>,
+    /// Bends the second family of grid lines so that it follows a straight line.
+    pub follow: Option<Follow>,
+}
+
+/// Grid lines that follow a straight line inside the body and stay straight on its border.
+///
+/// The last coordinate (y in 2D, z in 3D) of a grid point is shifted by s(x) · r: s(x) = (x − x₀) tan(angle) within
+/// `half_length` of the point (measured along x), returning linearly to 0 at the sides x = min, max; r falls linearly
+/// from 1 on the row (or grid line) that holds the point to 0 at the two ends of that axis.
+#[derive(Debug, Clone)]
+pub struct Follow {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// A point of the line [m], inside the box.
+    pub point: [f64; 3],
+    /// Angle from the x axis [rad], within (−π/2, π/2).
+    pub angle: f64,
+    /// Half of the followed extent along x [m]; infinite: the line is followed from side to side.
+    pub half_length: f64,
+}
+
+/// One crack.
+#[derive(Debug, Clone)]
+pub struct CrackSpec {
+    /// Where the crack's table stands in the file.
+    pub span: Span,
+    /// Where the geometry (`points_m` or `plane`) stands in the file.
+    pub geometry_span: Span,
+    /// Place and shape.
+    pub geometry: CrackShape,
+    /// Coulomb friction coefficient μ >= 0, for runs without a friction sweep.
+    pub friction: f64,
+    /// Enrichment at tips inside the body.
+    pub tip: Tip,
+    /// Where `tip` stands in the file, or the crack's table.
+    pub tip_span: Span,
+    /// Contact space.
+    pub contact: ContactSpace,
+}
+
+/// Geometry of a crack.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CrackShape {
+    /// 2D segment from the first to the second point [m]; n is the tangent turned by +90 degrees.
+    Segment([[f64; 2]; 2]),
+    /// 3D plane through the whole body: a point [m] and a unit normal n (normalised by the parser).
+    Plane {
+        /// A point of the plane [m].
+        point: [f64; 3],
+        /// Unit normal, from side 2 to side 1.
+        normal: [f64; 3],
+    },
+}
+
+/// Tip enrichment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tip {
+    /// No tip functions: the crack ends at the last cell edge it crosses.
+    None,
+    /// Four branch functions on the nodes of the tip cell.
+    Branch,
+}
+
+/// Contact space of a crack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactSpace {
+    /// One point pair per crossed mesh edge, point forces (the founding paper's).
+    EdgePairs,
+}
+
+impl ContactSpace {
+    /// Name in case files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            ContactSpace::EdgePairs => "edge-pairs",
+        }
+    }
+}
+
+/// Quadrature of cut cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Sub-cells on both sides of the crack: exact for the cut integrand on affine cells.
+    SubCells,
+    /// `gauss-N`: N points per direction on the whole cut cell, sides told apart point by point. Inexact; only to
+    /// reproduce published numbers, and marked so in every report.
+    Gauss(usize),
+}
+
+/// The part of the boundary a support or load acts on.
+#[derive(Debug, Clone)]
+pub struct Region {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Names of box sides (`left right bottom top`; 3D `left right` = x, `front back` = y, `bottom top` = z: minimum,
+    /// maximum). One name: that side. Two names: the edge (2D: the corner) both share. Three: the corner in 3D.
+    pub sides: Vec<String>,
+    /// Keeps only the nodes whose coordinates fulfil the condition.
+    pub condition: Option<Condition>,
+}
+
+/// How a support or load evolves over time: value = factor(t) × stated value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum History {
+    /// factor = t / end.
+    Ramp,
+    /// factor = 1 at every increment.
+    Constant,
+    /// Piecewise linear through (t, factor) points, strictly increasing t, constant beyond the ends.
+    Points(Vec<[f64; 2]>),
+}
+
+impl History {
+    /// Factor at time `t` of a path that lasts until `end`.
+    pub fn factor(&self, t: f64, end: f64) -> f64 {
+        match self {
+            History::Ramp => t / end,
+            History::Constant => 1.0,
+            History::Points(points) => {
+                let next = points.partition_point(|p| p[0] <= t);
+                match (next.checked_sub(1).map(|i| points[i]), points.get(next)) {
+                    (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (t - a[0]) / (b[0] - a[0]),
+                    (Some(a), None) => a[1],
+                    (None, Some(b)) => b[1],
+                    (None, None) => 0.0,
+                }
+            }
+        }
+    }
+}
+
+/// Prescribed displacement.
+#[derive(Debug, Clone)]
+pub struct SupportSpec {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// Where it acts.
+    pub on: Region,
+    /// Per component: prescribed value [m] or free; `dim` entries.
+    pub displacement: Vec<Option<f64>>,
+    /// Evolution.
+    pub history: History,
+}
+
+/// A load.
+#[derive(Debug, Clone)]
+pub struct LoadSpec {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// What it is and where it acts.
+    pub kind: LoadKind,
+    /// Evolution.
+    pub history: History,
+}
+
+/// Kinds of load. Vectors have `dim` entries.
+#[derive(Debug, Clone)]
+pub enum LoadKind {
+    /// Force per area on a side [Pa].
+    Traction(Region, Vec<f64>),
+    /// Pressure on a side, positive towards the body [Pa].
+    Pressure(Region, f64),
+    /// Force per length on an edge of a 3D box [N/m].
+    Line(Region, Vec<f64>),
+    /// Force per volume in the whole body [N/m³].
+    Body(Vec<f64>),
+}
+
+/// Load path: times t_k = end · k / increments, k = 1..=increments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathSpec {
+    /// Number of increments >= 1.
+    pub increments: usize,
+    /// Final time > 0 (no physical meaning: quasi-static).
+    pub end: f64,
+}
+
+/// Parameter sweep; each list holds at least one entry.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Friction coefficients; empty: every crack keeps its own.
+    pub friction: Vec<f64>,
+    /// Mesh refinement factors: every cell of the base mesh is divided by this number in each direction.
+    pub refine: Vec<usize>,
+}
+
+/// A method with options.
+#[derive(Debug, Clone)]
+pub struct MethodSpec {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Registry name.
+    pub name: String,
+    /// Options by name, in file order.
+    pub options: Vec<(String, f64)>,
+}
+
+/// A named place: the mesh node at it is recorded.
+#[derive(Debug, Clone)]
+pub struct ProbeSpec {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Name in `quantities.csv`.
+    pub name: String,
+    /// Place [m]; must coincide with a node.
+    pub point: [f64; 3],
+}
+
+/// One expected number.
+#[derive(Debug, Clone)]
+pub struct Expect {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Quantity name as in `quantities.csv`.
+    pub quantity: String,
+    /// Place (`at` column), e.g. `top` or a probe name; empty: the whole body.
+    pub at: String,
+    /// Component (`component` column), e.g. `y`; empty: none.
+    pub component: String,
+    /// Only for this friction coefficient.
+    pub friction: Option<f64>,
+    /// Only for this refinement factor.
+    pub refine: Option<usize>,
+    /// Only for this method; otherwise every exact method (not `penalty`).
+    pub method: Option<String>,
+    /// Increment, counted from 1; otherwise the last.
+    pub increment: Option<usize>,
+    /// Expected value, in SI units.
+    pub value: f64,
+    /// Unit of the value, as in `quantities.csv`.
+    pub unit: String,
+    /// |found − value| <= tolerance.
+    pub tolerance: Tolerance,
+    /// Where the number comes from.
+    pub kind: ExpectKind,
+    /// Book, paper, table, derivation.
+    pub source: String,
+    /// What had to be assumed.
+    pub assumptions: Vec<String>,
+}
+
+/// Tolerance of an expected number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// Relative to |value|.
+    Relative(f64),
+    /// In the unit of the value.
+    Absolute(f64),
+}
+
+/// Origin of an expected number, strongest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExpectKind {
+    /// Closed form.
+    Analytic,
+    /// Printed in a publication.
+    Published,
+    /// Another code.
+    Independent,
+    /// This code, earlier; certifies nothing but stability.
+    Snapshot,
+}

@@ -1,0 +1,245 @@
+//! What a run leaves behind: the rows of the tables and the fields of the pictures.
+//!
+//! The harness fills these types, the report writes them; nothing else passes between the two. Every row type is one
+//! CSV file, its field names are the column names (`docs/schema.md`).
+
+use serde::Serialize;
+
+/// Version of the CSV schema, written in every `runs.csv` row.
+pub const SCHEMA: u32 = 1;
+
+/// What identifies a run; first columns of every table.
+#[derive(Debug, Clone, PartialEq, PartialOrd, Serialize)]
+pub struct RunKey {
+    /// Case name.
+    pub case: String,
+    /// Mesh label, e.g. `22x22`.
+    pub mesh: String,
+    /// Contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `node-pairs`.
+    pub space: String,
+    /// Method label: registry name, with non-default options in brackets.
+    pub method: String,
+    /// Friction coefficient (of the first crack where cracks differ).
+    pub friction: f64,
+    /// Increment, from 1.
+    pub increment: usize,
+}
+
+/// One row of `runs.csv`: one increment of one run.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunRow {
+    /// Which run.
+    #[serde(flatten)]
+    pub key: RunKey,
+    /// Requested tier: low, mid or high.
+    pub tier: String,
+    /// Claim × check, e.g. `solved`, `false-claim`, `gave-up: max-iterations`, `refused: …`.
+    pub verdict: String,
+    /// Natural-map residual found by the judge [-].
+    pub natural_map: f64,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Factorisations of K for this mesh up to this row (shared by all methods, friction values and increments).
+    pub factorisations: usize,
+    /// Solves with the factor of K in this increment.
+    pub solves: usize,
+    /// Contact unknowns (rows of B used).
+    pub unknowns: usize,
+    /// Contact points.
+    pub points: usize,
+    /// Free displacement unknowns.
+    pub dofs: usize,
+    /// Assembly of K, once per mesh [s].
+    pub assembly_s: f64,
+    /// Factorisation of K, once per mesh [s].
+    pub factorisation_s: f64,
+    /// Condensation to W, once per mesh [s].
+    pub condensation_s: f64,
+    /// Method's preparation [s].
+    pub prepare_s: f64,
+    /// Method's solve of this increment [s].
+    pub solve_s: f64,
+    /// Relative equilibrium residual found by the judge [-].
+    pub equilibrium: f64,
+    /// Schema version.
+    pub schema: u32,
+}
+
+/// One row of `quantities.csv`.
+#[derive(Debug, Clone, Serialize)]
+pub struct QuantityRow {
+    /// Which run.
+    #[serde(flatten)]
+    pub key: RunKey,
+    /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
+    /// dissipation, strain_energy, …
+    pub quantity: String,
+    /// Place: a side, a probe, a crack (`crack-1`), or empty.
+    pub at: String,
+    /// x, y, z, n, a, b, or empty.
+    pub component: String,
+    /// Value, SI.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: String,
+}
+
+/// One row of `history.csv`: one iteration of one increment.
+#[derive(Debug, Clone, Serialize)]
+pub struct HistoryRow {
+    /// Which run.
+    #[serde(flatten)]
+    pub key: RunKey,
+    /// Iteration, from 0 (the start).
+    pub iteration: usize,
+    /// Natural-map residual of the iterate [-].
+    pub natural_map: f64,
+}
+
+/// One row of `points.csv`: one contact point of one increment.
+#[derive(Debug, Clone, Serialize)]
+pub struct PointRow {
+    /// Which run.
+    #[serde(flatten)]
+    pub key: RunKey,
+    /// Crack number, from 1.
+    pub crack: usize,
+    /// Point number within the crack, from 1, ordered along it.
+    pub point: usize,
+    /// Position [m].
+    pub x_m: f64,
+    /// Position [m].
+    pub y_m: f64,
+    /// Position [m]; 0 in 2D.
+    pub z_m: f64,
+    /// Distance along the crack from its first point (2D) [m]; 0 in 3D.
+    pub s_m: f64,
+    /// Tributary length [m] (2D) or area [m²] (3D).
+    pub weight: f64,
+    /// Normal gap, open > 0 [m].
+    pub gap_m: f64,
+    /// Tangential jump along a, total [m].
+    pub slip_a_m: f64,
+    /// Tangential jump along b, total [m]; 0 in 2D.
+    pub slip_b_m: f64,
+    /// Contact force along n on side 1, compression > 0 [`force_unit`].
+    pub p_n: f64,
+    /// Contact force along a on side 1 [`force_unit`].
+    pub p_a: f64,
+    /// Contact force along b on side 1; 0 in 2D [`force_unit`].
+    pub p_b: f64,
+    /// `N/m` in 2D (per metre of thickness), `N` in 3D.
+    pub force_unit: String,
+    /// open, stick or slip.
+    pub status: String,
+}
+
+/// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
+#[derive(Debug, Clone, Default)]
+pub struct Picture {
+    /// Space dimension of the body.
+    pub dim: usize,
+    /// Points, reference position [m]; third entry 0 in 2D.
+    pub points: Vec<[f64; 3]>,
+    /// Cells by point numbers.
+    pub cells: Vec<PictureCell>,
+    /// Point vectors, one per point: name with unit (e.g. `displacement_m`), values.
+    pub point_vectors: Vec<(String, Vec<[f64; 3]>)>,
+    /// Point scalars.
+    pub point_scalars: Vec<(String, Vec<f64>)>,
+    /// Cell scalars, e.g. `von_mises_pa`, `side`.
+    pub cell_scalars: Vec<(String, Vec<f64>)>,
+}
+
+/// Shape of a picture cell; numbering as in VTK.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureShape {
+    /// VTK 1.
+    Vertex,
+    /// VTK 3.
+    Line,
+    /// VTK 5.
+    Triangle,
+    /// VTK 7.
+    Polygon,
+    /// VTK 9.
+    Quad,
+    /// VTK 10.
+    Tetra,
+    /// VTK 12.
+    Hexahedron,
+}
+
+/// One cell of a picture.
+#[derive(Debug, Clone)]
+pub struct PictureCell {
+    /// Shape.
+    pub shape: PictureShape,
+    /// Point numbers.
+    pub points: Vec<usize>,
+}
+
+/// Body and crack faces of one increment.
+#[derive(Debug, Clone, Default)]
+pub struct FieldStep {
+    /// Time of the increment.
+    pub time: f64,
+    /// The body.
+    pub body: Picture,
+    /// The crack surfaces with gap_m, slip, p_n, p_t, status (0 open, 1 stick, 2 slip) as point data.
+    pub crack: Picture,
+}
+
+/// The fields of one run: last increment at least, all increments for `.pvd`.
+#[derive(Debug, Clone)]
+pub struct RunFields {
+    /// Which run; `increment` is the last one.
+    pub key: RunKey,
+    /// One entry per recorded increment.
+    pub steps: Vec<FieldStep>,
+}
+
+/// Outcome of one `[[expect]]` block for one run.
+#[derive(Debug, Clone, Serialize)]
+pub struct ExpectRow {
+    /// Which run.
+    #[serde(flatten)]
+    pub key: RunKey,
+    /// Quantity.
+    pub quantity: String,
+    /// Place.
+    pub at: String,
+    /// Component.
+    pub component: String,
+    /// Expected.
+    pub expected: f64,
+    /// Found; NaN where the run has no such quantity.
+    pub found: f64,
+    /// Allowed |found − expected|.
+    pub allowed: f64,
+    /// Unit.
+    pub unit: String,
+    /// analytic, published, independent or snapshot.
+    pub kind: String,
+    /// Source.
+    pub source: String,
+    /// met or missed.
+    pub verdict: String,
+}
+
+/// Everything a command produced, before it is written.
+#[derive(Debug, Clone, Default)]
+pub struct Results {
+    /// runs.csv
+    pub runs: Vec<RunRow>,
+    /// quantities.csv
+    pub quantities: Vec<QuantityRow>,
+    /// history.csv
+    pub history: Vec<HistoryRow>,
+    /// points.csv
+    pub points: Vec<PointRow>,
+    /// expectations.csv
+    pub expectations: Vec<ExpectRow>,
+    /// Fields of selected runs.
+    pub fields: Vec<RunFields>,
+}

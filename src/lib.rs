@@ -1,0 +1,3 @@
+//! Compares methods of enforcing frictional contact on crack faces on one XFEM discretisation.
+
+pub mod harness;
