@@ -4,9 +4,13 @@
 //! discretisation can find wrong (a crack outside the mesh, a piece without support) is reported through
 //! [`Case::error`] at the same file, line and column. The format is documented for users in `docs/case-format.md`.
 
+mod checks;
 mod condition;
 mod error;
+mod mesh;
 mod parse;
+mod reader;
+mod schema;
 
 pub use condition::Condition;
 pub use error::CaseError;
@@ -286,6 +290,8 @@ pub struct MethodSpec {
     pub name: String,
     /// Options by name, in file order.
     pub options: Vec<(String, f64)>,
+    /// Where the value of each option stands in the file, in the same order.
+    pub option_spans: Vec<Span>,
 }
 
 /// A named place: the mesh node at it is recorded.

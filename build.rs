@@ -1,0 +1,65 @@
+//! Tells the program which source it was built from: commit, whether the sources differ from it, compiler, features.
+//!
+//! A missing git, a missing repository or a source archive gives `unknown`, never a failed build.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What decides about results; a changed report does not make the build dirty.
+const SOURCES: [&str; 6] = [
+    "src",
+    "methods",
+    "cases",
+    "build.rs",
+    "Cargo.toml",
+    "Cargo.lock",
+];
+
+fn main() {
+    for path in SOURCES {
+        println!("cargo::rerun-if-changed={path}");
+    }
+    // In a worktree these lie elsewhere, so git is asked; HEAD alone does not change when a branch moves.
+    for name in ["HEAD", "index", "logs/HEAD"] {
+        if let Some(path) = output("git", &["rev-parse", "--git-path", name]) {
+            if Path::new(&path).exists() {
+                println!("cargo::rerun-if-changed={path}");
+            }
+        }
+    }
+
+    // Sources unpacked inside a foreign repository are not that repository's commit.
+    let tracked = output("git", &["ls-files", "--error-unmatch", "Cargo.toml"]).is_some();
+    let commit = tracked
+        .then(|| output("git", &["rev-parse", "HEAD"]))
+        .flatten();
+    let dirty = commit.as_ref().and_then(|_| {
+        let mut arguments = vec!["status", "--porcelain", "--untracked-files=normal", "--"];
+        arguments.extend(SOURCES);
+        output("git", &arguments).map(|changes| (!changes.is_empty()).to_string())
+    });
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
+    let mut features: Vec<String> = std::env::vars()
+        .filter_map(|(name, _)| name.strip_prefix("CARGO_FEATURE_").map(str::to_lowercase))
+        .collect();
+    features.sort();
+
+    set("COMMIT", commit);
+    set("DIRTY", dirty);
+    set("RUSTC", output(&rustc, &["--version"]));
+    set("TARGET", std::env::var("TARGET").ok());
+    set("PROFILE", std::env::var("PROFILE").ok());
+    set("FEATURES", Some(features.join(",")));
+}
+
+fn set(name: &str, value: Option<String>) {
+    let value = value.unwrap_or_else(|| "unknown".into());
+    println!("cargo::rustc-env=STICKSLIP_BUILD_{name}={value}");
+}
+
+/// Standard output of a command that succeeded, without surrounding white space.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}

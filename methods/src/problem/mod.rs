@@ -1,0 +1,23 @@
+//! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
+
+mod condensed;
+mod elastic;
+mod error;
+mod judge;
+pub mod law;
+mod linear;
+mod matrix;
+mod options;
+mod state;
+mod system;
+mod tier;
+
+pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use error::MethodError;
+pub use judge::{Residuals, residuals};
+pub use linear::delassus::MAX_CONDENSED_ROWS;
+pub use matrix::{JumpOperator, SymmetricMatrix};
+pub use options::{OptionError, OptionSpec, Options};
+pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
+pub use system::{ContactSystem, Increment, Load};
+pub use tier::{Tier, UnknownTier};

@@ -1,0 +1,18 @@
+//! Turns the rows and fields of a run into files: CSV, tables, figures, ParaView files, provenance.
+//!
+//! One output kind per module. Every module returns text or bytes; a [`Bundle`] collects them and writes them all or
+//! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::harness::record::Results)
+//! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
+
+pub mod bundle;
+pub mod csv;
+mod error;
+pub mod number;
+pub mod paper;
+pub mod provenance;
+pub mod tables;
+pub mod vtu;
+
+pub use bundle::{Bundle, prepare_output};
+pub use error::ReportError;
+pub use provenance::Provenance;

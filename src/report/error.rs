@@ -1,0 +1,85 @@
+//! What can go wrong while results become files.
+
+use std::path::{Path, PathBuf};
+
+/// Failure to write a report.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The file system refused.
+    #[error("cannot {action} `{}`: {source}", path.display())]
+    Io {
+        /// What was tried, e.g. `create folder`.
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Two outputs were given the same file name.
+    #[error("two outputs are named `{path}`")]
+    Duplicate {
+        /// File name relative to the output folder.
+        path: String,
+    },
+    /// An output name that would leave the output folder.
+    #[error("output name `{path}` is not a relative path inside the output folder")]
+    OutsideFolder {
+        /// The refused name.
+        path: String,
+    },
+    /// A picture whose arrays do not fit together.
+    #[error("picture `{name}`: {reason}")]
+    Picture {
+        /// Array or picture name.
+        name: String,
+        /// What does not fit, with sizes.
+        reason: String,
+    },
+    /// A table row whose length differs from the number of columns.
+    #[error("table `{title}`: row {row} has {found} cells, expected {expected}")]
+    TableShape {
+        /// Table title.
+        title: String,
+        /// Row, from 1.
+        row: usize,
+        /// Cells in the row.
+        found: usize,
+        /// Columns of the table.
+        expected: usize,
+    },
+    /// Nothing to draw, e.g. no positive finite value for a logarithmic axis.
+    #[error("figure `{figure}`: {reason}")]
+    Figure {
+        /// Which figure.
+        figure: &'static str,
+        /// What is missing.
+        reason: String,
+    },
+    /// The drawing library failed.
+    #[error("drawing failed: {0}")]
+    Drawing(String),
+    /// The CSV library failed.
+    #[error("cannot write CSV: {0}")]
+    Csv(#[from] ::csv::Error),
+    /// The provenance has no TOML form.
+    #[error("cannot write provenance: {0}")]
+    Provenance(#[from] toml::ser::Error),
+}
+
+impl ReportError {
+    pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
+        Self::Io {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+
+    pub(crate) fn figure(figure: &'static str, reason: impl Into<String>) -> Self {
+        Self::Figure {
+            figure,
+            reason: reason.into(),
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! One table, three forms: booktabs LaTeX, Markdown, terminal.
+//!
+//! Cells are text; whoever fills the table decides about digits. In columns aligned at the decimal point, cells with
+//! fewer decimals are padded so that the points stand below each other.
+
+use super::ReportError;
+use comfy_table::{CellAlignment, ContentArrangement, presets};
+
+/// Alignment of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Text.
+    Left,
+    /// Whole numbers.
+    Right,
+    /// Numbers with decimals: the decimal points stand below each other.
+    Decimal,
+}
+
+/// One column.
+#[derive(Debug, Clone)]
+pub struct Column {
+    /// Heading.
+    pub name: String,
+    /// Unit, shown in brackets behind the heading; empty for none.
+    pub unit: String,
+    /// Alignment of the cells and the heading.
+    pub align: Align,
+}
+
+impl Column {
+    /// A column with a heading, a unit (may be empty) and an alignment.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>, align: Align) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            align,
+        }
+    }
+
+    fn heading(&self) -> String {
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} [{}]", self.name, self.unit)
+        }
+    }
+}
+
+/// A table: title, columns, rows of cells.
+#[derive(Debug, Clone)]
+pub struct Table {
+    /// Title, the caption in LaTeX.
+    pub title: String,
+    /// Columns.
+    pub columns: Vec<Column>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
+        Self {
+            title: title.into(),
+            columns,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Appends a row.
+    ///
+    /// # Errors
+    /// [`ReportError::TableShape`] when the number of cells differs from the number of columns.
+    pub fn push(&mut self, cells: Vec<String>) -> Result<(), ReportError> {
+        if cells.len() != self.columns.len() {
+            return Err(ReportError::TableShape {
+                title: self.title.clone(),
+                row: self.rows.len() + 1,
+                found: cells.len(),
+                expected: self.columns.len(),
+            });
+        }
+        self.rows.push(cells);
+        Ok(())
+    }
+
+    /// Rows so far.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// Decimals to add to a cell so that it has as many as the longest of its column.
+    fn padding(&self, column: usize, cell: &str) -> usize {
+        if self.columns[column].align != Align::Decimal || !is_number(cell) {
+            return 0;
+        }
+        let longest = self
+            .rows
+            .iter()
+            .map(|row| &row[column])
+            .filter(|cell| is_number(cell))
+            .map(|cell| behind_point(cell))
+            .max()
+            .unwrap_or(0);
+        longest - behind_point(cell)
+    }
+
+    /// GitHub Markdown: the title as a heading of level 3, then the table.
+    pub fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut text = format!("### {}\n\n", self.title);
+        text += &line(
+            self.columns
+                .iter()
+                .map(|c| escape_markdown(&c.heading()))
+                .collect(),
+        );
+        text += &line(
+            self.columns
+                .iter()
+                .map(|c| {
+                    if c.align == Align::Left {
+                        ":---"
+                    } else {
+                        "---:"
+                    }
+                    .to_owned()
+                })
+                .collect(),
+        );
+        for row in &self.rows {
+            text += &line(row.iter().map(|cell| escape_markdown(cell)).collect());
+        }
+        text
+    }
+
+    /// A `table` float with `booktabs` rules; `label` is the target of `\ref`.
+    pub fn latex(&self, label: &str) -> String {
+        let line = |cells: Vec<String>| format!("    {} \\\\\n", cells.join(" & "));
+        let spec: String = self
+            .columns
+            .iter()
+            .map(|c| if c.align == Align::Left { 'l' } else { 'r' })
+            .collect();
+        let mut text =
+            String::from("% needs \\usepackage{booktabs}\n\\begin{table}\n  \\centering\n");
+        text += &format!("  \\caption{{{}}}\n", escape_latex(&self.title));
+        text += &format!("  \\label{{{label}}}\n");
+        text += &format!("  \\begin{{tabular}}{{{spec}}}\n    \\toprule\n");
+        text += &line(
+            self.columns
+                .iter()
+                .map(|c| escape_latex(&c.heading()))
+                .collect(),
+        );
+        text += "    \\midrule\n";
+        for row in &self.rows {
+            let cells = row.iter().enumerate().map(|(column, cell)| {
+                let padding = match self.padding(column, cell) {
+                    0 => String::new(),
+                    // A missing decimal point takes room too.
+                    n if cell.contains('.') => format!("\\phantom{{{}}}", "0".repeat(n)),
+                    n => format!("\\phantom{{.{}}}", "0".repeat(n - 1)),
+                };
+                latex_cell(cell) + &padding
+            });
+            text += &line(cells.collect());
+        }
+        text += "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+        text
+    }
+
+    /// The title and the table for a terminal, never wrapped; no trailing line end.
+    pub fn terminal(&self) -> String {
+        const FIGURE_SPACE: &str = "\u{2007}";
+        let mut table = comfy_table::Table::new();
+        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+        table.set_content_arrangement(ContentArrangement::Disabled);
+        table.set_header(self.columns.iter().map(Column::heading));
+        for row in &self.rows {
+            table.add_row(row.iter().enumerate().map(|(column, cell)| {
+                cell.clone() + &FIGURE_SPACE.repeat(self.padding(column, cell))
+            }));
+        }
+        for (index, column) in self.columns.iter().enumerate() {
+            if let Some(target) = table.column_mut(index) {
+                target.set_cell_alignment(match column.align {
+                    Align::Left => CellAlignment::Left,
+                    Align::Right | Align::Decimal => CellAlignment::Right,
+                });
+            }
+        }
+        let body: Vec<String> = table
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect();
+        format!("{}\n{}", self.title, body.join("\n"))
+    }
+}
+
+fn is_number(cell: &str) -> bool {
+    cell.parse::<f64>().is_ok()
+}
+
+/// Characters from the decimal point on, the point included.
+fn behind_point(cell: &str) -> usize {
+    let mantissa = cell.split(['e', 'E']).next().unwrap_or(cell);
+    mantissa.find('.').map_or(0, |at| mantissa.len() - at)
+}
+
+fn escape_markdown(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '|' | '*' | '`' | '<' => out.extend(['\\', c]),
+            '\n' => out.push(' '),
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+/// A number becomes mathematics (a true minus sign, powers of ten), anything else text.
+fn latex_cell(cell: &str) -> String {
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => match cell.split_once(['e', 'E']) {
+            Some((mantissa, exponent)) => {
+                format!(
+                    "${mantissa} \\times 10^{{{}}}$",
+                    exponent.trim_start_matches('+')
+                )
+            }
+            None => format!("${cell}$"),
+        },
+        _ => escape_latex(cell),
+    }
+}
+
+/// Text for LaTeX: special characters escaped, the non-ASCII characters used in reports as commands.
+pub fn escape_latex(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => out.extend(['\\', c]),
+            '\\' => out += "\\textbackslash{}",
+            '~' => out += "\\textasciitilde{}",
+            '^' => out += "\\textasciicircum{}",
+            '<' | '>' | '|' => out += &format!("${c}$"),
+            '\n' => out.push(' '),
+            'μ' | 'µ' => out += "$\\mu$",
+            'ν' => out += "$\\nu$",
+            '×' => out += "$\\times$",
+            '−' => out += "$-$",
+            '·' => out += "$\\cdot$",
+            '°' => out += "$^\\circ$",
+            '²' => out += "$^2$",
+            '³' => out += "$^3$",
+            '≤' => out += "$\\le$",
+            '≥' => out += "$\\ge$",
+            '∞' => out += "$\\infty$",
+            '–' => out += "--",
+            '—' => out += "---",
+            '…' => out += "\\ldots{}",
+            _ => out.push(c),
+        }
+    }
+    out
+}
