@@ -21,7 +21,11 @@ impl BlockMatrix {
     /// Zero matrix on the pattern of the cells' function lists.
     ///
     /// `users[c]` are the cells that carry function c; `functions(cell)` lists a cell's functions.
-    pub fn pattern<'a>(dim: usize, users: &[Vec<u32>], functions: impl Fn(usize) -> &'a [u32] + Sync) -> Self {
+    pub fn pattern<'a>(
+        dim: usize,
+        users: &[Vec<u32>],
+        functions: impl Fn(usize) -> &'a [u32] + Sync,
+    ) -> Self {
         let columns: Vec<Vec<u32>> = users
             .par_iter()
             .enumerate()

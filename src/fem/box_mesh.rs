@@ -19,7 +19,11 @@ pub fn side_names(dim: usize) -> &'static [[&'static str; 2]] {
 /// Fails with the offending cell if the bent grid lines fold it over.
 pub fn box_mesh(spec: &MeshSpec) -> Result<Mesh, FoldedCell> {
     let dim = spec.lines.len();
-    let kind = if dim == 2 { CellKind::Quad4 } else { CellKind::Hex8 };
+    let kind = if dim == 2 {
+        CellKind::Quad4
+    } else {
+        CellKind::Hex8
+    };
     let points = |axis: usize| spec.lines.get(axis).map_or(1, Vec::len);
     let (nx, ny, nz) = (points(0), points(1), points(2));
     let mut nodes = Vec::with_capacity(nx * ny * nz);
@@ -47,10 +51,20 @@ pub fn box_mesh(spec: &MeshSpec) -> Result<Mesh, FoldedCell> {
     for k in 0..count[2] {
         for j in 0..count[1] {
             for i in 0..count[0] {
-                cells.extend([at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)]);
+                cells.extend([
+                    at(i, j, k),
+                    at(i + 1, j, k),
+                    at(i + 1, j + 1, k),
+                    at(i, j + 1, k),
+                ]);
                 if dim == 3 {
                     let l = k + 1;
-                    cells.extend([at(i, j, l), at(i + 1, j, l), at(i + 1, j + 1, l), at(i, j + 1, l)]);
+                    cells.extend([
+                        at(i, j, l),
+                        at(i + 1, j, l),
+                        at(i + 1, j + 1, l),
+                        at(i, j + 1, l),
+                    ]);
                 }
                 for (axis, index) in [i, j, k].into_iter().enumerate().take(dim) {
                     for (end, here) in [(0, index == 0), (1, index + 1 == count[axis])] {
@@ -110,7 +124,11 @@ fn shift(follow: &Follow, spec: &MeshSpec, x: &[f64; 3]) -> f64 {
     let on_line = |level: f64| (level - follow.point[last]).abs() <= 1e-9 * height;
     let above = levels.partition_point(|&level| level < follow.point[last] && !on_line(level));
     let high = levels[above.min(levels.len() - 1)];
-    let low = if on_line(high) { high } else { levels[above.saturating_sub(1)] };
+    let low = if on_line(high) {
+        high
+    } else {
+        levels[above.saturating_sub(1)]
+    };
     let (bottom, top) = (levels[0], levels[levels.len() - 1]);
     let r = if x[last] < low {
         (x[last] - bottom) / (low - bottom)
@@ -137,7 +155,11 @@ mod tests {
     #[test]
     fn sides_hold_their_facets_and_corners_meet() {
         let mesh = box_mesh(&spec(
-            vec![vec![0.0, 1.0, 3.0], vec![0.0, 2.0], vec![0.0, 1.0, 2.0, 4.0]],
+            vec![
+                vec![0.0, 1.0, 3.0],
+                vec![0.0, 2.0],
+                vec![0.0, 1.0, 2.0, 4.0],
+            ],
             None,
         ))
         .unwrap();
@@ -150,12 +172,17 @@ mod tests {
         }
         let edge = mesh.meeting_nodes(&["back".into(), "top".into()]);
         assert_eq!(edge.len(), 3);
-        assert!(edge.iter().all(|&n| mesh.nodes[n][1] == 2.0 && mesh.nodes[n][2] == 4.0));
+        assert!(
+            edge.iter()
+                .all(|&n| mesh.nodes[n][1] == 2.0 && mesh.nodes[n][2] == 4.0)
+        );
     }
 
     #[test]
     fn bent_grid_lines_follow_the_line_and_keep_the_border() {
-        let lines: Vec<f64> = (0..=23).map(|i| -10.0 + 20.0 * f64::from(i) / 23.0).collect();
+        let lines: Vec<f64> = (0..=23)
+            .map(|i| -10.0 + 20.0 * f64::from(i) / 23.0)
+            .collect();
         let follow = Follow {
             span: 0..0,
             point: [0.0; 3],

@@ -149,7 +149,10 @@ impl CellKind {
         for i in 0..self.nodes() {
             for a in 0..self.dim() {
                 // ∂N/∂x_a = Σ_b ∂N/∂ξ_b ∂ξ_b/∂x_a
-                g[i][a] = dot(&reference[i], &[inverse[0][a], inverse[1][a], inverse[2][a]]);
+                g[i][a] = dot(
+                    &reference[i],
+                    &[inverse[0][a], inverse[1][a], inverse[2][a]],
+                );
             }
         }
         (g, det)
@@ -218,12 +221,17 @@ impl CellKind {
     pub fn is_affine(self, nodes: &[Point]) -> bool {
         let size = dot(&sub(&nodes[0], &nodes[2]), &sub(&nodes[0], &nodes[2])).sqrt();
         let parallel = |a: usize, b: usize, c: usize, d: usize| {
-            (0..3).all(|k| ((nodes[a][k] - nodes[b][k]) - (nodes[c][k] - nodes[d][k])).abs() <= 1e-12 * size)
+            (0..3).all(|k| {
+                ((nodes[a][k] - nodes[b][k]) - (nodes[c][k] - nodes[d][k])).abs() <= 1e-12 * size
+            })
         };
         match self {
             CellKind::Quad4 => parallel(1, 0, 2, 3),
             CellKind::Hex8 => {
-                parallel(1, 0, 2, 3) && parallel(4, 0, 5, 1) && parallel(4, 0, 6, 2) && parallel(4, 0, 7, 3)
+                parallel(1, 0, 2, 3)
+                    && parallel(4, 0, 5, 1)
+                    && parallel(4, 0, 6, 2)
+                    && parallel(4, 0, 7, 3)
             }
         }
     }
@@ -293,7 +301,8 @@ mod tests {
                     // linear fields are reproduced: Σ ∂N_i/∂x_a x_i = e_a
                     for b in 0..kind.dim() {
                         let slope: f64 = (0..kind.nodes()).map(|i| g[i][a] * nodes[i][b]).sum();
-                        prop_assert!((slope - if a == b { 1.0 } else { 0.0 }).abs() < 1e-12);
+                        let exact = f64::from(u8::from(a == b));
+                        prop_assert!((slope - exact).abs() < 1e-12);
                     }
                 }
             }

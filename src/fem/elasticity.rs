@@ -206,7 +206,11 @@ mod tests {
     #[test]
     fn square_plane_stress_matches_the_closed_form() {
         let corners = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
-        let k = cell_stiffness(CellKind::Quad4, &corners, Lame::new(STEEL, Model::PlaneStress));
+        let k = cell_stiffness(
+            CellKind::Quad4,
+            &corners,
+            Lame::new(STEEL, Model::PlaneStress),
+        );
         let (e, nu) = (STEEL.young, STEEL.poisson);
         let c = e / (1.0 - nu * nu);
         for (j, exact) in [
@@ -228,7 +232,11 @@ mod tests {
         let corners: Vec<Point> = (0..8)
             .map(|i| {
                 let c = CellKind::Hex8.corner(i);
-                [c[0] + 0.1 * c[1] * c[2], c[1] - 0.2 * c[0], 1.3 * c[2] + 0.1 * c[0] * c[1]]
+                [
+                    c[0] + 0.1 * c[1] * c[2],
+                    c[1] - 0.2 * c[0],
+                    1.3 * c[2] + 0.1 * c[0] * c[1],
+                ]
             })
             .collect();
         let k = cell_stiffness(CellKind::Hex8, &corners, Lame::new(STEEL, Model::Solid));

@@ -150,6 +150,9 @@ impl Mesh {
             }
         }
         let half = [0, 1, 2].map(|a| 0.5 * (high[a] - low[a]));
-        (super::norm(&half), [0, 1, 2].map(|a| 0.5 * (high[a] + low[a])))
+        (
+            super::norm(&half),
+            [0, 1, 2].map(|a| 0.5 * (high[a] + low[a])),
+        )
     }
 }

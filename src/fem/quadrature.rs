@@ -41,7 +41,11 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
 pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
     let line = gauss(n);
     let mut points = Vec::with_capacity(n.pow(dim as u32));
-    for &(z, wz) in if dim == 3 { line.as_slice() } else { &[(0.0, 1.0)] } {
+    for &(z, wz) in if dim == 3 {
+        line.as_slice()
+    } else {
+        &[(0.0, 1.0)]
+    } {
         for &(y, wy) in &line {
             for &(x, wx) in &line {
                 points.push(([x, y, z], wx * wy * wz));
@@ -80,7 +84,10 @@ pub fn triangle(t: &[Point; 3]) -> Vec<WeightedPoint> {
             for (i, vertex) in t.iter().enumerate() {
                 x = add_scaled(&x, if i == apex { 1.0 - 2.0 * a } else { a }, vertex);
             }
-            points.push(WeightedPoint { x, weight: w * area });
+            points.push(WeightedPoint {
+                x,
+                weight: w * area,
+            });
         }
     }
     points
@@ -121,7 +128,10 @@ pub fn tetrahedron(t: &[Point; 4]) -> Vec<WeightedPoint> {
         for (b, vertex) in barycentric.iter().zip(t) {
             x = add_scaled(&x, *b, vertex);
         }
-        points.push(WeightedPoint { x, weight: w * volume });
+        points.push(WeightedPoint {
+            x,
+            weight: w * volume,
+        });
     };
     for (a, w) in CORNER {
         for i in 0..4 {
@@ -204,9 +214,19 @@ mod tests {
     fn gauss_is_exact_to_degree_2n_minus_1() {
         for n in 1..=40 {
             for degree in [0, 1, 2 * n - 2, 2 * n - 1] {
-                let found: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
-                let exact = if degree % 2 == 0 { 2.0 / (degree as f64 + 1.0) } else { 0.0 };
-                assert!((found - exact).abs() < 1e-14, "n = {n}, degree {degree}: {found} {exact}");
+                let found: f64 = gauss(n)
+                    .iter()
+                    .map(|(x, w)| w * x.powi(degree as i32))
+                    .sum();
+                let exact = if degree % 2 == 0 {
+                    2.0 / (degree as f64 + 1.0)
+                } else {
+                    0.0
+                };
+                assert!(
+                    (found - exact).abs() < 1e-14,
+                    "n = {n}, degree {degree}: {found} {exact}"
+                );
             }
         }
     }
@@ -237,7 +257,8 @@ mod tests {
         for i in 0..=5 {
             for j in 0..=5 - i {
                 for k in 0..=5 - i - j {
-                    let f = |x: &Point| x[0].powi(i as i32) * x[1].powi(j as i32) * x[2].powi(k as i32);
+                    let f =
+                        |x: &Point| x[0].powi(i as i32) * x[1].powi(j as i32) * x[2].powi(k as i32);
                     assert!((integral(&points, f) - simplex_moment(i, j, k, 3)).abs() < 1e-15);
                 }
             }
@@ -249,7 +270,12 @@ mod tests {
         // Square [−1, 1]² around a tip; ∫ 1/r and ∫ 1/√r by the same fan with many collapsed sub-triangles are known:
         // ∫_square 1/r dA = 8 asinh(1); ∫ √(x² + y²)^−½ has no elementary form, so 4 nested levels give it to 1e-10.
         for tip in [[0.0, 0.0, 0.0], [0.35, -0.6, 0.0]] {
-            let corners: [Point; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+            let corners: [Point; 4] = [
+                [-1.0, -1.0, 0.0],
+                [1.0, -1.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [-1.0, 1.0, 0.0],
+            ];
             let fan: Vec<WeightedPoint> = (0..4)
                 .flat_map(|i| tip_triangle(&tip, &corners[i], &corners[(i + 1) % 4], true))
                 .collect();

@@ -19,7 +19,7 @@ use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
 use crate::xfem::crack::Crack;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
-use crate::xfem::pairs::{ContactPoint, edge_pairs};
+use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs};
 use crate::xfem::pieces::{MotionError, free_motions};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
@@ -36,6 +36,8 @@ pub struct Body {
     pub lame: Lame,
     /// Contact points of all cracks, in case order.
     pub points: Vec<ContactPoint>,
+    /// Facets of the crack surfaces by point numbers.
+    pub facets: Vec<Vec<usize>>,
     /// Stiffness over all unknowns.
     pub stiffness: BlockMatrix,
     /// Number of every unknown among the free ones; `None`: prescribed.
@@ -96,13 +98,22 @@ impl Body {
     pub fn new(case: &Case, refine: usize, frictionless: bool) -> Result<Self, BodyError> {
         let clock = Instant::now();
         let spec = case.mesh.refined(refine);
-        let cells: Vec<String> = spec.lines.iter().map(|l| (l.len() - 1).to_string()).collect();
+        let cells: Vec<String> = spec
+            .lines
+            .iter()
+            .map(|l| (l.len() - 1).to_string())
+            .collect();
         let label = cells.join("x");
         let mut mesh = box_mesh(&spec).map_err(|fold| {
             let follow = spec.follow.as_ref().map_or(&case.mesh.span, |f| &f.span);
-            case.error(follow, &label, "an angle and length that keep all cells convex", fold)
+            case.error(
+                follow,
+                &label,
+                "an angle and length that keep all cells convex",
+                fold,
+            )
         })?;
-        let (cracks, split_points) = place_cracks(case, &mut mesh)?;
+        let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
         let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
         let lame = Lame::new(case.material, case.model);
         let integrator = CellIntegrator {
@@ -124,23 +135,33 @@ impl Body {
                 })
             })
             .collect();
-        let mut points = edge_pairs(&mesh, &cracks, &enrichment);
-        points.extend(split_points);
-        points.sort_by_key(|p| p.crack);
+        let conforming = !doubled.is_empty();
+        let mut surface = ContactSurface::default();
+        for number in 0..case.cracks.len() {
+            match cracks.iter().position(|c| c.number == number) {
+                Some(index) => surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment)),
+                None => surface.append(doubled.remove(&number).unwrap_or_default()),
+            }
+        }
         // A pair whose normal jump is prescribed has no contact left to enforce.
-        points.retain(|point| {
+        surface.retain(|point| {
             point.terms.iter().any(|&(f, c)| {
-                (0..dim).any(|a| numbers[f as usize * dim + a].is_some() && (c * point.frame[0][a]).abs() > 1e-12)
+                (0..dim).any(|a| {
+                    numbers[f as usize * dim + a].is_some() && (c * point.frame[0][a]).abs() > 1e-12
+                })
             })
         });
-        for (number, spec) in case.cracks.iter().enumerate() {
+        let ContactSurface { points, facets } = surface;
+        for number in 0..case.cracks.len() {
             if !points.iter().any(|p| p.crack == number) {
                 return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
             }
         }
         let jump = jump_rows(dim, &points);
         let motions = free_motions(&mesh, &enrichment, &numbers, |mode| {
-            jump.iter().map(|row| row.iter().map(|&(i, v)| v * mode[i]).sum()).collect()
+            jump.iter()
+                .map(|row| row.iter().map(|&(i, v)| v * mode[i]).sum())
+                .collect()
         })
         .map_err(|e| motion_error(case, &e))?;
         let users = enrichment.users();
@@ -174,11 +195,11 @@ impl Body {
             .loads
             .iter()
             .map(|load| {
-                let force = nodal_forces(&integrator, &load.kind).map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+                let force = nodal_forces(&integrator, &load.kind)
+                    .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
                 Ok((force, load.history.clone()))
             })
             .collect::<Result<_, BodyError>>()?;
-        let conforming = points.len() > points.iter().filter(|p| p.terms.iter().all(|t| t.1 > 0.0)).count();
         let space = match (conforming, case.quadrature) {
             (true, _) => "node-pairs".to_owned(),
             (false, Quadrature::SubCells) => "edge-pairs".to_owned(),
@@ -188,6 +209,7 @@ impl Body {
             quadrature: case.quadrature,
             lame,
             points,
+            facets,
             stiffness,
             numbers,
             prescribed: fixed,
@@ -244,7 +266,10 @@ impl Body {
         let external = self.external_force(t);
         let free = |i: &usize| self.numbers[*i].is_some();
         Load {
-            force: (0..self.numbers.len()).filter(free).map(|i| external[i] - held[i]).collect(),
+            force: (0..self.numbers.len())
+                .filter(free)
+                .map(|i| external[i] - held[i])
+                .collect(),
             offset: self.jump(&prescribed),
         }
     }
@@ -274,14 +299,19 @@ impl Body {
     }
 }
 
+/// Cracks through cells, and the surfaces of the others by crack number.
+type PlacedCracks = (Vec<Crack>, BTreeMap<usize, ContactSurface>);
+
 /// Places the cracks: those along cell facets split the mesh, the others keep a level set.
-fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<(Vec<Crack>, Vec<ContactPoint>), CaseError> {
-    let mut points = Vec::new();
+fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError> {
+    let mut doubled = BTreeMap::new();
     let mut through = Vec::new();
     for (number, spec) in case.cracks.iter().enumerate() {
         let crack = Crack::new(number, spec, mesh);
         match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
-            Some(own) => points.extend(own),
+            Some(surface) => {
+                doubled.insert(number, surface);
+            }
             None => through.push(number),
         }
     }
@@ -290,7 +320,7 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<(Vec<Crack>, Vec<Contact
         .into_iter()
         .map(|number| Crack::new(number, &case.cracks[number], mesh))
         .collect();
-    Ok((cracks, points))
+    Ok((cracks, doubled))
 }
 
 /// Rows of the jump operator over all unknowns.
@@ -314,7 +344,11 @@ fn jump_rows(dim: usize, points: &[ContactPoint]) -> Vec<Vec<(usize, f64)>> {
 }
 
 /// The jump operator over the free unknowns.
-fn free_jump(rows: &[Vec<(usize, f64)>], numbers: &[Option<u32>], free: usize) -> Result<JumpOperator, MethodError> {
+fn free_jump(
+    rows: &[Vec<(usize, f64)>],
+    numbers: &[Option<u32>],
+    free: usize,
+) -> Result<JumpOperator, MethodError> {
     let mut row_ptr = vec![0];
     let (mut col_idx, mut values) = (Vec::new(), Vec::new());
     for row in rows {
@@ -335,14 +369,20 @@ fn elimination_order(mesh: &Mesh, enrichment: &Enrichment, numbers: &[Option<u32
     let mut order = Vec::new();
     for node in nested_dissection(&mesh.grid) {
         for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
-            order.extend((0..dim).filter_map(|a| numbers[f * dim + a]).map(|n| n as usize));
+            order.extend(
+                (0..dim)
+                    .filter_map(|a| numbers[f * dim + a])
+                    .map(|n| n as usize),
+            );
         }
     }
     order
 }
 
 /// Matrices of all cells: one per shape of plain cell, one per enriched cell.
-fn cell_matrices(integrator: &CellIntegrator<'_>) -> Result<(Vec<CellMatrix>, Vec<u32>), CellError> {
+fn cell_matrices(
+    integrator: &CellIntegrator<'_>,
+) -> Result<(Vec<CellMatrix>, Vec<u32>), CellError> {
     let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
     // Coordinates of a body 10⁴ cells wide carry rounding of 1e-12 of a cell.
     let smallest = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
@@ -362,8 +402,13 @@ fn cell_matrices(integrator: &CellIntegrator<'_>) -> Result<(Vec<CellMatrix>, Ve
             })
         })
         .collect();
-    let mut distinct: Vec<CellMatrix> = first.par_iter().map(|&cell| integrator.plain(cell)).collect();
-    let enriched: Vec<usize> = (0..mesh.cell_count()).filter(|&c| !enrichment.is_plain(mesh, c)).collect();
+    let mut distinct: Vec<CellMatrix> = first
+        .par_iter()
+        .map(|&cell| integrator.plain(cell))
+        .collect();
+    let enriched: Vec<usize> = (0..mesh.cell_count())
+        .filter(|&c| !enrichment.is_plain(mesh, c))
+        .collect();
     let own: Vec<CellMatrix> = enriched
         .par_iter()
         .map(|&cell| integrator.stiffness(cell, &distinct[shape[cell] as usize]))
@@ -380,7 +425,12 @@ fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), Ca
     for support in &case.supports {
         if region_nodes(integrator, &support.on).is_empty() {
             let found = "no node";
-            return Err(case.error(&support.on.span, found, "a region with at least one node", "the support holds nothing"));
+            return Err(case.error(
+                &support.on.span,
+                found,
+                "a region with at least one node",
+                "the support holds nothing",
+            ));
         }
     }
     Ok(())
@@ -392,7 +442,10 @@ fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
         EnrichmentError::Crossing { second, .. } => (*second, "cracks at least one cell apart"),
         EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
-        EnrichmentError::ConformingTip { crack } => (*crack, "tip = \"none\", or a mesh whose edges the crack crosses"),
+        EnrichmentError::ConformingTip { crack } => (
+            *crack,
+            "tip = \"none\", or a mesh whose edges the crack crosses",
+        ),
     };
     let spec = &case.cracks[crack];
     let span = match error {
@@ -404,24 +457,38 @@ fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
 
 fn motion_error(case: &Case, error: &MotionError) -> CaseError {
     let (span, allowed) = match (error, case.supports.first()) {
-        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => {
-            (&case.cracks[0].geometry_span, "a support on every piece the cracks cut off")
-        }
+        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
+            &case.cracks[0].geometry_span,
+            "a support on every piece the cracks cut off",
+        ),
         (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
         (_, None) => (&case.mesh.span, "at least one [[support]]"),
     };
     case.error(span, case.text(span), allowed, error)
 }
 
-fn load_error(case: &Case, kind: &LoadKind, span: &crate::harness::case::Span, error: LoadError) -> BodyError {
+fn load_error(
+    case: &Case,
+    kind: &LoadKind,
+    span: &crate::harness::case::Span,
+    error: LoadError,
+) -> BodyError {
     match error {
         LoadError::Cell(e) => e.into(),
         LoadError::Empty(_) => {
             let span = match kind {
-                LoadKind::Traction(region, _) | LoadKind::Pressure(region, _) | LoadKind::Line(region, _) => &region.span,
+                LoadKind::Traction(region, _)
+                | LoadKind::Pressure(region, _)
+                | LoadKind::Line(region, _) => &region.span,
                 LoadKind::Body(_) => span,
             };
-            case.error(span, case.text(span), "a region with facets or edges to load", error).into()
+            case.error(
+                span,
+                case.text(span),
+                "a region with facets or edges to load",
+                error,
+            )
+            .into()
         }
     }
 }

@@ -51,7 +51,10 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
         for &node in &nodes {
             for (component, amount) in support.displacement.iter().enumerate() {
                 if let Some(amount) = *amount {
-                    let value = Prescribed { support: number, amount };
+                    let value = Prescribed {
+                        support: number,
+                        amount,
+                    };
                     fixed.insert(node * dim + component, value);
                 }
             }
@@ -64,7 +67,10 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
                 // In 3D a support may hold only an edge of the facet.
                 let edges = (0..local.len()).map(|i| vec![local[i], local[(i + 1) % local.len()]]);
                 for part in std::iter::once(local.to_vec()).chain(edges) {
-                    let part_nodes: Vec<usize> = part.iter().map(|&i| mesh.cell(facet.cell)[i] as usize).collect();
+                    let part_nodes: Vec<usize> = part
+                        .iter()
+                        .map(|&i| mesh.cell(facet.cell)[i] as usize)
+                        .collect();
                     if !supported(&part_nodes) {
                         continue;
                     }
@@ -98,7 +104,9 @@ fn enriched_on(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) ->
                 FunctionKind::Standard => false,
                 FunctionKind::Branch { .. } => true,
                 FunctionKind::Heaviside { crack } => {
-                    let sides = nodes.iter().map(|&n| integrator.cracks[crack as usize].phi[n]);
+                    let sides = nodes
+                        .iter()
+                        .map(|&n| integrator.cracks[crack as usize].phi[n]);
                     enrichment.split[cell] == Some(crack)
                         && sides.clone().any(|phi| phi > 0.0)
                         && sides.into_iter().any(|phi| phi < 0.0)
@@ -124,13 +132,18 @@ pub enum LoadError {
 }
 
 /// Nodal forces of a load at factor 1, over all unknowns [N, in 2D N/m].
-pub fn nodal_forces(integrator: &CellIntegrator<'_>, kind: &LoadKind) -> Result<Vec<f64>, LoadError> {
+pub fn nodal_forces(
+    integrator: &CellIntegrator<'_>,
+    kind: &LoadKind,
+) -> Result<Vec<f64>, LoadError> {
     let dim = integrator.mesh.dim();
     let mut force = vec![0.0; integrator.enrichment.functions.len() * dim];
     match kind {
         LoadKind::Body(density) => body_force(integrator, density, &mut force)?,
         LoadKind::Traction(region, traction) => {
-            facet_force(integrator, region, &mut force, |_| [traction[0], traction[1], third(traction)])?;
+            facet_force(integrator, region, &mut force, |_| {
+                [traction[0], traction[1], third(traction)]
+            })?;
         }
         LoadKind::Pressure(region, pressure) => {
             facet_force(integrator, region, &mut force, |n| n.map(|v| -pressure * v))?;
@@ -175,7 +188,11 @@ fn add_points(
     Ok(())
 }
 
-fn body_force(integrator: &CellIntegrator<'_>, density: &[f64], force: &mut [f64]) -> Result<(), LoadError> {
+fn body_force(
+    integrator: &CellIntegrator<'_>,
+    density: &[f64],
+    force: &mut [f64],
+) -> Result<(), LoadError> {
     let mesh = integrator.mesh;
     let density = [density[0], density[1], third(density)];
     for cell in 0..mesh.cell_count() {
@@ -192,7 +209,15 @@ fn body_force(integrator: &CellIntegrator<'_>, density: &[f64], force: &mut [f64
                 .collect()
         } else {
             let points = integrator.points(cell)?;
-            let sided = |p: &crate::xfem::cell_matrix::SidedPoint| (WeightedPoint { x: p.x, weight: p.weight }, p.side);
+            let sided = |p: &crate::xfem::cell_matrix::SidedPoint| {
+                (
+                    WeightedPoint {
+                        x: p.x,
+                        weight: p.weight,
+                    },
+                    p.side,
+                )
+            };
             points.iter().map(sided).collect()
         };
         add_points(integrator, cell, &points, &density, force)?;
@@ -210,8 +235,15 @@ fn facet_force(
     let mesh = integrator.mesh;
     let nodes = region_nodes(integrator, region);
     let mut loaded = false;
-    for &facet in region.sides.iter().flat_map(|side| mesh.sides.get(side).into_iter().flatten()) {
-        if !mesh.facet_nodes(facet).all(|n| nodes.binary_search(&n).is_ok()) {
+    for &facet in region
+        .sides
+        .iter()
+        .flat_map(|side| mesh.sides.get(side).into_iter().flatten())
+    {
+        if !mesh
+            .facet_nodes(facet)
+            .all(|n| nodes.binary_search(&n).is_ok())
+        {
             continue;
         }
         loaded = true;
@@ -221,20 +253,36 @@ fn facet_force(
                 let d = sub(&q, &p);
                 let length = norm(&d);
                 let points = loaded_segment(integrator, facet.cell, &p, &q, side);
-                add_points(integrator, facet.cell, &points, &density(&[d[1] / length, -d[0] / length, 0.0]), force)?;
+                add_points(
+                    integrator,
+                    facet.cell,
+                    &points,
+                    &density(&[d[1] / length, -d[0] / length, 0.0]),
+                    force,
+                )?;
             } else {
                 for t in cut::fan(&part) {
                     let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
                     let size = norm(&normal);
                     if size > 0.0 {
                         let points: Vec<_> = triangle(&t).into_iter().map(|p| (p, side)).collect();
-                        add_points(integrator, facet.cell, &points, &density(&normal.map(|v| v / size)), force)?;
+                        add_points(
+                            integrator,
+                            facet.cell,
+                            &points,
+                            &density(&normal.map(|v| v / size)),
+                            force,
+                        )?;
                     }
                 }
             }
         }
     }
-    if loaded { Ok(()) } else { Err(LoadError::Empty("facet")) }
+    if loaded {
+        Ok(())
+    } else {
+        Err(LoadError::Empty("facet"))
+    }
 }
 
 /// A facet, or its two parts where the cell is split; oriented with the outward normal.
@@ -262,7 +310,9 @@ fn parts(vertices: &[Point], phi: &[f64]) -> Vec<(Vec<Point>, f64)> {
         return vec![(vertices.to_vec(), side)];
     }
     let both = [1.0, -1.0].map(|side| (cut::polygon_part(vertices, phi, side), side));
-    both.into_iter().filter(|(part, _)| part.len() > 2).collect()
+    both.into_iter()
+        .filter(|(part, _)| part.len() > 2)
+        .collect()
 }
 
 fn loaded_segment(
@@ -272,24 +322,45 @@ fn loaded_segment(
     q: &Point,
     side: f64,
 ) -> Vec<(WeightedPoint, f64)> {
-    let n = if integrator.enrichment.has_branch(cell) { BRANCH_POINTS } else { SEGMENT_POINTS };
-    segment(p, q, n).into_iter().map(|point| (point, side)).collect()
+    let n = if integrator.enrichment.has_branch(cell) {
+        BRANCH_POINTS
+    } else {
+        SEGMENT_POINTS
+    };
+    segment(p, q, n)
+        .into_iter()
+        .map(|point| (point, side))
+        .collect()
 }
 
 /// Force per length on the edge where two sides of a 3D box meet.
-fn line_force(integrator: &CellIntegrator<'_>, region: &Region, line: &[f64], force: &mut [f64]) -> Result<(), LoadError> {
+fn line_force(
+    integrator: &CellIntegrator<'_>,
+    region: &Region,
+    line: &[f64],
+    force: &mut [f64],
+) -> Result<(), LoadError> {
     let mesh = integrator.mesh;
     let nodes = region_nodes(integrator, region);
     let density = [line[0], line[1], third(line)];
     let mut loaded = false;
     // Every mesh edge on the box edge belongs to one facet of the first side.
-    for &facet in region.sides.first().and_then(|side| mesh.sides.get(side)).into_iter().flatten() {
+    for &facet in region
+        .sides
+        .first()
+        .and_then(|side| mesh.sides.get(side))
+        .into_iter()
+        .flatten()
+    {
         let local = mesh.kind.facets()[facet.local];
         let cell = mesh.cell(facet.cell);
         let corners = mesh.corners(facet.cell);
         for i in 0..local.len() {
             let ends = [local[i], local[(i + 1) % local.len()]];
-            if !ends.iter().all(|&k| nodes.binary_search(&(cell[k] as usize)).is_ok()) {
+            if !ends
+                .iter()
+                .all(|&k| nodes.binary_search(&(cell[k] as usize)).is_ok())
+            {
                 continue;
             }
             loaded = true;
@@ -307,5 +378,9 @@ fn line_force(integrator: &CellIntegrator<'_>, region: &Region, line: &[f64], fo
             }
         }
     }
-    if loaded { Ok(()) } else { Err(LoadError::Empty("edge")) }
+    if loaded {
+        Ok(())
+    } else {
+        Err(LoadError::Empty("edge"))
+    }
 }

@@ -61,6 +61,13 @@ pub struct Case {
     pub expects: Vec<Expect>,
 }
 
+impl Case {
+    /// The source text at a span, for error messages.
+    pub fn text(&self, span: &Span) -> &str {
+        self.source.get(span.clone()).unwrap_or_default()
+    }
+}
+
 /// Kinematics of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {

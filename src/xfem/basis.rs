@@ -111,7 +111,14 @@ pub struct CellBasis<'a> {
 
 impl CellBasis<'_> {
     /// Values and gradients of all functions at ξ (position x), on a side of the splitting crack.
-    pub fn evaluate(&self, xi: &Point, x: &Point, side: Side, values: &mut [f64], gradients: &mut [Point]) {
+    pub fn evaluate(
+        &self,
+        xi: &Point,
+        x: &Point,
+        side: Side,
+        values: &mut [f64],
+        gradients: &mut [Point],
+    ) {
         let n = self.kind.shape(xi);
         let (dn, _) = self.kind.gradients(self.corners, xi);
         let mut cached: Option<(u32, [f64; 4], [Point; 4])> = None;

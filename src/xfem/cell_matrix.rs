@@ -74,18 +74,37 @@ impl CellIntegrator<'_> {
     }
 
     /// K⁺ and K⁻ combined.
-    fn by_sides(&self, cell: usize, basis: &[CellFunction], plain: &CellMatrix) -> Result<CellMatrix, CellError> {
+    fn by_sides(
+        &self,
+        cell: usize,
+        basis: &[CellFunction],
+        plain: &CellMatrix,
+    ) -> Result<CellMatrix, CellError> {
         let (kind, dim) = (self.mesh.kind, self.mesh.dim());
         let corners = self.mesh.corners(cell);
         let corners = &corners[..kind.nodes()];
         let points = self.points(cell)?;
-        let volume = |side: Side| -> f64 { points.iter().filter(|p| p.side == side).map(|p| p.weight).sum() };
-        let small = if volume(1.0) <= volume(-1.0) { 1.0 } else { -1.0 };
+        let volume = |side: Side| -> f64 {
+            points
+                .iter()
+                .filter(|p| p.side == side)
+                .map(|p| p.weight)
+                .sum()
+        };
+        let small = if volume(1.0) <= volume(-1.0) {
+            1.0
+        } else {
+            -1.0
+        };
         let integrate = |side: Side| {
             let mut gram = Gram::zero(kind.nodes(), dim);
             let mut flat = vec![0.0; kind.nodes() * dim];
             for p in points.iter().filter(|p| p.side == side) {
-                flatten(&kind.gradients(corners, &p.xi).0[..kind.nodes()], dim, &mut flat);
+                flatten(
+                    &kind.gradients(corners, &p.xi).0[..kind.nodes()],
+                    dim,
+                    &mut flat,
+                );
                 gram.add(p.weight, &flat);
             }
             gram.stiffness(self.lame)
@@ -138,7 +157,12 @@ impl CellIntegrator<'_> {
     }
 
     /// The cell's functions, ready to be evaluated.
-    pub fn basis<'b>(&'b self, cell: usize, corners: &'b [Point; 8], functions: &'b [CellFunction]) -> CellBasis<'b> {
+    pub fn basis<'b>(
+        &'b self,
+        cell: usize,
+        corners: &'b [Point; 8],
+        functions: &'b [CellFunction],
+    ) -> CellBasis<'b> {
         CellBasis {
             kind: self.mesh.kind,
             corners: &corners[..self.mesh.kind.nodes()],
@@ -192,19 +216,31 @@ impl CellIntegrator<'_> {
                 }
                 (true, None) => {
                     let polygon = cut::polygon_part(corners, &phi[..kind.nodes()], side);
-                    let tips: Vec<Point> = self.enrichment.tips.iter().map(|t| t.position).collect();
+                    let tips: Vec<Point> =
+                        self.enrichment.tips.iter().map(|t| t.position).collect();
                     cut::graded_points(&cut::fan(&polygon), &tips)
                 }
                 (false, _) => {
                     let cells = SubCells::of(kind, corners, &phi, side);
-                    if affine { cells.points() } else { cells.fine_points() }
+                    if affine {
+                        cells.points()
+                    } else {
+                        cells.fine_points()
+                    }
                 }
             };
             for WeightedPoint { x, weight } in part {
                 let Some(xi) = kind.inverse_map(corners, &x) else {
-                    return Err(self.error(cell, "a sub-cell point has no reference position".into()));
+                    return Err(
+                        self.error(cell, "a sub-cell point has no reference position".into())
+                    );
                 };
-                points.push(SidedPoint { xi, x, weight, side });
+                points.push(SidedPoint {
+                    xi,
+                    x,
+                    weight,
+                    side,
+                });
             }
         }
         // A slip in the geometry shows as a wrong measure: never integrate over it.
@@ -232,11 +268,21 @@ impl CellIntegrator<'_> {
     /// Standard stiffness of a cell.
     pub fn plain(&self, cell: usize) -> CellMatrix {
         let corners = self.mesh.corners(cell);
-        cell_stiffness(self.mesh.kind, &corners[..self.mesh.kind.nodes()], self.lame)
+        cell_stiffness(
+            self.mesh.kind,
+            &corners[..self.mesh.kind.nodes()],
+            self.lame,
+        )
     }
 
     /// Displacement gradient ∂u_a/∂x_b at a reference point of a cell, from all unknowns u (function-major).
-    pub fn displacement_gradient(&self, cell: usize, xi: &Point, side: Side, u: &[f64]) -> [Point; 3] {
+    pub fn displacement_gradient(
+        &self,
+        cell: usize,
+        xi: &Point,
+        side: Side,
+        u: &[f64],
+    ) -> [Point; 3] {
         let dim = self.mesh.dim();
         let functions = self.enrichment.cell_basis(self.mesh, cell);
         let corners = self.mesh.corners(cell);
@@ -279,7 +325,12 @@ impl CellIntegrator<'_> {
     pub fn shape_key(&self, cell: usize, quantum: f64) -> [i64; 21] {
         let corners = self.mesh.corners(cell);
         let mut key = [0; 21];
-        for (i, corner) in corners.iter().enumerate().take(self.mesh.kind.nodes()).skip(1) {
+        for (i, corner) in corners
+            .iter()
+            .enumerate()
+            .take(self.mesh.kind.nodes())
+            .skip(1)
+        {
             let d = sub(corner, &corners[0]);
             for a in 0..3 {
                 key[3 * (i - 1) + a] = (d[a] / quantum).round() as i64;
@@ -290,7 +341,12 @@ impl CellIntegrator<'_> {
 }
 
 /// Tensor Gauss points of the whole cell with a side each.
-fn whole_cell(kind: CellKind, corners: &[Point], n: usize, side: impl Fn(&Point) -> Side) -> Vec<SidedPoint> {
+fn whole_cell(
+    kind: CellKind,
+    corners: &[Point],
+    n: usize,
+    side: impl Fn(&Point) -> Side,
+) -> Vec<SidedPoint> {
     gauss_cell(kind.dim(), n)
         .into_iter()
         .map(|(xi, w)| {

@@ -9,13 +9,13 @@ use crate::harness::case::Tip;
 use super::crack::Crack;
 use super::cut;
 use super::enrichment::{EnrichmentError, ends_inside};
-use super::pairs::{ContactPoint, sort_along, vertex_weights};
+use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
 
-/// Splits the mesh along a crack that runs along cell facets and returns its contact points; `None` if the crack runs
+/// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
 /// through cells. Side 1 gets the new nodes.
 ///
 /// The standard function of a node has the node's number, so the points' terms name nodes.
-pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<Vec<ContactPoint>>, EnrichmentError> {
+pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, EnrichmentError> {
     let facets = crack_facets(mesh, crack);
     if facets.is_empty() {
         return Ok(None);
@@ -29,7 +29,9 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<Vec<ContactPoint>>
         }
     }
     if crack.tip == Tip::Branch && !ends_inside(mesh, crack).is_empty() {
-        return Err(EnrichmentError::ConformingTip { crack: crack.number });
+        return Err(EnrichmentError::ConformingTip {
+            crack: crack.number,
+        });
     }
     let mut weight: BTreeMap<usize, f64> = BTreeMap::new();
     let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
@@ -42,7 +44,11 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<Vec<ContactPoint>>
         }
     }
     // The crack front keeps its nodes: in 2D a node with one crack edge, unless the crack leaves the body there.
-    let border: BTreeSet<usize> = mesh.sides.keys().flat_map(|side| mesh.side_nodes(side)).collect();
+    let border: BTreeSet<usize> = mesh
+        .sides
+        .keys()
+        .flat_map(|side| mesh.side_nodes(side))
+        .collect();
     let doubled = |node: usize| mesh.dim() == 3 || uses[&node] > 1 || border.contains(&node);
     let nodes: Vec<usize> = weight.keys().copied().filter(|&n| doubled(n)).collect();
     let mut twin = BTreeMap::new();
@@ -53,15 +59,22 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<Vec<ContactPoint>>
         mesh.grid.push(mesh.grid[node]);
         twin.insert(node as u32, new as u32);
         let x = mesh.nodes[node];
-        points.push(ContactPoint {
+        let point = ContactPoint {
             crack: crack.number,
             x,
-            s: if mesh.dim() == 2 { crack.abscissa(&x) } else { 0.0 },
+            s: if mesh.dim() == 2 {
+                crack.abscissa(&x)
+            } else {
+                0.0
+            },
             frame: crack.frame,
             weight: weight[&node],
             terms: vec![(new as u32, 1.0), (node as u32, -1.0)],
-        });
+        };
+        points.push((node, point));
     }
+    let faces = facets.iter().map(|&facet| mesh.facet_nodes(facet).collect()).collect();
+    let surface = ContactSurface::new(points, faces);
     for cell in 0..mesh.cell_count() {
         if crack.distance(&mesh.centre(cell)) > 0.0 {
             for node in mesh.cell_mut(cell) {
@@ -71,8 +84,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<Vec<ContactPoint>>
             }
         }
     }
-    sort_along(&mut points);
-    Ok(Some(points))
+    Ok(Some(surface))
 }
 
 /// Facets of side-2 cells on the crack that a side-1 cell shares.
@@ -119,7 +131,11 @@ fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
 /// True if the crack's line inside a split cell has its middle between the ends of the crack.
 fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
     let corners = mesh.corners(cell);
-    let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], &crack.cell_phi(mesh, cell));
+    let facet = cut::facet(
+        mesh.kind,
+        &corners[..mesh.kind.nodes()],
+        &crack.cell_phi(mesh, cell),
+    );
     let s = facet.iter().map(|v| crack.abscissa(&v.0)).sum::<f64>() / facet.len() as f64;
     crack.length.is_infinite() || (s > 0.0 && s < crack.length)
 }

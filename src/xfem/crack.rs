@@ -40,7 +40,11 @@ impl Crack {
             CrackShape::Segment([p, q]) => {
                 let (p, q) = ([p[0], p[1], 0.0], [q[0], q[1], 0.0]);
                 let a = unit(&sub(&q, &p));
-                (p, [[-a[1], a[0], 0.0], a, [0.0, 0.0, 1.0]], norm(&sub(&q, &p)))
+                (
+                    p,
+                    [[-a[1], a[0], 0.0], a, [0.0, 0.0, 1.0]],
+                    norm(&sub(&q, &p)),
+                )
             }
             CrackShape::Plane { point, normal } => {
                 let n = unit(&normal);

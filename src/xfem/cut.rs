@@ -4,7 +4,9 @@
 //! rules built there miss it (patch error 4e-2 against 1e-5).
 
 use crate::fem::cell::CellKind;
-use crate::fem::quadrature::{WeightedPoint, tetrahedron, tip_triangle, triangle, triangle_collapsed};
+use crate::fem::quadrature::{
+    WeightedPoint, tetrahedron, tip_triangle, triangle, triangle_collapsed,
+};
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 
 /// Side of a crack: +1 (side 1) or −1.
@@ -120,7 +122,12 @@ impl SubCells {
             }
             CellKind::Hex8 => {
                 for t in TETRAHEDRA {
-                    clip_tetrahedron(&t.map(|i| corners[i]), &t.map(|i| phi[i]), side, &mut cells.tetrahedra);
+                    clip_tetrahedron(
+                        &t.map(|i| corners[i]),
+                        &t.map(|i| phi[i]),
+                        side,
+                        &mut cells.tetrahedra,
+                    );
                 }
             }
         }
@@ -139,7 +146,9 @@ impl SubCells {
         let flat = self.triangles.iter().flat_map(|t| triangle_collapsed(t, 5));
         let solid = self.tetrahedra.iter().flat_map(|t| {
             // Each tetrahedron in eight by its edge midpoints: the error of the degree-5 rule falls by 2⁻⁶.
-            halve_tetrahedron(t).into_iter().flat_map(|t| tetrahedron(&t))
+            halve_tetrahedron(t)
+                .into_iter()
+                .flat_map(|t| tetrahedron(&t))
         });
         flat.chain(solid).collect()
     }
@@ -216,9 +225,9 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point]) -> Vec<WeightedPo
     while let Some((t, depth)) = stack.pop() {
         let edge = |i: usize| norm(&sub(&t[i], &t[(i + 1) % 3]));
         let diameter = edge(0).max(edge(1)).max(edge(2));
-        let near = tips.iter().any(|tip| {
-            (0..3).any(|i| segment_distance(tip, &t[i], &t[(i + 1) % 3]) < diameter)
-        });
+        let near = tips
+            .iter()
+            .any(|tip| (0..3).any(|i| segment_distance(tip, &t[i], &t[(i + 1) % 3]) < diameter));
         if !near || depth == DEPTH {
             points.extend(triangle_collapsed(&t, POINTS));
             continue;
@@ -250,7 +259,15 @@ mod tests {
         (0..kind.nodes())
             .map(|i| {
                 let c = kind.corner(i);
-                [c[0] + 0.3 * c[1], c[1] - 0.1 * c[0], c[2] + if kind == CellKind::Hex8 { 0.2 * c[0] } else { 0.0 }]
+                [
+                    c[0] + 0.3 * c[1],
+                    c[1] - 0.1 * c[0],
+                    c[2] + if kind == CellKind::Hex8 {
+                        0.2 * c[0]
+                    } else {
+                        0.0
+                    },
+                ]
             })
             .collect()
     }
@@ -311,7 +328,10 @@ mod tests {
         let corners: Vec<Point> = (0..4).map(|i| CellKind::Quad4.corner(i)).collect();
         let phi: Vec<f64> = corners.iter().map(|x| x[1] - x[0]).collect();
         let segment = facet(CellKind::Quad4, &corners, &phi);
-        assert_eq!(segment.iter().map(|v| v.1).collect::<Vec<_>>(), [[0, 0], [2, 2]]);
+        assert_eq!(
+            segment.iter().map(|v| v.1).collect::<Vec<_>>(),
+            [[0, 0], [2, 2]]
+        );
         let corners: Vec<Point> = (0..8).map(|i| CellKind::Hex8.corner(i)).collect();
         let phi: Vec<f64> = corners.iter().map(|x| x[0] + x[1] + x[2]).collect();
         let polygon = facet(CellKind::Hex8, &corners, &phi);
@@ -339,8 +359,14 @@ mod tests {
                     h * ((s1 / h.abs()).asinh() - (s0 / h.abs()).asinh())
                 })
                 .sum();
-            let found: f64 = points.iter().map(|p| p.weight / norm(&sub(&p.x, &tip))).sum();
-            assert!((found / exact - 1.0).abs() < 1e-8, "{distance}: {found} {exact}");
+            let found: f64 = points
+                .iter()
+                .map(|p| p.weight / norm(&sub(&p.x, &tip)))
+                .sum();
+            assert!(
+                (found / exact - 1.0).abs() < 1e-8,
+                "{distance}: {found} {exact}"
+            );
         }
     }
 }

@@ -129,7 +129,9 @@ impl Enrichment {
                 }
             }
             if !touched {
-                return Err(EnrichmentError::Outside { crack: crack.number });
+                return Err(EnrichmentError::Outside {
+                    crack: crack.number,
+                });
             }
             // Nodes where the jump must close (no tip functions) or is left to the branch functions.
             let mut closing: BTreeSet<u32> = BTreeSet::new();
@@ -144,7 +146,10 @@ impl Enrichment {
                         for &node in mesh.cell(cell) {
                             closing.insert(node);
                             for order in 0..4 {
-                                let kind = FunctionKind::Branch { tip: tip as u32, order };
+                                let kind = FunctionKind::Branch {
+                                    tip: tip as u32,
+                                    order,
+                                };
                                 enriched.insert(Function { node, kind });
                             }
                         }
@@ -164,7 +169,9 @@ impl Enrichment {
             for &cell in &through {
                 for &node in mesh.cell(cell) {
                     if !closing.contains(&node) {
-                        let kind = FunctionKind::Heaviside { crack: index as u32 };
+                        let kind = FunctionKind::Heaviside {
+                            crack: index as u32,
+                        };
                         enriched.insert(Function { node, kind });
                     }
                 }
@@ -183,7 +190,9 @@ impl Enrichment {
             .iter()
             .map(|f| match f.kind {
                 FunctionKind::Standard => 0.0,
-                FunctionKind::Heaviside { crack } => cracks[crack as usize].side_of(f.node as usize),
+                FunctionKind::Heaviside { crack } => {
+                    cracks[crack as usize].side_of(f.node as usize)
+                }
                 FunctionKind::Branch { tip, order } => {
                     let frame: &TipFrame = &tips[tip as usize];
                     let side = cracks[frame.crack].side_of(f.node as usize);
@@ -213,7 +222,8 @@ impl Enrichment {
         let mut position = self.standard;
         for node in 0..self.standard {
             ptr[node] = position;
-            while position < self.functions.len() && self.functions[position].node as usize == node {
+            while position < self.functions.len() && self.functions[position].node as usize == node
+            {
                 position += 1;
             }
         }
@@ -261,7 +271,10 @@ impl Enrichment {
                 let function = self.functions[f as usize];
                 CellFunction {
                     // Every function of the cell belongs to one of its nodes.
-                    local: nodes.iter().position(|&n| n == function.node).unwrap_or_default(),
+                    local: nodes
+                        .iter()
+                        .position(|&n| n == function.node)
+                        .unwrap_or_default(),
                     kind: function.kind,
                     shift: self.shifts[f as usize],
                 }
@@ -344,7 +357,8 @@ pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
             let corners = &corners[..count];
             let slack = ON_EDGE * norm(&sub(&corners[0], &corners[2]));
             let outside = (0..mesh.dim()).any(|a| {
-                corners.iter().all(|c| c[a] < x[a] - slack) || corners.iter().all(|c| c[a] > x[a] + slack)
+                corners.iter().all(|c| c[a] < x[a] - slack)
+                    || corners.iter().all(|c| c[a] > x[a] + slack)
             });
             !outside
                 && mesh

@@ -50,47 +50,107 @@ pub fn vertex_weights(vertices: &[Point]) -> Vec<f64> {
     let mut weights = vec![0.0; n];
     for i in 0..n {
         let j = (i + 1) % n;
-        let area = 0.5 * norm(&cross(&sub(&vertices[i], &centre), &sub(&vertices[j], &centre)));
+        let area = 0.5
+            * norm(&cross(
+                &sub(&vertices[i], &centre),
+                &sub(&vertices[j], &centre),
+            ));
         weights[i] += 0.5 * area;
         weights[j] += 0.5 * area;
     }
     weights
 }
 
-/// Points of the cracks through cells, ordered along each crack.
-pub fn edge_pairs(mesh: &Mesh, cracks: &[Crack], enrichment: &Enrichment) -> Vec<ContactPoint> {
-    let mut points = Vec::new();
-    for (index, crack) in cracks.iter().enumerate() {
-        let mut found: BTreeMap<[u32; 2], (Point, f64)> = BTreeMap::new();
-        for cell in 0..mesh.cell_count() {
-            if enrichment.split[cell] != Some(index as u32) {
-                continue;
-            }
-            let corners = mesh.corners(cell);
-            let nodes = mesh.cell(cell);
-            let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], &crack.cell_phi(mesh, cell));
-            for (x, [i, j], weight) in weighted_vertices(crack, &facet, &corners) {
-                let (a, b) = (nodes[i], nodes[j]);
-                let key = [a.min(b), a.max(b)];
-                found.entry(key).or_insert((x, 0.0)).1 += weight;
-            }
+/// Contact points of one or more cracks and the facets of the crack surface between them.
+#[derive(Debug, Clone, Default)]
+pub struct ContactSurface {
+    /// Points.
+    pub points: Vec<ContactPoint>,
+    /// Facets by point numbers: two points (2D) or a polygon (3D).
+    pub facets: Vec<Vec<usize>>,
+}
+
+impl ContactSurface {
+    /// A surface from points and facets whose vertices have keys; vertices without a point are left out.
+    pub fn new<K: Ord>(mut points: Vec<(K, ContactPoint)>, facets: Vec<Vec<K>>) -> Self {
+        // Along a 2D crack, by position in 3D.
+        points.sort_by(|(_, p), (_, q)| {
+            p.s.total_cmp(&q.s)
+                .then(p.x[2].total_cmp(&q.x[2]))
+                .then(p.x[1].total_cmp(&q.x[1]))
+                .then(p.x[0].total_cmp(&q.x[0]))
+        });
+        let number: BTreeMap<&K, usize> = points.iter().enumerate().map(|(i, (key, _))| (key, i)).collect();
+        let facets = facets
+            .iter()
+            .map(|facet| facet.iter().filter_map(|key| number.get(key).copied()).collect())
+            .collect();
+        ContactSurface {
+            facets,
+            points: points.into_iter().map(|(_, point)| point).collect(),
         }
-        let mut own: Vec<ContactPoint> = found
-            .into_iter()
-            .map(|(nodes, (x, weight))| ContactPoint {
+    }
+
+    /// Adds another surface behind this one.
+    pub fn append(&mut self, other: ContactSurface) {
+        let shift = self.points.len();
+        self.points.extend(other.points);
+        let moved = other.facets.into_iter();
+        self.facets.extend(moved.map(|f| f.into_iter().map(|i| i + shift).collect()));
+    }
+
+    /// Keeps the points that fulfil a condition.
+    pub fn retain(&mut self, keep: impl Fn(&ContactPoint) -> bool) {
+        let mut number = Vec::with_capacity(self.points.len());
+        let mut count = 0;
+        for point in &self.points {
+            let kept = keep(point);
+            number.push(kept.then_some(count));
+            count += usize::from(kept);
+        }
+        self.points.retain(keep);
+        for facet in &mut self.facets {
+            *facet = facet.iter().filter_map(|&i| number[i]).collect();
+        }
+    }
+}
+
+/// Contact surface of a crack through cells: the `index`-th of the enrichment.
+pub fn edge_pairs(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichment) -> ContactSurface {
+    let mut found: BTreeMap<[u32; 2], (Point, f64)> = BTreeMap::new();
+    let mut facets = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        if enrichment.split[cell] != Some(index as u32) {
+            continue;
+        }
+        let corners = mesh.corners(cell);
+        let nodes = mesh.cell(cell);
+        let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], &crack.cell_phi(mesh, cell));
+        let mut keys = Vec::with_capacity(facet.len());
+        for (x, [i, j], weight) in weighted_vertices(crack, &facet, &corners) {
+            let (a, b) = (nodes[i], nodes[j]);
+            let key = [a.min(b), a.max(b)];
+            found.entry(key).or_insert((x, 0.0)).1 += weight;
+            keys.push(key);
+        }
+        facets.push(keys);
+    }
+    let points = found
+        .into_iter()
+        .map(|(nodes, (x, weight))| {
+            let point = ContactPoint {
                 crack: crack.number,
                 x,
                 s: if mesh.dim() == 2 { crack.abscissa(&x) } else { 0.0 },
                 frame: crack.frame,
                 weight,
                 terms: jump_terms(index, crack, enrichment, nodes, &x),
-            })
-            .filter(|point| !point.terms.is_empty())
-            .collect();
-        sort_along(&mut own);
-        points.extend(own);
-    }
-    points
+            };
+            (nodes, point)
+        })
+        .filter(|(_, point)| !point.terms.is_empty())
+        .collect();
+    ContactSurface::new(points, facets)
 }
 
 /// Vertices of a facet that carry a point, with their share of the facet inside the crack.
@@ -102,12 +162,20 @@ fn weighted_vertices(
     let positions: Vec<Point> = facet.iter().map(|v| v.0).collect();
     if crack.length.is_infinite() {
         let weights = vertex_weights(&positions);
-        return facet.iter().zip(weights).map(|(v, w)| (v.0, v.1, w)).collect();
+        return facet
+            .iter()
+            .zip(weights)
+            .map(|(v, w)| (v.0, v.1, w))
+            .collect();
     }
     // A vertex at a tip has no jump; beyond it there is no crack. The rest of a tip cell's segment goes to the entry.
     let tolerance = 1e-9 * norm(&sub(&corners[0], &corners[2]));
     let s: Vec<f64> = positions.iter().map(|x| crack.abscissa(x)).collect();
-    let (low, high) = s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let (low, high) = s
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
+            (l.min(v), h.max(v))
+        });
     let length = (high.min(crack.length) - low.max(0.0)).max(0.0);
     let inside: Vec<usize> = (0..facet.len())
         .filter(|&i| s[i] >= -tolerance && s[i] <= crack.length + tolerance)
@@ -119,7 +187,13 @@ fn weighted_vertices(
 }
 
 /// Coefficients of the functions that jump at a point between two nodes (equal: at the node).
-fn jump_terms(index: usize, crack: &Crack, enrichment: &Enrichment, nodes: [u32; 2], x: &Point) -> Vec<(u32, f64)> {
+fn jump_terms(
+    index: usize,
+    crack: &Crack,
+    enrichment: &Enrichment,
+    nodes: [u32; 2],
+    x: &Point,
+) -> Vec<(u32, f64)> {
     let [i, j] = nodes.map(|n| n as usize);
     let shares = if i == j {
         vec![(i, 1.0)]
@@ -133,7 +207,9 @@ fn jump_terms(index: usize, crack: &Crack, enrichment: &Enrichment, nodes: [u32;
         for f in enrichment.enriched_of(node) {
             let coefficient = match enrichment.functions[f].kind {
                 FunctionKind::Heaviside { crack } if crack as usize == index => 2.0 * share,
-                FunctionKind::Branch { tip, order: 0 } if enrichment.tips[tip as usize].crack == index => {
+                FunctionKind::Branch { tip, order: 0 }
+                    if enrichment.tips[tip as usize].crack == index =>
+                {
                     2.0 * norm(&sub(x, &enrichment.tips[tip as usize].position)).sqrt() * share
                 }
                 _ => 0.0,
@@ -146,12 +222,3 @@ fn jump_terms(index: usize, crack: &Crack, enrichment: &Enrichment, nodes: [u32;
     terms
 }
 
-/// Orders points along a 2D crack, by position in 3D.
-pub fn sort_along(points: &mut [ContactPoint]) {
-    points.sort_by(|p, q| {
-        p.s.total_cmp(&q.s)
-            .then(p.x[2].total_cmp(&q.x[2]))
-            .then(p.x[1].total_cmp(&q.x[1]))
-            .then(p.x[0].total_cmp(&q.x[0]))
-    });
-}

@@ -53,7 +53,11 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usiz
     }
     for cell in 0..mesh.cell_count() {
         let split = enrichment.split[cell];
-        let sides: &[f64] = if split.is_some() { &[1.0, -1.0] } else { &[0.0] };
+        let sides: &[f64] = if split.is_some() {
+            &[1.0, -1.0]
+        } else {
+            &[0.0]
+        };
         for &side in sides {
             let mut first = None;
             for &node in mesh.cell(cell) {
@@ -113,7 +117,8 @@ pub fn free_motions(
                 .filter(|&n| piece[n] == Some(loose))
                 .map(|n| &mesh.nodes[n])
                 .collect();
-            let at = [0, 1, 2].map(|a| own.iter().map(|x| x[a]).sum::<f64>() / own.len().max(1) as f64);
+            let at =
+                [0, 1, 2].map(|a| own.iter().map(|x| x[a]).sum::<f64>() / own.len().max(1) as f64);
             return Err(MotionError::Unsupported { at });
         }
         let count = if dim == 2 { 3 } else { 6 };
@@ -122,7 +127,7 @@ pub fn free_motions(
     let modes = piece_motions(mesh, enrichment, &piece, count);
     // Support matrix S_kl = Σ over prescribed unknowns of mode_k mode_l: its kernel are the free motions.
     let m = modes.len();
-    let mut support = DMatrix::zeros(m, m);
+    let mut support = DMatrix::<f64>::zeros(m, m);
     for unknown in (0..numbers.len()).filter(|&i| numbers[i].is_none()) {
         let values: Vec<f64> = modes.iter().map(|mode| mode[unknown]).collect();
         for k in 0..m {
@@ -151,7 +156,7 @@ pub fn free_motions(
     if !free.is_empty() {
         // Contact must feel every free motion: the Gram matrix of their jumps must be regular.
         let jumps: Vec<Vec<f64>> = free.iter().map(|mode| jump(mode)).collect();
-        let gram = DMatrix::from_fn(free.len(), free.len(), |k, l| {
+        let gram = DMatrix::<f64>::from_fn(free.len(), free.len(), |k, l| {
             jumps[k].iter().zip(&jumps[l]).map(|(a, b)| a * b).sum()
         });
         let size = gram.diagonal().max().max(f64::MIN_POSITIVE);
@@ -178,10 +183,19 @@ pub fn free_motions(
 }
 
 /// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
-fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, piece: &[Option<usize>], count: usize) -> Vec<Vec<f64>> {
+fn piece_motions(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    piece: &[Option<usize>],
+    count: usize,
+) -> Vec<Vec<f64>> {
     let dim = mesh.dim();
     let (size, centre) = mesh.extent();
-    let rotations: &[[usize; 2]] = if dim == 2 { &[[0, 1]] } else { &[[0, 1], [1, 2], [2, 0]] };
+    let rotations: &[[usize; 2]] = if dim == 2 {
+        &[[0, 1]]
+    } else {
+        &[[0, 1], [1, 2], [2, 0]]
+    };
     let motion = |kind: usize, x: &Point| -> Point {
         let mut r = [0.0; 3];
         if kind < dim {

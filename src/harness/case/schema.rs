@@ -4,8 +4,8 @@ use super::error::CaseError;
 use super::reader::{Table, Value};
 use super::{
     Condition, ContactSpace, CrackShape, CrackSpec, Expect, ExpectKind, History, LoadKind,
-    LoadSpec, Material, MethodSpec, PathSpec, ProbeSpec, Quadrature, Region, SupportSpec,
-    Tip, Tolerance,
+    LoadSpec, Material, MethodSpec, PathSpec, ProbeSpec, Quadrature, Region, SupportSpec, Tip,
+    Tolerance,
 };
 
 pub(super) use super::mesh::{mesh, sweep};
