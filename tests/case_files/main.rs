@@ -216,6 +216,18 @@ fn absent_keys_take_their_documented_defaults() {
 }
 
 #[test]
+fn the_documented_example_is_accepted() {
+    let document = include_str!("../../docs/case-format.md");
+    let (_, example) = document.split_once("```toml\n").unwrap();
+    let (example, _) = example.split_once("```").unwrap();
+    let case = accepted(example);
+    assert_eq!(
+        (case.cracks.len(), case.supports.len(), case.expects.len()),
+        (1, 2, 1)
+    );
+}
+
+#[test]
 fn comments_line_endings_and_a_byte_order_mark_change_nothing() {
     let windows = format!("\u{feff}# a comment\r\n{}", SOLID.replace('\n', "\r\n"));
     assert_eq!(accepted(&windows).mesh.lines, accepted(SOLID).mesh.lines);

@@ -59,6 +59,37 @@ fn unknown_keys_are_refused_with_the_allowed_ones() {
 }
 
 #[test]
+fn every_allowed_key_is_documented() {
+    let document = include_str!("../../docs/case-format.md");
+    let mut count = 0;
+    for (table, prefix) in [
+        ("title = ", ""),
+        ("young_pa", ""),
+        ("min_m", "box."),
+        ("angle_deg", "follow."),
+        ("points_m", ""),
+        ("displacement_m = [0, 0]", ""),
+        ("pressure_pa", ""),
+        ("increments", ""),
+        ("refine = [", ""),
+        ("point_m = [0, 0]\n\n[[expect", ""),
+        ("quantity", ""),
+    ] {
+        assert_eq!(PLANE.matches(table).count(), 1, "`{table}` must occur once");
+        let error = refused(&PLANE.replace(table, &format!("bad = 0\n{table}")));
+        for key in error.allowed().split(", ") {
+            // A key that holds a table is documented by the keys inside it.
+            let named = ["` |", "."]
+                .iter()
+                .any(|e| document.contains(&format!("| `{prefix}{key}{e}")));
+            assert!(named, "`{prefix}{key}` is not documented");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 14 + 2 + 3 + 3 + 5 + 4 + 7 + 2 + 2 + 2 + 14);
+}
+
+#[test]
 fn missing_keys_are_refused_at_their_table() {
     for (line, key, table) in [
         ("title = \"Plate\"\n", "title", "title"),
