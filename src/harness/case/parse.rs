@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 use super::error::{CaseError, Source};
+use super::expect::Runs;
 use super::reader::{Table, Value};
-use super::{Case, Model, checks, schema};
+use super::{Case, Model, schema};
 
 /// Largest case file read [bytes]; the largest of this project has 8 kB.
 const MAX_BYTES: u64 = 1 << 20;
@@ -112,14 +113,12 @@ pub fn parse(file: impl Into<PathBuf>, source: impl Into<String>) -> Result<Case
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned())
         .unwrap_or_default();
-    let case = Case {
+    Ok(Case {
         name,
         file,
         source: text,
         ..document
-    };
-    checks::check(&case)?;
-    Ok(case)
+    })
 }
 
 /// Everything the document says; name, file and source are filled in by the caller.
@@ -138,6 +137,11 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
     let material = schema::material(root)?;
     let mesh = schema::mesh(root, dim)?;
     let sweep = schema::sweep(root, &mesh)?;
+    let path = schema::path(root)?;
+    let cracks = each(root, "crack", |v| schema::crack(v, dim))?;
+    let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
+    let mut runs = Runs::new(dim, &frictions, &sweep, &path);
+    let probes = each(root, "probe", |v| runs.probe(v, dim))?;
     Ok(Case {
         name: String::new(),
         file: PathBuf::new(),
@@ -146,16 +150,16 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         model,
         material,
         mesh,
-        cracks: each(root, "crack", |v| schema::crack(v, dim))?,
+        cracks,
         supports: each(root, "support", |v| schema::support(v, dim))?,
         loads: each(root, "load", |v| schema::load(v, dim))?,
         quadrature,
-        path: schema::path(root)?,
+        path,
         sweep,
         methods: each(root, "method", schema::method)?,
         tier: tier.to_string(),
-        probes: each(root, "probe", |v| schema::probe(v, dim))?,
-        expects: each(root, "expect", schema::expect)?,
+        probes,
+        expects: each(root, "expect", |v| runs.expect(v))?,
     })
 }
 
@@ -163,7 +167,7 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
 fn each<T>(
     root: &Table<'_>,
     key: &str,
-    read: impl Fn(Value<'_>) -> Result<T, CaseError>,
+    read: impl FnMut(Value<'_>) -> Result<T, CaseError>,
 ) -> Result<Vec<T>, CaseError> {
     root.tables(key)?.into_iter().map(read).collect()
 }

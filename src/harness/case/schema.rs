@@ -3,9 +3,8 @@
 use super::error::CaseError;
 use super::reader::{Table, Value};
 use super::{
-    Condition, ContactSpace, CrackShape, CrackSpec, Expect, ExpectKind, History, LoadKind,
-    LoadSpec, Material, MethodSpec, PathSpec, ProbeSpec, Quadrature, Region, SupportSpec, Tip,
-    Tolerance,
+    Condition, ContactSpace, CrackShape, CrackSpec, History, LoadKind, LoadSpec, Material,
+    MethodSpec, PathSpec, Quadrature, Region, SupportSpec, Tip,
 };
 
 pub(super) use super::mesh::{mesh, sweep};
@@ -326,91 +325,4 @@ pub(super) fn method(value: Value<'_>) -> Result<MethodSpec, CaseError> {
         }
     }
     Ok(spec)
-}
-
-/// `[[probe]]`.
-pub(super) fn probe(value: Value<'_>, dim: usize) -> Result<ProbeSpec, CaseError> {
-    let table = value.table(&["name", "point_m"])?;
-    let name = table.required("name")?.line()?;
-    let given = table.required("point_m")?.numbers(dim)?;
-    let mut point = [0.0; 3];
-    point[..dim].copy_from_slice(&given);
-    Ok(ProbeSpec {
-        span: table.span(),
-        name,
-        point,
-    })
-}
-
-/// `[[expect]]`.
-pub(super) fn expect(value: Value<'_>) -> Result<Expect, CaseError> {
-    let table = value.table(&[
-        "quantity",
-        "at",
-        "component",
-        "friction",
-        "refine",
-        "method",
-        "increment",
-        "value",
-        "unit",
-        "relative",
-        "absolute",
-        "kind",
-        "source",
-        "assumptions",
-    ])?;
-    let text = |key: &str| table.get(key).map_or(Ok(String::new()), |v| v.line());
-    let size = "a tolerance > 0";
-    let tolerance = match table.exactly_one(&["relative", "absolute"])? {
-        ("relative", v) => Tolerance::Relative(v.number_if(size, |x| x > 0.0)?),
-        (_, v) => Tolerance::Absolute(v.number_if(size, |x| x > 0.0)?),
-    };
-    let wanted = table.required("value")?;
-    let number = wanted.number()?;
-    if number == 0.0 && matches!(tolerance, Tolerance::Relative(_)) {
-        return Err(wanted.refuse(
-            "values other than 0, or `absolute`",
-            "nothing is within a relative tolerance of zero",
-        ));
-    }
-    Ok(Expect {
-        span: table.span(),
-        quantity: table.required("quantity")?.line()?,
-        at: text("at")?,
-        component: table
-            .get("component")
-            .map_or(Ok(""), |v| {
-                v.one_of(&["x", "y", "z", "n", "a", "b"].map(|name| (name, name)))
-            })?
-            .to_string(),
-        friction: table.get("friction").map(friction).transpose()?,
-        refine: table
-            .get("refine")
-            .map(|v| v.integer(1..=super::mesh::MAX_REFINE))
-            .transpose()?,
-        method: table.get("method").map(|v| v.line()).transpose()?,
-        increment: table
-            .get("increment")
-            .map(|v| v.integer(1..=MAX_INCREMENTS))
-            .transpose()?,
-        value: number,
-        unit: table.required("unit")?.line()?,
-        tolerance,
-        kind: table.required("kind")?.one_of(&[
-            ("analytic", ExpectKind::Analytic),
-            ("published", ExpectKind::Published),
-            ("independent", ExpectKind::Independent),
-            ("snapshot", ExpectKind::Snapshot),
-        ])?,
-        source: table.required("source")?.line()?,
-        assumptions: match table.get("assumptions") {
-            Some(v) => v
-                .list()?
-                .iter()
-                .map(Value::line)
-                .collect::<Result<_, _>>()?,
-            None => Vec::new(),
-        },
-    })
 }
