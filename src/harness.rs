@@ -3,4 +3,9 @@
 pub mod body;
 pub mod boundary;
 pub mod case;
+pub mod expect;
+pub mod picture;
+pub mod quantities;
 pub mod record;
+pub mod run;
+pub mod verdict;

@@ -129,12 +129,18 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
             }
         }
     }
-    for crack in 0..case.cracks.len() {
-        let own: Vec<usize> = (0..body.points.len()).filter(|&i| body.points[i].crack == crack).collect();
-        let at = format!("crack-{}", crack + 1);
-        for c in 0..dim {
-            let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
-            push("contact_force", &at, LOCAL[c], total, force_unit);
+    // Every crack, and all of them together.
+    let all: Vec<usize> = (0..body.points.len()).collect();
+    let places = std::iter::once((String::new(), all.clone())).chain((0..case.cracks.len()).map(|crack| {
+        let own = all.iter().copied().filter(|&i| body.points[i].crack == crack);
+        (format!("crack-{}", crack + 1), own.collect())
+    }));
+    for (at, own) in places {
+        if !at.is_empty() {
+            for c in 0..dim {
+                let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
+                push("contact_force", &at, LOCAL[c], total, force_unit);
+            }
         }
         for (name, status) in [
             ("points_open", PointStatus::Open),

@@ -203,11 +203,8 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         friction: cell.friction,
         increment: 1,
     };
-    let mut method = match prepare(choice, system) {
-        Ok((method, prepare_s)) => {
-            results.runs.push(row(&key, cell, tier, prepare_s));
-            method
-        }
+    let (mut method, prepare_s) = match prepare(choice, system) {
+        Ok(prepared) => prepared,
         Err(verdict) => {
             let mut refused = row(&key, cell, tier, f64::NAN);
             refused.verdict = verdict.to_string();
@@ -223,8 +220,6 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         offset: vec![0.0; now.jump.len()],
     };
     let mut steps = Vec::new();
-    let prepare_s = results.runs[0].prepare_s;
-    results.runs.clear();
     for increment in 1..=case.path.increments {
         let time = case.path.end * increment as f64 / case.path.increments as f64;
         key.increment = increment;
@@ -244,6 +239,10 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             Ok((outcome, found, status))
         });
         let mut run = row(&key, cell, tier, if increment == 1 { prepare_s } else { 0.0 });
+        let shared = system.elastic().timings();
+        run.factorisations = system.elastic().counters().factorisations;
+        run.factorisation_s = shared.analysis_s + shared.factorisation_s;
+        run.condensation_s = shared.condensation_s;
         run.solve_s = solve_s;
         let (outcome, found, status) = match judged {
             Ok(parts) => parts,
