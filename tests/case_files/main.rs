@@ -63,8 +63,8 @@ refine = [1, 3]
 
 [[method]]
 name = "b-newton"
-max_iterations = 50
 regularisation = 1e-12
+max_iterations = 50
 
 [[probe]]
 name = "centre"
@@ -175,14 +175,15 @@ fn every_table_arrives_in_the_case() {
         (&[0.1, 0.8][..], &[1, 3][..])
     );
     let method = &case.methods[0];
+    // In file order, which is not the alphabetical one.
     assert_eq!(
         method.options,
         [
-            ("max_iterations".into(), 50.0),
-            ("regularisation".into(), 1e-12)
+            ("regularisation".into(), 1e-12),
+            ("max_iterations".into(), 50.0)
         ]
     );
-    assert_eq!(&case.source[method.option_spans[1].clone()], "1e-12");
+    assert_eq!(&case.source[method.option_spans[0].clone()], "1e-12");
     let expect = &case.expects[0];
     assert_eq!(
         (expect.value, expect.tolerance, expect.kind),

@@ -248,6 +248,16 @@ fn grid_lines_that_leave_the_body_are_refused() {
         refused(&PLANE.replace("angle_deg = 45", "angle_deg = -61")).key(),
         "mesh.follow.angle_deg"
     );
+    // 5 m below or above the middle there is room for one of the two shifts only.
+    let low = PLANE.replace(
+        "[mesh.follow]\npoint_m = [0, 0]",
+        "[mesh.follow]\npoint_m = [0, -5]",
+    );
+    let high = low.replace("point_m = [0, -5]", "point_m = [0, 5]");
+    for text in [low, high] {
+        accepted(&text.replace("half_length_m = 5.5", "half_length_m = 4"));
+        assert_eq!(refused(&text).key(), "mesh.follow.angle_deg");
+    }
     // From side to side the line rises 20 m.
     assert_eq!(
         refused(&PLANE.replace("half_length_m = 5.5\n", "")).key(),
@@ -353,13 +363,10 @@ fn an_error_shows_the_line_with_the_value_underlined() {
 
 #[test]
 fn columns_count_characters() {
-    let error =
-        refused("title = \"Häuser\" # ü\nmodel = \"plane-strain\"\nmaterial = { \"é\" = 1 }\n");
-    assert_eq!((error.line(), error.column()), (3, 14), "{error}");
-    assert!(
-        error.to_string().ends_with("\n                 ^^^"),
-        "{error}"
-    );
+    let error = refused(&PLANE.replace("\"plane strain\"", "\"Häuser, ü\", 3"));
+    assert_eq!(error.column(), 29, "{error}");
+    let caret = format!("\n    {}^", " ".repeat(28));
+    assert!(error.to_string().ends_with(&caret), "{error}");
 }
 
 #[test]

@@ -48,6 +48,16 @@ fn every_shipped_case_is_accepted() {
 }
 
 #[test]
+fn boxes_symmetric_about_zero_have_symmetric_grid_lines() {
+    for case in shipped().into_values() {
+        for line in case.mesh.lines.iter().filter(|l| l[0] == -l[l.len() - 1]) {
+            let mirrored: Vec<f64> = line.iter().rev().map(|x| -x).collect();
+            assert_eq!(line, &mirrored, "{}", case.name);
+        }
+    }
+}
+
+#[test]
 fn refinement_keeps_the_given_grid_lines_to_the_bit() {
     for case in shipped().into_values() {
         for factor in [1, 2, 3, 7] {
