@@ -9,7 +9,9 @@ pub mod csv;
 mod error;
 pub mod number;
 pub mod paper;
+pub mod plot;
 pub mod provenance;
+pub mod standard;
 pub mod tables;
 pub mod vtu;
 

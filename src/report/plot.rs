@@ -1,0 +1,25 @@
+//! Figures for print, as SVG.
+//!
+//! Sizes are millimetres on paper: [`Width::Column`] 85 mm, [`Width::Page`] 170 mm, text 6.5 to 8 pt. Curves differ in
+//! colour (Okabe and Ito's palette, safe for the colour-blind), dash pattern and marker, so they stay apart in grey.
+//! Legends stand outside the data, every axis has its unit. The same data give the same bytes.
+//!
+//! Text is real SVG text: a program that turns the figure into pixels needs a sans-serif font, otherwise some drop all text
+//! without a message.
+
+mod axis;
+mod bands;
+mod canvas;
+mod chart;
+mod colour;
+mod contour;
+mod curves;
+mod names;
+mod profile;
+mod solid;
+
+pub use canvas::{Width, italic, subscript};
+pub use contour::{Magnification, displacement_contours};
+pub use curves::{Curve, CurvePlot, Tier, error_plot, line_plot, residual_history};
+pub use profile::{contact_slip, contact_traction};
+pub use solid::{Axis3, solid_displacement};

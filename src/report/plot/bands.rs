@@ -1,0 +1,360 @@
+//! Filled contour bands of a piecewise linear field on triangles.
+//!
+//! For every level the part of each triangle above it is cut out; shared edges of neighbours cancel, so a band is a few
+//! large outlines instead of one polygon per triangle. That leaves no hairlines between triangles in any viewer. All
+//! corners are pixels: cut points of a shared edge are computed in one order and agree exactly.
+
+use super::axis::{multiples, number};
+use super::canvas::{Anchor, Canvas};
+use super::chart::{LABEL_PT, SMALL_PT};
+use super::colour::{self, BLACK, Rgb};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A place in pixels.
+pub type Pixel = [i32; 2];
+
+/// A triangle in pixels with the field at its corners.
+pub type Triangle = [(Pixel, f64); 3];
+
+/// About how many bands a field gets.
+const BANDS: f64 = 10.0;
+
+/// Levels of a field and their colours.
+#[derive(Debug, Clone)]
+pub struct Levels {
+    low: f64,
+    high: f64,
+    /// Strictly between `low` and `high`, evenly spaced.
+    inner: Vec<f64>,
+    step: f64,
+}
+
+impl Levels {
+    /// Round levels for a field between `low` and `high`.
+    pub fn new(low: f64, high: f64) -> Self {
+        let span = high - low;
+        // A constant field has one band; its round-off is no contour.
+        if !(span > 1e-9 * low.abs().max(high.abs())) {
+            return Self {
+                low,
+                high,
+                inner: Vec::new(),
+                step: 0.0,
+            };
+        }
+        let step = level_step(span / BANDS);
+        let mut inner = multiples(step, low, high);
+        inner.retain(|level| *level > low + 1e-6 * span && *level < high - 1e-6 * span);
+        Self {
+            low,
+            high,
+            inner,
+            step,
+        }
+    }
+
+    /// Decimals that all levels need.
+    fn decimals(&self) -> usize {
+        let whole = |d: &usize| {
+            let scaled = self.step * 10f64.powi(*d as i32);
+            (scaled - scaled.round()).abs() < 1e-6 * scaled
+        };
+        (0..12).find(whole).unwrap_or(3)
+    }
+
+    /// Colour of the band above the n-th level; band 0 lies below the first.
+    fn colour(&self, band: usize) -> Rgb {
+        colour::field((band as f64 + 0.5) / (self.inner.len() + 1) as f64)
+    }
+}
+
+/// The closest to `raw` of 1, 2, 2.5, 5 × 10ⁿ.
+fn level_step(raw: f64) -> f64 {
+    let power = 10f64.powi(raw.log10().floor() as i32);
+    let off = |step: &f64| (step * power / raw).ln().abs();
+    [1.0, 2.0, 2.5, 5.0, 10.0]
+        .into_iter()
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .unwrap_or(1.0)
+        * power
+}
+
+/// Fills the triangles with the bands of `levels` and draws the contour lines.
+pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_mm: f64) {
+    let mut all = Region::default();
+    for triangle in triangles {
+        all.add(&triangle.map(|(pixel, _)| pixel));
+    }
+    canvas.fill_region(&all.loops(), levels.colour(0));
+    let mut lines = Vec::new();
+    for (index, level) in levels.inner.iter().enumerate() {
+        let mut above = Region::default();
+        let mut contour = BTreeSet::new();
+        for triangle in triangles {
+            let part = part_above(triangle, *level);
+            above.add(&part.polygon);
+            contour.extend(part.contour.filter(|[a, b]| a != b));
+        }
+        canvas.fill_region(&above.loops(), levels.colour(index + 1));
+        lines.extend(chains(&contour));
+    }
+    if line_mm > 0.0 {
+        for line in lines {
+            canvas.pixel_line(line, BLACK, line_mm);
+        }
+    }
+}
+
+/// A vertical colour bar with its label on top: lower left corner, height, in millimetres.
+pub fn colour_bar(
+    canvas: &mut Canvas,
+    levels: &Levels,
+    origin: [f64; 2],
+    height: f64,
+    label: &str,
+) {
+    const WIDTH: f64 = 3.0;
+    let [x, bottom] = origin;
+    let span = if levels.high > levels.low {
+        levels.high - levels.low
+    } else {
+        1.0
+    };
+    let place = |value: f64| bottom - (value - levels.low) / span * height;
+    let mut edges = vec![bottom];
+    edges.extend(levels.inner.iter().map(|level| place(*level)));
+    edges.push(bottom - height);
+    for (band, pair) in edges.windows(2).enumerate() {
+        let corners = [
+            [x, pair[0]],
+            [x + WIDTH, pair[0]],
+            [x + WIDTH, pair[1]],
+            [x, pair[1]],
+        ];
+        canvas.fill(&corners, levels.colour(band));
+    }
+    let top = bottom - height;
+    let corners = [
+        [x, top],
+        [x + WIDTH, top],
+        [x + WIDTH, bottom],
+        [x, bottom],
+        [x, top],
+    ];
+    canvas.line(&corners, BLACK, 0.15);
+
+    let mut tick = |at: f64, text: String| {
+        canvas.line(&[[x + WIDTH, at], [x + WIDTH + 0.8, at]], BLACK, 0.15);
+        canvas.text(&text, [x + WIDTH + 1.3, at], SMALL_PT, Anchor::Start, BLACK);
+    };
+    if levels.inner.is_empty() {
+        let text = crate::report::number::significant(levels.low, 3).replace('-', "−");
+        tick(bottom - 0.5 * height, text);
+    }
+    let digits = levels.decimals();
+    for level in &levels.inner {
+        tick(place(*level), number(*level, digits));
+    }
+    canvas.text(label, [x, top - 3.0], LABEL_PT, Anchor::Start, BLACK);
+}
+
+/// The part of a triangle where the field is at least the level, and the piece of contour line that bounds it.
+struct Part {
+    polygon: Vec<Pixel>,
+    contour: Option<[Pixel; 2]>,
+}
+
+fn part_above(triangle: &Triangle, level: f64) -> Part {
+    let mut polygon = Vec::with_capacity(4);
+    let mut cuts = Vec::with_capacity(2);
+    for index in 0..3 {
+        let (a, b) = (triangle[index], triangle[(index + 1) % 3]);
+        if a.1 >= level {
+            polygon.push(a.0);
+        }
+        if (a.1 >= level) != (b.1 >= level) {
+            let cut = cut(a, b, level);
+            polygon.push(cut);
+            cuts.push(cut);
+        }
+    }
+    let contour = match cuts.as_slice() {
+        [a, b] => Some([*a.min(b), *a.max(b)]),
+        _ => None,
+    };
+    Part { polygon, contour }
+}
+
+/// Where the field reaches the level between two corners.
+fn cut(a: (Pixel, f64), b: (Pixel, f64), level: f64) -> Pixel {
+    // The same order in both triangles that share the edge, for the same rounding.
+    let (a, b) = if (a.0, a.1) <= (b.0, b.1) {
+        (a, b)
+    } else {
+        (b, a)
+    };
+    let t = (level - a.1) / (b.1 - a.1);
+    std::array::from_fn(|c| {
+        let (from, to) = (f64::from(a.0[c]), f64::from(b.0[c]));
+        (from + t * (to - from)).round() as i32
+    })
+}
+
+/// Union of polygons by their outline: directed edges, of which opposite ones cancel.
+#[derive(Default)]
+struct Region {
+    /// Ends in order, and whether the edge runs that way (+1) or back (−1).
+    edges: Vec<([Pixel; 2], i32)>,
+}
+
+impl Region {
+    fn add(&mut self, polygon: &[Pixel]) {
+        let area: i64 = edges_of(polygon)
+            .map(|(a, b)| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]))
+            .sum();
+        // A polygon flattened by the rounding still counts: its edges cancel those of its neighbours.
+        for (a, b) in edges_of(polygon) {
+            let (a, b) = if area < 0 { (b, a) } else { (a, b) };
+            if a != b {
+                self.edges
+                    .push(if a < b { ([a, b], 1) } else { ([b, a], -1) });
+            }
+        }
+    }
+
+    /// Closed outlines; every remaining edge is walked as often as it is counted.
+    fn loops(&mut self) -> Vec<Vec<Pixel>> {
+        self.edges.sort_unstable();
+        let mut next: BTreeMap<Pixel, Vec<Pixel>> = BTreeMap::new();
+        for equal in self.edges.chunk_by(|a, b| a.0 == b.0) {
+            let [a, b] = equal[0].0;
+            let count: i32 = equal.iter().map(|(_, sign)| sign).sum();
+            let (from, to) = if count > 0 { (a, b) } else { (b, a) };
+            for _ in 0..count.abs() {
+                next.entry(from).or_default().push(to);
+            }
+        }
+        let mut loops = Vec::new();
+        while let Some((&start, _)) = next.first_key_value() {
+            let mut ring = vec![start];
+            let mut at = start;
+            while let Some(to) = take(&mut next, at) {
+                if to == start {
+                    break;
+                }
+                ring.push(to);
+                at = to;
+            }
+            loops.push(straightened(ring));
+        }
+        loops
+    }
+}
+
+fn edges_of(polygon: &[Pixel]) -> impl Iterator<Item = (Pixel, Pixel)> + '_ {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+fn take(next: &mut BTreeMap<Pixel, Vec<Pixel>>, from: Pixel) -> Option<Pixel> {
+    let targets = next.get_mut(&from)?;
+    let to = targets.pop();
+    if targets.is_empty() {
+        next.remove(&from);
+    }
+    to
+}
+
+/// Without corners that lie on the straight line between their neighbours.
+fn straightened(ring: Vec<Pixel>) -> Vec<Pixel> {
+    let n = ring.len();
+    let turns = |i: usize| {
+        let (a, b, c) = (ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]);
+        let [dx, dy] = [i64::from(b[0] - a[0]), i64::from(b[1] - a[1])];
+        let [ex, ey] = [i64::from(c[0] - b[0]), i64::from(c[1] - b[1])];
+        dx * ey != dy * ex
+    };
+    (0..n).filter(|i| turns(*i)).map(|i| ring[i]).collect()
+}
+
+/// Undirected edges joined into lines as long as possible.
+pub fn chains(edges: &BTreeSet<[Pixel; 2]>) -> Vec<Vec<Pixel>> {
+    let mut links: BTreeMap<Pixel, BTreeSet<Pixel>> = BTreeMap::new();
+    for [a, b] in edges {
+        links.entry(*a).or_default().insert(*b);
+        links.entry(*b).or_default().insert(*a);
+    }
+    // Open lines first, from their ends; closed ones remain.
+    let ends: Vec<Pixel> = links
+        .iter()
+        .filter(|(_, l)| l.len() == 1)
+        .map(|(p, _)| *p)
+        .collect();
+    let mut lines: Vec<Vec<Pixel>> = ends.into_iter().map(|end| walk(&mut links, end)).collect();
+    while let Some((&start, _)) = links.first_key_value() {
+        lines.push(walk(&mut links, start));
+    }
+    lines.retain(|line| line.len() > 1);
+    lines
+}
+
+fn walk(links: &mut BTreeMap<Pixel, BTreeSet<Pixel>>, start: Pixel) -> Vec<Pixel> {
+    let mut line = vec![start];
+    let mut at = start;
+    while let Some(to) = links.get_mut(&at).and_then(BTreeSet::pop_first) {
+        if let Some(back) = links.get_mut(&to) {
+            back.remove(&at);
+        }
+        for end in [at, to] {
+            if links.get(&end).is_some_and(BTreeSet::is_empty) {
+                links.remove(&end);
+            }
+        }
+        line.push(to);
+        at = to;
+    }
+    links.remove(&start);
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square_of_triangles() -> Vec<Triangle> {
+        let corner = |x: i32, y: i32| ([x * 100, y * 100], f64::from(x));
+        vec![
+            [corner(0, 0), corner(1, 0), corner(1, 1)],
+            [corner(0, 0), corner(1, 1), corner(0, 1)],
+        ]
+    }
+
+    #[test]
+    fn shared_edges_cancel() {
+        let mut region = Region::default();
+        for triangle in square_of_triangles() {
+            region.add(&triangle.map(|(pixel, _)| pixel));
+        }
+        let loops = region.loops();
+        assert_eq!(loops.len(), 1);
+        assert_eq!(loops[0].len(), 4, "the diagonal is gone: {loops:?}");
+    }
+
+    #[test]
+    fn contour_of_a_linear_field_is_one_straight_line() {
+        let mut contour = BTreeSet::new();
+        for triangle in square_of_triangles() {
+            contour.extend(part_above(&triangle, 0.25).contour);
+        }
+        let lines = chains(&contour);
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].iter().all(|p| p[0] == 25), "{lines:?}");
+    }
+
+    #[test]
+    fn levels_are_round_and_inside_the_range() {
+        let levels = Levels::new(-0.1, 0.003);
+        assert!(levels.inner.len() >= 5 && levels.inner.len() <= 12);
+        assert!(levels.inner.iter().all(|l| *l > -0.1 && *l < 0.003));
+        assert!(Levels::new(2.0, 2.0).inner.is_empty());
+    }
+}

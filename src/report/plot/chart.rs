@@ -1,0 +1,511 @@
+//! Charts: panels one above the other over a shared legend.
+
+use super::axis::Axis;
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitted, text_width, wrapped,
+};
+use super::colour::{self, BLACK, GREY, LIGHT, Rgb, WHITE};
+use crate::report::ReportError;
+
+/// Sizes of text [pt].
+pub const LABEL_PT: f64 = 8.0;
+pub const TICK_PT: f64 = 7.0;
+pub const SMALL_PT: f64 = 6.5;
+
+const CURVE_MM: f64 = 0.3;
+const FRAME_MM: f64 = 0.2;
+const TICK_MM: f64 = 1.2;
+const MARKER_MM: f64 = 0.85;
+const MARGIN_MM: f64 = 1.5;
+const LEGEND_ROW_MM: f64 = 3.7;
+const SAMPLE_MM: f64 = 8.5;
+/// Least distance of two markers of one curve.
+const MARKER_GAP_MM: f64 = 2.6;
+
+/// Difference that can be seen, as a fraction of the range.
+const VISIBLE: f64 = 0.01;
+
+/// Shape of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    Disc,
+    Square,
+    Triangle,
+    Diamond,
+    Cross,
+    TriangleDown,
+    Plus,
+}
+
+const MARKERS: [Marker; 7] = [
+    Marker::Disc,
+    Marker::Square,
+    Marker::Triangle,
+    Marker::Diamond,
+    Marker::TriangleDown,
+    Marker::Cross,
+    Marker::Plus,
+];
+
+/// Dash patterns: drawn and left out in turn [mm].
+const DASHES: [&[f64]; 7] = [
+    &[],
+    &[2.2, 1.0],
+    &[0.7, 0.7],
+    &[3.0, 0.8, 0.7, 0.8],
+    &[1.3, 0.6],
+    &[4.0, 1.0],
+    &[2.0, 0.6, 0.6, 0.6, 0.6, 0.6],
+];
+
+/// How a curve looks: colour, dashes, marker and whether the marker is filled.
+#[derive(Debug, Clone)]
+pub struct Style {
+    pub colour: Rgb,
+    pub dashes: &'static [f64],
+    pub width: f64,
+    pub marker: Option<Marker>,
+    pub filled: bool,
+    /// Size of markers as a factor.
+    pub size: f64,
+}
+
+impl Style {
+    /// Look of the n-th curve of a figure. Later curves are thinner, so one that covers another leaves its edges visible.
+    pub fn of_curve(index: usize) -> Self {
+        Self {
+            colour: colour::curve(index),
+            dashes: DASHES[index % DASHES.len()],
+            width: (CURVE_MM + 0.25 - 0.08 * index as f64).max(CURVE_MM - 0.05),
+            marker: Some(MARKERS[index % MARKERS.len()]),
+            filled: index % 2 == 0,
+            size: 1.0,
+        }
+    }
+
+    /// Looks of curves given by their values, scaled to at most 1: nested where two of them lie on each other.
+    pub fn of_curves(values: &[Vec<f64>]) -> Vec<Self> {
+        let agree = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(x, y)| (x - y).abs() < VISIBLE)
+        };
+        let count = values.len();
+        let hidden = (0..count).any(|i| (0..i).any(|j| agree(&values[i], &values[j])));
+        let style = |i| {
+            if hidden {
+                Self::nested(i, count)
+            } else {
+                Self::of_curve(i)
+            }
+        };
+        (0..count).map(style).collect()
+    }
+
+    /// Look of the n-th of `count` curves that lie on each other: the first is wide, each later one lies inside it.
+    fn nested(index: usize, count: usize) -> Self {
+        let outer = (count.saturating_sub(index + 1)) as f64;
+        Self {
+            width: 0.25 + 0.35 * outer,
+            dashes: &[],
+            size: 0.75 + 0.28 * outer,
+            ..Self::of_curve(index)
+        }
+    }
+
+    /// A thin line without markers.
+    pub fn reference(colour: Rgb) -> Self {
+        Self {
+            colour,
+            dashes: &[0.5, 0.5],
+            width: 0.2,
+            marker: None,
+            filled: false,
+            size: 1.0,
+        }
+    }
+}
+
+/// A curve; points without a place on the axes (not finite, not positive on a logarithmic axis) are left out.
+#[derive(Debug, Clone)]
+pub struct Series {
+    pub points: Vec<[f64; 2]>,
+    pub style: Style,
+    /// Marker and filling per point where they differ from the style's.
+    pub markers: Vec<(Marker, bool)>,
+}
+
+/// A right-angled triangle that shows the slope of a power law y ~ x^slope, both axes logarithmic.
+#[derive(Debug, Clone, Copy)]
+pub struct SlopeTriangle {
+    /// Ends of the horizontal leg.
+    pub x: [f64; 2],
+    /// y at `x[0]` on the sloped side.
+    pub y: f64,
+    pub slope: f64,
+}
+
+impl SlopeTriangle {
+    /// y at `x[1]` on the sloped side.
+    pub fn end(&self) -> f64 {
+        self.y * (self.x[1] / self.x[0]).powf(self.slope)
+    }
+}
+
+/// One coordinate system with its curves.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    pub x: Axis,
+    pub y: Axis,
+    pub series: Vec<Series>,
+    /// Horizontal lines, drawn dashed in grey, with their text.
+    pub levels: Vec<(f64, String)>,
+    pub slope: Option<SlopeTriangle>,
+}
+
+/// A line of the legend.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    pub label: String,
+    pub style: Style,
+    /// A sample of the line, or the marker alone.
+    pub line: bool,
+}
+
+/// A whole figure.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    pub title: String,
+    pub caption: String,
+    pub width: Width,
+    /// Height of one panel's frame [mm].
+    pub height: f64,
+    pub panels: Vec<Panel>,
+    /// Groups of entries; each starts a new row.
+    pub legend: Vec<Vec<Entry>>,
+}
+
+impl Chart {
+    /// The SVG text.
+    pub fn svg(&self) -> Result<String, ReportError> {
+        let width = self.width.mm();
+        let label_width = self
+            .panels
+            .iter()
+            .flat_map(|panel| &panel.y.major)
+            .map(|(_, label)| text_width(label, TICK_PT))
+            .fold(0.0, f64::max);
+        let left = MARGIN_MM + 4.5 + label_width + TICK_MM;
+        let right = width - 4.0;
+        let caption = wrapped(&self.caption, CAPTION_PT, width - 2.0 * MARGIN_MM);
+        let gap = 5.0;
+        let count = self.panels.len() as f64;
+        let grids: Vec<LegendGrid> = self
+            .legend
+            .iter()
+            .filter(|group| !group.is_empty())
+            .map(|group| LegendGrid::new(group, width - 2.0 * MARGIN_MM))
+            .collect();
+        let legend_rows: usize = grids.iter().map(LegendGrid::rows).sum();
+        let panels_height = count * self.height + (count - 1.0) * gap;
+        let top = caption_height(&caption) + 1.0;
+        let legend_top = top + panels_height + 11.0;
+        let height = legend_top + LEGEND_ROW_MM * legend_rows as f64 + 0.5;
+
+        let mut canvas = Canvas::new(width, height);
+        canvas.caption(&caption);
+        for (index, panel) in self.panels.iter().enumerate() {
+            let y = top + index as f64 * (self.height + gap);
+            let frame = Frame {
+                left,
+                right,
+                top: y,
+                bottom: y + self.height,
+            };
+            draw_panel(&mut canvas, panel, &frame, index + 1 == self.panels.len());
+        }
+        let mut y = legend_top;
+        for grid in &grids {
+            grid.draw(&mut canvas, [MARGIN_MM, y]);
+            y += LEGEND_ROW_MM * grid.rows() as f64;
+        }
+        canvas.finish(&self.title)
+    }
+}
+
+struct Frame {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Frame {
+    fn at(&self, panel: &Panel, point: [f64; 2]) -> [f64; 2] {
+        [
+            self.left + panel.x.place(point[0]) * (self.right - self.left),
+            self.bottom - panel.y.place(point[1]) * (self.bottom - self.top),
+        ]
+    }
+}
+
+fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
+    draw_axes(canvas, panel, frame, last);
+    for (value, text) in &panel.levels {
+        let [_, y] = frame.at(panel, [0.0, *value]);
+        canvas.dashed(&[[frame.left, y], [frame.right, y]], GREY, 0.2, &[1.5, 1.0]);
+        canvas.text(
+            text,
+            [frame.right - 1.0, y - 1.5],
+            SMALL_PT,
+            Anchor::End,
+            GREY,
+        );
+    }
+    if let Some(slope) = &panel.slope {
+        draw_slope(canvas, panel, frame, slope);
+    }
+    for series in &panel.series {
+        draw_series(canvas, panel, frame, series);
+    }
+}
+
+fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
+    let Frame {
+        left,
+        right,
+        top,
+        bottom,
+    } = *frame;
+    for (value, _) in &panel.y.major {
+        let [_, y] = frame.at(panel, [0.0, *value]);
+        canvas.line(&[[left, y], [right, y]], LIGHT, 0.1);
+    }
+    for (value, _) in &panel.x.major {
+        let x = left + panel.x.place(*value) * (right - left);
+        canvas.line(&[[x, top], [x, bottom]], LIGHT, 0.1);
+    }
+    let ticks = |major: &[(f64, String)], minor: &[f64]| -> Vec<(f64, f64)> {
+        let major = major.iter().map(|(value, _)| (*value, TICK_MM));
+        major
+            .chain(minor.iter().map(|value| (*value, 0.5 * TICK_MM)))
+            .collect()
+    };
+    for (value, length) in ticks(&panel.x.major, &panel.x.minor) {
+        let x = left + panel.x.place(value) * (right - left);
+        canvas.line(&[[x, bottom], [x, bottom - length]], BLACK, FRAME_MM);
+    }
+    for (value, length) in ticks(&panel.y.major, &panel.y.minor) {
+        let [_, y] = frame.at(panel, [0.0, value]);
+        canvas.line(&[[left, y], [left + length, y]], BLACK, FRAME_MM);
+    }
+    let corners = [
+        [left, top],
+        [right, top],
+        [right, bottom],
+        [left, bottom],
+        [left, top],
+    ];
+    canvas.line(&corners, BLACK, FRAME_MM);
+    for (value, label) in &panel.y.major {
+        let [_, y] = frame.at(panel, [0.0, *value]);
+        canvas.text(label, [left - 1.0, y], TICK_PT, Anchor::End, BLACK);
+    }
+    if last {
+        for (value, label) in &panel.x.major {
+            let x = left + panel.x.place(*value) * (right - left);
+            canvas.text(label, [x, bottom + 2.2], TICK_PT, Anchor::Middle, BLACK);
+        }
+        let middle = [0.5 * (left + right), bottom + 6.3];
+        canvas.text(&panel.x.label, middle, LABEL_PT, Anchor::Middle, BLACK);
+    }
+    let middle = [MARGIN_MM + 1.5, 0.5 * (top + bottom)];
+    canvas.text_upwards(&panel.y.label, middle, LABEL_PT, BLACK);
+}
+
+fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Series) {
+    let places: Vec<Option<[f64; 2]>> = series
+        .points
+        .iter()
+        .map(|point| Some(frame.at(panel, *point)).filter(|p| p.iter().all(|c| c.is_finite())))
+        .collect();
+    for piece in places.split(Option::is_none) {
+        let piece: Vec<[f64; 2]> = piece.iter().flatten().copied().collect();
+        canvas.dashed(
+            &piece,
+            series.style.colour,
+            series.style.width,
+            series.style.dashes,
+        );
+    }
+    let Some(own) = series.style.marker else {
+        return;
+    };
+    let mut last: Option<([f64; 2], (Marker, bool))> = None;
+    for (index, place) in places.iter().enumerate() {
+        let Some(place) = place else { continue };
+        let look = series
+            .markers
+            .get(index)
+            .copied()
+            .unwrap_or((own, series.style.filled));
+        // Dense curves get few markers, but a change of marker is always shown.
+        let crowded = last.is_some_and(|(at, before)| {
+            before == look && (place[0] - at[0]).hypot(place[1] - at[1]) < MARKER_GAP_MM
+        });
+        if !crowded {
+            let Style { colour, size, .. } = series.style;
+            draw_marker(canvas, *place, look.0, look.1, colour, size);
+            last = Some((*place, look));
+        }
+    }
+}
+
+/// A marker centred at `at`; an unfilled one is white inside.
+pub fn draw_marker(
+    canvas: &mut Canvas,
+    at: [f64; 2],
+    marker: Marker,
+    filled: bool,
+    colour: Rgb,
+    size: f64,
+) {
+    let r = size * MARKER_MM;
+    let around = |offsets: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        offsets
+            .iter()
+            .map(|o| [at[0] + r * o[0], at[1] + r * o[1]])
+            .collect()
+    };
+    let outline = match marker {
+        Marker::Disc => {
+            canvas.disc(at, r, colour);
+            if !filled {
+                canvas.disc(at, 0.65 * r, WHITE);
+            }
+            return;
+        }
+        Marker::Cross => {
+            canvas.line(&around(&[[-0.9, -0.9], [0.9, 0.9]]), colour, CURVE_MM);
+            canvas.line(&around(&[[-0.9, 0.9], [0.9, -0.9]]), colour, CURVE_MM);
+            return;
+        }
+        Marker::Plus => {
+            canvas.line(&around(&[[-1.1, 0.0], [1.1, 0.0]]), colour, CURVE_MM);
+            canvas.line(&around(&[[0.0, -1.1], [0.0, 1.1]]), colour, CURVE_MM);
+            return;
+        }
+        Marker::Square => around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
+        Marker::Triangle => around(&[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]]),
+        Marker::TriangleDown => around(&[[0.0, 1.2], [1.1, -0.8], [-1.1, -0.8]]),
+        Marker::Diamond => around(&[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]]),
+    };
+    canvas.fill(&outline, if filled { colour } else { WHITE });
+    let mut closed = outline;
+    closed.push(closed[0]);
+    canvas.line(&closed, colour, 0.25);
+}
+
+fn draw_slope(canvas: &mut Canvas, panel: &Panel, frame: &Frame, slope: &SlopeTriangle) {
+    let start = frame.at(panel, [slope.x[0], slope.y]);
+    let end = frame.at(panel, [slope.x[1], slope.end()]);
+    // The right angle is below the sloped side: under its higher end.
+    let rising = slope.slope > 0.0;
+    let corner = if rising {
+        [end[0], start[1]]
+    } else {
+        [start[0], end[1]]
+    };
+    canvas.line(&[start, end, corner, start], BLACK, 0.2);
+    let low = start[1].max(end[1]);
+    let middle = [0.5 * (start[0] + end[0]), low + 1.7];
+    canvas.text("1", middle, SMALL_PT, Anchor::Middle, BLACK);
+    let (x, anchor) = if rising {
+        (corner[0] + 0.8, Anchor::Start)
+    } else {
+        (corner[0] - 0.8, Anchor::End)
+    };
+    let text = crate::report::number::significant(slope.slope.abs(), 3);
+    canvas.text(
+        &text,
+        [x, 0.5 * (start[1] + end[1])],
+        SMALL_PT,
+        anchor,
+        BLACK,
+    );
+}
+
+/// Legend entries in rows, columns as wide as they need to be.
+struct LegendGrid<'a> {
+    entries: &'a [Entry],
+    columns: usize,
+    /// Where each column starts [mm].
+    starts: Vec<f64>,
+    available: f64,
+}
+
+impl<'a> LegendGrid<'a> {
+    fn new(entries: &'a [Entry], available: f64) -> Self {
+        let width = |entry: &Entry| SAMPLE_MM + text_width(&entry.label, TICK_PT) + 2.0;
+        let widths = |columns: usize| -> Vec<f64> {
+            let column = |c: usize| entries.iter().skip(c).step_by(columns);
+            (0..columns)
+                .map(|c| column(c).map(width).fold(0.0, f64::max))
+                .collect()
+        };
+        // As many columns as fit; one in any case, its labels are cut.
+        let columns = (2..=entries.len())
+            .rev()
+            .find(|columns| widths(*columns).iter().sum::<f64>() <= available)
+            .unwrap_or(1);
+        let widths = widths(columns);
+        // A single column starts at the left, several are spread over the width.
+        let spare = (available - widths.iter().sum::<f64>()).max(0.0) / columns as f64;
+        let mut end = 0.0;
+        let starts = widths.iter().map(|width| {
+            let start = end;
+            end += width + spare.min(12.0);
+            start
+        });
+        Self {
+            entries,
+            columns,
+            starts: starts.collect(),
+            available,
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.entries.len().div_ceil(self.columns)
+    }
+
+    fn draw(&self, canvas: &mut Canvas, origin: [f64; 2]) {
+        for (index, entry) in self.entries.iter().enumerate() {
+            let start = self.starts[index % self.columns];
+            let x = origin[0] + start;
+            let y = origin[1] + (index / self.columns) as f64 * LEGEND_ROW_MM;
+            let style = &entry.style;
+            let (from, to) = (x + 0.5, x + SAMPLE_MM - 1.5);
+            if entry.line {
+                canvas.dashed(
+                    &[[from, y], [to, y]],
+                    style.colour,
+                    style.width,
+                    style.dashes,
+                );
+            }
+            if let Some(marker) = style.marker {
+                let middle = [0.5 * (from + to), y];
+                draw_marker(
+                    canvas,
+                    middle,
+                    marker,
+                    style.filled,
+                    style.colour,
+                    style.size,
+                );
+            }
+            let room = self.available - start - SAMPLE_MM;
+            let label = fitted(&entry.label, TICK_PT, room);
+            canvas.text(&label, [x + SAMPLE_MM, y], TICK_PT, Anchor::Start, BLACK);
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Displacement contours of a plane body on its deformed shape, u_x and u_y side by side.
+
+use super::axis::{Axis, nice_step, prefixed, range};
+use super::bands::{self, Levels, Pixel, Triangle, chains};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, plain, subscript, wrapped,
+};
+use super::chart::{LABEL_PT, TICK_PT};
+use super::colour::{BLACK, LIGHT};
+use crate::harness::record::{Picture, PictureShape};
+use crate::report::ReportError;
+use std::collections::BTreeSet;
+
+const FIGURE: &str = "displacement contours";
+/// Name of the point vector that is drawn.
+pub const DISPLACEMENT: &str = "displacement_m";
+
+/// Factor by which displacements are enlarged in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Magnification {
+    /// A round factor that makes the largest displacement about a twentieth of the body.
+    Auto,
+    /// This factor.
+    Factor(f64),
+}
+
+impl Magnification {
+    /// The factor for a body of this diameter [m] and this largest displacement [m].
+    pub fn factor(self, diameter: f64, displacement: f64) -> f64 {
+        match self {
+            Self::Factor(factor) => factor,
+            Self::Auto if displacement > 0.0 && diameter > 0.0 => {
+                nice_step(0.02 * diameter / displacement)
+            }
+            Self::Auto => 1.0,
+        }
+    }
+}
+
+/// Displacement components u_x and u_y of a 2D picture as filled bands on the deformed shape.
+///
+/// Needs the point vector `displacement_m`. Boundary edges, crack faces with doubled nodes among them, are drawn black,
+/// the undeformed outline grey. `caption` is small text above the panels.
+///
+/// # Errors
+/// [`ReportError::Picture`] when the picture is not 2D, has no area, or lacks the vector.
+pub fn displacement_contours(
+    picture: &Picture,
+    magnification: Magnification,
+    caption: &str,
+) -> Result<String, ReportError> {
+    if picture.dim != 2 {
+        return Err(unfit(
+            "picture",
+            format!("{} dimensions, {FIGURE} need 2", picture.dim),
+        ));
+    }
+    let displacement = point_vector(picture, DISPLACEMENT)?;
+    let faces = plane_faces(picture)?;
+    let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
+        .ok_or_else(|| unfit("points", "no finite points".into()))?;
+    let largest = displacement
+        .iter()
+        .map(|u| u[0].hypot(u[1]))
+        .fold(0.0, f64::max);
+    let factor = magnification.factor(size.diameter(), largest);
+    let places: Vec<[f64; 2]> = picture
+        .points
+        .iter()
+        .zip(displacement)
+        .map(|(x, u)| [x[0] + factor * u[0], x[1] + factor * u[1]])
+        .collect();
+    let Some(deformed) = Box2::around(places.iter().copied()) else {
+        return Err(unfit(DISPLACEMENT, "no finite values".into()));
+    };
+    let shown = deformed.joined(&size);
+
+    // Per panel: axis labels left, colour bar right, the rest for the body.
+    let panel_width = 0.5 * Width::Page.mm();
+    let room = [panel_width - 14.0 - 19.0, 90.0];
+    let scale = (room[0] / shown.width()).min(room[1] / shown.height());
+    let body = [scale * shown.width(), scale * shown.height()];
+    let caption = full_caption(caption, factor);
+    let lines = wrapped(&caption, CAPTION_PT, Width::Page.mm() - 3.0);
+    // Above the body stands the label of the colour bar.
+    let top = caption_height(&lines) + 6.0;
+    let bottom = top + body[1];
+    let mut canvas = Canvas::new(Width::Page.mm(), bottom + 10.0);
+    canvas.caption(&lines);
+
+    let outline = boundary(&faces);
+    for (component, name) in ["x", "y"].into_iter().enumerate() {
+        let left = component as f64 * panel_width + 13.0;
+        let paper = |p: [f64; 2]| {
+            [
+                left + scale * (p[0] - shown.low[0]),
+                bottom - scale * (p[1] - shown.low[1]),
+            ]
+        };
+        let (low, high) = range(displacement.iter().map(|u| u[component])).unwrap_or((0.0, 0.0));
+        let (unit_factor, unit) = prefixed(low.abs().max(high.abs()), "m");
+        let levels = Levels::new(low * unit_factor, high * unit_factor);
+
+        stroke(
+            &mut canvas,
+            &outline,
+            |p| {
+                let [x, y, _] = picture.points[p];
+                pixel(paper([x, y]))
+            },
+            LIGHT,
+            0.15,
+        );
+        let corner = |p: usize| {
+            (
+                pixel(paper(places[p])),
+                displacement[p][component] * unit_factor,
+            )
+        };
+        let triangles: Vec<Triangle> = faces.iter().flat_map(|face| split(face, corner)).collect();
+        bands::fill(&mut canvas, &triangles, &levels, 0.05);
+        stroke(
+            &mut canvas,
+            &outline,
+            |p| pixel(paper(places[p])),
+            BLACK,
+            0.2,
+        );
+
+        let frame = [left - 1.5, bottom + 1.5];
+        draw_axes(&mut canvas, frame, &shown, scale);
+        let bar = [left + body[0] + 4.0, bottom];
+        let label = format!("{}{} [{unit}]", italic("u"), subscript(name));
+        bands::colour_bar(&mut canvas, &levels, bar, body[1].min(60.0), &label);
+    }
+    canvas.finish(&format!("Displacement contours: {caption}"))
+}
+
+/// The caption with the magnification.
+pub(super) fn full_caption(caption: &str, factor: f64) -> String {
+    let deformation = format!("deformation ×{}", crate::report::number::value(factor));
+    match plain(caption) {
+        text if text.is_empty() => deformation,
+        text => format!("{text}, {deformation}"),
+    }
+}
+
+/// Left and lower axis, a little off the body.
+fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
+    let ticks = |label: &str, c: usize| Axis::linear(label, [shown.low[c], shown.high[c]], 5);
+    let inside = |c: usize, v: f64| v >= shown.low[c] && v <= shown.high[c];
+    let end = [
+        origin[0] + 1.5 + scale * shown.width(),
+        origin[1] - 1.5 - scale * shown.height(),
+    ];
+    canvas.line(
+        &[[origin[0], end[1]], origin, [end[0], origin[1]]],
+        BLACK,
+        0.15,
+    );
+    let (x, y) = (
+        ticks(&format!("{} [m]", italic("x")), 0),
+        ticks(&format!("{} [m]", italic("y")), 1),
+    );
+    for (value, label) in x.major.iter().filter(|(v, _)| inside(0, *v)) {
+        let at = origin[0] + 1.5 + scale * (value - shown.low[0]);
+        canvas.line(&[[at, origin[1]], [at, origin[1] + 0.8]], BLACK, 0.15);
+        canvas.text(label, [at, origin[1] + 2.6], TICK_PT, Anchor::Middle, BLACK);
+    }
+    for (value, label) in y.major.iter().filter(|(v, _)| inside(1, *v)) {
+        let at = origin[1] - 1.5 - scale * (value - shown.low[1]);
+        canvas.line(&[[origin[0], at], [origin[0] - 0.8, at]], BLACK, 0.15);
+        canvas.text(label, [origin[0] - 1.3, at], TICK_PT, Anchor::End, BLACK);
+    }
+    let middle = 0.5 * (origin[0] + end[0]);
+    canvas.text(
+        &x.label,
+        [middle, origin[1] + 6.3],
+        LABEL_PT,
+        Anchor::Middle,
+        BLACK,
+    );
+    let middle = 0.5 * (origin[1] + end[1]);
+    canvas.text_upwards(&y.label, [origin[0] - 9.0, middle], LABEL_PT, BLACK);
+}
+
+/// The values of a point vector.
+///
+/// # Errors
+/// [`ReportError::Picture`] when it is missing or has not one value per point.
+pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
+    let found = picture.point_vectors.iter().find(|(n, _)| n == name);
+    let Some((_, values)) = found else {
+        return Err(unfit(name, "the picture has no such point vector".into()));
+    };
+    if values.len() != picture.points.len() {
+        let reason = format!(
+            "{} values for {} points",
+            values.len(),
+            picture.points.len()
+        );
+        return Err(unfit(name, reason));
+    }
+    Ok(values)
+}
+
+/// Point numbers of all plane cells, in cyclic order.
+fn plane_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
+    let mut faces = Vec::new();
+    for cell in &picture.cells {
+        if let Some(point) = cell.points.iter().find(|p| **p >= picture.points.len()) {
+            return Err(unfit(
+                "cells",
+                format!("point {point} of {}", picture.points.len()),
+            ));
+        }
+        if let PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad = cell.shape {
+            faces.push(cell.points.clone());
+        }
+    }
+    if faces.is_empty() {
+        return Err(unfit("cells", "no triangle, polygon or quad".into()));
+    }
+    Ok(faces)
+}
+
+/// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).
+pub fn split(face: &[usize], corner: impl Fn(usize) -> (Pixel, f64)) -> Vec<Triangle> {
+    let corners: Vec<(Pixel, f64)> = face.iter().map(|p| corner(*p)).collect();
+    if let [a, b, c] = corners[..] {
+        return vec![[a, b, c]];
+    }
+    let n = corners.len();
+    let mean = |c: usize| {
+        let sum: f64 = corners.iter().map(|(p, _)| f64::from(p[c])).sum();
+        (sum / n as f64).round() as i32
+    };
+    let value = corners.iter().map(|(_, v)| v).sum::<f64>() / n as f64;
+    let middle = ([mean(0), mean(1)], value);
+    (0..n)
+        .map(|i| [corners[i], corners[(i + 1) % n], middle])
+        .collect()
+}
+
+/// Edges of exactly one face.
+fn boundary(faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
+    let mut edges: Vec<[usize; 2]> = faces
+        .iter()
+        .flat_map(|face| (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()])))
+        .map(|(a, b)| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges
+        .chunk_by(|a, b| a == b)
+        .filter(|equal| equal.len() == 1)
+        .map(|equal| equal[0])
+        .collect()
+}
+
+fn stroke(
+    canvas: &mut Canvas,
+    edges: &[[usize; 2]],
+    place: impl Fn(usize) -> Pixel,
+    colour: [u8; 3],
+    width: f64,
+) {
+    let edges: BTreeSet<[Pixel; 2]> = edges
+        .iter()
+        .map(|[a, b]| (place(*a), place(*b)))
+        .filter(|(a, b)| a != b)
+        .map(|(a, b)| [a.min(b), a.max(b)])
+        .collect();
+    for line in chains(&edges) {
+        canvas.pixel_line(line, colour, width);
+    }
+}
+
+pub(super) fn unfit(name: &str, reason: String) -> ReportError {
+    ReportError::Picture {
+        name: name.to_owned(),
+        reason,
+    }
+}
+
+/// An upright rectangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Box2 {
+    pub low: [f64; 2],
+    pub high: [f64; 2],
+}
+
+impl Box2 {
+    /// The smallest that holds all points; none without finite points or without extent.
+    pub fn around(points: impl Iterator<Item = [f64; 2]> + Clone) -> Option<Self> {
+        let (x0, x1) = range(points.clone().map(|p| p[0]))?;
+        let (y0, y1) = range(points.map(|p| p[1]))?;
+        (x1 > x0 && y1 > y0).then_some(Self {
+            low: [x0, y0],
+            high: [x1, y1],
+        })
+    }
+
+    fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|c| self.low[c].min(other.low[c])),
+            high: std::array::from_fn(|c| self.high[c].max(other.high[c])),
+        }
+    }
+
+    pub fn width(&self) -> f64 {
+        self.high[0] - self.low[0]
+    }
+
+    pub fn height(&self) -> f64 {
+        self.high[1] - self.low[1]
+    }
+
+    pub fn diameter(&self) -> f64 {
+        self.width().hypot(self.height())
+    }
+}

@@ -1,0 +1,285 @@
+//! The figures made of curves: residual histories, errors, loops.
+
+use super::axis::Axis;
+use super::canvas::{Width, plain};
+use super::chart::{Chart, Entry, Panel, Series, SlopeTriangle, Style};
+use super::names::{Names, by_run};
+use crate::harness::record::{HistoryRow, RunKey};
+use crate::report::ReportError;
+
+/// Residuals below this are drawn here: a logarithmic axis has no zero.
+const RESIDUAL_SHOWN: f64 = 1e-16;
+
+/// A horizontal line in the residual figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tier {
+    /// Its text, e.g. `tier high`.
+    pub label: String,
+    /// Residual that the tier allows [-].
+    pub residual: f64,
+}
+
+impl Tier {
+    /// The tiers of the harness: low 1e-3, mid 1e-6, high 1e-9; none for another name.
+    pub fn named(name: &str) -> Option<Self> {
+        let residual = match name {
+            "low" => 1e-3,
+            "mid" => 1e-6,
+            "high" => 1e-9,
+            _ => return None,
+        };
+        Some(Self {
+            label: format!("tier {name}"),
+            residual,
+        })
+    }
+}
+
+/// Natural-map residual against iteration, one curve per run in `rows`.
+///
+/// # Errors
+/// [`ReportError::Figure`] when there are no finite residuals.
+pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<String, ReportError> {
+    const FIGURE: &str = "residual history";
+    let runs = by_run(rows, |row| &row.key, |a, b| a.iteration.cmp(&b.iteration));
+    let keys: Vec<&RunKey> = runs.iter().map(|run| &run[0].key).collect();
+    let names = Names::of(&keys);
+    let counts = runs
+        .iter()
+        .map(|run| run.iter().map(|row| row.iteration).max().unwrap_or(0));
+    let most = counts.clone().max().unwrap_or(0);
+    // Newton needs ten iterations where an alternating method needs hundreds: only a logarithmic axis shows both.
+    let logarithmic = most > 30 * counts.min().unwrap_or(0).max(1);
+    let iteration = |row: &HistoryRow| row.iteration as f64;
+    let residual = |row: &HistoryRow| {
+        if row.natural_map.is_finite() {
+            row.natural_map.max(RESIDUAL_SHOWN)
+        } else {
+            f64::NAN
+        }
+    };
+
+    let x = if logarithmic {
+        Axis::log("iteration [-]", rows.iter().map(iteration))
+    } else {
+        Some(Axis::counts("iteration [-]", most))
+    };
+    let shown = rows
+        .iter()
+        .map(residual)
+        .chain(tier.map(|tier| tier.residual));
+    let y = Axis::log("natural-map residual [-]", shown);
+    let (Some(x), Some(y)) = (x, y) else {
+        return Err(ReportError::figure(FIGURE, "no finite residual"));
+    };
+    let curves = runs
+        .iter()
+        .map(|run| {
+            run.iter()
+                .map(|row| [iteration(row), residual(row)])
+                .collect()
+        })
+        .collect();
+    let level = |tier: &Tier| (tier.residual, plain(&tier.label));
+    let levels = tier.map(level).into_iter().collect();
+    let panel = Panel {
+        x,
+        y,
+        series: Vec::new(),
+        levels,
+        slope: None,
+    };
+    let title = format!("Residual against iteration: {}", names.common);
+    draw(title, names.common, panel, names.labels, curves)
+}
+
+/// A curve of [`error_plot`] and [`line_plot`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Label in the legend.
+    pub label: String,
+    /// x and y.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// What [`error_plot`] and [`line_plot`] draw. Labels may hold [`subscript`] and [`italic`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurvePlot {
+    /// Small text above the axes, e.g. the case.
+    pub caption: String,
+    /// Label with unit.
+    pub x_label: String,
+    /// Label with unit.
+    pub y_label: String,
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+/// Both axes logarithmic, with a triangle of the given slope below the part of the first curve that is closest to it.
+///
+/// # Errors
+/// [`ReportError::Figure`] when no point has two positive coordinates.
+pub fn error_plot(plot: &CurvePlot, slope: Option<f64>) -> Result<String, ReportError> {
+    const FIGURE: &str = "error plot";
+    let positive = |p: &&[f64; 2]| p.iter().all(|c| c.is_finite() && *c > 0.0);
+    let curves: Vec<Vec<[f64; 2]>> = plot
+        .curves
+        .iter()
+        .map(|curve| curve.points.iter().filter(positive).copied().collect())
+        .collect();
+    let triangle = slope.and_then(|slope| triangle_below(&curves, slope));
+    let points = || curves.iter().flatten();
+    // The factor leaves room for the number below the triangle.
+    let lowest = triangle.iter().map(|t| t.y.min(t.end()) / 2.0);
+    let x = Axis::log(&plot.x_label, points().map(|p| p[0]));
+    let y = Axis::log(&plot.y_label, points().map(|p| p[1]).chain(lowest));
+    let (Some(x), Some(y)) = (x, y) else {
+        return Err(ReportError::figure(
+            FIGURE,
+            "no point with two positive coordinates",
+        ));
+    };
+    generic(plot, curves, x, y, triangle)
+}
+
+/// Both axes linear, points joined in their order, e.g. force against displacement over a cycle.
+///
+/// # Errors
+/// [`ReportError::Figure`] when there is no finite point.
+pub fn line_plot(plot: &CurvePlot) -> Result<String, ReportError> {
+    let finite = |p: &&[f64; 2]| p.iter().all(|c| c.is_finite());
+    let points = || {
+        plot.curves
+            .iter()
+            .flat_map(|curve| &curve.points)
+            .filter(finite)
+    };
+    if points().next().is_none() {
+        return Err(ReportError::figure("line plot", "no finite point"));
+    }
+    let x = Axis::linear(&plot.x_label, points().map(|p| p[0]), 6);
+    let y = Axis::linear(&plot.y_label, points().map(|p| p[1]), 5);
+    let curves = plot
+        .curves
+        .iter()
+        .map(|curve| curve.points.clone())
+        .collect();
+    generic(plot, curves, x, y, None)
+}
+
+fn generic(
+    plot: &CurvePlot,
+    curves: Vec<Vec<[f64; 2]>>,
+    x: Axis,
+    y: Axis,
+    slope: Option<SlopeTriangle>,
+) -> Result<String, ReportError> {
+    let panel = Panel {
+        x,
+        y,
+        series: Vec::new(),
+        levels: Vec::new(),
+        slope,
+    };
+    let labels = plot
+        .curves
+        .iter()
+        .map(|curve| curve.label.clone())
+        .collect();
+    let title = format!("{} against {}", plot.y_label, plot.x_label);
+    draw(title, plain(&plot.caption), panel, labels, curves)
+}
+
+/// One panel with its curves and a legend.
+fn draw(
+    title: String,
+    caption: String,
+    mut panel: Panel,
+    labels: Vec<String>,
+    curves: Vec<Vec<[f64; 2]>>,
+) -> Result<String, ReportError> {
+    let places = |curve: &Vec<[f64; 2]>| -> Vec<f64> {
+        curve
+            .iter()
+            .flat_map(|p| [panel.x.place(p[0]), panel.y.place(p[1])])
+            .collect()
+    };
+    let styles = Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>());
+    let legend = labels
+        .into_iter()
+        .zip(&styles)
+        .map(|(label, style)| Entry {
+            label,
+            style: style.clone(),
+            line: true,
+        })
+        .collect();
+    panel.series = curves
+        .into_iter()
+        .zip(styles)
+        .map(|(points, style)| Series {
+            points,
+            style,
+            markers: Vec::new(),
+        })
+        .collect();
+    let chart = Chart {
+        title,
+        caption,
+        width: Width::Column,
+        height: 46.0,
+        panels: vec![panel],
+        legend: vec![legend],
+    };
+    chart.svg()
+}
+
+/// A slope triangle a quarter of the x range wide, beside the steadiest agreement with the slope.
+fn triangle_below(curves: &[Vec<[f64; 2]>], slope: f64) -> Option<SlopeTriangle> {
+    let mut first = curves.first()?.clone();
+    first.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let deviation = |pair: &&[[f64; 2]]| {
+        let [a, b] = [pair[0], pair[1]];
+        ((b[1] / a[1]).ln() / (b[0] / a[0]).ln() - slope).abs()
+    };
+    let best = first
+        .windows(2)
+        .filter(|pair| pair[1][0] > pair[0][0])
+        .min_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
+    let all = || curves.iter().flatten();
+    let (low, high) = super::axis::range(all().map(|p| p[0]))?;
+    let half = (high / low).powf(0.11);
+    // Kept inside the axis, with room for the number beside the upright leg.
+    let middle = (best[0][0] * best[1][0])
+        .sqrt()
+        .clamp(low * half.powf(1.3), high / half.powf(1.3));
+    let x = [middle / half, middle * half];
+    let (bottom, top) = super::axis::range(all().map(|p| p[1]))?;
+    let below = (top / bottom).powf(0.07).max(1.2);
+    // The lowest curve over the triangle, brought to x[0] along the slope.
+    let lowest = curves
+        .iter()
+        .flat_map(|curve| curve.windows(2))
+        .flat_map(|pair| x.map(|at| interpolate(pair, at).map(|y| y * (x[0] / at).powf(slope))))
+        .flatten()
+        .chain(
+            all()
+                .filter(|p| p[0] >= x[0] && p[0] <= x[1])
+                .map(|p| p[1] * (x[0] / p[0]).powf(slope)),
+        )
+        .fold(f64::INFINITY, f64::min);
+    lowest.is_finite().then_some(SlopeTriangle {
+        x,
+        y: lowest / below,
+        slope,
+    })
+}
+
+/// y at `at` on the segment in logarithmic coordinates; none outside.
+fn interpolate(pair: &[[f64; 2]], at: f64) -> Option<f64> {
+    let [a, b] = [pair[0], pair[1]];
+    let t = (at / a[0]).ln() / (b[0] / a[0]).ln();
+    (0.0..=1.0)
+        .contains(&t)
+        .then(|| a[1] * (b[1] / a[1]).powf(t))
+}

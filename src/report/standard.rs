@@ -1,0 +1,319 @@
+//! The files that every command writes: CSV, summary tables, figures, fields, provenance.
+//!
+//! Figures and profiles show solved runs of the last increment only, a wrong answer never stands beside right ones;
+//! residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
+
+use super::number::{residual, time, value};
+use super::plot::{self, Axis3, Magnification, Tier};
+use super::tables::{Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, csv, paper, vtu};
+use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Everything that one command writes, apart from the tables of the paper.
+///
+/// # Errors
+/// Those of the parts; [`ReportError::Duplicate`] where two runs give the same file name.
+pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
+    let mut bundle = Bundle::new();
+    csv::add_to(&mut bundle, results)?;
+    paper::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
+    if !results.expectations.is_empty() {
+        let table = expectations_table(&results.expectations)?;
+        paper::add_readable(&mut bundle, "expectations", &table)?;
+    }
+    add_residuals(&mut bundle, results)?;
+    add_profiles(&mut bundle, results)?;
+    for fields in &results.fields {
+        add_fields(&mut bundle, fields, provenance)?;
+    }
+    provenance.add_to(&mut bundle)?;
+    Ok(bundle)
+}
+
+/// Writes [`bundle`] into `dir`, all files or none.
+///
+/// # Errors
+/// Those of [`bundle`] and [`Bundle::commit`].
+pub fn write(dir: &Path, results: &Results, provenance: &Provenance) -> Result<(), ReportError> {
+    bundle(results, provenance)?.commit(dir)
+}
+
+/// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
+/// digits, `.`, `-`, `_` and `=` replaced by `-`.
+pub fn stem(key: &RunKey) -> String {
+    let friction = value(key.friction);
+    file_name(&[
+        &key.case,
+        &key.mesh,
+        &key.space,
+        &key.method,
+        &format!("mu-{friction}"),
+    ])
+}
+
+fn file_name(parts: &[&str]) -> String {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
+    let clean = |c: char| if allowed(c) { c } else { '-' };
+    parts.join(".").chars().map(clean).collect()
+}
+
+/// Summary of the runs for reading: last increment of each run.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Runs, last increment",
+        vec![
+            Column::new("case", "", Align::Left),
+            Column::new("mesh", "", Align::Left),
+            Column::new("space", "", Align::Left),
+            Column::new("method", "", Align::Left),
+            Column::new("μ", "", Align::Decimal),
+            Column::new("increment", "", Align::Right),
+            Column::new("tier", "", Align::Left),
+            Column::new("verdict", "", Align::Left),
+            Column::new("natural map", "", Align::Right),
+            Column::new("iterations", "", Align::Right),
+            Column::new("factorisations", "", Align::Right),
+            Column::new("solves", "", Align::Right),
+            Column::new("points", "", Align::Right),
+            Column::new("solve", "s", Align::Right),
+        ],
+    );
+    let mut sorted: Vec<&RunRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then_with(|| a.tier.cmp(&b.tier)));
+    let last = last_increments(rows.iter().map(|row| &row.key));
+    for row in sorted.into_iter().filter(|row| is_last(&last, &row.key)) {
+        // A time is published only beside a right answer.
+        let solve = if solved(&row.verdict) {
+            time(row.solve_s)
+        } else {
+            "–".into()
+        };
+        table.push(vec![
+            row.key.case.clone(),
+            row.key.mesh.clone(),
+            row.key.space.clone(),
+            row.key.method.clone(),
+            value(row.key.friction),
+            row.key.increment.to_string(),
+            row.tier.clone(),
+            row.verdict.clone(),
+            residual(row.natural_map),
+            row.iterations.to_string(),
+            row.factorisations.to_string(),
+            row.solves.to_string(),
+            row.points.to_string(),
+            solve,
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Expected and found quantities for reading.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn expectations_table(rows: &[ExpectRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Expected and found",
+        vec![
+            Column::new("case", "", Align::Left),
+            Column::new("mesh", "", Align::Left),
+            Column::new("method", "", Align::Left),
+            Column::new("μ", "", Align::Decimal),
+            Column::new("quantity", "", Align::Left),
+            Column::new("expected", "", Align::Right),
+            Column::new("found", "", Align::Right),
+            Column::new("difference", "", Align::Right),
+            Column::new("allowed", "", Align::Right),
+            Column::new("unit", "", Align::Left),
+            Column::new("kind", "", Align::Left),
+            Column::new("source", "", Align::Left),
+            Column::new("verdict", "", Align::Left),
+        ],
+    );
+    let mut sorted: Vec<&ExpectRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then_with(|| csv::Row::order(*a, *b)));
+    for row in sorted {
+        let quantity = [&row.quantity, &row.at, &row.component];
+        let quantity = quantity
+            .map(String::as_str)
+            .into_iter()
+            .filter(|part| !part.is_empty());
+        table.push(vec![
+            row.key.case.clone(),
+            row.key.mesh.clone(),
+            row.key.method.clone(),
+            value(row.key.friction),
+            quantity.collect::<Vec<_>>().join(" "),
+            value(row.expected),
+            value(row.found),
+            residual(row.found - row.expected),
+            residual(row.allowed),
+            row.unit.clone(),
+            row.kind.clone(),
+            row.source.clone(),
+            row.verdict.clone(),
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Whether a verdict is that of a right answer.
+pub fn solved(verdict: &str) -> bool {
+    verdict.starts_with("solved")
+}
+
+/// What identifies a run without its increment; the friction as printed, so that it can be compared.
+type RunName = (String, String, String, String, String);
+
+fn run_name(key: &RunKey) -> RunName {
+    let friction = value(key.friction);
+    (
+        key.case.clone(),
+        key.mesh.clone(),
+        key.space.clone(),
+        key.method.clone(),
+        friction,
+    )
+}
+
+fn last_increments<'a>(keys: impl Iterator<Item = &'a RunKey>) -> BTreeMap<RunName, usize> {
+    let mut last = BTreeMap::new();
+    for key in keys {
+        let increment = last.entry(run_name(key)).or_insert(key.increment);
+        *increment = key.increment.max(*increment);
+    }
+    last
+}
+
+fn is_last(last: &BTreeMap<RunName, usize>, key: &RunKey) -> bool {
+    last.get(&run_name(key)) == Some(&key.increment)
+}
+
+/// `figures/<case>.<mesh>.<space>.mu-<friction>.residual.svg`: all methods on one problem.
+fn add_residuals(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
+    let last = last_increments(results.history.iter().map(|row| &row.key));
+    let mut figures: BTreeMap<String, Vec<HistoryRow>> = BTreeMap::new();
+    for row in results
+        .history
+        .iter()
+        .filter(|row| is_last(&last, &row.key))
+    {
+        figures
+            .entry(problem(&row.key))
+            .or_default()
+            .push(row.clone());
+    }
+    let tiers: BTreeSet<&str> = results.runs.iter().map(|row| row.tier.as_str()).collect();
+    let tier = match tiers.into_iter().collect::<Vec<_>>()[..] {
+        [tier] => Tier::named(tier),
+        _ => None,
+    };
+    for (name, rows) in figures {
+        if rows.iter().any(|row| row.natural_map.is_finite()) {
+            let svg = plot::residual_history(&rows, tier.as_ref())?;
+            bundle.add(format!("figures/{name}.residual.svg"), svg)?;
+        }
+    }
+    Ok(())
+}
+
+/// `figures/….crack-<n>.traction.svg` and `….slip.svg`: per problem all methods, and per method all friction values.
+fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
+    let last = last_increments(results.points.iter().map(|row| &row.key));
+    let right: BTreeSet<(RunName, usize)> = results
+        .runs
+        .iter()
+        .filter(|row| solved(&row.verdict))
+        .map(|row| (run_name(&row.key), row.key.increment))
+        .collect();
+    let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
+    let mut sweeps: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
+    for row in &results.points {
+        let plane = row.force_unit == "N/m";
+        let wanted = plane && is_last(&last, &row.key);
+        if wanted && right.contains(&(run_name(&row.key), row.key.increment)) {
+            let RunKey {
+                case,
+                mesh,
+                space,
+                method,
+                ..
+            } = &row.key;
+            let sweep = file_name(&[case, mesh, space, method]);
+            problems
+                .entry((problem(&row.key), row.crack))
+                .or_default()
+                .push(row.clone());
+            sweeps
+                .entry((sweep, row.crack))
+                .or_default()
+                .push(row.clone());
+        }
+    }
+    let frictions = |rows: &[PointRow]| -> usize {
+        rows.iter()
+            .map(|row| value(row.key.friction))
+            .collect::<BTreeSet<_>>()
+            .len()
+    };
+    sweeps.retain(|_, rows| frictions(rows) > 1);
+    for ((name, crack), rows) in problems.into_iter().chain(sweeps) {
+        let name = format!("figures/{name}.crack-{crack}");
+        bundle.add(
+            format!("{name}.traction.svg"),
+            plot::contact_traction(&rows, crack)?,
+        )?;
+        bundle.add(
+            format!("{name}.slip.svg"),
+            plot::contact_slip(&rows, crack)?,
+        )?;
+    }
+    Ok(())
+}
+
+fn problem(key: &RunKey) -> String {
+    let friction = format!("mu-{}", value(key.friction));
+    file_name(&[&key.case, &key.mesh, &key.space, &friction])
+}
+
+/// `fields/<stem>.*.vtu` and `.pvd`, and the displacement figure of the last increment.
+fn add_fields(
+    bundle: &mut Bundle,
+    fields: &RunFields,
+    provenance: &Provenance,
+) -> Result<(), ReportError> {
+    let key = &fields.key;
+    let stem = stem(key);
+    let friction = value(key.friction);
+    let RunKey {
+        case,
+        mesh,
+        space,
+        method,
+        ..
+    } = key;
+    let run = format!("{case}, {mesh}, {space}, {method}");
+    // The version, not the commit: an unchanged field stays an unchanged file.
+    let origin = format!(
+        "stickslip {}: {run}, friction {friction}",
+        provenance.version
+    );
+    vtu::add_fields(bundle, "fields", &stem, fields, &origin)?;
+
+    let Some(step) = fields.steps.last() else {
+        return Ok(());
+    };
+    let caption = format!("{run}, μ = {friction}");
+    let svg = match step.body.dim {
+        2 => plot::displacement_contours(&step.body, Magnification::Auto, &caption)?,
+        3 => plot::solid_displacement(&step.body, Axis3::Z, Magnification::Auto, &caption)?,
+        _ => return Ok(()),
+    };
+    bundle.add(format!("figures/{stem}.displacement.svg"), svg)
+}

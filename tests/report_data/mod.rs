@@ -1,0 +1,314 @@
+//! Made-up results of realistic shape and size: a plate with a crack at 45 degrees, a beam in two halves.
+
+use stickslip::harness::record::*;
+
+pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
+pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];
+/// Half length of the crack over √2, and of the plate [m].
+const CRACK: f64 = 4.8;
+const PLATE: f64 = 10.0;
+const CELLS: usize = 22;
+
+pub fn key(method: &str, friction: f64) -> RunKey {
+    RunKey {
+        case: "plate_mesh1".into(),
+        mesh: "22x22".into(),
+        space: "edge-pairs".into(),
+        method: method.into(),
+        friction,
+        increment: 1,
+    }
+}
+
+/// All rows, in an order that is not the sorted one.
+pub fn results() -> Results {
+    let mut results = Results::default();
+    for friction in FRICTIONS {
+        for method in METHODS.iter().rev() {
+            add_run(&mut results, key(method, friction));
+        }
+    }
+    let key = key("b-newton", 0.1);
+    let step = FieldStep {
+        time: 1.0,
+        body: plate(),
+        crack: crack_line(),
+    };
+    let half = FieldStep {
+        time: 0.5,
+        ..step.clone()
+    };
+    results.fields.push(RunFields {
+        key,
+        steps: vec![half, step],
+    });
+    results
+}
+
+fn add_run(results: &mut Results, key: RunKey) {
+    let (iterations, rate) = match key.method.as_str() {
+        "b-newton" => (6, 1e-2),
+        "latin" => (160, 0.86),
+        "penalty" => (9, 0.04),
+        _ => (34, 0.5),
+    };
+    let wobble = |i: usize| 1.0 + 0.3 * (i as f64 * 1.7).sin();
+    let residual = |i: usize| 0.4 * f64::powi(rate, i as i32) * wobble(i);
+    results.runs.push(RunRow {
+        key: key.clone(),
+        tier: "high".into(),
+        verdict: "solved".into(),
+        natural_map: residual(iterations),
+        iterations,
+        factorisations: 1,
+        solves: iterations + 12,
+        unknowns: 22,
+        points: 11,
+        dofs: 1016,
+        assembly_s: 0.001_234_567,
+        factorisation_s: 0.002_345_678,
+        condensation_s: 0.000_345_678_9,
+        prepare_s: 1.234e-5,
+        solve_s: 4.567_891e-4,
+        equilibrium: 3.2e-14,
+        schema: SCHEMA,
+    });
+    for (component, value) in [("y", -973_543_210.987_65), ("x", -0.0)] {
+        results.quantities.push(QuantityRow {
+            key: key.clone(),
+            quantity: "reaction".into(),
+            at: "top".into(),
+            component: component.into(),
+            value,
+            unit: "N/m".into(),
+        });
+    }
+    for iteration in (0..=iterations).rev() {
+        let natural_map = residual(iteration);
+        results.history.push(HistoryRow {
+            key: key.clone(),
+            iteration,
+            natural_map,
+        });
+    }
+    results.points.extend(points(&key));
+    results.expectations.push(ExpectRow {
+        key,
+        quantity: "reaction".into(),
+        at: "top".into(),
+        component: "y".into(),
+        expected: -973.3e6,
+        found: -973.543e6,
+        allowed: 973.3e3,
+        unit: "N/m".into(),
+        kind: "published".into(),
+        source: "Table 1, \"Mesh I\"; printed 50 % too, small".into(),
+        verdict: "met".into(),
+    });
+}
+
+/// 11 points along the crack: the left end open, the middle slipping, the right end sticking.
+pub fn points(key: &RunKey) -> Vec<PointRow> {
+    let length = CRACK * 2f64.sqrt() * 2.0;
+    let point = |i: usize| {
+        let s = length * (i as f64 + 0.5) / 11.0;
+        let shift = METHODS.iter().position(|m| *m == key.method).unwrap_or(0) as f64;
+        let bump = (s * (length - s)).sqrt() / length;
+        let pressure = if i < 2 {
+            0.0
+        } else {
+            2.6e7 * (1.0 + 0.3 * bump) * (1.0 + 1e-3 * shift)
+        };
+        let status = match i {
+            0 | 1 => "open",
+            2..=8 => "slip",
+            _ => "stick",
+        };
+        let sliding = if status == "stick" { 0.8 } else { 1.0 };
+        PointRow {
+            key: key.clone(),
+            crack: 1,
+            point: i + 1,
+            x_m: -CRACK + s / 2f64.sqrt(),
+            y_m: -CRACK + s / 2f64.sqrt(),
+            z_m: 0.0,
+            s_m: s,
+            weight: length / 11.0,
+            gap_m: if i < 2 { 2e-4 } else { 1e-19 },
+            slip_a_m: if status == "stick" {
+                0.0
+            } else {
+                0.07 * bump * (1.2 - key.friction / 2.0)
+            },
+            slip_b_m: 0.0,
+            p_n: pressure * length / 11.0,
+            p_a: -sliding * key.friction * pressure * length / 11.0,
+            p_b: 0.0,
+            force_unit: "N/m".into(),
+            status: status.into(),
+        }
+    };
+    (0..11).rev().map(point).collect()
+}
+
+/// Displacement of a compressed plate whose crack slips; `side` is +1 above and left of the crack.
+fn displacement(x: f64, y: f64, side: f64) -> [f64; 3] {
+    let (along, off) = ((x + y) / 2f64.sqrt(), (y - x) / 2f64.sqrt());
+    let half = CRACK * 2f64.sqrt();
+    let inside = (1.0 - (along / half).powi(2)).max(0.0).sqrt();
+    let slip = -0.02 * inside * side * (-off.abs() / half).exp();
+    let fixed = (1.0 - (y / PLATE).powi(2)).max(0.0);
+    let lateral = 0.006 * (x / PLATE) * fixed;
+    let shear = slip / 2f64.sqrt() * fixed;
+    [lateral + shear, -0.05 * (y + PLATE) / PLATE + shear, 0.0]
+}
+
+/// 22 × 22 squares, those on the crack split along the diagonal, nodes inside the crack doubled.
+pub fn plate() -> Picture {
+    let mut picture = Picture {
+        dim: 2,
+        ..Picture::default()
+    };
+    let mut u = Vec::new();
+    let mut stress = Vec::new();
+    let at = |i: usize| -PLATE + 2.0 * PLATE * i as f64 / CELLS as f64;
+    let cracked = |i: usize| at(i).abs() < CRACK;
+    for j in 0..=CELLS {
+        for i in 0..=CELLS {
+            let side = if j >= i { 1.0 } else { -1.0 };
+            picture.points.push([at(i), at(j), 0.0]);
+            u.push(displacement(at(i), at(j), side));
+        }
+    }
+    let node = |i: usize, j: usize| j * (CELLS + 1) + i;
+    let mut twins = vec![None; CELLS + 1];
+    for i in (0..=CELLS).filter(|i| cracked(*i)) {
+        twins[i] = Some(picture.points.len());
+        picture.points.push([at(i), at(i), 0.0]);
+        u.push(displacement(at(i), at(i), -1.0));
+    }
+    // Nodes of the crack as seen from below.
+    let below = |i: usize, j: usize| {
+        if i == j {
+            twins[i].unwrap_or(node(i, j))
+        } else {
+            node(i, j)
+        }
+    };
+    for j in 0..CELLS {
+        for i in 0..CELLS {
+            let mut add = |shape, points| {
+                picture.cells.push(PictureCell { shape, points });
+                stress.push(1e8 + 1e6 * (i * j) as f64);
+            };
+            let crossed = i == j && (cracked(i) || cracked(i + 1));
+            if crossed {
+                let upper = vec![node(i, j), node(i + 1, j + 1), node(i, j + 1)];
+                let lower = vec![below(i, j), node(i + 1, j), below(i + 1, j + 1)];
+                add(PictureShape::Triangle, upper);
+                add(PictureShape::Triangle, lower);
+            } else {
+                let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+                let pick = |(a, b)| if i > j { below(a, b) } else { node(a, b) };
+                add(PictureShape::Quad, corners.map(pick).to_vec());
+            }
+        }
+    }
+    let sides = picture
+        .points
+        .iter()
+        .map(|p| if p[1] >= p[0] { 1.0 } else { 2.0 })
+        .collect();
+    picture.point_vectors.push(("displacement_m".into(), u));
+    picture.point_scalars.push(("side".into(), sides));
+    picture.cell_scalars.push(("von_mises_pa".into(), stress));
+    picture
+}
+
+/// The crack as a line of segments with contact fields.
+pub fn crack_line() -> Picture {
+    let rows = points(&key("b-newton", 0.1));
+    let mut picture = Picture {
+        dim: 2,
+        ..Picture::default()
+    };
+    for row in rows.iter().rev() {
+        picture.points.push([row.x_m, row.y_m, 0.0]);
+    }
+    for i in 1..rows.len() {
+        picture.cells.push(PictureCell {
+            shape: PictureShape::Line,
+            points: vec![i - 1, i],
+        });
+    }
+    let scalar = |of: &dyn Fn(&PointRow) -> f64| rows.iter().rev().map(of).collect::<Vec<f64>>();
+    let status = |row: &PointRow| match row.status.as_str() {
+        "open" => 0.0,
+        "stick" => 1.0,
+        _ => 2.0,
+    };
+    picture
+        .point_scalars
+        .push(("gap_m".into(), scalar(&|row| row.gap_m)));
+    picture
+        .point_scalars
+        .push(("p_n".into(), scalar(&|row| row.p_n)));
+    picture
+        .point_scalars
+        .push(("status".into(), scalar(&status)));
+    picture
+}
+
+/// 6 × 18 × 10 bricks of a beam 2 × 6 × 3 m, the two halves apart at mid-height, bent downwards and twisted.
+pub fn beam() -> Picture {
+    let cells = [6, 18, 10];
+    let size = [2.0, 6.0, 3.0];
+    let mut picture = Picture {
+        dim: 3,
+        ..Picture::default()
+    };
+    let mut u = Vec::new();
+    let half = cells[2] / 2;
+    // Levels of nodes: mid-height appears twice.
+    let levels: Vec<usize> = (0..=half).chain(half..=cells[2]).collect();
+    for (level, k) in levels.iter().enumerate() {
+        for j in 0..=cells[1] {
+            for i in 0..=cells[0] {
+                let index = [i, j, *k];
+                let x: [f64; 3] =
+                    std::array::from_fn(|c| size[c] * index[c] as f64 / cells[c] as f64);
+                let upper = level > half;
+                let t = (x[1] / size[1]).powi(2);
+                let slide = if upper { 3e-4 * x[1] / size[1] } else { 0.0 };
+                picture.points.push(x);
+                u.push([
+                    -1.7e-3 * t,
+                    0.4e-3 * t * (x[2] - 1.5) + slide,
+                    -1.4e-3 * t * (1.0 + 0.1 * x[0]),
+                ]);
+            }
+        }
+    }
+    let node = |i: usize, j: usize, level: usize| (level * (cells[1] + 1) + j) * (cells[0] + 1) + i;
+    for level in (0..levels.len() - 1).filter(|level| *level != half) {
+        for j in 0..cells[1] {
+            for i in 0..cells[0] {
+                let ring = |l: usize| {
+                    [
+                        node(i, j, l),
+                        node(i + 1, j, l),
+                        node(i + 1, j + 1, l),
+                        node(i, j + 1, l),
+                    ]
+                };
+                let points = ring(level).into_iter().chain(ring(level + 1)).collect();
+                picture.cells.push(PictureCell {
+                    shape: PictureShape::Hexahedron,
+                    points,
+                });
+            }
+        }
+    }
+    picture.point_vectors.push(("displacement_m".into(), u));
+    picture
+}
