@@ -20,6 +20,8 @@ use std::fmt::Display;
 use std::ops::Range;
 use std::path::PathBuf;
 
+use stickslip_methods::Tier;
+
 use error::Source;
 
 /// Byte range of a key's value in the case file, for error messages.
@@ -57,7 +59,7 @@ pub struct Case {
     /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
     pub methods: Vec<MethodSpec>,
     /// Default tier of the case.
-    pub tier: String,
+    pub tier: Tier,
     /// Named places whose displacement is recorded.
     pub probes: Vec<ProbeSpec>,
     /// Numbers the case must reproduce.

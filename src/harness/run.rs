@@ -1,5 +1,6 @@
 //! Runs: a case times its meshes, friction values and methods, increment by increment.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -9,7 +10,7 @@ use stickslip_methods::{
 };
 
 use crate::harness::body::{Body, BodyError};
-use crate::harness::case::{Case, CaseError};
+use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::expectation_rows;
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
@@ -98,20 +99,28 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
                 let names: Vec<&str> = stickslip_methods::METHODS.iter().map(|m| m.name).collect();
                 return Err(case.error(&spec.span, &spec.name, names.join(", "), "unknown method"));
             };
-            Choice::new(method, &spec.options).map_err(|e| {
-                let position = spec.options.iter().position(|(name, _)| *name == e.name);
-                let span = position.map_or(&spec.span, |i| &spec.option_spans[i]);
-                case.error(span, case.text(span), &e.allowed, format!("option `{}` of {}", e.name, spec.name))
-            })
+            Choice::new(method, &spec.options).map_err(|e| option_error(case, spec, &e))
         })
         .collect()
+}
+
+fn option_error(case: &Case, spec: &MethodSpec, error: &OptionError) -> CaseError {
+    let (name, allowed) = match error {
+        OptionError::Unknown { name, known, .. } => (name, known.clone()),
+        OptionError::OutOfRange { name, allowed, .. } => (name, allowed.clone()),
+        OptionError::Repeated { name, .. } => (name, "each option once".to_owned()),
+    };
+    // The last one of the name: a repeated option is wrong where it stands again.
+    let position = spec.options.iter().rposition(|(given, _)| given == name);
+    let span = position.map_or(&spec.span, |i| &spec.option_spans[i]);
+    case.error(span, case.text(span), allowed, error)
 }
 
 /// One run before it starts.
 struct Cell<'a> {
     body: &'a Body,
     friction: f64,
-    system: ContactSystem,
+    system: Arc<ContactSystem>,
     choice: &'a Choice,
     refine: usize,
 }
@@ -130,7 +139,7 @@ pub fn run_case(case: &Case, given: &[Choice], settings: Settings, progress: &dy
         let mut cells = Vec::new();
         for per_crack in &frictions {
             let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
-            let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
+            let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?);
             for choice in &choices {
                 cells.push(Cell {
                     body: &body,

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use stickslip_methods::Tier;
 use toml::de::DeTable;
 
 use super::error::{CaseError, Source};
@@ -130,8 +131,8 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         ("solid", Model::Solid),
     ])?;
     let dim = model.dim();
-    let tier = root.get("tier").map_or(Ok("high"), |v| {
-        v.one_of(&[("low", "low"), ("mid", "mid"), ("high", "high")])
+    let tier = root.get("tier").map_or(Ok(Tier::High), |v| {
+        v.one_of(&Tier::ALL.map(|tier| (tier.as_str(), tier)))
     })?;
     let quadrature = schema::quadrature(root)?;
     let material = schema::material(root)?;
@@ -157,7 +158,7 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         path,
         sweep,
         methods: each(root, "method", schema::method)?,
-        tier: tier.to_string(),
+        tier,
         probes,
         expects: each(root, "expect", |v| runs.expect(v))?,
     })
