@@ -31,11 +31,6 @@
 
 pub mod problem;
 
-mod augmented_lagrangian;
-mod b_newton;
-mod latin;
-mod penalty;
-
 pub use problem::law;
 pub use problem::*;
 
@@ -85,12 +80,7 @@ pub struct Method {
 }
 
 /// All methods.
-pub static METHODS: &[&Method] = &[
-    &b_newton::METHOD,
-    &penalty::METHOD,
-    &augmented_lagrangian::METHOD,
-    &latin::METHOD,
-];
+pub static METHODS: &[&Method] = &[];
 
 /// The method of that name.
 pub fn method(name: &str) -> Option<&'static Method> {

@@ -5,4 +5,3 @@ pub(crate) mod dense;
 pub(crate) mod factor;
 pub(crate) mod floating;
 pub(crate) mod ordering;
-pub(crate) mod spectrum;
