@@ -31,6 +31,11 @@
 
 pub mod problem;
 
+mod augmented_lagrangian;
+mod b_newton;
+mod latin;
+mod penalty;
+
 pub use problem::law;
 pub use problem::*;
 
@@ -80,7 +85,12 @@ pub struct Method {
 }
 
 /// All methods.
-pub static METHODS: &[&Method] = &[];
+pub static METHODS: &[&Method] = &[
+    &b_newton::METHOD,
+    &penalty::METHOD,
+    &augmented_lagrangian::METHOD,
+    &latin::METHOD,
+];
 
 /// The method of that name.
 pub fn method(name: &str) -> Option<&'static Method> {

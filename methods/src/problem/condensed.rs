@@ -19,17 +19,24 @@ pub(crate) struct RowSet {
     pub start: Vec<usize>,
     /// Row of B behind each row.
     pub source: Vec<usize>,
+    /// Number of rows of the point each row belongs to.
+    pub size_at: Vec<usize>,
 }
 
 impl RowSet {
     /// `components[i]` rows for point i.
     pub fn new(dim: usize, components: &[usize]) -> Self {
-        let (mut start, mut source) = (vec![0], Vec::new());
+        let (mut start, mut source, mut size_at) = (vec![0], Vec::new(), Vec::new());
         for (i, &c) in components.iter().enumerate() {
+            size_at.extend(std::iter::repeat_n(c, c));
             source.extend((0..c).map(|k| dim * i + k));
             start.push(source.len());
         }
-        Self { start, source }
+        Self {
+            start,
+            source,
+            size_at,
+        }
     }
 
     /// Number of rows.

@@ -32,7 +32,7 @@ pub fn tangential_norm(z: &[f64]) -> f64 {
 /// Projects `z` on Coulomb's cone K_μ, in place. Without tangential components K_μ is P_n >= 0.
 pub fn project_cone(mu: f64, z: &mut [f64]) {
     let t = tangential_norm(z);
-    if t <= mu * z[0] || (t == 0.0 && z[0] >= 0.0) {
+    if z[0] >= 0.0 && t <= mu * z[0] {
         return;
     }
     if mu * t <= -z[0] {

@@ -1,13 +1,16 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
-mod condensed;
+pub(crate) mod condensed;
 mod elastic;
 mod error;
 mod judge;
 pub mod law;
-mod linear;
+pub(crate) mod line_search;
+pub(crate) mod linear;
 mod matrix;
 mod options;
+pub(crate) mod penalised;
+pub(crate) mod reduced;
 mod state;
 mod system;
 mod tier;

@@ -107,6 +107,16 @@ impl ModeJumps {
         result
     }
 
+    /// No rigid motions.
+    #[cfg(test)]
+    pub fn empty() -> Self {
+        Self {
+            q: Vec::new(),
+            t: Vec::new(),
+            free: 0,
+        }
+    }
+
     /// Number of columns of Q.
     pub fn len(&self) -> usize {
         self.q.len()

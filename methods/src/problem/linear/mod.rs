@@ -5,3 +5,4 @@ pub(crate) mod dense;
 pub(crate) mod factor;
 pub(crate) mod floating;
 pub(crate) mod ordering;
+pub(crate) mod spectrum;
