@@ -103,13 +103,11 @@ fn enriched_on(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) ->
             let lives = match enrichment.functions[f].kind {
                 FunctionKind::Standard => false,
                 FunctionKind::Branch { .. } => true,
+                // H differs from its value at the node somewhere on the part.
                 FunctionKind::Heaviside { crack } => {
-                    let sides = nodes
-                        .iter()
-                        .map(|&n| integrator.cracks[crack as usize].phi[n]);
-                    enrichment.split[cell] == Some(crack)
-                        && sides.clone().any(|phi| phi > 0.0)
-                        && sides.into_iter().any(|phi| phi < 0.0)
+                    let phi = &integrator.cracks[crack as usize].phi;
+                    enrichment.cell(cell).contains(&(f as u32))
+                        && nodes.iter().any(|&n| phi[n] * enrichment.shifts[f] < 0.0)
                 }
             };
             if lives {

@@ -92,6 +92,18 @@ pub struct CellFunction {
     pub kind: FunctionKind,
     /// H(x_j) (Heaviside) or g_l(x_k) (branch) at the node.
     pub shift: f64,
+    /// H in the whole cell, for the Heaviside function of a crack that does not split it.
+    pub whole: Option<Side>,
+}
+
+impl CellFunction {
+    /// Constant of a Heaviside function on a side of the splitting crack, H − H(x_j); 1 for the others.
+    pub fn step(&self, side: Side) -> f64 {
+        match self.kind {
+            FunctionKind::Heaviside { .. } => self.whole.unwrap_or(side) - self.shift,
+            _ => 1.0,
+        }
+    }
 }
 
 /// The functions of one cell, ready to be evaluated.
@@ -127,7 +139,7 @@ impl CellBasis<'_> {
             match f.kind {
                 FunctionKind::Standard => (*value, *gradient) = (ni, dni),
                 FunctionKind::Heaviside { .. } => {
-                    let h = side - f.shift;
+                    let h = f.step(side);
                     (*value, *gradient) = (ni * h, dni.map(|d| d * h));
                 }
                 FunctionKind::Branch { tip, order } => {

@@ -18,7 +18,7 @@ use crate::fem::quadrature::{WeightedPoint, gauss_cell};
 use crate::fem::{Point, sub};
 use crate::harness::case::Quadrature;
 
-use super::basis::{CellBasis, CellFunction, FunctionKind};
+use super::basis::{CellBasis, CellFunction};
 use super::crack::Crack;
 use super::cut::{self, Side, SubCells};
 use super::enrichment::Enrichment;
@@ -115,15 +115,11 @@ impl CellIntegrator<'_> {
         } else {
             integrate(-small)
         };
-        let factor = |f: &CellFunction, side: Side| match f.kind {
-            FunctionKind::Heaviside { .. } => side - f.shift,
-            _ => 1.0,
-        };
         let mut k = CellMatrix::zero(basis.len() * dim);
         for (side, part) in [(small, &k_small), (-small, &k_large)] {
             for (p, fp) in basis.iter().enumerate() {
                 for (q, fq) in basis.iter().enumerate() {
-                    let f = factor(fp, side) * factor(fq, side);
+                    let f = fp.step(side) * fq.step(side);
                     if f == 0.0 {
                         continue;
                     }

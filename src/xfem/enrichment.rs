@@ -8,7 +8,7 @@ use crate::harness::case::Tip;
 
 use super::basis::{CellFunction, FunctionKind, TipFrame};
 use super::crack::Crack;
-use super::cut;
+use super::cut::{self, Side};
 
 /// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
 const ON_EDGE: f64 = 1e-9;
@@ -78,6 +78,8 @@ pub struct Enrichment {
     pub tip_cells: Vec<(usize, usize)>,
     cell_ptr: Vec<usize>,
     cell_functions: Vec<u32>,
+    /// Per entry of `cell_functions`: H in the whole cell for Heaviside functions of cracks that do not split it.
+    cell_sides: Vec<Option<Side>>,
     node_ptr: Vec<usize>,
     standard: usize,
 }
@@ -208,11 +210,12 @@ impl Enrichment {
             tip_cells,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
+            cell_sides: Vec::new(),
             node_ptr: Vec::new(),
             standard,
         };
         enrichment.index_nodes();
-        enrichment.index_cells(mesh);
+        enrichment.index_cells(mesh, cracks);
         Ok(enrichment)
     }
 
@@ -232,20 +235,27 @@ impl Enrichment {
     }
 
     /// Function lists of the cells: standard ones, then the enriched ones that do not vanish in the cell.
-    fn index_cells(&mut self, mesh: &Mesh) {
+    ///
+    /// A node on the crack counts to side 1, so its Heaviside function reaches into the whole cells of side 2.
+    fn index_cells(&mut self, mesh: &Mesh, cracks: &[Crack]) {
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             self.cell_functions.extend_from_slice(nodes);
+            self.cell_sides.extend(nodes.iter().map(|_| None));
             for &node in nodes {
                 for f in self.enriched_of(node as usize) {
-                    let lives = match self.functions[f].kind {
-                        FunctionKind::Heaviside { crack } => self.split[cell] == Some(crack),
-                        FunctionKind::Branch { .. } => true,
-                        FunctionKind::Standard => false,
+                    let side = match self.functions[f].kind {
+                        FunctionKind::Heaviside { crack } if self.split[cell] != Some(crack) => {
+                            let side = whole_side(&cracks[crack as usize], nodes);
+                            if side == self.shifts[f] {
+                                continue;
+                            }
+                            Some(side)
+                        }
+                        _ => None,
                     };
-                    if lives {
-                        self.cell_functions.push(f as u32);
-                    }
+                    self.cell_functions.push(f as u32);
+                    self.cell_sides.push(side);
                 }
             }
             self.cell_ptr.push(self.cell_functions.len());
@@ -265,9 +275,11 @@ impl Enrichment {
     /// Functions of a cell with their local nodes and shifts.
     pub fn cell_basis(&self, mesh: &Mesh, cell: usize) -> Vec<CellFunction> {
         let nodes = mesh.cell(cell);
+        let sides = &self.cell_sides[self.cell_ptr[cell]..self.cell_ptr[cell + 1]];
         self.cell(cell)
             .iter()
-            .map(|&f| {
+            .zip(sides)
+            .map(|(&f, &whole)| {
                 let function = self.functions[f as usize];
                 CellFunction {
                     // Every function of the cell belongs to one of its nodes.
@@ -277,6 +289,7 @@ impl Enrichment {
                         .unwrap_or_default(),
                     kind: function.kind,
                     shift: self.shifts[f as usize],
+                    whole,
                 }
             })
             .collect()
@@ -304,6 +317,11 @@ impl Enrichment {
         }
         users
     }
+}
+
+/// Side of a crack that a cell it does not split lies on.
+fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
+    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) { -1.0 } else { 1.0 }
 }
 
 /// Where a split cell lies along the crack.

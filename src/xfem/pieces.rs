@@ -62,9 +62,11 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usiz
             let mut first = None;
             for &node in mesh.cell(cell) {
                 let across = enrichment.enriched_of(node as usize).find(|&f| {
-                    let kind = enrichment.functions[f].kind;
-                    matches!(kind, FunctionKind::Heaviside { crack } if Some(crack) == split)
-                        && enrichment.shifts[f] != side
+                    let FunctionKind::Heaviside { crack } = enrichment.functions[f].kind else {
+                        return false;
+                    };
+                    // A whole cell lists only the functions of cracks it lies across.
+                    if Some(crack) == split { enrichment.shifts[f] != side } else { enrichment.cell(cell).contains(&(f as u32)) }
                 });
                 let copy = root(&mut parent, across.unwrap_or(node as usize));
                 match first {
