@@ -8,4 +8,5 @@ pub mod picture;
 pub mod quantities;
 pub mod record;
 pub mod run;
+pub mod shipped;
 pub mod verdict;

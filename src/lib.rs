@@ -7,7 +7,9 @@
 //!
 //! The algebraic half (the contact problem, its judge and the methods) is the package `stickslip-methods`.
 
+pub mod cli;
 pub mod fem;
 pub mod harness;
+pub mod paper;
 pub mod report;
 pub mod xfem;

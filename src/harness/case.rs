@@ -60,6 +60,8 @@ pub struct Case {
     pub methods: Vec<MethodSpec>,
     /// Default tier of the case.
     pub tier: Tier,
+    /// Natural map the methods must reach, at most that of the tier; tighter where a closed form is held to more digits.
+    pub tolerance: f64,
     /// Named places whose displacement is recorded.
     pub probes: Vec<ProbeSpec>,
     /// Numbers the case must reproduce.

@@ -239,7 +239,8 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             start_load: &start_load,
             start: &state,
             index: increment - 1,
-            tolerance: tier.tolerance(),
+            // A tier asked for on the command line replaces the case's own tolerance.
+            tolerance: if tier == case.tier { case.tolerance } else { tier.tolerance() },
         };
         let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Unwatched));
         let judged = solved.and_then(|outcome| {

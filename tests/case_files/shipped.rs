@@ -27,9 +27,8 @@ fn every_shipped_case_is_accepted() {
     let names: Vec<String> = shipped().into_keys().collect();
     for name in [
         "beam_model1",
-        "beam_model1_as_printed",
+        "beam_model1_gauss6",
         "beam_model2",
-        "beam_model2_as_printed",
         "cyclic",
         "frictionless",
         "plate_mesh1",
@@ -225,21 +224,22 @@ fn printed(file: &str) -> Vec<Vec<String>> {
 fn published_expectations_are_the_printed_numbers() {
     let cases = shipped();
     let mut count = 0;
-    for row in printed("plate_table1.csv") {
-        let case = &cases[&format!("plate_mesh{}", row[0].len())];
+    // The second mesh of the paper is lost: its numbers are printed beside ours, not expected of them.
+    for row in printed("plate_table1.csv").iter().filter(|row| row[0] == "I") {
+        let case = &cases["plate_mesh1"];
         let friction = row[1].parse().unwrap();
         let found = expected(case, "reaction", "y", Some(friction), None);
         assert_eq!(found, format!("-{}e6", row[2]).parse::<f64>().unwrap());
         count += 1;
     }
     for row in printed("beam_table2.csv") {
-        let case = &cases[&format!("beam_model{}_as_printed", row[0].len())];
+        let case = &cases[if row[0] == "I" { "beam_model1_gauss6" } else { "beam_model2" }];
         for (i, number) in row[2..].iter().enumerate() {
             let at = format!("P{}", i + 1);
             let found: Vec<&Expect> = case
                 .expects
                 .iter()
-                .filter(|e| e.at == at && e.component == row[1])
+                .filter(|e| e.at == at && e.component == row[1] && e.friction == Some(0.0))
                 .collect();
             assert_eq!(found.len(), 1);
             assert_eq!(
@@ -250,7 +250,7 @@ fn published_expectations_are_the_printed_numbers() {
             count += 1;
         }
     }
-    assert_eq!(count, 6 + 42);
+    assert_eq!(count, 3 + 42);
     let published = cases
         .values()
         .flat_map(|c| &c.expects)

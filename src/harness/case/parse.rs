@@ -21,6 +21,7 @@ const KEYS: [&str; 14] = [
     "model",
     "quadrature",
     "tier",
+    "tolerance",
     "material",
     "mesh",
     "crack",
@@ -134,6 +135,10 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
     let tier = root.get("tier").map_or(Ok(Tier::High), |v| {
         v.one_of(&Tier::ALL.map(|tier| (tier.as_str(), tier)))
     })?;
+    let tolerance = root.get("tolerance").map_or(Ok(tier.tolerance()), |v| {
+        let allowed = format!("1e-14 <= tolerance <= {:e}, that of the tier", tier.tolerance());
+        v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
+    })?;
     let quadrature = schema::quadrature(root)?;
     let material = schema::material(root)?;
     let mesh = schema::mesh(root, dim)?;
@@ -159,6 +164,7 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         sweep,
         methods: each(root, "method", schema::method)?,
         tier,
+        tolerance,
         probes,
         expects: each(root, "expect", |v| runs.expect(v))?,
     })
