@@ -94,23 +94,20 @@ pub fn ball_derivative(radius: f64, z_t: &[f64]) -> ([f64; 2], [[f64; 2]; 2]) {
     }
 }
 
-/// Derivative of [`return_map`] at `z`: row i, column j is ∂P_i/∂z_j. On a kink the closed and the sticking side.
-pub fn return_map_derivative(mu: f64, z: &[f64]) -> [[f64; 3]; 3] {
+/// Derivative of the piece `branch` of [`return_map`] at `z`: row i, column j is ∂P_i/∂z_j.
+pub fn return_map_derivative(mu: f64, z: &[f64], branch: Branch) -> [[f64; 3]; 3] {
     let mut d = [[0.0; 3]; 3];
-    if z[0] < 0.0 {
-        return d;
-    }
-    d[0][0] = 1.0;
-    if tangential_norm(z) <= mu * z[0] {
-        for k in 1..z.len() {
-            d[k][k] = 1.0;
-        }
-    } else {
-        let (e, s) = ball_derivative(mu * z[0], &z[1..]);
-        for k in 1..z.len() {
-            d[k][0] = mu * e[k - 1];
-            for l in 1..z.len() {
-                d[k][l] = s[k - 1][l - 1];
+    match branch {
+        Branch::Open => {}
+        Branch::Stick => (0..z.len()).for_each(|k| d[k][k] = 1.0),
+        Branch::Slip => {
+            d[0][0] = 1.0;
+            let (e, s) = ball_derivative(mu * z[0], &z[1..]);
+            for k in 1..z.len() {
+                d[k][0] = mu * e[k - 1];
+                for l in 1..z.len() {
+                    d[k][l] = s[k - 1][l - 1];
+                }
             }
         }
     }

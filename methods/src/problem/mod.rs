@@ -11,6 +11,7 @@ mod matrix;
 mod options;
 pub(crate) mod penalised;
 pub(crate) mod reduced;
+pub(crate) mod stages;
 mod state;
 mod system;
 mod tier;

@@ -21,6 +21,9 @@ const STOP_FRACTION: f64 = 0.5;
 /// Compliance below which a point counts as rigid, as a fraction of the mean 1/ρ.
 const COMPLIANCE_FLOOR: f64 = 1e-2;
 
+/// Rescues per increment.
+const MAX_RESCUES: usize = 5;
+
 /// How an increment begins.
 pub(crate) enum Begin<'a> {
     /// Nothing closes, or nothing can: there is nothing to iterate on.
@@ -45,6 +48,7 @@ pub(crate) struct Reduced<'a> {
     pub history: Vec<Iteration>,
     /// |q| of the natural map's denominator.
     free_jump: f64,
+    rescues: usize,
     claim: Claim,
 }
 
@@ -104,6 +108,7 @@ impl<'a> Reduced<'a> {
             history: Vec::new(),
             increment,
             rows,
+            rescues: 0,
             balance,
             counters,
             claim: claim(condensed.rho),
@@ -193,6 +198,13 @@ impl<'a> Reduced<'a> {
     pub fn rebalance(&self, p: &mut [f64]) {
         let missing = self.missing(p);
         self.condensed.modes.add(&missing, p);
+    }
+
+    /// Whether a floating body whose tangent is singular may be moved on by [`rescue`](super::stages::rescue): on the
+    /// way all points of a piece may open or slide, but a piece that gets loose again and again is a mechanism.
+    pub fn rescue_left(&mut self) -> bool {
+        self.rescues += 1;
+        self.modes() > 0 && self.rescues <= MAX_RESCUES
     }
 
     /// What a singular tangent means here.
