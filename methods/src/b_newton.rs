@@ -49,8 +49,8 @@ use crate::problem::linear::dense::{mul_add, solve_dense};
 use crate::problem::reduced::{Begin, Reduced};
 use crate::problem::stages::{Pair, rescue};
 use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome,
 };
 
 /// Registry entry.
@@ -171,25 +171,9 @@ impl Enforcement for BNewton {
             let (pieces, kinks) = classify(&problem, &r, &x.P, &v);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let natural_map = problem.natural_map(&x.P, &v);
-            problem.history.push(Iteration {
-                natural_map,
-                changes,
-            });
-            if natural_map <= problem.stop {
-                break Status::Converged;
+            if let Some(status) = problem.ends(natural_map, changes, self.max_iterations, monitor) {
+                break status;
             }
-            let iteration = problem.counters.iterations;
-            if !natural_map.is_finite() {
-                break Status::Diverged;
-            }
-            if !monitor.step(iteration, natural_map) {
-                break Status::Stopped;
-            }
-            if iteration == self.max_iterations {
-                break Status::MaxIterations;
-            }
-            problem.counters.iterations += 1;
-
             before.clone_from(&pieces);
             let Some(step) = direction(&mut problem, &r, &x, &v, pieces, &kinks) else {
                 if problem.rescue_left() {

@@ -30,8 +30,8 @@ use crate::problem::law::Branch;
 use crate::problem::reduced::{Begin, Reduced};
 use crate::problem::stages::{GlobalStage, Pair};
 use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome,
 };
 
 /// Registry entry.
@@ -136,25 +136,9 @@ impl Enforcement for Latin {
                 pair.v = problem.jump(&pair.p, &pair.beta);
                 natural_map = problem.natural_map(&pair.p, &pair.v);
             }
-            problem.history.push(Iteration {
-                natural_map,
-                changes,
-            });
-            if natural_map <= problem.stop {
-                break Status::Converged;
+            if let Some(status) = problem.ends(natural_map, changes, max_iterations, monitor) {
+                break status;
             }
-            let iteration = problem.counters.iterations;
-            if !natural_map.is_finite() {
-                break Status::Diverged;
-            }
-            if !monitor.step(iteration, natural_map) {
-                break Status::Stopped;
-            }
-            if iteration == max_iterations {
-                break Status::MaxIterations;
-            }
-            problem.counters.iterations += 1;
-
             let (target, branches) = global.local_stage(&mut problem, &pair);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
             before = branches;

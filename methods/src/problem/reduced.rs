@@ -11,7 +11,7 @@ use super::error::MethodError;
 use super::judge::{free_jump, natural_map_norm, ratio, reference_force, slip_from};
 use super::linear::dense::mul_add;
 use super::linear::floating::dot;
-use super::state::{Claim, ContactState, Counters, Iteration, Outcome, Status};
+use super::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use super::system::Increment;
 
 /// Methods stop at this fraction of the tolerance: what rounding adds when displacements are recovered must not turn
@@ -235,6 +235,33 @@ impl<'a> Reduced<'a> {
         let friction = self.increment.system.friction();
         let e = natural_map_norm(friction, self.rows, self.condensed.rho, p, v);
         ratio(e, self.reference_force(p))
+    }
+
+    /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
+    pub fn ends(
+        &mut self,
+        natural_map: f64,
+        changes: usize,
+        max_iterations: usize,
+        monitor: &mut dyn Monitor,
+    ) -> Option<Status> {
+        self.history.push(Iteration {
+            natural_map,
+            changes,
+        });
+        let iteration = self.counters.iterations;
+        if natural_map <= self.stop {
+            Some(Status::Converged)
+        } else if !natural_map.is_finite() {
+            Some(Status::Diverged)
+        } else if !monitor.step(iteration, natural_map) {
+            Some(Status::Stopped)
+        } else if iteration == max_iterations {
+            Some(Status::MaxIterations)
+        } else {
+            self.counters.iterations += 1;
+            None
+        }
     }
 
     /// Recovers the displacements with one solve and closes the outcome.
