@@ -25,8 +25,8 @@
 use crate::problem::penalised::Springs;
 use crate::problem::reduced::{Begin, Reduced};
 use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome, Status,
 };
 
 /// Registry entry.
@@ -117,25 +117,9 @@ impl Enforcement for AugmentedLagrangian {
         let status = loop {
             let v = problem.jump(&p, &beta);
             let natural_map = problem.natural_map(&p, &v);
-            problem.history.push(Iteration {
-                natural_map,
-                changes,
-            });
-            if natural_map <= problem.stop {
-                break Status::Converged;
+            if let Some(status) = problem.ends(natural_map, changes, self.max_outer, monitor) {
+                break status;
             }
-            let outer = problem.counters.iterations;
-            if !natural_map.is_finite() {
-                break Status::Diverged;
-            }
-            if !monitor.step(outer, natural_map) {
-                break Status::Stopped;
-            }
-            if outer == self.max_outer {
-                break Status::MaxIterations;
-            }
-            problem.counters.iterations += 1;
-
             springs.anchor.clone_from(&p);
             let start = springs.predict(&problem, &p, beta);
             changes = 0;

@@ -35,7 +35,9 @@
 //! # Failure modes
 //! Cycling or stalling for large μ (outside the range where the solution is unique), a singular tangent at P_n = 0,
 //! d = 0 corners. If contact points are redundant, W is singular and so is the tangent of sticking points: the step is
-//! then regularised by 1e-10/ρ, which leaves the solution untouched and picks one of the possible P.
+//! then regularised by 1e-10/ρ, which leaves the solution untouched and picks one of the possible P. If all points of a
+//! floating piece open or slide on the way, the tangent cannot hold it: a few local and global stages (as in LATIN) move
+//! the iterate on, and if that happens again and again the piece is reported as a mechanism.
 
 #![allow(non_snake_case)]
 
@@ -45,9 +47,10 @@ use crate::problem::law::{ball_derivative, project_ball, tangential_norm};
 use crate::problem::line_search::LineSearch;
 use crate::problem::linear::dense::{mul_add, solve_dense};
 use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::stages::{Pair, rescue};
 use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome,
 };
 
 /// Registry entry.
@@ -84,7 +87,7 @@ static OPTIONS: [OptionSpec; 2] = [
 
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;
-/// Regularisation of a singular tangent, relative to 1/ρ.
+/// Regularisation of a singular tangent of redundant points, relative to 1/ρ.
 const RIDGE: f64 = 1e-10;
 
 struct BNewton {
@@ -168,27 +171,25 @@ impl Enforcement for BNewton {
             let (pieces, kinks) = classify(&problem, &r, &x.P, &v);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let natural_map = problem.natural_map(&x.P, &v);
-            problem.history.push(Iteration {
-                natural_map,
-                changes,
-            });
-            if natural_map <= problem.stop {
-                break Status::Converged;
+            if let Some(status) = problem.ends(natural_map, changes, self.max_iterations, monitor) {
+                break status;
             }
-            let iteration = problem.counters.iterations;
-            if !natural_map.is_finite() {
-                break Status::Diverged;
-            }
-            if !monitor.step(iteration, natural_map) {
-                break Status::Stopped;
-            }
-            if iteration == self.max_iterations {
-                break Status::MaxIterations;
-            }
-            problem.counters.iterations += 1;
-
             before.clone_from(&pieces);
             let Some(step) = direction(&mut problem, &r, &x, &v, pieces, &kinks) else {
+                if problem.rescue_left() {
+                    let pair = Pair {
+                        p: x.P.clone(),
+                        v,
+                        beta: x.beta.clone(),
+                    };
+                    if let Some(pair) = rescue(&mut problem, pair) {
+                        x = Iterate {
+                            P: pair.p,
+                            beta: pair.beta,
+                        };
+                        continue;
+                    }
+                }
                 break problem.singular();
             };
             search.record(merit(&problem, &r, &x.P, &v));
@@ -283,11 +284,7 @@ fn direction(
 ) -> Option<Iterate> {
     let mut step = None;
     for _ in 0..BRANCH_ROUNDS {
-        problem.counters.factorisations += 1;
-        let solved = linear_step(problem, r, x, v, &pieces, 0.0).or_else(|| {
-            problem.counters.factorisations += 1;
-            linear_step(problem, r, x, v, &pieces, RIDGE)
-        })?;
+        let solved = regularised_step(problem, r, x, v, &pieces)?;
         let contradicted = correct_pieces(problem, r, x, v, &solved, kinks, &mut pieces);
         step = Some(solved);
         if !contradicted {
@@ -295,6 +292,21 @@ fn direction(
         }
     }
     step
+}
+
+/// The step of the given pieces, regularised if their tangent is singular.
+fn regularised_step(
+    problem: &mut Reduced<'_>,
+    r: &[f64],
+    x: &Iterate,
+    v: &[f64],
+    pieces: &[Piece],
+) -> Option<Iterate> {
+    problem.counters.factorisations += 1;
+    linear_step(problem, r, x, v, pieces, 0.0).or_else(|| {
+        problem.counters.factorisations += 1;
+        linear_step(problem, r, x, v, pieces, RIDGE)
+    })
 }
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.

@@ -26,21 +26,12 @@
 //! # Failure modes
 //! Slow far from the best k₀ (times ten in iterations for a factor of ten), and on ill-conditioned W.
 
-use std::sync::Arc;
-
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Mat, MatMut, Side};
-
-use crate::problem::condensed::Condensed;
-use crate::problem::law::{Branch, return_map};
-use crate::problem::linear::dense::solve_dense;
-use crate::problem::linear::factor::kernel;
-use crate::problem::linear::floating::dot;
-use crate::problem::linear::spectrum::extremes;
+use crate::problem::law::Branch;
 use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::stages::{GlobalStage, Pair};
 use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome,
 };
 
 /// Registry entry.
@@ -107,7 +98,7 @@ impl Latin {
         let cached = self
             .global
             .take()
-            .filter(|stage| Arc::ptr_eq(&stage.condensed, &condensed));
+            .filter(|stage| stage.belongs_to(&condensed));
         let fresh = cached.is_none();
         let stage = match cached {
             Some(stage) => stage,
@@ -134,137 +125,28 @@ impl Enforcement for Latin {
         let (relaxation, max_iterations) = (self.relaxation, self.max_iterations);
         let (global, fresh) = self.stage(increment.system)?;
         problem.counters.factorisations += usize::from(fresh);
-        let mut p = problem.start_forces();
-        let mut beta = problem.start_amplitudes(&p);
-        let mut v = problem.jump(&p, &beta);
+        let mut pair = Pair::start(&problem);
         let mut before: Vec<Branch> = Vec::new();
         let mut changes = 0;
 
         let status = loop {
-            let mut natural_map = problem.natural_map(&p, &v);
+            let mut natural_map = problem.natural_map(&pair.p, &pair.v);
             if natural_map <= problem.stop {
                 // The relaxed v carries the rounding of all stages before: claim nothing without a fresh one.
-                v = problem.jump(&p, &beta);
-                natural_map = problem.natural_map(&p, &v);
+                pair.v = problem.jump(&pair.p, &pair.beta);
+                natural_map = problem.natural_map(&pair.p, &pair.v);
             }
-            problem.history.push(Iteration {
-                natural_map,
-                changes,
-            });
-            if natural_map <= problem.stop {
-                break Status::Converged;
+            if let Some(status) = problem.ends(natural_map, changes, max_iterations, monitor) {
+                break status;
             }
-            let iteration = problem.counters.iterations;
-            if !natural_map.is_finite() {
-                break Status::Diverged;
-            }
-            if !monitor.step(iteration, natural_map) {
-                break Status::Stopped;
-            }
-            if iteration == max_iterations {
-                break Status::MaxIterations;
-            }
-            problem.counters.iterations += 1;
-
-            let (target, branches) = local_stage(&mut problem, global.k0, &p, &v);
+            let (target, branches) = global.local_stage(&mut problem, &pair);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
             before = branches;
-            let Some((new_p, new_beta)) = global.solve(&problem, &target) else {
+            let Some(new) = global.global_stage(&problem, &target) else {
                 break problem.singular();
             };
-            for k in 0..p.len() {
-                let new_v = (target[k] - new_p[k]) / global.k0;
-                v[k] += relaxation * (new_v - v[k]);
-                p[k] += relaxation * (new_p[k] - p[k]);
-            }
-            beta.iter_mut()
-                .zip(&new_beta)
-                .for_each(|(b, new)| *b += relaxation * (new - *b));
-            problem.rebalance(&mut p);
+            pair.relax(&problem, relaxation, &new);
         };
-        problem.finish(status, &p, &beta)
+        problem.finish(status, &pair.p, &pair.beta)
     }
-}
-
-/// P̂ + k₀ v̂ = 2 P̂ − z by row, and the branch of each point.
-fn local_stage(
-    problem: &mut Reduced<'_>,
-    k0: f64,
-    p: &[f64],
-    v: &[f64],
-) -> (Vec<f64>, Vec<Branch>) {
-    problem.counters.local_solves += problem.rows.points();
-    let z: Vec<f64> = p.iter().zip(v).map(|(p, v)| p - k0 * v).collect();
-    let mut p_hat = z.clone();
-    let branches = (0..problem.rows.points())
-        .map(|i| return_map(problem.friction(i), &mut p_hat[problem.rows.of(i)]))
-        .collect();
-    (
-        p_hat.iter().zip(&z).map(|(p, z)| 2.0 * p - z).collect(),
-        branches,
-    )
-}
-
-/// The factored global stage, bordered by the rigid motions.
-struct GlobalStage {
-    condensed: Arc<Condensed>,
-    k0: f64,
-    /// Cholesky factor of I + k₀ W.
-    factor: Llt<f64>,
-    /// (I + k₀ W)⁻¹ Q by column.
-    border: Vec<Vec<f64>>,
-    /// Qᵀ (I + k₀ W)⁻¹ Q.
-    schur: Mat<f64>,
-}
-
-impl GlobalStage {
-    fn new(condensed: Arc<Condensed>, multiple: f64) -> Result<Self, MethodError> {
-        let w = &condensed.w;
-        // A body that is rigid at its contact points has no best direction; ρ still has the right units.
-        let best = extremes(w, &condensed.modes)
-            .map_or(condensed.rho, |(least, most)| 1.0 / (least * most).sqrt());
-        let k0 = multiple * best;
-        let m = w.nrows();
-        let a = Mat::from_fn(m, m, |i, j| k0 * w[(i, j)] + f64::from(u8::from(i == j)));
-        let factor = Llt::new(a.as_ref(), Side::Lower)
-            .map_err(|e| kernel("factorisation of I + k0 W", format!("{e:?}")))?;
-        let border: Vec<Vec<f64>> = condensed
-            .modes
-            .q
-            .iter()
-            .map(|q| apply(&factor, q.clone()))
-            .collect();
-        let schur = Mat::from_fn(border.len(), border.len(), |i, j| {
-            dot(&condensed.modes.q[i], &border[j])
-        });
-        Ok(Self {
-            condensed,
-            k0,
-            factor,
-            border,
-            schur,
-        })
-    }
-
-    /// (P, β) with (I + k₀ W) P + k₀ Q β = target − k₀ q and Qᵀ P = c.
-    fn solve(&self, problem: &Reduced<'_>, target: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let rhs = target
-            .iter()
-            .zip(&problem.q)
-            .map(|(t, q)| t - self.k0 * q)
-            .collect();
-        let mut p = apply(&self.factor, rhs);
-        let excess: Vec<f64> = problem.missing(&p).iter().map(|c| -c).collect();
-        let k0_beta = solve_dense(&self.schur, &excess)?;
-        for (column, b) in self.border.iter().zip(&k0_beta) {
-            p.iter_mut().zip(column).for_each(|(p, c)| *p -= b * c);
-        }
-        Some((p, k0_beta.iter().map(|b| b / self.k0).collect()))
-    }
-}
-
-fn apply(factor: &Llt<f64>, mut x: Vec<f64>) -> Vec<f64> {
-    let n = x.len();
-    factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
-    x
 }

@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn steps_are_shortened_only_after_a_rise_above_all_recent_merits() {
         let mut search = LineSearch::default();
-        [4.0, 1.0].map(|m| search.record(m));
+        [4.0, 1.0].iter().for_each(|m| search.record(*m));
         assert_eq!(
             search.length(|_| 3.0),
             1.0,
@@ -61,7 +61,7 @@ mod tests {
             "first sufficient decrease"
         );
         assert_eq!(search.length(|_| 9.0), 1.0, "no descent at all: full step");
-        [1.0; 4].map(|m| search.record(m));
+        [1.0; 4].iter().for_each(|m| search.record(*m));
         assert_eq!(search.length(|t| 3.0 * t), 0.25, "old merits are forgotten");
     }
 }

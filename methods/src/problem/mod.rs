@@ -12,6 +12,7 @@ mod options;
 mod point_status;
 pub(crate) mod penalised;
 pub(crate) mod reduced;
+pub(crate) mod stages;
 mod state;
 mod system;
 mod tier;

@@ -23,6 +23,7 @@ use super::law::{Branch, return_map, return_map_derivative};
 use super::line_search::LineSearch;
 use super::linear::dense::{mul_add, solve_dense};
 use super::reduced::Reduced;
+use super::stages::{Pair, rescue};
 use super::state::{Monitor, Status};
 
 /// Penalty stiffnesses and anchor.
@@ -111,6 +112,18 @@ impl Springs {
             }
             problem.counters.factorisations += 1;
             let Some((dz, dbeta)) = direction(problem, &r, &c, &at, &mismatch) else {
+                if problem.rescue_left() {
+                    let v = problem.jump(&at.p, &at.beta);
+                    let pair = Pair {
+                        p: at.p.clone(),
+                        v,
+                        beta: at.beta.clone(),
+                    };
+                    if let Some(pair) = rescue(problem, pair) {
+                        at = self.predict(problem, &pair.p, pair.beta);
+                        continue;
+                    }
+                }
                 return (problem.singular(), at);
             };
             search.record(merit(problem, &r, &at, &mismatch));
@@ -164,7 +177,7 @@ fn direction(
     let mut slope = vec![[0.0; 3]; problem.len()];
     for i in (0..problem.rows.points()).filter(|&i| at.branches[i] != Branch::Open) {
         let rows = problem.rows.of(i);
-        let d = return_map_derivative(problem.friction(i), &at.z[rows.clone()]);
+        let d = return_map_derivative(problem.friction(i), &at.z[rows.clone()], at.branches[i]);
         for k in rows.clone() {
             active.push((k, rows.start));
             for l in rows.clone() {

@@ -11,7 +11,7 @@ use super::error::MethodError;
 use super::judge::{free_jump, natural_map_norm, ratio, reference_force, slip_from};
 use super::linear::dense::mul_add;
 use super::linear::floating::dot;
-use super::state::{Claim, ContactState, Counters, Iteration, Outcome, Status};
+use super::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use super::system::Increment;
 
 /// Methods stop at this fraction of the tolerance: what rounding adds when displacements are recovered must not turn
@@ -20,6 +20,9 @@ const STOP_FRACTION: f64 = 0.5;
 
 /// Compliance below which a point counts as rigid, as a fraction of the mean 1/ρ.
 const COMPLIANCE_FLOOR: f64 = 1e-2;
+
+/// Rescues per increment.
+const MAX_RESCUES: usize = 5;
 
 /// How an increment begins.
 pub(crate) enum Begin<'a> {
@@ -45,6 +48,7 @@ pub(crate) struct Reduced<'a> {
     pub history: Vec<Iteration>,
     /// |q| of the natural map's denominator.
     free_jump: f64,
+    rescues: usize,
     claim: Claim,
 }
 
@@ -104,6 +108,7 @@ impl<'a> Reduced<'a> {
             history: Vec::new(),
             increment,
             rows,
+            rescues: 0,
             balance,
             counters,
             claim: claim(condensed.rho),
@@ -195,6 +200,13 @@ impl<'a> Reduced<'a> {
         self.condensed.modes.add(&missing, p);
     }
 
+    /// Whether a floating body whose tangent is singular may be moved on by [`rescue`](super::stages::rescue): on the
+    /// way all points of a piece may open or slide, but a piece that gets loose again and again is a mechanism.
+    pub fn rescue_left(&mut self) -> bool {
+        self.rescues += 1;
+        self.modes() > 0 && self.rescues <= MAX_RESCUES
+    }
+
     /// What a singular tangent means here.
     pub fn singular(&self) -> Status {
         if self.modes() > 0 {
@@ -223,6 +235,33 @@ impl<'a> Reduced<'a> {
         let friction = self.increment.system.friction();
         let e = natural_map_norm(friction, self.rows, self.condensed.rho, p, v);
         ratio(e, self.reference_force(p))
+    }
+
+    /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
+    pub fn ends(
+        &mut self,
+        natural_map: f64,
+        changes: usize,
+        max_iterations: usize,
+        monitor: &mut dyn Monitor,
+    ) -> Option<Status> {
+        self.history.push(Iteration {
+            natural_map,
+            changes,
+        });
+        let iteration = self.counters.iterations;
+        if natural_map <= self.stop {
+            Some(Status::Converged)
+        } else if !natural_map.is_finite() {
+            Some(Status::Diverged)
+        } else if !monitor.step(iteration, natural_map) {
+            Some(Status::Stopped)
+        } else if iteration == max_iterations {
+            Some(Status::MaxIterations)
+        } else {
+            self.counters.iterations += 1;
+            None
+        }
     }
 
     /// Recovers the displacements with one solve and closes the outcome.

@@ -1,6 +1,6 @@
 //! Small systems with known answers, and the way tests run methods on them.
 
-#![allow(dead_code, non_snake_case)]
+#![allow(dead_code, missing_docs, non_snake_case)]
 
 use std::sync::Arc;
 

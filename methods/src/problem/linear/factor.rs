@@ -23,6 +23,8 @@ use super::ordering::Ordering;
 
 /// Refinement aims at this residual |K u − f| / (|K u| + |f|), well below the 1e-12 that equilibrium is held to.
 const REFINED: f64 = 1e-14;
+/// Pivots of D K D, whose diagonal is 1, lie above this unless K is singular to working precision.
+const SMALLEST_PIVOT: f64 = 1e-12;
 /// More refinement steps do not help once rounding of the residual itself dominates.
 const MAX_REFINEMENTS: usize = 3;
 
@@ -85,7 +87,7 @@ impl Factor {
                 },
             )?;
         let factorisation_s = clock.elapsed().as_secs_f64();
-        Ok(Self {
+        let factor = Self {
             symbolic,
             values,
             ordering,
@@ -93,7 +95,26 @@ impl Factor {
             pins,
             analysis_s,
             factorisation_s,
-        })
+        };
+        factor.check_pivots()?;
+        Ok(factor)
+    }
+
+    /// Refuses pivots that are rounding: a singular K can pass Cholesky by luck.
+    fn check_pivots(&self) -> Result<(), MethodError> {
+        let l = self.supernodes()?;
+        for s in 0..self.supernode_count() {
+            let node = l.supernode(s);
+            for k in 0..node.val().ncols() {
+                if node.val()[(k, k)].powi(2) < SMALLEST_PIVOT {
+                    return Err(MethodError::NotPositiveDefinite {
+                        unknown: self.ordering.forward[node.start() + k],
+                        size: self.scale.len(),
+                    });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Solves K x = f in place with iterative refinement; pinned entries of f are ignored and those of x are 0.
