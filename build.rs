@@ -21,10 +21,9 @@ fn main() {
     }
     // In a worktree these lie elsewhere, so git is asked; HEAD alone does not change when a branch moves.
     for name in ["HEAD", "index", "logs/HEAD"] {
-        if let Some(path) = output("git", &["rev-parse", "--git-path", name]) {
-            if Path::new(&path).exists() {
-                println!("cargo::rerun-if-changed={path}");
-            }
+        let path = output("git", &["rev-parse", "--git-path", name]);
+        if let Some(path) = path.filter(|path| Path::new(path).exists()) {
+            println!("cargo::rerun-if-changed={path}");
         }
     }
 

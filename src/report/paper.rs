@@ -230,13 +230,22 @@ fn shown(number: Option<f64>, text: impl Fn(f64) -> String) -> String {
     }
 }
 
+/// A difference with two digits.
+fn short(difference: f64) -> String {
+    if difference == 0.0 {
+        "0".into()
+    } else {
+        format!("{difference:.1e}")
+    }
+}
+
 /// Table 1 for reading.
 ///
 /// # Errors
 /// Those of [`Table::push`].
 pub fn table1(rows: &[Table1Row]) -> Result<Table, ReportError> {
     let mut table = Table::new(
-        "Table 1: vertical reaction at the top of the plate",
+        "Table 1 of the founding paper: vertical reaction at the top of the plate",
         vec![
             Column::new("mesh", "", Align::Left),
             Column::new("friction", "", Align::Decimal),
@@ -254,7 +263,7 @@ pub fn table1(rows: &[Table1Row]) -> Result<Table, ReportError> {
             row.method.clone(),
             shown(row.reaction_mn_per_m, |r| fixed(r, REACTION_DECIMALS)),
             shown(row.printed_mn_per_m, |r| fixed(r, REACTION_DECIMALS - 2)),
-            shown(row.relative_difference, |d| format!("{d:.1e}")),
+            shown(row.relative_difference, short),
             row.verdict.clone(),
         ])?;
     }
@@ -282,10 +291,10 @@ pub fn table2(rows: &[Table2Row], digits: Digits) -> Result<Table, ReportError> 
         Column::new("method", "", Align::Left),
     ];
     columns.extend((1..=7).map(|p| Column::new(format!("P{p}"), "", Align::Decimal)));
-    columns.push(Column::new("max. diff.", "mm", Align::Right));
+    columns.push(Column::new("max. diff.", "", Align::Right));
     columns.push(Column::new("verdict", "", Align::Left));
     let mut table = Table::new(
-        "Table 2: displacement of the points P1 to P7 of the beam in mm",
+        "Table 2 of the founding paper: displacement of the points P1 to P7 of the beam [mm]",
         columns,
     );
     for row in sorted(rows) {
@@ -302,7 +311,7 @@ pub fn table2(rows: &[Table2Row], digits: Digits) -> Result<Table, ReportError> 
             row.method.clone(),
         ];
         cells.extend(row.p_mm.map(|p| shown(Some(p), |p| fixed(p, decimals))));
-        cells.push(shown(row.max_difference_mm, |d| format!("{d:.1e}")));
+        cells.push(shown(row.max_difference_mm, short));
         cells.push(row.verdict.clone());
         table.push(cells)?;
     }

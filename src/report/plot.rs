@@ -14,9 +14,11 @@ mod chart;
 mod colour;
 mod contour;
 mod curves;
+mod legend;
 mod names;
 mod profile;
 mod solid;
+mod style;
 
 pub use canvas::{Width, italic, subscript};
 pub use contour::{Magnification, displacement_contours};

@@ -4,7 +4,7 @@
 //! fewer decimals are padded so that the points stand below each other.
 
 use super::ReportError;
-use comfy_table::{CellAlignment, ContentArrangement, presets};
+use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
 
 /// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,7 +174,8 @@ impl Table {
     pub fn terminal(&self) -> String {
         const FIGURE_SPACE: &str = "\u{2007}";
         let mut table = comfy_table::Table::new();
-        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+        // Two spaces between columns and no vertical lines, since Table 2 is wide.
+        table.load_style(TableStyle::new());
         table.set_content_arrangement(ContentArrangement::Disabled);
         table.set_header(self.columns.iter().map(Column::heading));
         for row in &self.rows {
@@ -184,17 +185,30 @@ impl Table {
         }
         for (index, column) in self.columns.iter().enumerate() {
             if let Some(target) = table.column_mut(index) {
+                target.set_padding((0, 2));
                 target.set_cell_alignment(match column.align {
                     Align::Left => CellAlignment::Left,
                     Align::Right | Align::Decimal => CellAlignment::Right,
                 });
             }
         }
-        let body: Vec<String> = table
+        let lines: Vec<String> = table
             .lines()
             .map(|line| line.trim_end().to_owned())
             .collect();
-        format!("{}\n{}", self.title, body.join("\n"))
+        // Three rules as in booktabs.
+        let width = lines.iter().map(|line| line.chars().count()).max();
+        let rule = "─".repeat(width.unwrap_or(0));
+        let mut text = format!("{}\n{rule}\n", self.title);
+        for (index, line) in lines.iter().enumerate() {
+            text += line;
+            text.push('\n');
+            if index == 0 {
+                text += &rule;
+                text.push('\n');
+            }
+        }
+        text + &rule
     }
 }
 

@@ -34,7 +34,7 @@ impl Levels {
     pub fn new(low: f64, high: f64) -> Self {
         let span = high - low;
         // A constant field has one band; its round-off is no contour.
-        if !(span > 1e-9 * low.abs().max(high.abs())) {
+        if span <= 1e-9 * low.abs().max(high.abs()) {
             return Self {
                 low,
                 high,

@@ -1,10 +1,10 @@
 //! Charts: panels one above the other over a shared legend.
 
 use super::axis::Axis;
-use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitted, text_width, wrapped,
-};
-use super::colour::{self, BLACK, GREY, LIGHT, Rgb, WHITE};
+use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, text_width, wrapped};
+use super::colour::{BLACK, GREY, LIGHT};
+use super::legend::{self, Entry, LegendGrid};
+use super::style::{Marker, Style, draw_marker};
 use crate::report::ReportError;
 
 /// Sizes of text [pt].
@@ -12,117 +12,11 @@ pub const LABEL_PT: f64 = 8.0;
 pub const TICK_PT: f64 = 7.0;
 pub const SMALL_PT: f64 = 6.5;
 
-const CURVE_MM: f64 = 0.3;
 const FRAME_MM: f64 = 0.2;
 const TICK_MM: f64 = 1.2;
-const MARKER_MM: f64 = 0.85;
 const MARGIN_MM: f64 = 1.5;
-const LEGEND_ROW_MM: f64 = 3.7;
-const SAMPLE_MM: f64 = 8.5;
 /// Least distance of two markers of one curve.
 const MARKER_GAP_MM: f64 = 2.6;
-
-/// Difference that can be seen, as a fraction of the range.
-const VISIBLE: f64 = 0.01;
-
-/// Shape of a marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    Disc,
-    Square,
-    Triangle,
-    Diamond,
-    Cross,
-    TriangleDown,
-    Plus,
-}
-
-const MARKERS: [Marker; 7] = [
-    Marker::Disc,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::Diamond,
-    Marker::TriangleDown,
-    Marker::Cross,
-    Marker::Plus,
-];
-
-/// Dash patterns: drawn and left out in turn [mm].
-const DASHES: [&[f64]; 7] = [
-    &[],
-    &[2.2, 1.0],
-    &[0.7, 0.7],
-    &[3.0, 0.8, 0.7, 0.8],
-    &[1.3, 0.6],
-    &[4.0, 1.0],
-    &[2.0, 0.6, 0.6, 0.6, 0.6, 0.6],
-];
-
-/// How a curve looks: colour, dashes, marker and whether the marker is filled.
-#[derive(Debug, Clone)]
-pub struct Style {
-    pub colour: Rgb,
-    pub dashes: &'static [f64],
-    pub width: f64,
-    pub marker: Option<Marker>,
-    pub filled: bool,
-    /// Size of markers as a factor.
-    pub size: f64,
-}
-
-impl Style {
-    /// Look of the n-th curve of a figure. Later curves are thinner, so one that covers another leaves its edges visible.
-    pub fn of_curve(index: usize) -> Self {
-        Self {
-            colour: colour::curve(index),
-            dashes: DASHES[index % DASHES.len()],
-            width: (CURVE_MM + 0.25 - 0.08 * index as f64).max(CURVE_MM - 0.05),
-            marker: Some(MARKERS[index % MARKERS.len()]),
-            filled: index % 2 == 0,
-            size: 1.0,
-        }
-    }
-
-    /// Looks of curves given by their values, scaled to at most 1: nested where two of them lie on each other.
-    pub fn of_curves(values: &[Vec<f64>]) -> Vec<Self> {
-        let agree = |a: &[f64], b: &[f64]| {
-            a.len() == b.len() && a.iter().zip(b).all(|(x, y)| (x - y).abs() < VISIBLE)
-        };
-        let count = values.len();
-        let hidden = (0..count).any(|i| (0..i).any(|j| agree(&values[i], &values[j])));
-        let style = |i| {
-            if hidden {
-                Self::nested(i, count)
-            } else {
-                Self::of_curve(i)
-            }
-        };
-        (0..count).map(style).collect()
-    }
-
-    /// Look of the n-th of `count` curves that lie on each other: the first is wide, each later one lies inside it.
-    fn nested(index: usize, count: usize) -> Self {
-        let outer = (count.saturating_sub(index + 1)) as f64;
-        Self {
-            width: 0.25 + 0.35 * outer,
-            dashes: &[],
-            size: 0.75 + 0.28 * outer,
-            ..Self::of_curve(index)
-        }
-    }
-
-    /// A thin line without markers.
-    pub fn reference(colour: Rgb) -> Self {
-        Self {
-            colour,
-            dashes: &[0.5, 0.5],
-            width: 0.2,
-            marker: None,
-            filled: false,
-            size: 1.0,
-        }
-    }
-}
 
 /// A curve; points without a place on the axes (not finite, not positive on a logarithmic axis) are left out.
 #[derive(Debug, Clone)]
@@ -159,15 +53,6 @@ pub struct Panel {
     /// Horizontal lines, drawn dashed in grey, with their text.
     pub levels: Vec<(f64, String)>,
     pub slope: Option<SlopeTriangle>,
-}
-
-/// A line of the legend.
-#[derive(Debug, Clone)]
-pub struct Entry {
-    pub label: String,
-    pub style: Style,
-    /// A sample of the line, or the marker alone.
-    pub line: bool,
 }
 
 /// A whole figure.
@@ -208,7 +93,7 @@ impl Chart {
         let panels_height = count * self.height + (count - 1.0) * gap;
         let top = caption_height(&caption) + 1.0;
         let legend_top = top + panels_height + 11.0;
-        let height = legend_top + LEGEND_ROW_MM * legend_rows as f64 + 0.5;
+        let height = legend_top + legend::ROW_MM * legend_rows as f64 + 0.5;
 
         let mut canvas = Canvas::new(width, height);
         canvas.caption(&caption);
@@ -225,7 +110,7 @@ impl Chart {
         let mut y = legend_top;
         for grid in &grids {
             grid.draw(&mut canvas, [MARGIN_MM, y]);
-            y += LEGEND_ROW_MM * grid.rows() as f64;
+            y += legend::ROW_MM * grid.rows() as f64;
         }
         canvas.finish(&self.title)
     }
@@ -342,66 +227,17 @@ fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Serie
     let mut last: Option<([f64; 2], (Marker, bool))> = None;
     for (index, place) in places.iter().enumerate() {
         let Some(place) = place else { continue };
-        let look = series
-            .markers
-            .get(index)
-            .copied()
-            .unwrap_or((own, series.style.filled));
+        let own = (own, series.style.filled);
+        let look = series.markers.get(index).copied().unwrap_or(own);
         // Dense curves get few markers, but a change of marker is always shown.
         let crowded = last.is_some_and(|(at, before)| {
             before == look && (place[0] - at[0]).hypot(place[1] - at[1]) < MARKER_GAP_MM
         });
-        if !crowded {
-            let Style { colour, size, .. } = series.style;
-            draw_marker(canvas, *place, look.0, look.1, colour, size);
+        if !crowded && series.style.stagger.picks(index) {
+            draw_marker(canvas, *place, look.0, look.1, series.style.colour);
             last = Some((*place, look));
         }
     }
-}
-
-/// A marker centred at `at`; an unfilled one is white inside.
-pub fn draw_marker(
-    canvas: &mut Canvas,
-    at: [f64; 2],
-    marker: Marker,
-    filled: bool,
-    colour: Rgb,
-    size: f64,
-) {
-    let r = size * MARKER_MM;
-    let around = |offsets: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        offsets
-            .iter()
-            .map(|o| [at[0] + r * o[0], at[1] + r * o[1]])
-            .collect()
-    };
-    let outline = match marker {
-        Marker::Disc => {
-            canvas.disc(at, r, colour);
-            if !filled {
-                canvas.disc(at, 0.65 * r, WHITE);
-            }
-            return;
-        }
-        Marker::Cross => {
-            canvas.line(&around(&[[-0.9, -0.9], [0.9, 0.9]]), colour, CURVE_MM);
-            canvas.line(&around(&[[-0.9, 0.9], [0.9, -0.9]]), colour, CURVE_MM);
-            return;
-        }
-        Marker::Plus => {
-            canvas.line(&around(&[[-1.1, 0.0], [1.1, 0.0]]), colour, CURVE_MM);
-            canvas.line(&around(&[[0.0, -1.1], [0.0, 1.1]]), colour, CURVE_MM);
-            return;
-        }
-        Marker::Square => around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
-        Marker::Triangle => around(&[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]]),
-        Marker::TriangleDown => around(&[[0.0, 1.2], [1.1, -0.8], [-1.1, -0.8]]),
-        Marker::Diamond => around(&[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]]),
-    };
-    canvas.fill(&outline, if filled { colour } else { WHITE });
-    let mut closed = outline;
-    closed.push(closed[0]);
-    canvas.line(&closed, colour, 0.25);
 }
 
 fn draw_slope(canvas: &mut Canvas, panel: &Panel, frame: &Frame, slope: &SlopeTriangle) {
@@ -431,81 +267,4 @@ fn draw_slope(canvas: &mut Canvas, panel: &Panel, frame: &Frame, slope: &SlopeTr
         anchor,
         BLACK,
     );
-}
-
-/// Legend entries in rows, columns as wide as they need to be.
-struct LegendGrid<'a> {
-    entries: &'a [Entry],
-    columns: usize,
-    /// Where each column starts [mm].
-    starts: Vec<f64>,
-    available: f64,
-}
-
-impl<'a> LegendGrid<'a> {
-    fn new(entries: &'a [Entry], available: f64) -> Self {
-        let width = |entry: &Entry| SAMPLE_MM + text_width(&entry.label, TICK_PT) + 2.0;
-        let widths = |columns: usize| -> Vec<f64> {
-            let column = |c: usize| entries.iter().skip(c).step_by(columns);
-            (0..columns)
-                .map(|c| column(c).map(width).fold(0.0, f64::max))
-                .collect()
-        };
-        // As many columns as fit; one in any case, its labels are cut.
-        let columns = (2..=entries.len())
-            .rev()
-            .find(|columns| widths(*columns).iter().sum::<f64>() <= available)
-            .unwrap_or(1);
-        let widths = widths(columns);
-        // A single column starts at the left, several are spread over the width.
-        let spare = (available - widths.iter().sum::<f64>()).max(0.0) / columns as f64;
-        let mut end = 0.0;
-        let starts = widths.iter().map(|width| {
-            let start = end;
-            end += width + spare.min(12.0);
-            start
-        });
-        Self {
-            entries,
-            columns,
-            starts: starts.collect(),
-            available,
-        }
-    }
-
-    fn rows(&self) -> usize {
-        self.entries.len().div_ceil(self.columns)
-    }
-
-    fn draw(&self, canvas: &mut Canvas, origin: [f64; 2]) {
-        for (index, entry) in self.entries.iter().enumerate() {
-            let start = self.starts[index % self.columns];
-            let x = origin[0] + start;
-            let y = origin[1] + (index / self.columns) as f64 * LEGEND_ROW_MM;
-            let style = &entry.style;
-            let (from, to) = (x + 0.5, x + SAMPLE_MM - 1.5);
-            if entry.line {
-                canvas.dashed(
-                    &[[from, y], [to, y]],
-                    style.colour,
-                    style.width,
-                    style.dashes,
-                );
-            }
-            if let Some(marker) = style.marker {
-                let middle = [0.5 * (from + to), y];
-                draw_marker(
-                    canvas,
-                    middle,
-                    marker,
-                    style.filled,
-                    style.colour,
-                    style.size,
-                );
-            }
-            let room = self.available - start - SAMPLE_MM;
-            let label = fitted(&entry.label, TICK_PT, room);
-            canvas.text(&label, [x + SAMPLE_MM, y], TICK_PT, Anchor::Start, BLACK);
-        }
-    }
 }

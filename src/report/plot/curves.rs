@@ -2,8 +2,10 @@
 
 use super::axis::Axis;
 use super::canvas::{Width, plain};
-use super::chart::{Chart, Entry, Panel, Series, SlopeTriangle, Style};
+use super::chart::{Chart, Panel, Series, SlopeTriangle};
+use super::legend::Entry;
 use super::names::{Names, by_run};
+use super::style::Style;
 use crate::harness::record::{HistoryRow, RunKey};
 use crate::report::ReportError;
 

@@ -6,11 +6,11 @@ use crate::report::csv::compare_keys;
 use crate::report::number::value;
 
 /// Rows grouped by run, runs in the order of the tables, rows by `order`.
-pub fn by_run<'a, R>(
-    rows: &'a [R],
+pub fn by_run<R>(
+    rows: &[R],
     key: impl Fn(&R) -> &RunKey,
     order: impl Fn(&R, &R) -> std::cmp::Ordering,
-) -> Vec<Vec<&'a R>> {
+) -> Vec<Vec<&R>> {
     let mut sorted: Vec<&R> = rows.iter().collect();
     sorted.sort_by(|a, b| compare_keys(key(a), key(b)).then_with(|| order(a, b)));
     sorted

@@ -2,9 +2,11 @@
 
 use super::axis::{Axis, prefixed};
 use super::canvas::{Width, italic, subscript};
-use super::chart::{Chart, Entry, Marker, Panel, Series, Style};
+use super::chart::{Chart, Panel, Series};
 use super::colour::BLACK;
+use super::legend::Entry;
 use super::names::{Names, by_run};
+use super::style::{Marker, Style};
 use crate::harness::record::{PointRow, RunKey};
 use crate::report::ReportError;
 
