@@ -139,7 +139,9 @@ impl Body {
         let mut surface = ContactSurface::default();
         for number in 0..case.cracks.len() {
             match cracks.iter().position(|c| c.number == number) {
-                Some(index) => surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment)),
+                Some(index) => {
+                    surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment))
+                }
                 None => surface.append(doubled.remove(&number).unwrap_or_default()),
             }
         }

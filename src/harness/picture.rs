@@ -55,7 +55,11 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
                 let first = points.len();
                 for x in &part {
                     points.push(*x);
-                    displacement.push(integrator.displacement(cell, x, side, &now.u).unwrap_or([f64::NAN; 3]));
+                    displacement.push(
+                        integrator
+                            .displacement(cell, x, side, &now.u)
+                            .unwrap_or([f64::NAN; 3]),
+                    );
                 }
                 cells.push(PictureCell {
                     shape,
@@ -85,7 +89,12 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
 }
 
 /// Parts of a cut cell on one side: a polygon in 2D, tetrahedra in 3D.
-fn cell_parts(kind: CellKind, corners: &[Point], phi: &[f64], side: f64) -> Vec<(PictureShape, Vec<Point>)> {
+fn cell_parts(
+    kind: CellKind,
+    corners: &[Point],
+    phi: &[f64],
+    side: f64,
+) -> Vec<(PictureShape, Vec<Point>)> {
     match kind {
         CellKind::Quad4 => {
             let polygon = cut::polygon_part(corners, &phi[..kind.nodes()], side);
@@ -104,13 +113,19 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
     let dim = body.mesh.dim();
     let count = body.points.len();
     let local = |values: &[f64], c: usize| -> Vec<f64> {
-        (0..count).map(|i| if c < dim { values[i * dim + c] } else { 0.0 }).collect()
+        (0..count)
+            .map(|i| if c < dim { values[i * dim + c] } else { 0.0 })
+            .collect()
     };
     let in_space = |values: &[f64]| -> Vec<[f64; 3]> {
         (0..count)
             .map(|i| {
                 let mut v = [0.0; 3];
-                for (axis, value) in body.points[i].frame.iter().zip(&values[i * dim..(i + 1) * dim]) {
+                for (axis, value) in body.points[i]
+                    .frame
+                    .iter()
+                    .zip(&values[i * dim..(i + 1) * dim])
+                {
                     for a in 0..3 {
                         v[a] += axis[a] * value;
                     }
@@ -121,7 +136,13 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
     };
     let size = |values: &[f64]| -> Vec<f64> {
         (0..count)
-            .map(|i| values[i * dim + 1..(i + 1) * dim].iter().map(|v| v * v).sum::<f64>().sqrt())
+            .map(|i| {
+                values[i * dim + 1..(i + 1) * dim]
+                    .iter()
+                    .map(|v| v * v)
+                    .sum::<f64>()
+                    .sqrt()
+            })
             .collect()
     };
     let status = now
@@ -138,7 +159,11 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
         .iter()
         .filter(|facet| facet.len() >= dim)
         .map(|facet| PictureCell {
-            shape: if dim == 2 { PictureShape::Line } else { PictureShape::Polygon },
+            shape: if dim == 2 {
+                PictureShape::Line
+            } else {
+                PictureShape::Polygon
+            },
             points: facet.clone(),
         })
         .collect();
@@ -155,7 +180,10 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
             ("slip_m".into(), size(&now.jump)),
             ("p_n".into(), local(&now.p, 0)),
             ("p_t".into(), size(&now.p)),
-            ("weight".into(), body.points.iter().map(|p| p.weight).collect()),
+            (
+                "weight".into(),
+                body.points.iter().map(|p| p.weight).collect(),
+            ),
             ("status".into(), status),
         ],
         cell_scalars: Vec::new(),

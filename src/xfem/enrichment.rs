@@ -321,7 +321,11 @@ impl Enrichment {
 
 /// Side of a crack that a cell it does not split lies on.
 fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
-    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) { -1.0 } else { 1.0 }
+    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) {
+        -1.0
+    } else {
+        1.0
+    }
 }
 
 /// Where a split cell lies along the crack.
