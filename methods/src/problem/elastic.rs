@@ -61,6 +61,16 @@ pub struct Elastic {
     solves: AtomicUsize,
 }
 
+impl std::fmt::Debug for Elastic {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Elastic")
+            .field("dim", &self.dim())
+            .field("unknowns", &self.unknowns())
+            .field("points", &self.points())
+            .finish_non_exhaustive()
+    }
+}
+
 impl Elastic {
     /// Checks the parts. Nothing is factored yet.
     ///

@@ -16,6 +16,15 @@ pub struct ContactSystem {
     condensed: OnceLock<Result<Arc<Condensed>, MethodError>>,
 }
 
+impl std::fmt::Debug for ContactSystem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ContactSystem")
+            .field("elastic", &self.elastic)
+            .field("friction", &self.friction)
+            .finish_non_exhaustive()
+    }
+}
+
 impl ContactSystem {
     /// Sets the friction coefficient of each point.
     ///
