@@ -46,7 +46,7 @@ use faer::Mat;
 use crate::problem::law::{ball_derivative, project_ball, tangential_norm};
 use crate::problem::line_search::LineSearch;
 use crate::problem::linear::dense::{mul_add, solve_dense};
-use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::problem::stages::{Pair, rescue};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -85,6 +85,8 @@ static OPTIONS: [OptionSpec; 2] = [
     },
 ];
 
+/// Steps without progress after which the iteration counts as cycling.
+const PATIENCE: usize = 60;
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;
 /// Regularisation of a singular tangent of redundant points, relative to 1/ρ.
@@ -140,7 +142,7 @@ struct Kink {
 
 impl Enforcement for BNewton {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.condensed().map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(
@@ -152,9 +154,9 @@ impl Enforcement for BNewton {
             Begin::Done(outcome) => return Ok(outcome),
             Begin::Contact(problem) => problem,
         };
-        let none = vec![0.0; problem.len()];
+        let rigid_springs = vec![0.0; problem.len()];
         let r: Vec<f64> = problem
-            .scales(&none)
+            .scales(&rigid_springs)
             .iter()
             .map(|scale| self.r * scale)
             .collect();
@@ -162,6 +164,10 @@ impl Enforcement for BNewton {
         let mut x = Iterate {
             beta: problem.start_amplitudes(&P),
             P,
+        };
+        let limits = Limits {
+            iterations: self.max_iterations,
+            patience: PATIENCE,
         };
         let mut search = LineSearch::default();
         let mut before: Vec<Piece> = Vec::new();
@@ -171,7 +177,7 @@ impl Enforcement for BNewton {
             let (pieces, kinks) = classify(&problem, &r, &x.P, &v);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let natural_map = problem.natural_map(&x.P, &v);
-            if let Some(status) = problem.ends(natural_map, changes, self.max_iterations, monitor) {
+            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
                 break status;
             }
             before.clone_from(&pieces);

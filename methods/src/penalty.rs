@@ -91,7 +91,7 @@ impl Penalty {
 
 impl Enforcement for Penalty {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.condensed().map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(

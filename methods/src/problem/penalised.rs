@@ -8,7 +8,7 @@
 //! The springs sit in series with the body: in terms of v' = v + (P − A)/k the law is the exact one, P = Π(P − r v')
 //! for *any* r > 0. Newton's method runs on
 //! ```text
-//! F(z, β) = (z − P)/r + v'(P, β) = 0,   P = Π(z)              [m]
+//! F(z, β) = (z − P)/r + v'(P, β) = 0,   P = Π(z)
 //! ```
 //! with the consistent tangent through Π'(z), non-symmetric where points slip (Simo & Laursen 1992). r = k gives the
 //! textbook iteration z = A − k v. We take r = 1/(W_ii + 1/k): the solution is the same, but for k far above the
@@ -65,7 +65,7 @@ impl Springs {
         Point::new(problem, z, beta)
     }
 
-    /// F by row [m].
+    /// F by row, in m.
     fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], c: &[f64], at: &Point) -> Vec<f64> {
         let mut f = problem.jump(&at.p, &at.beta);
         for k in 0..f.len() {
