@@ -142,7 +142,8 @@ impl Enforcement for AugmentedLagrangian {
             );
             (p, beta) = (end.p, end.beta);
             problem.rebalance(&mut p);
-            if inner != Status::Converged {
+            // Stalled: solved to rounding, which the outer loop can still use.
+            if !matches!(inner, Status::Converged | Status::Stalled) {
                 break inner;
             }
         };

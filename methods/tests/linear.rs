@@ -225,8 +225,7 @@ fn solve_reaches_the_equilibrium_that_the_judge_demands() {
     );
 }
 
-/// The Delassus operator is not public; with one method and P known, W shows in the jump: all exact methods use it and
-/// the judge checks K u = f + BᵀP apart. Here: elements of W through unit forces, against full solves.
+/// Methods see W, the judge sees the jump of u: their natural maps agree only if W is right.
 #[test]
 fn condensed_answers_agree_with_the_uncondensed_body() {
     for frictionless in [false, true] {
@@ -242,7 +241,6 @@ fn condensed_answers_agree_with_the_uncondensed_body() {
             let outcome = run(m, &[], &s, &load, 1e-9);
             let judged = judge(&s, &load, &outcome.state);
             assert_eq!(outcome.status, Status::Converged, "{}", m.name);
-            // `last` comes from q + W P, the judged one from the jump of u: they agree only if W is right.
             let last = outcome.history.last().unwrap().natural_map;
             assert!(
                 (last - judged.natural_map).abs() < 1e-11,
@@ -379,7 +377,7 @@ fn wrong_rigid_motions_are_refused_with_their_number() {
     ));
 }
 
-/// Condensation costs at most 0.3 of the factorisation: 30³ cubes, 17² − … points.
+/// Condensation costs at most 0.3 of the factorisation: 30³ cubes, 17² points, 867 rows on 1734 contact unknowns.
 #[test]
 #[ignore = "timing: run with --release -- --ignored --nocapture"]
 fn condensation_is_cheap_beside_the_factorisation() {

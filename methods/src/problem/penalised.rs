@@ -26,6 +26,9 @@ use super::reduced::Reduced;
 use super::stages::{Pair, rescue};
 use super::state::{Monitor, Status};
 
+/// Below this a residual that no longer halves has met rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Penalty stiffnesses and anchor.
 pub(crate) struct Springs {
     pub normal: f64,
@@ -87,6 +90,7 @@ impl Springs {
         let (r, c) = (self.scales(problem), self.compliance(problem));
         let mut search = LineSearch::default();
         let mut before = at.branches.clone();
+        let mut last = f64::INFINITY;
         for iteration in 0.. {
             let mismatch = self.mismatch(problem, &r, &c, &at);
             let residual = residual(problem, &at, &mismatch);
@@ -107,6 +111,10 @@ impl Springs {
             if !go_on {
                 return (Status::Stopped, at);
             }
+            if residual <= ROUNDING && residual > 0.5 * last {
+                return (Status::Stalled, at);
+            }
+            last = residual;
             if iteration == max_iterations {
                 break;
             }
