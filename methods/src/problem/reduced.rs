@@ -24,6 +24,18 @@ const COMPLIANCE_FLOOR: f64 = 1e-2;
 /// Rescues per increment.
 const MAX_RESCUES: usize = 5;
 
+/// A natural map counts as progress below this fraction of the best before.
+const IMPROVEMENT: f64 = 0.99;
+
+/// When to give up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Iterations in all.
+    pub iterations: usize,
+    /// Iterations without progress.
+    pub patience: usize,
+}
+
 /// How an increment begins.
 pub(crate) enum Begin<'a> {
     /// Nothing closes, or nothing can: there is nothing to iterate on.
@@ -49,6 +61,8 @@ pub(crate) struct Reduced<'a> {
     /// |q| of the natural map's denominator.
     free_jump: f64,
     rescues: usize,
+    /// Smallest natural map so far and its iteration.
+    best: (f64, usize),
     claim: Claim,
 }
 
@@ -109,6 +123,7 @@ impl<'a> Reduced<'a> {
             increment,
             rows,
             rescues: 0,
+            best: (f64::INFINITY, 0),
             balance,
             counters,
             claim: claim(condensed.rho),
@@ -242,9 +257,12 @@ impl<'a> Reduced<'a> {
         &mut self,
         natural_map: f64,
         changes: usize,
-        max_iterations: usize,
+        limits: Limits,
         monitor: &mut dyn Monitor,
     ) -> Option<Status> {
+        if natural_map < IMPROVEMENT * self.best.0 {
+            self.best = (natural_map, self.counters.iterations);
+        }
         self.history.push(Iteration {
             natural_map,
             changes,
@@ -256,8 +274,10 @@ impl<'a> Reduced<'a> {
             Some(Status::Diverged)
         } else if !monitor.step(iteration, natural_map) {
             Some(Status::Stopped)
-        } else if iteration == max_iterations {
+        } else if iteration == limits.iterations {
             Some(Status::MaxIterations)
+        } else if iteration >= self.best.1 + limits.patience {
+            Some(Status::Stalled)
         } else {
             self.counters.iterations += 1;
             None
