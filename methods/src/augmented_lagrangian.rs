@@ -125,7 +125,10 @@ impl Enforcement for AugmentedLagrangian {
             let v = problem.jump(&p, &beta);
             let natural_map = problem.natural_map(&p, &v);
             if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                break status;
+                match problem.confirm(status, &p, &beta)? {
+                    Some(status) => break status,
+                    None => continue,
+                }
             }
             springs.anchor.clone_from(&p);
             let start = springs.predict(&problem, &p, beta);

@@ -178,7 +178,10 @@ impl Enforcement for BNewton {
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let natural_map = problem.natural_map(&x.P, &v);
             if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                break status;
+                match problem.confirm(status, &x.P, &x.beta)? {
+                    Some(status) => break status,
+                    None => continue,
+                }
             }
             before.clone_from(&pieces);
             let Some(step) = direction(&mut problem, &r, &x, &v, pieces, &kinks) else {

@@ -148,7 +148,13 @@ impl Enforcement for Latin {
                 natural_map = problem.natural_map(&pair.p, &pair.v);
             }
             if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                break status;
+                match problem.confirm(status, &pair.p, &pair.beta)? {
+                    Some(status) => break status,
+                    None => {
+                        pair.v = problem.jump(&pair.p, &pair.beta);
+                        continue;
+                    }
+                }
             }
             let (target, branches) = global.local_stage(&mut problem, &pair);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
