@@ -1,5 +1,8 @@
 //! Made-up results of realistic shape and size: a plate with a crack at 45 degrees, a beam in two halves.
 
+// Every test program uses a part of this.
+#![allow(dead_code)]
+
 use stickslip::harness::record::*;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];

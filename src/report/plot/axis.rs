@@ -182,7 +182,7 @@ pub fn superscript(exponent: i32) -> String {
 fn log_number(mantissa: f64, power: f64) -> String {
     let exponent = power.log10().round() as i32;
     match exponent {
-        -3..=3 => number(mantissa * power, (-exponent).max(0) as usize),
+        -3..=4 => number(mantissa * power, (-exponent).max(0) as usize),
         _ if mantissa == 1.0 => format!("10{}", superscript(exponent)),
         _ => format!("{mantissa}·10{}", superscript(exponent)),
     }

@@ -36,6 +36,11 @@ impl Axis3 {
     }
 }
 
+/// Height of the colour bar [mm].
+const BAR_MM: f64 = 40.0;
+/// Room for the axes below it [mm].
+const TRIAD_MM: f64 = 16.0;
+
 /// Faces of a hexahedron, corners in VTK's order, normals outwards.
 const HEXAHEDRON: [&[usize]; 6] = [
     &[0, 3, 2, 1],
@@ -87,7 +92,8 @@ pub fn solid_displacement(
     let body = [scale * shown.width(), scale * shown.height()];
     let caption = full_caption(caption, factor);
     let lines = wrapped(&caption, CAPTION_PT, width - 3.0);
-    let (left, bottom) = (3.0, caption_height(&lines) + 4.0 + body[1]);
+    let top = caption_height(&lines) + 4.0;
+    let (left, bottom) = (3.0, top + body[1].max(BAR_MM + TRIAD_MM));
     let paper = |p: [f64; 3]| {
         let [x, y] = project(p);
         [
@@ -100,7 +106,7 @@ pub fn solid_displacement(
     let (unit_factor, unit) = prefixed(low.abs().max(high.abs()), "m");
     let levels = Levels::new(low * unit_factor, high * unit_factor);
 
-    let mut canvas = Canvas::new(width, bottom + 9.0);
+    let mut canvas = Canvas::new(width, bottom + 4.0);
     let mut visible: Vec<(f64, &Vec<usize>)> = faces
         .iter()
         .filter(|face| faces_viewer(face.iter().map(|p| project(places[*p]))))
@@ -123,9 +129,9 @@ pub fn solid_displacement(
 
     canvas.caption(&lines);
     let label = format!("{}{} [{unit}]", italic("u"), subscript(component.name()));
-    let bar = [width - 15.0, bottom];
-    bands::colour_bar(&mut canvas, &levels, bar, body[1].min(55.0), &label);
-    draw_triad(&mut canvas, [10.0, bottom + 2.0]);
+    let bar = [width - 15.0, bottom - TRIAD_MM];
+    bands::colour_bar(&mut canvas, &levels, bar, BAR_MM, &label);
+    draw_triad(&mut canvas, [width - 10.5, bottom - 3.0]);
     canvas.finish(&format!("Displacement {}: {caption}", component.name()))
 }
 
@@ -195,7 +201,7 @@ fn boundary_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
 
 /// The three axes with their names.
 fn draw_triad(canvas: &mut Canvas, origin: [f64; 2]) {
-    const LENGTH: f64 = 6.0;
+    const LENGTH: f64 = 5.0;
     for (direction, name) in [
         ([1.0, 0.0, 0.0], "x"),
         ([0.0, 1.0, 0.0], "y"),
