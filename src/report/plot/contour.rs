@@ -30,7 +30,7 @@ pub enum Magnification {
 }
 
 impl Magnification {
-    /// The factor for a body of this diameter [m] and this largest displacement [m].
+    /// The factor for a body of this diameter (m) and this largest displacement (m).
     pub fn factor(self, diameter: f64, displacement: f64) -> f64 {
         match self {
             Self::Factor(factor) => factor,
