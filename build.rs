@@ -43,12 +43,36 @@ fn main() {
         .collect();
     features.sort();
 
+    embed_cases();
+
     set("COMMIT", commit);
     set("DIRTY", dirty);
     set("RUSTC", output(&rustc, &["--version"]));
     set("TARGET", std::env::var("TARGET").ok());
     set("PROFILE", std::env::var("PROFILE").ok());
     set("FEATURES", Some(features.join(",")));
+}
+
+/// Writes the list of the shipped cases, so that a new file in `cases/` is all it takes to add one.
+fn embed_cases() {
+    let root = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_else(|_| ".".into());
+    let mut names: Vec<String> = std::fs::read_dir(Path::new(&root).join("cases"))
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+        .collect();
+    names.sort();
+    let entries: String = names
+        .iter()
+        .map(|name| format!("    ({name:?}, include_str!({:?})),\n", format!("{root}/cases/{name}.toml")))
+        .collect();
+    let target = std::env::var("OUT_DIR").unwrap_or_else(|_| ".".into());
+    let list = format!("&[\n{entries}]\n");
+    if let Err(error) = std::fs::write(Path::new(&target).join("cases.rs"), list) {
+        println!("cargo::error=cannot write the list of cases: {error}");
+    }
 }
 
 fn set(name: &str, value: Option<String>) {

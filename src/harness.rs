@@ -1,4 +1,12 @@
 //! Cases, load paths, runs, verdicts.
 
+pub mod body;
+pub mod boundary;
 pub mod case;
+pub mod expect;
+pub mod picture;
+pub mod quantities;
 pub mod record;
+pub mod run;
+pub mod shipped;
+pub mod verdict;

@@ -1,4 +1,15 @@
-//! Compares methods of enforcing frictional contact on crack faces on one XFEM discretisation.
+//! Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
+//!
+//! ```text
+//! case.toml -> Case -> Mesh + cracks -> Enrichment -> unknowns -> ContactSystem
+//!           -> per increment: Enforcement::solve -> Outcome -> residuals() -> Verdict -> tables, figures, fields
+//! ```
+//!
+//! The algebraic half (the contact problem, its judge and the methods) is the package `stickslip-methods`.
 
+pub mod cli;
+pub mod fem;
 pub mod harness;
+pub mod paper;
 pub mod report;
+pub mod xfem;

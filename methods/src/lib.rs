@@ -1,1 +1,98 @@
-//! placeholder
+//! Algebraic methods for frictional contact: one problem, one judge, interchangeable solvers.
+//!
+//! # The problem
+//!
+//! A linear elastic body with contact points, each with a local frame (n, a[, b]); n points from side 2 to side 1.
+//! ```text
+//! K u = f + Bᵀ P            equilibrium; P acts on side 1
+//! [[u]] = B u + offset      jump u₁ − u₂ at the contact points
+//! g = [[u]]·n               gap, open > 0
+//! d = [[u]]_t − [[u]]_t(start of the increment)        slip increment
+//!
+//! 0 <= g ⊥ P_n >= 0         Signorini; P_n > 0 is compression
+//! |P_t| <= μ P_n            Coulomb, backward Euler
+//! d ≠ 0  ⇒  P_t = −μ P_n d/|d|
+//! ```
+//! K does not change with the contact. It is factored once per [`Elastic`] and condensed to the contact points:
+//! ```text
+//! [[u]] = q + W P + N α,   Nᵀ P = −Rᵀ f,    W = B K⁻¹ Bᵀ  (Delassus operator),  q = B K⁻¹ f + offset
+//! ```
+//! R spans the kernel of K where the body floats, N = B R are the jumps of these rigid motions and α their
+//! amplitudes; usually there are none.
+//!
+//! # Use
+//!
+//! Build an [`Elastic`] from [`ElasticParts`], a [`ContactSystem`] from it per set of friction coefficients, and an
+//! [`Increment`] per load. Any entry of [`METHODS`] solves the increment; [`residuals`] judges the answer.
+//!
+//! # Add a method
+//!
+//! One file beside this one that exports `METHOD`, and two lines here: `mod` and the [`METHODS`] entry.
+
+pub mod problem;
+
+mod augmented_lagrangian;
+mod b_newton;
+mod latin;
+mod penalty;
+
+pub use problem::law;
+pub use problem::*;
+
+/// A method of enforcing the contact laws.
+///
+/// It may keep factorisations between calls, never history: the same increment twice gives the same bits.
+pub trait Enforcement: Send {
+    /// Why the method cannot treat this system; `None` if it can.
+    fn refuses(&self, _system: &ContactSystem) -> Option<String> {
+        None
+    }
+
+    /// Work that depends on the system only. `solve` does it if it was not done before.
+    ///
+    /// # Errors
+    /// Input that no method could treat; see [`MethodError`].
+    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError>;
+
+    /// Solves one increment. Failure to converge is a [`Status`].
+    ///
+    /// # Errors
+    /// Input that no method could treat; see [`MethodError`].
+    fn solve(
+        &mut self,
+        increment: &Increment<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError>;
+}
+
+/// A registered method.
+#[derive(Debug, Clone, Copy)]
+pub struct Method {
+    /// Name on the command line and in tables.
+    pub name: &'static str,
+    /// Name in plots.
+    pub label: &'static str,
+    /// Where it was published.
+    pub reference: &'static str,
+    /// What it does, in one sentence.
+    pub summary: &'static str,
+    /// Whether its limit is the solution of the contact laws; otherwise a parameter is a modelling error.
+    pub exact: bool,
+    /// Options it takes.
+    pub options: &'static [OptionSpec],
+    /// Makes an instance.
+    pub build: fn(&Options) -> Result<Box<dyn Enforcement>, MethodError>,
+}
+
+/// All methods.
+pub static METHODS: &[&Method] = &[
+    &b_newton::METHOD,
+    &penalty::METHOD,
+    &augmented_lagrangian::METHOD,
+    &latin::METHOD,
+];
+
+/// The method of that name.
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().copied().find(|m| m.name == name)
+}

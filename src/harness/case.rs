@@ -6,14 +6,23 @@
 
 mod condition;
 mod error;
+mod expect;
+mod mesh;
 mod parse;
+mod reader;
+mod schema;
 
 pub use condition::Condition;
 pub use error::CaseError;
 pub use parse::{parse, read};
 
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::PathBuf;
+
+use stickslip_methods::Tier;
+
+use error::Source;
 
 /// Byte range of a key's value in the case file, for error messages.
 pub type Span = Range<usize>;
@@ -50,11 +59,37 @@ pub struct Case {
     /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
     pub methods: Vec<MethodSpec>,
     /// Default tier of the case.
-    pub tier: String,
+    pub tier: Tier,
+    /// Natural map the methods must reach, at most that of the tier; tighter where a closed form is held to more digits.
+    pub tolerance: f64,
     /// Named places whose displacement is recorded.
     pub probes: Vec<ProbeSpec>,
     /// Numbers the case must reproduce.
     pub expects: Vec<Expect>,
+}
+
+impl Case {
+    /// The source text at a span, for error messages.
+    pub fn text(&self, span: &Span) -> &str {
+        self.source.get(span.clone()).unwrap_or_default()
+    }
+
+    /// Error about the value at `span`, found later than by the parser (e.g. a crack wholly outside the mesh).
+    ///
+    /// `value` is what was found, `allowed` what would be accepted; key, line and column follow from the span.
+    pub fn error(
+        &self,
+        span: &Span,
+        value: impl Display,
+        allowed: impl Display,
+        message: impl Display,
+    ) -> CaseError {
+        Source {
+            file: &self.file,
+            text: &self.source,
+        }
+        .error(span, value, allowed, message)
+    }
 }
 
 /// Kinematics of a case.
@@ -99,16 +134,18 @@ pub struct MeshSpec {
 ///
 /// The last coordinate (y in 2D, z in 3D) of a grid point is shifted by s(x) · r: s(x) = (x − x₀) tan(angle) within
 /// `half_length` of the point (measured along x), returning linearly to 0 at the sides x = min, max; r falls linearly
-/// from 1 on the row (or grid line) that holds the point to 0 at the two ends of that axis.
+/// from 1 on the row (or grid line) that holds the point to 0 at the two ends of that axis. The parser has checked that
+/// every cell keeps a positive height.
 #[derive(Debug, Clone)]
 pub struct Follow {
     /// Where the table stands in the file.
     pub span: Span,
     /// A point of the line [m], inside the box.
     pub point: [f64; 3],
-    /// Angle from the x axis [rad], within (−π/2, π/2).
+    /// Angle from the x axis [rad], less than 80 degrees either way.
     pub angle: f64,
-    /// Half of the followed extent along x [m]; infinite: the line is followed from side to side.
+    /// Half of the followed extent along x [m], less than the distance to either side; infinite: the line is followed
+    /// from side to side.
     pub half_length: f64,
 }
 
@@ -268,12 +305,13 @@ pub struct PathSpec {
     pub end: f64,
 }
 
-/// Parameter sweep; each list holds at least one entry.
+/// Parameter sweep; no value occurs twice.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// Friction coefficients; empty: every crack keeps its own.
     pub friction: Vec<f64>,
-    /// Mesh refinement factors: every cell of the base mesh is divided by this number in each direction.
+    /// Mesh refinement factors >= 1, at least one: every cell of the base mesh is divided by this number in each
+    /// direction.
     pub refine: Vec<usize>,
 }
 
@@ -286,6 +324,8 @@ pub struct MethodSpec {
     pub name: String,
     /// Options by name, in file order.
     pub options: Vec<(String, f64)>,
+    /// Where the value of each option stands in the file, in the same order.
+    pub option_spans: Vec<Span>,
 }
 
 /// A named place: the mesh node at it is recorded.
@@ -293,7 +333,7 @@ pub struct MethodSpec {
 pub struct ProbeSpec {
     /// Where it stands in the file.
     pub span: Span,
-    /// Name in `quantities.csv`.
+    /// Name in `quantities.csv`; differs from every side, crack and other probe.
     pub name: String,
     /// Place [m]; must coincide with a node.
     pub point: [f64; 3],
@@ -306,7 +346,7 @@ pub struct Expect {
     pub span: Span,
     /// Quantity name as in `quantities.csv`.
     pub quantity: String,
-    /// Place (`at` column), e.g. `top` or a probe name; empty: the whole body.
+    /// Place (`at` column): a side, a probe or a crack (`crack-1`); empty: the whole body.
     pub at: String,
     /// Component (`component` column), e.g. `y`; empty: none.
     pub component: String,

@@ -1,0 +1,144 @@
+//! Augmented Lagrangian method, Uzawa form.
+//!
+//! Simo & Laursen, Comput. Struct. 42 (1992) 97; Alart & Curnier, Comput. Meth. Appl. Mech. Engng 92 (1991) 353.
+//!
+//! ```text
+//! repeat                                                      outer loop (Uzawa)
+//!   solve  K u = f + Bᵀ P,  P = Π(Λ − k v)                    inner loop: penalised problem, Newton
+//!   Λ <- P
+//! until the natural map of (u, P) is small
+//! Π: P_n = max(z_n, 0),  P_t = proj_{|·| <= μ P_n}(z_t);   k = stiffness · ρ,   v = (g, d)
+//! ```
+//!
+//! A fixed point has P = Π(P − k v), which is the contact law itself: the answer does not depend on k.
+//!
+//! # Options
+//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`.
+//!
+//! # Guarantees
+//! Without friction the outer loop contracts by 1/(1 + k w_min), w_min the smallest eigenvalue of W, for any k > 0; the
+//! condensed inner problem stays well conditioned for large k, unlike K + k Bᵀ B.
+//!
+//! # Failure modes
+//! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
+
+use crate::problem::penalised::Springs;
+use crate::problem::reduced::{Begin, Reduced};
+use crate::{
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome, Status,
+};
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "augmented-lagrangian",
+    label: "Augmented Lagrangian (Uzawa)",
+    reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97",
+    summary: "repeats a penalised solve, each time anchored at the contact forces of the last, until the springs are slack",
+    exact: true,
+    options: &OPTIONS,
+    build: |options| Ok(Box::new(AugmentedLagrangian::new(options))),
+};
+
+static OPTIONS: [OptionSpec; 3] = [
+    OptionSpec {
+        name: "stiffness",
+        unit: "-",
+        default: 1e3,
+        min: 1e-2,
+        max: 1e6,
+        integer: false,
+        help: "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)",
+    },
+    OptionSpec {
+        name: "max_outer",
+        unit: "-",
+        default: 1000.0,
+        min: 1.0,
+        max: 1e6,
+        integer: true,
+        help: "multiplier updates before giving up",
+    },
+    OptionSpec {
+        name: "max_inner",
+        unit: "-",
+        default: 100.0,
+        min: 1.0,
+        max: 1e6,
+        integer: true,
+        help: "Newton steps per inner problem before giving up",
+    },
+];
+
+/// The inner problem is solved this much more accurately than the outer loop is stopped.
+const INNER_FRACTION: f64 = 1e-2;
+
+struct AugmentedLagrangian {
+    stiffness: f64,
+    max_outer: usize,
+    max_inner: usize,
+}
+
+impl AugmentedLagrangian {
+    fn new(options: &Options) -> Self {
+        Self {
+            stiffness: options.own("stiffness"),
+            max_outer: options.own("max_outer") as usize,
+            max_inner: options.own("max_inner") as usize,
+        }
+    }
+}
+
+impl Enforcement for AugmentedLagrangian {
+    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
+        system.condensed().map(|_| ())
+    }
+
+    fn solve(
+        &mut self,
+        increment: &Increment<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError> {
+        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
+            Begin::Done(outcome) => return Ok(outcome),
+            Begin::Contact(problem) => problem,
+        };
+        let k = self.stiffness * problem.condensed.rho;
+        let mut p = problem.start_forces();
+        let mut beta = problem.start_amplitudes(&p);
+        let mut springs = Springs {
+            normal: k,
+            tangential: k,
+            anchor: p.clone(),
+        };
+        let inner_stop = INNER_FRACTION * problem.stop;
+        let mut changes = 0;
+
+        let status = loop {
+            let v = problem.jump(&p, &beta);
+            let natural_map = problem.natural_map(&p, &v);
+            if let Some(status) = problem.ends(natural_map, changes, self.max_outer, monitor) {
+                break status;
+            }
+            springs.anchor.clone_from(&p);
+            let start = springs.predict(&problem, &p, beta);
+            changes = 0;
+            let (inner, end) = springs.solve(
+                &mut problem,
+                start,
+                inner_stop,
+                self.max_inner,
+                |_, _, c| {
+                    changes += c;
+                    true
+                },
+            );
+            (p, beta) = (end.p, end.beta);
+            problem.rebalance(&mut p);
+            if inner != Status::Converged {
+                break inner;
+            }
+        };
+        problem.finish(status, &p, &beta)
+    }
+}

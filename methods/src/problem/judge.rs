@@ -1,0 +1,171 @@
+//! The judge: how well a state fulfils equilibrium and contact law, whatever method produced it.
+
+use super::condensed::{Condensed, RowSet};
+use super::error::{MethodError, check_finite, check_len};
+use super::law::{natural_map_squared, tangential_norm};
+use super::linear::dense::mul_add;
+use super::linear::factor::norm;
+use super::state::ContactState;
+use super::system::Increment;
+
+/// Residuals of one state, all dimensionless: they change neither with units nor with the tangent frames.
+///
+/// Reference sizes: u_ref = max(|q|, |P|/ρ) and P_ref = ρ u_ref, with q the jump without contact forces, ρ =
+/// rows / trace(W), and Euclidean norms over all points.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Residuals {
+    /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + |K u|).
+    pub equilibrium: f64,
+    /// max −g / u_ref over the points.
+    pub penetration: f64,
+    /// max −P_n / P_ref: adhesion.
+    pub adhesion: f64,
+    /// max |g P_n| / (u_ref P_ref).
+    pub complementarity: f64,
+    /// max (|P_t| − μ P_n) / P_ref.
+    pub cone: f64,
+    /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
+    pub slip_direction: f64,
+    /// |e| / P_ref with e = P − proj(P − ρ ṽ) the natural map with De Saxcé's correction: zero if and only if all
+    /// contact laws hold. Tiers and verdicts refer to it.
+    pub natural_map: f64,
+}
+
+/// Judges a state. The jump is computed from `s.u`; nothing a method reports is trusted.
+///
+/// Without contact forces and penetration the law holds for any scale, so the natural map is 0 and the body is not
+/// condensed.
+///
+/// # Errors
+/// Arrays of the wrong length or with non-finite entries; the errors of factorisation and condensation.
+pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, MethodError> {
+    i.check()?;
+    check_len("displacements", s.u.len(), i.start.u.len())?;
+    check_len("contact forces", s.p.len(), i.start.p.len())?;
+    check_finite("displacements", &s.u)?;
+    check_finite("contact forces", &s.p)?;
+
+    let (system, dim) = (i.system, i.system.dim());
+    let mut result = Residuals {
+        equilibrium: equilibrium(i, s),
+        ..Default::default()
+    };
+    let jump = i.jump(&s.u);
+    if s.p.iter().all(|&p| p == 0.0) && jump.iter().step_by(dim).all(|&g| g >= 0.0) {
+        return Ok(result);
+    }
+
+    let condensed = system.condensed()?;
+    let rows = system.row_set();
+    let v = slip_from(rows, dim, &jump, &i.start_jump());
+    let p = rows.restrict(&s.p);
+    let mut q = rows.restrict(&jump);
+    let mut wp = vec![0.0; q.len()];
+    mul_add(&condensed.w, &p, &mut wp);
+    q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
+    let p_ref = reference_force(
+        &condensed,
+        &p,
+        free_jump(&condensed, &q, &condensed.modes.components(&p)),
+    );
+    let u_ref = p_ref / condensed.rho;
+
+    for point in 0..rows.points() {
+        let (p, v, mu) = (
+            &p[rows.of(point)],
+            &v[rows.of(point)],
+            system.friction()[point],
+        );
+        let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
+        let raise = |entry: &mut f64, value: f64| *entry = entry.max(value);
+        raise(&mut result.penetration, ratio(-v[0], u_ref));
+        raise(&mut result.adhesion, ratio(-p[0], p_ref));
+        raise(
+            &mut result.complementarity,
+            ratio((v[0] * p[0]).abs(), u_ref * p_ref),
+        );
+        raise(
+            &mut result.slip_direction,
+            ratio(
+                (mu * p[0] * tangential_norm(v) + power).abs(),
+                u_ref * p_ref,
+            ),
+        );
+        // All components, also those without a row: forces the law forbids must not hide.
+        let force = &s.p[dim * point..dim * (point + 1)];
+        raise(
+            &mut result.cone,
+            ratio(tangential_norm(force) - mu * force[0].max(0.0), p_ref),
+        );
+    }
+    let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
+    let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &v)
+        .hypot(forbidden.max(0.0).sqrt());
+    result.natural_map = ratio(e, p_ref);
+    Ok(result)
+}
+
+/// x / reference with 0/0 = 0.
+pub(crate) fn ratio(x: f64, reference: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x / reference }
+}
+
+/// Rows (g, d): normal gap, and tangential jump since the start of the increment.
+pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) -> Vec<f64> {
+    rows.source
+        .iter()
+        .map(|&r| {
+            if r % dim == 0 {
+                jump[r]
+            } else {
+                jump[r] - start[r]
+            }
+        })
+        .collect()
+}
+
+/// |e| over all points.
+pub(crate) fn natural_map_norm(
+    friction: &[f64],
+    rows: &RowSet,
+    rho: f64,
+    p: &[f64],
+    v: &[f64],
+) -> f64 {
+    (0..rows.points())
+        .map(|i| natural_map_squared(friction[i], rho, &p[rows.of(i)], &v[rows.of(i)]))
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// |q| without what rigid motions and pins contribute: |(I − Q Qᵀ)(q + W Q c)|, where Q c are the contact forces of
+/// least norm that balance the load.
+pub(crate) fn free_jump(condensed: &Condensed, q: &[f64], balance: &[f64]) -> f64 {
+    if balance.is_empty() {
+        return norm(q);
+    }
+    let mut least = vec![0.0; q.len()];
+    condensed.modes.add(balance, &mut least);
+    let mut free = q.to_vec();
+    mul_add(&condensed.w, &least, &mut free);
+    condensed.modes.project_out(&mut free);
+    norm(&free)
+}
+
+/// P_ref = max(ρ |q|, |P|).
+pub(crate) fn reference_force(condensed: &Condensed, p: &[f64], free_jump: f64) -> f64 {
+    (condensed.rho * free_jump).max(norm(p))
+}
+
+fn equilibrium(i: &Increment<'_>, s: &ContactState) -> f64 {
+    let n = s.u.len();
+    let (mut ku, mut contact) = (vec![0.0; n], vec![0.0; n]);
+    i.system.elastic().stiffness().mul(&s.u, &mut ku);
+    i.system
+        .elastic()
+        .jump()
+        .mul_transpose_add(&s.p, &mut contact);
+    let f = &i.load.force;
+    let residual: Vec<f64> = (0..n).map(|j| ku[j] - f[j] - contact[j]).collect();
+    ratio(norm(&residual), norm(f) + norm(&contact) + norm(&ku))
+}

@@ -1,0 +1,67 @@
+//! Non-monotone acceptance of Newton steps (Grippo, Lampariello & Lucidi 1986).
+
+use std::collections::VecDeque;
+
+/// A step may raise the merit as long as it stays below the largest of this many values before it.
+const MEMORY: usize = 5;
+/// Sufficient decrease asked of a shortened step (Armijo).
+const DECREASE: f64 = 1e-4;
+/// Halvings before the full step is taken after all: at a kink no short step may descend, and full steps leave it.
+const HALVINGS: usize = 8;
+
+/// Merits of the last accepted iterates.
+#[derive(Debug, Default)]
+pub(crate) struct LineSearch {
+    recent: VecDeque<f64>,
+}
+
+impl LineSearch {
+    /// Notes the merit of the current iterate.
+    pub fn record(&mut self, merit: f64) {
+        if self.recent.len() == MEMORY {
+            self.recent.pop_front();
+        }
+        self.recent.push_back(merit);
+    }
+
+    /// Length of the step to take; `merit(t)` evaluates a trial. The full step is tried first, and shortened only if
+    /// it raises the merit above all recent ones.
+    pub fn length(&self, mut merit: impl FnMut(f64) -> f64) -> f64 {
+        let bound = self.recent.iter().copied().fold(0.0, f64::max);
+        let mut t = 1.0;
+        if merit(t) <= bound {
+            return t;
+        }
+        for _ in 0..HALVINGS {
+            t *= 0.5;
+            if merit(t) <= (1.0 - 2.0 * DECREASE * t) * bound {
+                return t;
+            }
+        }
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_shortened_only_after_a_rise_above_all_recent_merits() {
+        let mut search = LineSearch::default();
+        [4.0, 1.0].iter().for_each(|m| search.record(*m));
+        assert_eq!(
+            search.length(|_| 3.0),
+            1.0,
+            "a rise below the largest recent merit is accepted"
+        );
+        assert_eq!(
+            search.length(|t| 16.0 * t * t),
+            0.25,
+            "first sufficient decrease"
+        );
+        assert_eq!(search.length(|_| 9.0), 1.0, "no descent at all: full step");
+        [1.0; 4].iter().for_each(|m| search.record(*m));
+        assert_eq!(search.length(|t| 3.0 * t), 0.25, "old merits are forgotten");
+    }
+}

@@ -1,0 +1,157 @@
+//! The Delassus operator W = B K⁻¹ Bᵀ from the trailing block of the factor.
+//!
+//! With D K D = L Lᵀ and the contact unknowns C eliminated last,
+//! ```text
+//! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
+//! ```
+//! Row i of B touches few unknowns, so column i of Y is zero above the first of them. Columns are therefore sorted by
+//! their first non-zero and both the triangular solve and the product skip the leading zeros.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, Par};
+
+use super::super::error::MethodError;
+use super::super::matrix::JumpOperator;
+use super::factor::Factor;
+
+/// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
+pub const MAX_CONDENSED_ROWS: usize = 12_000;
+/// Columns handled together: wide enough for fast products, narrow enough to skip zeros.
+const PANEL: usize = 128;
+
+/// W for the listed rows of B, full (both triangles), exactly symmetric.
+pub(crate) fn condense(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+) -> Result<Mat<f64>, MethodError> {
+    let m = rows.len();
+    if m > MAX_CONDENSED_ROWS {
+        return Err(MethodError::TooManyRows {
+            rows: m,
+            limit: MAX_CONDENSED_ROWS,
+        });
+    }
+    let (mut y, first, sorted) = right_hand_sides(factor, jump, rows);
+    forward_solve(factor, &mut y, &first)?;
+
+    // Wₛ = Yᵀ Y in sorted numbering, lower block triangle.
+    let mut w = Mat::<f64>::zeros(m, m);
+    let c = y.nrows();
+    for begin in (0..m).step_by(PANEL) {
+        let end = (begin + PANEL).min(m);
+        let top = first[begin].min(c);
+        matmul(
+            w.as_mut().submatrix_mut(begin, 0, end - begin, end),
+            Accum::Replace,
+            y.as_ref()
+                .submatrix(top, begin, c - top, end - begin)
+                .transpose(),
+            y.as_ref().submatrix(top, 0, c - top, end),
+            1.0,
+            Par::Seq,
+        );
+    }
+    // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
+    let mut position = vec![0; m];
+    for (s, &i) in sorted.iter().enumerate() {
+        position[i] = s;
+    }
+    Ok(Mat::from_fn(m, m, |i, j| {
+        let (a, b) = (position[i], position[j]);
+        w[(a.max(b), a.min(b))]
+    }))
+}
+
+/// (D B_c)ᵀ with columns sorted by first non-zero: matrix, first non-zero of each column, original column.
+fn right_hand_sides(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+) -> (Mat<f64>, Vec<usize>, Vec<usize>) {
+    let begin = factor.ordering.contact_begin;
+    let c = factor.scale.len() - begin;
+    let mut pinned = vec![false; factor.scale.len()];
+    for &pin in &factor.pins {
+        pinned[pin] = true;
+    }
+    // Pinned unknowns do not move, so they carry no part of the jump.
+    let entries = |i: usize| jump.row(i).filter(|&(j, b)| b != 0.0 && !pinned[j]);
+    let first_of = |i: usize| {
+        entries(i)
+            .map(|(j, _)| factor.ordering.inverse[j] - begin)
+            .min()
+            .unwrap_or(c)
+    };
+
+    let starts: Vec<usize> = rows.iter().map(|&i| first_of(i)).collect();
+    let mut sorted: Vec<usize> = (0..rows.len()).collect();
+    sorted.sort_by_key(|&k| (starts[k], k));
+    let first = sorted.iter().map(|&k| starts[k]).collect();
+    let mut y = Mat::<f64>::zeros(c, rows.len());
+    for (column, &k) in sorted.iter().enumerate() {
+        for (j, b) in entries(rows[k]) {
+            y[(factor.ordering.inverse[j] - begin, column)] += b * factor.scale[j];
+        }
+    }
+    (y, first, sorted)
+}
+
+/// y <- L_cc⁻¹ y, supernode by supernode, in panels; column j is zero above `first[j]` (increasing in j).
+fn forward_solve(factor: &Factor, y: &mut Mat<f64>, first: &[usize]) -> Result<(), MethodError> {
+    let l = factor.supernodes()?;
+    let begin = factor.ordering.contact_begin;
+    for s in 0..factor.supernode_count() {
+        let node = l.supernode(s);
+        let (block, start) = (node.val(), node.start());
+        let own = block.ncols();
+        // A supernode may straddle the boundary: its leading columns belong to eliminated unknowns.
+        let mut a = begin.saturating_sub(start);
+        while a < own {
+            let b = (a + PANEL).min(own);
+            let row = start + a - begin;
+            let columns = first.partition_point(|&f| f < row + (b - a));
+            if columns > 0 {
+                let (top, rest) = y
+                    .as_mut()
+                    .subcols_mut(0, columns)
+                    .split_at_row_mut(row + (b - a));
+                let mut top = top.subrows_mut(row, b - a);
+                solve_lower_triangular_in_place(
+                    block.submatrix(a, a, b - a, b - a),
+                    top.as_mut(),
+                    Par::Seq,
+                );
+                let (mut below, mut far) = rest.split_at_row_mut(own - b);
+                matmul(
+                    below.as_mut(),
+                    Accum::Add,
+                    block.submatrix(b, a, own - b, b - a),
+                    top.as_ref(),
+                    -1.0,
+                    Par::Seq,
+                );
+                let pattern = node.pattern();
+                if !pattern.is_empty() {
+                    let mut update = Mat::<f64>::zeros(pattern.len(), columns);
+                    matmul(
+                        update.as_mut(),
+                        Accum::Replace,
+                        block.submatrix(own, a, pattern.len(), b - a),
+                        top.as_ref(),
+                        1.0,
+                        Par::Seq,
+                    );
+                    for j in 0..columns {
+                        for (k, &i) in pattern.iter().enumerate() {
+                            far[(i - (start + own), j)] -= update[(k, j)];
+                        }
+                    }
+                }
+            }
+            a = b;
+        }
+    }
+    Ok(())
+}

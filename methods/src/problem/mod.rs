@@ -1,0 +1,29 @@
+//! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
+
+pub(crate) mod condensed;
+mod elastic;
+mod error;
+mod judge;
+pub mod law;
+pub(crate) mod line_search;
+pub(crate) mod linear;
+mod matrix;
+mod options;
+mod point_status;
+pub(crate) mod penalised;
+pub(crate) mod reduced;
+pub(crate) mod stages;
+mod state;
+mod system;
+mod tier;
+
+pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use error::MethodError;
+pub use judge::{Residuals, residuals};
+pub use linear::delassus::MAX_CONDENSED_ROWS;
+pub use matrix::{JumpOperator, SymmetricMatrix};
+pub use point_status::{PointStatus, point_status};
+pub use options::{OptionError, OptionSpec, Options};
+pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
+pub use system::{ContactSystem, Increment, Load};
+pub use tier::{Tier, UnknownTier};

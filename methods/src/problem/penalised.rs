@@ -1,0 +1,272 @@
+//! Penalised contact equations and their Newton solver, shared by the penalty and augmented Lagrangian methods.
+//! ```text
+//! P = Π(A − k v),  v = q + W P + Q β,  Qᵀ P = c
+//! ```
+//! with Π the return mapping of the law, k_n and k_t the penalty stiffnesses and A the anchor: contact forces the
+//! springs start from (penalty: A = (0, P_t at the start of the increment); augmented Lagrangian: the multipliers).
+//!
+//! The springs sit in series with the body: in terms of v' = v + (P − A)/k the law is the exact one, P = Π(P − r v')
+//! for *any* r > 0. Newton's method runs on
+//! ```text
+//! F(z, β) = (z − P)/r + v'(P, β) = 0,   P = Π(z)              [m]
+//! ```
+//! with the consistent tangent through Π'(z), non-symmetric where points slip (Simo & Laursen 1992). r = k gives the
+//! textbook iteration z = A − k v. We take r = 1/(W_ii + 1/k): the solution is the same, but for k far above the
+//! stiffness of the body the textbook trial overshoots from slip one way to slip the other and cycles.
+//!
+//! Points with Π'(z) = 0 (open) are eliminated. Full steps first, then the non-monotone line search.
+
+use faer::Mat;
+
+use super::judge::ratio;
+use super::law::{Branch, return_map, return_map_derivative};
+use super::line_search::LineSearch;
+use super::linear::dense::{mul_add, solve_dense};
+use super::reduced::Reduced;
+use super::stages::{Pair, rescue};
+use super::state::{Monitor, Status};
+
+/// Penalty stiffnesses and anchor.
+pub(crate) struct Springs {
+    pub normal: f64,
+    pub tangential: f64,
+    /// A by row.
+    pub anchor: Vec<f64>,
+}
+
+/// Where the Newton iteration stands.
+#[derive(Clone)]
+pub(crate) struct Point {
+    pub z: Vec<f64>,
+    pub beta: Vec<f64>,
+    /// Π(z).
+    pub p: Vec<f64>,
+    pub branches: Vec<Branch>,
+}
+
+impl Springs {
+    /// Compliance 1/k by row.
+    fn compliance(&self, problem: &Reduced<'_>) -> Vec<f64> {
+        problem.by_row(1.0 / self.normal, 1.0 / self.tangential)
+    }
+
+    /// r by row.
+    fn scales(&self, problem: &Reduced<'_>) -> Vec<f64> {
+        problem.scales(&self.compliance(problem))
+    }
+
+    /// The trial z = P − r v' for given contact forces and rigid amplitudes.
+    pub fn predict(&self, problem: &Reduced<'_>, p: &[f64], beta: Vec<f64>) -> Point {
+        let (r, c) = (self.scales(problem), self.compliance(problem));
+        let v = problem.jump(p, &beta);
+        let z = (0..p.len())
+            .map(|k| p[k] - r[k] * (v[k] + c[k] * (p[k] - self.anchor[k])))
+            .collect();
+        Point::new(problem, z, beta)
+    }
+
+    /// F by row [m].
+    fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], c: &[f64], at: &Point) -> Vec<f64> {
+        let mut f = problem.jump(&at.p, &at.beta);
+        for k in 0..f.len() {
+            f[k] += (at.z[k] - at.p[k]) / r[k] + c[k] * (at.p[k] - self.anchor[k]);
+        }
+        f
+    }
+
+    /// Newton's method from `at` until the residual is at most `stop`. The residual is F and the missing balance on
+    /// the scale of the natural map. `report(residual, changes)` is called for every iterate and may stop.
+    pub fn solve(
+        &self,
+        problem: &mut Reduced<'_>,
+        mut at: Point,
+        stop: f64,
+        max_iterations: usize,
+        mut report: impl FnMut(&mut Reduced<'_>, f64, usize) -> bool,
+    ) -> (Status, Point) {
+        let (r, c) = (self.scales(problem), self.compliance(problem));
+        let mut search = LineSearch::default();
+        let mut before = at.branches.clone();
+        for iteration in 0.. {
+            let mismatch = self.mismatch(problem, &r, &c, &at);
+            let residual = residual(problem, &at, &mismatch);
+            let changes = at
+                .branches
+                .iter()
+                .zip(&before)
+                .filter(|(a, b)| a != b)
+                .count();
+            problem.counters.local_solves += problem.rows.points();
+            if !residual.is_finite() {
+                return (Status::Diverged, at);
+            }
+            let go_on = report(problem, residual, changes);
+            if residual <= stop {
+                return (Status::Converged, at);
+            }
+            if !go_on {
+                return (Status::Stopped, at);
+            }
+            if iteration == max_iterations {
+                break;
+            }
+            problem.counters.factorisations += 1;
+            let Some((dz, dbeta)) = direction(problem, &r, &c, &at, &mismatch) else {
+                if problem.rescue_left() {
+                    let v = problem.jump(&at.p, &at.beta);
+                    let pair = Pair {
+                        p: at.p.clone(),
+                        v,
+                        beta: at.beta.clone(),
+                    };
+                    if let Some(pair) = rescue(problem, pair) {
+                        at = self.predict(problem, &pair.p, pair.beta);
+                        continue;
+                    }
+                }
+                return (problem.singular(), at);
+            };
+            search.record(merit(problem, &r, &at, &mismatch));
+            let t = search.length(|t| {
+                let trial = at.moved(problem, t, &dz, &dbeta);
+                let mismatch = self.mismatch(problem, &r, &c, &trial);
+                merit(problem, &r, &trial, &mismatch)
+            });
+            before.clone_from(&at.branches);
+            at = at.moved(problem, t, &dz, &dbeta);
+        }
+        (Status::MaxIterations, at)
+    }
+}
+
+/// Mismatch and missing balance on the scale of the natural map.
+fn residual(problem: &Reduced<'_>, at: &Point, mismatch: &[f64]) -> f64 {
+    let rho = problem.condensed.rho;
+    let missing: f64 = problem.missing(&at.p).iter().map(|c| c * c).sum();
+    let square: f64 = mismatch.iter().map(|f| (rho * f).powi(2)).sum();
+    ratio((square + missing).sqrt(), problem.reference_force(&at.p))
+}
+
+/// Σ r F² plus the missing balance, an energy.
+fn merit(problem: &Reduced<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 {
+    let missing: f64 = problem
+        .missing(&at.p)
+        .iter()
+        .map(|c| c * c / problem.condensed.rho)
+        .sum();
+    missing + mismatch.iter().zip(r).map(|(f, r)| r * f * f).sum::<f64>()
+}
+
+/// Newton step (δz, δβ); `None` if the tangent is singular.
+///
+/// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + 1/k − 1/r) S y + Q δβ = −F.
+fn direction(
+    problem: &Reduced<'_>,
+    r: &[f64],
+    c: &[f64],
+    at: &Point,
+    mismatch: &[f64],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (w, modes, rho) = (
+        &problem.condensed.w,
+        &problem.condensed.modes,
+        problem.condensed.rho,
+    );
+    // Active rows with the first row of their point, and the rows of S within the point.
+    let mut active: Vec<(usize, usize)> = Vec::new();
+    let mut slope = vec![[0.0; 3]; problem.len()];
+    for i in (0..problem.rows.points()).filter(|&i| at.branches[i] != Branch::Open) {
+        let rows = problem.rows.of(i);
+        let d = return_map_derivative(problem.friction(i), &at.z[rows.clone()], at.branches[i]);
+        for k in rows.clone() {
+            active.push((k, rows.start));
+            for l in rows.clone() {
+                slope[k][l - rows.start] = d[k - rows.start][l - rows.start] * r[l];
+            }
+        }
+    }
+
+    let (n, size) = (active.len(), active.len() + problem.modes());
+    let mut tangent = Mat::<f64>::zeros(size, size);
+    let mut rhs = vec![0.0; size];
+    for (b, &(k, start)) in active.iter().enumerate() {
+        let column = tangent.col_as_slice_mut(b);
+        column[b] += 1.0;
+        for l in start..start + problem.rows_at(start) {
+            let s = slope[l][k - start];
+            if s != 0.0 {
+                let w = w.col_as_slice(l);
+                for (entry, &(a, _)) in column[..n].iter_mut().zip(&active) {
+                    *entry += w[a] * s;
+                }
+                // Rows of one point follow each other, so row l of this point is active row b − k + l.
+                column[b + l - k] += (c[l] - 1.0 / r[l]) * s;
+                for (entry, q) in column[n..].iter_mut().zip(&modes.q) {
+                    *entry += q[l] * s / rho;
+                }
+            }
+        }
+        rhs[b] = -mismatch[k];
+        for (j, q) in modes.q.iter().enumerate() {
+            tangent[(b, n + j)] = q[k];
+        }
+    }
+    for (j, missing) in problem.missing(&at.p).iter().enumerate() {
+        rhs[n + j] = missing / rho;
+    }
+    let solution = solve_dense(&tangent, &rhs)?;
+
+    let mut dp = vec![0.0; problem.len()];
+    for (b, &(k, start)) in active.iter().enumerate() {
+        for l in start..start + problem.rows_at(start) {
+            dp[l] += slope[l][k - start] * solution[b];
+        }
+    }
+    let dbeta = solution[n..].to_vec();
+    // Open rows follow: y = −F − W δP − Q δβ.
+    let mut dv = vec![0.0; problem.len()];
+    mul_add(w, &dp, &mut dv);
+    modes.add(&dbeta, &mut dv);
+    let mut y: Vec<f64> = mismatch.iter().zip(&dv).map(|(f, dv)| -f - dv).collect();
+    for (b, &(k, _)) in active.iter().enumerate() {
+        y[k] = solution[b];
+    }
+    let dz = y.iter().zip(r).map(|(y, r)| y * r).collect();
+    Some((dz, dbeta))
+}
+
+impl Point {
+    fn new(problem: &Reduced<'_>, z: Vec<f64>, beta: Vec<f64>) -> Self {
+        let mut p = z.clone();
+        let branches = (0..problem.rows.points())
+            .map(|i| return_map(problem.friction(i), &mut p[problem.rows.of(i)]))
+            .collect();
+        Self {
+            z,
+            beta,
+            p,
+            branches,
+        }
+    }
+
+    fn moved(&self, problem: &Reduced<'_>, t: f64, dz: &[f64], dbeta: &[f64]) -> Self {
+        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
+        Self::new(problem, add(&self.z, dz), add(&self.beta, dbeta))
+    }
+}
+
+/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`].
+pub(crate) fn recorded<'m>(
+    monitor: &'m mut dyn Monitor,
+) -> impl FnMut(&mut Reduced<'_>, f64, usize) -> bool + 'm {
+    let mut iteration = 0;
+    move |problem, residual, changes| {
+        problem.history.push(super::state::Iteration {
+            natural_map: residual,
+            changes,
+        });
+        problem.counters.iterations = iteration;
+        iteration += 1;
+        monitor.step(iteration - 1, residual)
+    }
+}

@@ -1,0 +1,353 @@
+//! The command line: verbs, arguments, what is printed.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use stickslip_methods::{METHODS, Method, OptionError, Tier};
+
+use crate::harness::body::Body;
+use crate::harness::case::{self, Case};
+use crate::harness::record::Results;
+use crate::harness::run::{Choice, Progress, RunError, Settings, choices, run_case};
+use crate::harness::shipped;
+use crate::paper::{self, PaperError};
+use crate::report::{Provenance, ReportError, prepare_output, standard};
+
+/// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
+#[derive(Debug, Parser)]
+#[command(version, about, after_help = "Exit codes: 0 all runs as expected, 1 a run or an expected number failed, 2 bad input or files.")]
+pub struct Cli {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Reproduce the founding paper's tables and run every shipped case (also without any verb)
+    Paper {
+        /// Folder for the report
+        #[arg(long, default_value = "reports")]
+        out: PathBuf,
+        /// Runs at the same time; times are recorded for 1 only
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        jobs: u16,
+    },
+    /// Run cases: files, or names of shipped cases
+    Run {
+        /// Case files or names
+        #[arg(required = true)]
+        cases: Vec<String>,
+        /// Method with options, NAME or NAME:key=value,key=value; may be repeated
+        #[arg(long, short)]
+        method: Vec<String>,
+        /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9); the case's own by default
+        #[arg(long)]
+        tier: Option<Tier>,
+        /// Folder for the results
+        #[arg(long, default_value = "results")]
+        out: PathBuf,
+        /// Runs at the same time; times are recorded for 1 only
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        jobs: u16,
+    },
+    /// List the methods and the shipped cases
+    List,
+    /// Describe a method or a case
+    Show {
+        /// Method or case
+        name: String,
+    },
+    /// Check case files without running them
+    Check {
+        /// Case files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+}
+
+/// Why a command ended with exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// A run could not start.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The main job.
+    #[error(transparent)]
+    Paper(#[from] PaperError),
+    /// Files.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A name nobody knows.
+    #[error("unknown {what} `{name}`, known: {known}")]
+    Unknown {
+        /// Method or case.
+        what: &'static str,
+        /// As given.
+        name: String,
+        /// The choices.
+        known: String,
+    },
+    /// A method option.
+    #[error("--method {argument}: {source}")]
+    Option {
+        /// As given.
+        argument: String,
+        /// What is wrong.
+        source: OptionError,
+    },
+    /// An option that is no `key=value`.
+    #[error("--method {argument}: `{part}` is not key=value with a number")]
+    Syntax {
+        /// As given.
+        argument: String,
+        /// The part in question.
+        part: String,
+    },
+}
+
+impl From<case::CaseError> for CliError {
+    fn from(error: case::CaseError) -> Self {
+        CliError::Run(error.into())
+    }
+}
+
+/// Runs the command; true if everything was as expected (exit code 0), false otherwise (exit code 1).
+pub fn main(cli: Cli) -> Result<bool, CliError> {
+    let default = Verb::Paper {
+        out: "reports".into(),
+        jobs: 1,
+    };
+    match cli.verb.unwrap_or(default) {
+        Verb::Paper { out, jobs } => paper_verb(&out, usize::from(jobs)),
+        Verb::Run {
+            cases,
+            method,
+            tier,
+            out,
+            jobs,
+        } => {
+            let settings = Settings {
+                tier,
+                jobs: usize::from(jobs),
+            };
+            run_verb(&cases, &method, settings, &out)
+        }
+        Verb::List => {
+            print!("{}", list_text());
+            Ok(true)
+        }
+        Verb::Show { name } => {
+            print!("{}", show_text(&name)?);
+            Ok(true)
+        }
+        Verb::Check { files } => check_verb(&files),
+    }
+}
+
+fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
+    prepare_output(out)?;
+    let settings = Settings { tier: None, jobs };
+    let bar = Bar::new();
+    let paper = paper::run(settings, &bar)?;
+    bar.finish();
+    paper.write(out, &provenance(settings))?;
+    println!("{}", paper.text()?);
+    println!("Report: {}", out.display());
+    print_missed(&paper.results);
+    Ok(paper::as_expected(&paper.results))
+}
+
+fn run_verb(names: &[String], methods: &[String], settings: Settings, out: &Path) -> Result<bool, CliError> {
+    let cases = names.iter().map(|name| find_case(name)).collect::<Result<Vec<_>, _>>()?;
+    let given = methods.iter().map(|m| parse_choice(m)).collect::<Result<Vec<_>, _>>()?;
+    for case in &cases {
+        choices(case, &given)?;
+    }
+    prepare_output(out)?;
+    let bar = Bar::new();
+    let mut results = Results::default();
+    for case in &cases {
+        results.append(run_case(case, &given, settings, &bar)?);
+    }
+    bar.finish();
+    standard::write(out, &results, &provenance(settings))?;
+    println!("{}", standard::runs_table(&results.runs)?.terminal());
+    if !results.expectations.is_empty() {
+        println!("{}", standard::expectations_table(&results.expectations)?.terminal());
+    }
+    println!("{}\nResults: {}", paper::summary(&results), out.display());
+    Ok(paper::as_expected(&results))
+}
+
+fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
+    for file in files {
+        let case = case::read(file)?;
+        choices(&case, &[])?;
+        for &refine in &case.sweep.refine {
+            let body = Body::new(&case, refine, false).map_err(RunError::from)?;
+            println!(
+                "{}: {}, {} cells, {} unknowns, {} contact points ({})",
+                file.display(),
+                body.label,
+                body.mesh.cell_count(),
+                body.elastic.unknowns(),
+                body.points.len(),
+                body.space
+            );
+        }
+    }
+    Ok(true)
+}
+
+fn provenance(settings: Settings) -> Provenance {
+    let tier = settings.tier.map_or_else(|| "of each case".to_owned(), |t| t.to_string());
+    Provenance::collect(settings.jobs.max(rayon::current_num_threads()))
+        .with_option("jobs", settings.jobs.to_string())
+        .with_option("tier", tier)
+}
+
+/// Expected numbers that were missed, on standard error.
+fn print_missed(results: &Results) {
+    for e in results.expectations.iter().filter(|e| e.verdict != "met") {
+        let k = &e.key;
+        eprintln!(
+            "missed: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
+            k.case, k.mesh, k.method, k.friction, k.increment, e.quantity, e.at, e.component, e.found, e.expected, e.allowed, e.unit
+        );
+    }
+}
+
+/// A case by file, or by the name of a shipped one.
+fn find_case(name: &str) -> Result<Case, CliError> {
+    if !Path::new(name).exists() {
+        if let Some(case) = shipped::find(name) {
+            return Ok(case?);
+        }
+        if !name.ends_with(".toml") {
+            return Err(CliError::Unknown {
+                what: "case",
+                name: name.into(),
+                known: shipped::CASES.iter().map(|c| c.0).collect::<Vec<_>>().join(", "),
+            });
+        }
+    }
+    Ok(case::read(name)?)
+}
+
+fn find_method(name: &str) -> Result<&'static Method, CliError> {
+    stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
+        what: "method",
+        name: name.into(),
+        known: METHODS.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// NAME or NAME:key=value,key=value.
+fn parse_choice(argument: &str) -> Result<Choice, CliError> {
+    let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
+    let method = find_method(name)?;
+    let mut options = Vec::new();
+    for part in list.split(',').filter(|part| !part.is_empty()) {
+        let pair = part.split_once('=');
+        let Some((key, Ok(value))) = pair.map(|(k, v)| (k, v.parse::<f64>())) else {
+            return Err(CliError::Syntax {
+                argument: argument.into(),
+                part: part.into(),
+            });
+        };
+        options.push((key.to_owned(), value));
+    }
+    Choice::new(method, &options).map_err(|source| CliError::Option {
+        argument: argument.into(),
+        source,
+    })
+}
+
+fn list_text() -> String {
+    let mut text = String::from("Methods\n");
+    for method in METHODS {
+        text += &format!("  {:<22} {}\n", method.name, method.summary);
+    }
+    text += "\nCases\n";
+    for (name, _) in shipped::CASES {
+        let title = match shipped::find(name) {
+            Some(Ok(case)) => case.title,
+            _ => "does not parse".into(),
+        };
+        text += &format!("  {name:<32} {title}\n");
+    }
+    text
+}
+
+fn show_text(name: &str) -> Result<String, CliError> {
+    if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
+        return Ok((*text).to_owned());
+    }
+    if Path::new(name).exists() {
+        return Ok(case::read(name)?.source);
+    }
+    let method = find_method(name).map_err(|_| CliError::Unknown {
+        what: "method or case",
+        name: name.into(),
+        known: METHODS
+            .iter()
+            .map(|m| m.name)
+            .chain(shipped::CASES.iter().map(|c| c.0))
+            .collect::<Vec<_>>()
+            .join(", "),
+    })?;
+    let exact = if method.exact {
+        "solves the contact laws themselves"
+    } else {
+        "its parameter is a modelling error"
+    };
+    let mut text = format!(
+        "{} ({})\n  {}\n  {}\n  Reference: {}\n\nOptions\n",
+        method.name, method.label, method.summary, exact, method.reference
+    );
+    for option in method.options {
+        text += &format!(
+            "  {:<20} default {}, {}, unit {}\n  {:<20} {}\n",
+            option.name,
+            option.default,
+            option.allowed(),
+            option.unit,
+            "",
+            option.help
+        );
+    }
+    Ok(text)
+}
+
+/// A progress bar on a terminal, nothing in a pipe.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Bar(ProgressBar::hidden());
+        }
+        let bar = ProgressBar::new(0);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}") {
+            bar.set_style(style);
+        }
+        Bar(bar)
+    }
+
+    fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn plan(&self, runs: usize) {
+        self.0.inc_length(runs as u64);
+    }
+
+    fn done(&self, label: &str) {
+        self.0.set_message(label.to_owned());
+        self.0.inc(1);
+    }
+}

@@ -1,0 +1,270 @@
+//! Isotropic linear elasticity through gradient Gram matrices.
+//!
+//! For scalar functions φ_k with vector unknowns, the stiffness needs only the Gram matrix of their gradients:
+//!
+//! ```text
+//!   σ = λ tr ε I + 2 μ ε                     G[(k,a),(l,b)] = ∫ ∂_a φ_k ∂_b φ_l
+//!   K[(k,a),(l,b)] = λ G[(k,a),(l,b)] + μ G[(k,b),(l,a)] + μ δ_ab Σ_c G[(k,c),(l,c)]
+//! ```
+//!
+//! So quadrature accumulates rank-one updates w g gᵀ, and the material enters once per cell. Standard, Heaviside and
+//! branch functions are all scalar functions here.
+
+use super::Point;
+use super::cell::CellKind;
+use super::quadrature::gauss_cell;
+use crate::harness::case::{Material, Model};
+
+/// Lamé constants of the model [Pa].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lame {
+    /// λ; in plane stress the effective 2λμ/(λ + 2μ).
+    pub lambda: f64,
+    /// μ, the shear modulus.
+    pub mu: f64,
+    /// σ_zz = λ_z (ε_xx + ε_yy): λ in plane strain, 0 in plane stress, unused in 3D.
+    pub lambda_z: f64,
+}
+
+impl Lame {
+    /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)).
+    pub fn new(material: Material, model: Model) -> Self {
+        let Material { young, poisson } = material;
+        let mu = young / (2.0 * (1.0 + poisson));
+        let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        match model {
+            Model::PlaneStress => Lame {
+                lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu),
+                mu,
+                lambda_z: 0.0,
+            },
+            Model::PlaneStrain | Model::Solid => Lame {
+                lambda,
+                mu,
+                lambda_z: lambda,
+            },
+        }
+    }
+
+    /// Von Mises stress [Pa] from the displacement gradient h[a][b] = ∂u_a/∂x_b.
+    pub fn von_mises(&self, h: &[Point; 3], dim: usize) -> f64 {
+        let trace: f64 = (0..dim).map(|a| h[a][a]).sum();
+        let mut s = [[0.0; 3]; 3];
+        for a in 0..dim {
+            for b in 0..dim {
+                s[a][b] = self.mu * (h[a][b] + h[b][a]);
+            }
+            s[a][a] += self.lambda * trace;
+        }
+        if dim == 2 {
+            s[2][2] = self.lambda_z * trace;
+        }
+        let [x, y, z] = [s[0][0], s[1][1], s[2][2]];
+        let shear = s[0][1] * s[0][1] + s[1][2] * s[1][2] + s[0][2] * s[0][2];
+        (0.5 * ((x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2)) + 3.0 * shear).sqrt()
+    }
+}
+
+/// Gram matrix of gradients, dense symmetric, rows (k, a) with a fastest.
+#[derive(Debug, Clone)]
+pub struct Gram {
+    size: usize,
+    dim: usize,
+    /// Lower triangle by rows.
+    values: Vec<f64>,
+}
+
+impl Gram {
+    /// Zero matrix for a number of scalar functions.
+    pub fn zero(functions: usize, dim: usize) -> Self {
+        let size = functions * dim;
+        Gram {
+            size,
+            dim,
+            values: vec![0.0; size * (size + 1) / 2],
+        }
+    }
+
+    /// G += w g gᵀ; `g` holds the gradients of all functions, `dim` entries each.
+    pub fn add(&mut self, weight: f64, g: &[f64]) {
+        let mut row = self.values.as_mut_slice();
+        for i in 0..self.size {
+            let (this, rest) = row.split_at_mut(i + 1);
+            let f = weight * g[i];
+            for (value, &gj) in this.iter_mut().zip(g) {
+                *value += f * gj;
+            }
+            row = rest;
+        }
+    }
+
+    fn at(&self, i: usize, j: usize) -> f64 {
+        let (i, j) = if i >= j { (i, j) } else { (j, i) };
+        self.values[i * (i + 1) / 2 + j]
+    }
+
+    /// Stiffness matrix of the functions, symmetric, full storage row by row, N/m.
+    pub fn stiffness(&self, lame: Lame) -> CellMatrix {
+        let Lame { lambda, mu, .. } = lame;
+        let dim = self.dim;
+        let mut k = CellMatrix::zero(self.size);
+        for i in 0..self.size / dim {
+            for j in 0..=i {
+                let laplace: f64 = (0..dim).map(|c| self.at(i * dim + c, j * dim + c)).sum();
+                for a in 0..dim {
+                    for b in 0..dim {
+                        let direct = self.at(i * dim + a, j * dim + b);
+                        let swapped = self.at(i * dim + b, j * dim + a);
+                        let same = if a == b { mu * laplace } else { 0.0 };
+                        let value = lambda * direct + mu * swapped + same;
+                        k.set(i * dim + a, j * dim + b, value);
+                        k.set(j * dim + b, i * dim + a, value);
+                    }
+                }
+            }
+        }
+        k
+    }
+}
+
+/// Dense square matrix of one cell, row by row [N/m].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellMatrix {
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl CellMatrix {
+    /// Zero matrix.
+    pub fn zero(size: usize) -> Self {
+        CellMatrix {
+            size,
+            values: vec![0.0; size * size],
+        }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Entry (i, j).
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.values[i * self.size + j]
+    }
+
+    /// Sets entry (i, j).
+    pub fn set(&mut self, i: usize, j: usize, value: f64) {
+        self.values[i * self.size + j] = value;
+    }
+
+    /// Adds to entry (i, j).
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        self.values[i * self.size + j] += value;
+    }
+
+    /// a − b, entry by entry.
+    pub fn difference(a: &CellMatrix, b: &CellMatrix) -> CellMatrix {
+        CellMatrix {
+            size: a.size,
+            values: a.values.iter().zip(&b.values).map(|(a, b)| a - b).collect(),
+        }
+    }
+}
+
+/// Stiffness of an uncut cell: 2 Gauss points per direction, exact on affine cells.
+pub fn cell_stiffness(kind: CellKind, corners: &[Point], lame: Lame) -> CellMatrix {
+    let dim = kind.dim();
+    let mut gram = Gram::zero(kind.nodes(), dim);
+    let mut flat = vec![0.0; kind.nodes() * dim];
+    for (xi, w) in gauss_cell(dim, 2) {
+        let (g, det) = kind.gradients(corners, &xi);
+        flatten(&g[..kind.nodes()], dim, &mut flat);
+        gram.add(w * det, &flat);
+    }
+    gram.stiffness(lame)
+}
+
+/// Writes gradients as one vector, `dim` entries each.
+pub fn flatten(gradients: &[Point], dim: usize, flat: &mut [f64]) {
+    for (chunk, g) in flat.chunks_exact_mut(dim).zip(gradients) {
+        chunk.copy_from_slice(&g[..dim]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEEL: Material = Material {
+        young: 210e9,
+        poisson: 0.3,
+    };
+
+    /// K of a unit square, plane stress, against the printed closed form (Cook et al., Concepts and Applications of
+    /// Finite Element Analysis, bilinear square): K_11 = E (3 − ν) / (6 (1 − ν²)) ... (thickness 1, side independent).
+    #[test]
+    fn square_plane_stress_matches_the_closed_form() {
+        let corners = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        let k = cell_stiffness(
+            CellKind::Quad4,
+            &corners,
+            Lame::new(STEEL, Model::PlaneStress),
+        );
+        let (e, nu) = (STEEL.young, STEEL.poisson);
+        let c = e / (1.0 - nu * nu);
+        for (j, exact) in [
+            (0, (3.0 - nu) / 6.0),
+            (1, (1.0 + nu) / 8.0),
+            (2, -(3.0 + nu) / 12.0),
+            (3, (3.0 * nu - 1.0) / 8.0),
+            (4, (nu - 3.0) / 12.0),
+            (5, -(1.0 + nu) / 8.0),
+            (6, nu / 6.0),
+            (7, (1.0 - 3.0 * nu) / 8.0),
+        ] {
+            assert!((k.get(0, j) - c * exact).abs() < 1e-12 * c, "column {j}");
+        }
+    }
+
+    #[test]
+    fn rigid_motions_cost_no_energy_and_stiffness_is_symmetric() {
+        let corners: Vec<Point> = (0..8)
+            .map(|i| {
+                let c = CellKind::Hex8.corner(i);
+                [
+                    c[0] + 0.1 * c[1] * c[2],
+                    c[1] - 0.2 * c[0],
+                    1.3 * c[2] + 0.1 * c[0] * c[1],
+                ]
+            })
+            .collect();
+        let k = cell_stiffness(CellKind::Hex8, &corners, Lame::new(STEEL, Model::Solid));
+        let modes: [fn(&Point) -> Point; 4] = [
+            |_| [1.0, 0.0, 0.0],
+            |_| [0.0, 0.0, 1.0],
+            |x| [-x[1], x[0], 0.0],
+            |x| [0.0, -x[2], x[1]],
+        ];
+        for mode in modes {
+            let u: Vec<f64> = corners.iter().flat_map(mode).collect();
+            for i in 0..24 {
+                let force: f64 = (0..24).map(|j| k.get(i, j) * u[j]).sum();
+                assert!(force.abs() < 1e-13 * k.get(0, 0) * 24.0);
+                for j in 0..24 {
+                    assert_eq!(k.get(i, j), k.get(j, i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn uniaxial_von_mises_is_the_stress_itself() {
+        let lame = Lame::new(STEEL, Model::Solid);
+        let e = 1e-3;
+        let h = [[e, 0.0, 0.0], [0.0, -0.3 * e, 0.0], [0.0, 0.0, -0.3 * e]];
+        assert!((lame.von_mises(&h, 3) / (STEEL.young * e) - 1.0).abs() < 1e-12);
+        let plane_stress = Lame::new(STEEL, Model::PlaneStress);
+        assert!((plane_stress.von_mises(&h, 2) / (STEEL.young * e) - 1.0).abs() < 1e-12);
+    }
+}

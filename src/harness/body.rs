@@ -1,0 +1,494 @@
+//! From a case to the contact system: mesh, cracks, enrichment, unknowns, stiffness, jump operator.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use stickslip_methods::{Elastic, ElasticParts, JumpOperator, Load, MethodError, SymmetricMatrix};
+
+use crate::fem::assembly::{Cells, Scatter};
+use crate::fem::block_matrix::BlockMatrix;
+use crate::fem::box_mesh::box_mesh;
+use crate::fem::elasticity::{CellMatrix, Lame};
+use crate::fem::mesh::Mesh;
+use crate::fem::ordering::nested_dissection;
+use crate::harness::boundary::{LoadError, Prescribed, nodal_forces, prescribed, region_nodes};
+use crate::harness::case::{Case, CaseError, History, LoadKind, Quadrature};
+use crate::xfem::cell_matrix::{CellError, CellIntegrator};
+use crate::xfem::conforming;
+use crate::xfem::crack::Crack;
+use crate::xfem::enrichment::{Enrichment, EnrichmentError};
+use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs};
+use crate::xfem::pieces::{MotionError, free_motions};
+
+/// A discretised case: everything that does not depend on friction, method or increment.
+pub struct Body {
+    /// Mesh, with doubled nodes where a crack runs along cell facets.
+    pub mesh: Mesh,
+    /// Cracks through cells.
+    pub cracks: Vec<Crack>,
+    /// Functions.
+    pub enrichment: Enrichment,
+    /// Quadrature of cut cells.
+    pub quadrature: Quadrature,
+    /// Material.
+    pub lame: Lame,
+    /// Contact points of all cracks, in case order.
+    pub points: Vec<ContactPoint>,
+    /// Facets of the crack surfaces by point numbers.
+    pub facets: Vec<Vec<usize>>,
+    /// Stiffness over all unknowns.
+    pub stiffness: BlockMatrix,
+    /// Number of every unknown among the free ones; `None`: prescribed.
+    pub numbers: Vec<Option<u32>>,
+    /// Prescribed unknowns.
+    pub prescribed: BTreeMap<usize, Prescribed>,
+    /// The algebraic side: K and B over the free unknowns.
+    pub elastic: Arc<Elastic>,
+    /// Mesh label, e.g. `22x22`.
+    pub label: String,
+    /// Contact space with its marks, e.g. `edge-pairs/gauss-6`.
+    pub space: String,
+    /// Seconds for mesh, cutting, pattern and ordering.
+    pub setup_s: f64,
+    /// Seconds for cell matrices and their sum.
+    pub assembly_s: f64,
+    loads: Vec<(Vec<f64>, History)>,
+    support_histories: Vec<History>,
+    end: f64,
+}
+
+/// Why a case cannot be discretised.
+#[derive(Debug, thiserror::Error)]
+pub enum BodyError {
+    /// The case asks for something impossible; carries file, line and column.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A cut cell could not be integrated.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+    /// The algebraic system was refused.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}
+
+/// Cell matrices, shared among cells of one shape.
+struct Matrices<'a> {
+    enrichment: &'a Enrichment,
+    users: &'a [Vec<u32>],
+    distinct: Vec<CellMatrix>,
+    of_cell: Vec<u32>,
+}
+
+impl Cells for Matrices<'_> {
+    fn functions(&self, cell: usize) -> &[u32] {
+        self.enrichment.cell(cell)
+    }
+    fn users(&self, function: usize) -> &[u32] {
+        &self.users[function]
+    }
+    fn matrix(&self, cell: usize) -> &CellMatrix {
+        &self.distinct[self.of_cell[cell] as usize]
+    }
+}
+
+impl Body {
+    /// Discretises a case on its mesh refined by a factor; `frictionless` if no run on it will have friction.
+    pub fn new(case: &Case, refine: usize, frictionless: bool) -> Result<Self, BodyError> {
+        let clock = Instant::now();
+        let spec = case.mesh.refined(refine);
+        let cells: Vec<String> = spec
+            .lines
+            .iter()
+            .map(|l| (l.len() - 1).to_string())
+            .collect();
+        let label = cells.join("x");
+        let mut mesh = box_mesh(&spec).map_err(|fold| {
+            let follow = spec.follow.as_ref().map_or(&case.mesh.span, |f| &f.span);
+            case.error(
+                follow,
+                &label,
+                "an angle and length that keep all cells convex",
+                fold,
+            )
+        })?;
+        let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
+        let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
+        let lame = Lame::new(case.material, case.model);
+        let integrator = CellIntegrator {
+            mesh: &mesh,
+            cracks: &cracks,
+            enrichment: &enrichment,
+            quadrature: case.quadrature,
+            lame,
+        };
+        let fixed = prescribed(case, &integrator);
+        check_supports(case, &integrator)?;
+        let dim = mesh.dim();
+        let mut free = 0;
+        let numbers: Vec<Option<u32>> = (0..enrichment.functions.len() * dim)
+            .map(|i| {
+                (!fixed.contains_key(&i)).then(|| {
+                    free += 1;
+                    free - 1
+                })
+            })
+            .collect();
+        let conforming = !doubled.is_empty();
+        let mut surface = ContactSurface::default();
+        for number in 0..case.cracks.len() {
+            match cracks.iter().position(|c| c.number == number) {
+                Some(index) => surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment)),
+                None => surface.append(doubled.remove(&number).unwrap_or_default()),
+            }
+        }
+        // A pair whose normal jump is prescribed has no contact left to enforce.
+        surface.retain(|point| {
+            point.terms.iter().any(|&(f, c)| {
+                (0..dim).any(|a| {
+                    numbers[f as usize * dim + a].is_some() && (c * point.frame[0][a]).abs() > 1e-12
+                })
+            })
+        });
+        let ContactSurface { points, facets } = surface;
+        for number in 0..case.cracks.len() {
+            if !points.iter().any(|p| p.crack == number) {
+                return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
+            }
+        }
+        let jump = jump_rows(dim, &points);
+        let motions = free_motions(&mesh, &enrichment, &numbers, |mode| {
+            jump.iter()
+                .map(|row| row.iter().map(|&(i, v)| v * mode[i]).sum())
+                .collect()
+        })
+        .map_err(|e| motion_error(case, &e))?;
+        let users = enrichment.users();
+        let mut stiffness = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
+        let order = elimination_order(&mesh, &enrichment, &numbers);
+        let mut matrices = Matrices {
+            enrichment: &enrichment,
+            users: &users,
+            distinct: Vec::new(),
+            of_cell: Vec::new(),
+        };
+        let scatter = Scatter::new(&stiffness, &matrices, mesh.cell_count());
+        let setup_s = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        (matrices.distinct, matrices.of_cell) = cell_matrices(&integrator)?;
+        scatter.assemble(&mut stiffness, &matrices);
+        let assembly_s = clock.elapsed().as_secs_f64();
+
+        let (col_ptr, row_idx, values) = stiffness.restrict(&numbers);
+        let elastic = Elastic::new(ElasticParts {
+            dim,
+            stiffness: SymmetricMatrix::new(free as usize, col_ptr, row_idx, values)?,
+            jump: free_jump(&jump, &numbers, free as usize)?,
+            weight: points.iter().map(|p| p.weight).collect(),
+            order,
+            floating: motions.modes,
+            frictionless,
+        })?;
+        let loads = case
+            .loads
+            .iter()
+            .map(|load| {
+                let force = nodal_forces(&integrator, &load.kind)
+                    .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+                Ok((force, load.history.clone()))
+            })
+            .collect::<Result<_, BodyError>>()?;
+        let space = match (conforming, case.quadrature) {
+            (true, _) => "node-pairs".to_owned(),
+            (false, Quadrature::SubCells) => "edge-pairs".to_owned(),
+            (false, Quadrature::Gauss(n)) => format!("edge-pairs/gauss-{n}"),
+        };
+        Ok(Body {
+            quadrature: case.quadrature,
+            lame,
+            points,
+            facets,
+            stiffness,
+            numbers,
+            prescribed: fixed,
+            elastic,
+            label,
+            space,
+            setup_s,
+            assembly_s,
+            loads,
+            support_histories: case.supports.iter().map(|s| s.history.clone()).collect(),
+            end: case.path.end,
+            mesh,
+            cracks,
+            enrichment,
+        })
+    }
+
+    /// Integrator over the cells.
+    pub fn integrator(&self) -> CellIntegrator<'_> {
+        CellIntegrator {
+            mesh: &self.mesh,
+            cracks: &self.cracks,
+            enrichment: &self.enrichment,
+            quadrature: self.quadrature,
+            lame: self.lame,
+        }
+    }
+
+    /// External forces at time t over all unknowns [N, in 2D N/m].
+    pub fn external_force(&self, t: f64) -> Vec<f64> {
+        let mut force = vec![0.0; self.numbers.len()];
+        for (vector, history) in &self.loads {
+            let factor = history.factor(t, self.end);
+            for (f, v) in force.iter_mut().zip(vector) {
+                *f += factor * v;
+            }
+        }
+        force
+    }
+
+    /// Prescribed part of the displacement at time t over all unknowns, 0 at the free ones [m].
+    fn prescribed_displacement(&self, t: f64) -> Vec<f64> {
+        let mut u = vec![0.0; self.numbers.len()];
+        for (&unknown, fixed) in &self.prescribed {
+            u[unknown] = fixed.amount * self.support_histories[fixed.support].factor(t, self.end);
+        }
+        u
+    }
+
+    /// Right-hand side at time t: f = f_ext − K u_prescribed at the free unknowns, and the jump the prescribed ones carry.
+    pub fn load(&self, t: f64) -> Load {
+        let prescribed = self.prescribed_displacement(t);
+        let held = self.stiffness.mul(&prescribed);
+        let external = self.external_force(t);
+        let free = |i: &usize| self.numbers[*i].is_some();
+        Load {
+            force: (0..self.numbers.len())
+                .filter(free)
+                .map(|i| external[i] - held[i])
+                .collect(),
+            offset: self.jump(&prescribed),
+        }
+    }
+
+    /// All unknowns at time t from the free ones [m].
+    pub fn all_unknowns(&self, t: f64, u: &[f64]) -> Vec<f64> {
+        let mut all = self.prescribed_displacement(t);
+        for (value, number) in all.iter_mut().zip(&self.numbers) {
+            if let Some(n) = number {
+                *value = u[*n as usize];
+            }
+        }
+        all
+    }
+
+    /// Jump at the contact points in local frames (n, a[, b]) from all unknowns [m].
+    pub fn jump(&self, all: &[f64]) -> Vec<f64> {
+        jump_rows(self.mesh.dim(), &self.points)
+            .iter()
+            .map(|row| row.iter().map(|&(i, v)| v * all[i]).sum())
+            .collect()
+    }
+
+    /// Nodes of a region of the case.
+    pub fn region_nodes(&self, region: &crate::harness::case::Region) -> Vec<usize> {
+        region_nodes(&self.integrator(), region)
+    }
+}
+
+/// Cracks through cells, and the surfaces of the others by crack number.
+type PlacedCracks = (Vec<Crack>, BTreeMap<usize, ContactSurface>);
+
+/// Places the cracks: those along cell facets split the mesh, the others keep a level set.
+fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError> {
+    let mut doubled = BTreeMap::new();
+    let mut through = Vec::new();
+    for (number, spec) in case.cracks.iter().enumerate() {
+        let crack = Crack::new(number, spec, mesh);
+        match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
+            Some(surface) => {
+                doubled.insert(number, surface);
+            }
+            None => through.push(number),
+        }
+    }
+    // Level sets belong to the final nodes.
+    let cracks = through
+        .into_iter()
+        .map(|number| Crack::new(number, &case.cracks[number], mesh))
+        .collect();
+    Ok((cracks, doubled))
+}
+
+/// Rows of the jump operator over all unknowns.
+fn jump_rows(dim: usize, points: &[ContactPoint]) -> Vec<Vec<(usize, f64)>> {
+    let mut rows = Vec::with_capacity(points.len() * dim);
+    for point in points {
+        for axis in &point.frame[..dim] {
+            let mut row = Vec::with_capacity(point.terms.len() * dim);
+            for &(f, c) in &point.terms {
+                for (a, component) in axis.iter().enumerate().take(dim) {
+                    if *component != 0.0 {
+                        row.push((f as usize * dim + a, c * component));
+                    }
+                }
+            }
+            row.sort_by_key(|entry| entry.0);
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// The jump operator over the free unknowns.
+fn free_jump(
+    rows: &[Vec<(usize, f64)>],
+    numbers: &[Option<u32>],
+    free: usize,
+) -> Result<JumpOperator, MethodError> {
+    let mut row_ptr = vec![0];
+    let (mut col_idx, mut values) = (Vec::new(), Vec::new());
+    for row in rows {
+        for &(i, v) in row {
+            if let Some(n) = numbers[i] {
+                col_idx.push(n as usize);
+                values.push(v);
+            }
+        }
+        row_ptr.push(col_idx.len());
+    }
+    JumpOperator::new(rows.len(), free, row_ptr, col_idx, values)
+}
+
+/// Nested dissection of the nodes, expanded to their free unknowns.
+fn elimination_order(mesh: &Mesh, enrichment: &Enrichment, numbers: &[Option<u32>]) -> Vec<usize> {
+    let dim = mesh.dim();
+    let mut order = Vec::new();
+    for node in nested_dissection(&mesh.grid) {
+        for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
+            order.extend(
+                (0..dim)
+                    .filter_map(|a| numbers[f * dim + a])
+                    .map(|n| n as usize),
+            );
+        }
+    }
+    order
+}
+
+/// Matrices of all cells: one per shape of plain cell, one per enriched cell.
+fn cell_matrices(
+    integrator: &CellIntegrator<'_>,
+) -> Result<(Vec<CellMatrix>, Vec<u32>), CellError> {
+    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
+    // Coordinates of a body 10⁴ cells wide carry rounding of 1e-12 of a cell.
+    let smallest = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+    let keys: Vec<[i64; 21]> = (0..mesh.cell_count())
+        .into_par_iter()
+        .map(|cell| integrator.shape_key(cell, 1e-10 * smallest))
+        .collect();
+    let mut shapes: HashMap<&[i64; 21], u32> = HashMap::new();
+    let mut first = Vec::new();
+    let shape: Vec<u32> = keys
+        .iter()
+        .enumerate()
+        .map(|(cell, key)| {
+            *shapes.entry(key).or_insert_with(|| {
+                first.push(cell);
+                first.len() as u32 - 1
+            })
+        })
+        .collect();
+    let mut distinct: Vec<CellMatrix> = first
+        .par_iter()
+        .map(|&cell| integrator.plain(cell))
+        .collect();
+    let enriched: Vec<usize> = (0..mesh.cell_count())
+        .filter(|&c| !enrichment.is_plain(mesh, c))
+        .collect();
+    let own: Vec<CellMatrix> = enriched
+        .par_iter()
+        .map(|&cell| integrator.stiffness(cell, &distinct[shape[cell] as usize]))
+        .collect::<Result<_, _>>()?;
+    let mut of_cell = shape;
+    for (position, &cell) in enriched.iter().enumerate() {
+        of_cell[cell] = (distinct.len() + position) as u32;
+    }
+    distinct.extend(own);
+    Ok((distinct, of_cell))
+}
+
+fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {
+    for support in &case.supports {
+        if region_nodes(integrator, &support.on).is_empty() {
+            let found = "no node";
+            return Err(case.error(
+                &support.on.span,
+                found,
+                "a region with at least one node",
+                "the support holds nothing",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
+    let (crack, allowed) = match error {
+        EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
+        EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
+        EnrichmentError::Crossing { second, .. } => (*second, "cracks at least one cell apart"),
+        EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
+        EnrichmentError::ConformingTip { crack } => (
+            *crack,
+            "tip = \"none\", or a mesh whose edges the crack crosses",
+        ),
+    };
+    let spec = &case.cracks[crack];
+    let span = match error {
+        EnrichmentError::ConformingTip { .. } => &spec.tip_span,
+        _ => &spec.geometry_span,
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+fn motion_error(case: &Case, error: &MotionError) -> CaseError {
+    let (span, allowed) = match (error, case.supports.first()) {
+        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
+            &case.cracks[0].geometry_span,
+            "a support on every piece the cracks cut off",
+        ),
+        (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
+        (_, None) => (&case.mesh.span, "at least one [[support]]"),
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+fn load_error(
+    case: &Case,
+    kind: &LoadKind,
+    span: &crate::harness::case::Span,
+    error: LoadError,
+) -> BodyError {
+    match error {
+        LoadError::Cell(e) => e.into(),
+        LoadError::Empty(_) => {
+            let span = match kind {
+                LoadKind::Traction(region, _)
+                | LoadKind::Pressure(region, _)
+                | LoadKind::Line(region, _) => &region.span,
+                LoadKind::Body(_) => span,
+            };
+            case.error(
+                span,
+                case.text(span),
+                "a region with facets or edges to load",
+                error,
+            )
+            .into()
+        }
+    }
+}

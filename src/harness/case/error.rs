@@ -1,0 +1,306 @@
+//! What is wrong with a case file, and where.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::Span;
+
+/// Longest value, key or source line printed, in characters: a megabyte of garbage must not flood a terminal.
+const WIDTH: usize = 80;
+
+/// Depth to which keys are named in messages; the format itself is at most five levels deep.
+const DEPTH: usize = 8;
+
+/// A case file that cannot be used: where, which value, and what would be allowed.
+///
+/// Displays as `file:line:column: key: message: got VALUE, allowed: RANGE`, followed by the source line with the value
+/// underlined. Values and lines are cut to 80 characters.
+#[derive(Debug, Clone, thiserror::Error)]
+pub struct CaseError(Box<Complaint>);
+
+// Boxed: an error type above 128 bytes would make every `Result` of the reader large.
+#[derive(Debug, Clone)]
+struct Complaint {
+    file: PathBuf,
+    line: usize,
+    column: usize,
+    source_line: String,
+    underline: String,
+    key: String,
+    value: String,
+    allowed: String,
+    message: String,
+}
+
+impl CaseError {
+    /// File as given by the caller.
+    pub fn file(&self) -> &Path {
+        &self.0.file
+    }
+
+    /// Line, from 1; 0 where the file could not be read at all.
+    pub fn line(&self) -> usize {
+        self.0.line
+    }
+
+    /// Column in characters, from 1; 0 where the file could not be read at all.
+    pub fn column(&self) -> usize {
+        self.0.column
+    }
+
+    /// Offending line, cut to 80 characters around the value; control characters are replaced.
+    pub fn source_line(&self) -> &str {
+        &self.0.source_line
+    }
+
+    /// Dotted key, e.g. `crack[1].points_m` (array entries counted from 1); empty where no key is meant.
+    pub fn key(&self) -> &str {
+        &self.0.key
+    }
+
+    /// Offending value as written, cut to 80 characters.
+    pub fn value(&self) -> &str {
+        &self.0.value
+    }
+
+    /// Allowed values.
+    pub fn allowed(&self) -> &str {
+        &self.0.allowed
+    }
+
+    /// What is wrong.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// A file that cannot be opened or read: no position, no source line.
+    pub(super) fn unreadable(
+        file: &Path,
+        value: impl fmt::Display,
+        allowed: &str,
+        message: &str,
+    ) -> Self {
+        CaseError(Box::new(Complaint {
+            file: file.to_path_buf(),
+            line: 0,
+            column: 0,
+            source_line: String::new(),
+            underline: String::new(),
+            key: String::new(),
+            value: clip(&value.to_string()),
+            allowed: allowed.to_string(),
+            message: message.to_string(),
+        }))
+    }
+}
+
+impl fmt::Display for CaseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let c = &*self.0;
+        write!(f, "{}:", c.file.display())?;
+        if c.line > 0 {
+            write!(f, "{}:{}:", c.line, c.column)?;
+        }
+        if !c.key.is_empty() {
+            write!(f, " {}:", c.key)?;
+        }
+        write!(f, " {}: got {}, allowed: {}", c.message, c.value, c.allowed)?;
+        if !c.source_line.is_empty() {
+            write!(f, "\n    {}\n    {}", c.source_line, c.underline)?;
+        }
+        Ok(())
+    }
+}
+
+/// The text of a case file, which turns byte ranges into positions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'a> {
+    /// File as given by the caller.
+    pub(super) file: &'a Path,
+    /// Its text.
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    /// Error about the value at `span`; the key is found from the position.
+    pub(super) fn error(
+        &self,
+        span: &Span,
+        value: impl fmt::Display,
+        allowed: impl fmt::Display,
+        message: impl fmt::Display,
+    ) -> CaseError {
+        let start = self.boundary(span.start);
+        let end = self.boundary(span.end).max(start);
+        let before = &self.text[..start];
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        let line_text = self.text[line_start..]
+            .split('\n')
+            .next()
+            .unwrap_or_default()
+            .trim_end_matches('\r');
+        let column = self.text[line_start..start].chars().count() + 1;
+        let marked = self.text[start..end]
+            .split('\n')
+            .next()
+            .unwrap_or_default()
+            .trim_end_matches('\r');
+        let (source_line, underline) = excerpt(line_text, column, marked.chars().count());
+        CaseError(Box::new(Complaint {
+            file: self.file.to_path_buf(),
+            line: before.matches('\n').count() + 1,
+            column,
+            source_line,
+            underline,
+            key: clip(&key_at(self.text, span)),
+            value: clip(&value.to_string()),
+            allowed: clip_to(&allowed.to_string(), 4 * WIDTH),
+            message: clip_to(&message.to_string(), 4 * WIDTH),
+        }))
+    }
+
+    /// Text at `span`, for messages.
+    pub(super) fn slice(&self, span: &Span) -> &str {
+        let start = self.boundary(span.start);
+        &self.text[start..self.boundary(span.end).max(start)]
+    }
+
+    /// Largest character boundary not after `index`.
+    fn boundary(&self, index: usize) -> usize {
+        let mut index = index.min(self.text.len());
+        while !self.text.is_char_boundary(index) {
+            index -= 1;
+        }
+        index
+    }
+}
+
+/// Escapes control characters and cuts to one printable line.
+pub(super) fn clip(text: &str) -> String {
+    clip_to(text, WIDTH)
+}
+
+fn clip_to(text: &str, width: usize) -> String {
+    let mut out = String::new();
+    for (count, c) in text.chars().enumerate() {
+        if count == width {
+            out.push('…');
+            break;
+        }
+        if c.is_control() {
+            out.extend(c.escape_default())
+        } else {
+            out.push(c)
+        }
+    }
+    out
+}
+
+/// The part of a line around a column, and the carets under it.
+fn excerpt(line: &str, column: usize, length: usize) -> (String, String) {
+    let total = line.chars().count();
+    // A third of the width is left for what precedes the value.
+    let first = if total <= WIDTH {
+        0
+    } else {
+        (column - 1).saturating_sub(WIDTH / 3)
+    };
+    let mut shown: String = line
+        .chars()
+        .skip(first)
+        .take(WIDTH)
+        .map(printable)
+        .collect();
+    let mut offset = column - 1 - first;
+    let carets = length.clamp(1, shown.chars().count().saturating_sub(offset).max(1));
+    if first > 0 {
+        shown.insert(0, '…');
+        offset += 1;
+    }
+    if total > first + WIDTH {
+        shown.push('…');
+    }
+    (
+        shown,
+        format!("{}{}", " ".repeat(offset), "^".repeat(carets)),
+    )
+}
+
+fn printable(c: char) -> char {
+    match c {
+        '\t' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    }
+}
+
+/// Dotted name of the innermost key whose name or value covers `span`; empty in text that is not TOML.
+fn key_at(text: &str, span: &Span) -> String {
+    let Ok(root) = DeTable::parse(text) else {
+        return String::new();
+    };
+    let mut found = Found {
+        size: usize::MAX,
+        name: String::new(),
+    };
+    for (key, value) in root.get_ref() {
+        search(key.get_ref(), &key.span(), value, span, 1, &mut found);
+    }
+    found.name
+}
+
+struct Found {
+    size: usize,
+    name: String,
+}
+
+fn search(
+    name: &str,
+    key: &Span,
+    value: &Spanned<DeValue<'_>>,
+    span: &Span,
+    depth: usize,
+    found: &mut Found,
+) {
+    for place in [key, &value.span()] {
+        if place.start <= span.start && span.end <= place.end && place.len() <= found.size {
+            *found = Found {
+                size: place.len(),
+                name: name.to_string(),
+            };
+        }
+    }
+    if depth == DEPTH {
+        return;
+    }
+    match value.get_ref() {
+        DeValue::Table(table) => {
+            for (key, value) in table {
+                search(
+                    &format!("{name}.{}", key.get_ref()),
+                    &key.span(),
+                    value,
+                    span,
+                    depth + 1,
+                    found,
+                );
+            }
+        }
+        DeValue::Array(array) => {
+            for (i, value) in array.iter().enumerate() {
+                search(
+                    &format!("{name}[{}]", i + 1),
+                    &value.span(),
+                    value,
+                    span,
+                    depth + 1,
+                    found,
+                );
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,169 @@
+//! `[[probe]]` and `[[expect]]` of a case file, checked against what the case runs.
+
+use super::error::CaseError;
+use super::mesh::MAX_REFINE;
+use super::reader::Value;
+use super::schema::{friction, side_names};
+use super::{Expect, ExpectKind, PathSpec, ProbeSpec, Sweep, Tolerance};
+
+const NO_RUN: &str = "no run of this case has this value";
+
+/// What the runs of a case offer to an expectation; one that no run can meet would never be tested.
+pub(super) struct Runs {
+    frictions: Vec<f64>,
+    refine: Vec<usize>,
+    increments: usize,
+    places: Vec<String>,
+}
+
+impl Runs {
+    /// `cracks` holds the friction coefficient of each crack.
+    pub(super) fn new(dim: usize, cracks: &[f64], sweep: &Sweep, path: &PathSpec) -> Self {
+        let sides = side_names(dim).into_iter().map(str::to_string);
+        let frictions = if sweep.friction.is_empty() {
+            cracks
+        } else {
+            &sweep.friction
+        };
+        Runs {
+            frictions: frictions.to_vec(),
+            refine: sweep.refine.clone(),
+            increments: path.increments,
+            places: sides
+                .chain((1..=cracks.len()).map(|i| format!("crack-{i}")))
+                .collect(),
+        }
+    }
+
+    /// `[[probe]]`; its name joins the places.
+    pub(super) fn probe(&mut self, value: Value<'_>, dim: usize) -> Result<ProbeSpec, CaseError> {
+        let table = value.table(&["name", "point_m"])?;
+        let given = table.required("name")?;
+        let name = given.line()?;
+        if self.places.contains(&name) {
+            let allowed = format!("a name other than {}", self.places.join(", "));
+            return Err(given.refuse(allowed, "name already taken"));
+        }
+        self.places.push(name.clone());
+        let coordinates = table.required("point_m")?.numbers(dim)?;
+        let mut point = [0.0; 3];
+        point[..dim].copy_from_slice(&coordinates);
+        Ok(ProbeSpec {
+            span: table.span(),
+            name,
+            point,
+        })
+    }
+
+    /// `[[expect]]`.
+    pub(super) fn expect(&self, value: Value<'_>) -> Result<Expect, CaseError> {
+        let table = value.table(&[
+            "quantity",
+            "at",
+            "component",
+            "friction",
+            "refine",
+            "method",
+            "increment",
+            "value",
+            "unit",
+            "relative",
+            "absolute",
+            "kind",
+            "source",
+            "assumptions",
+        ])?;
+        let size = "a tolerance > 0";
+        let tolerance = match table.exactly_one(&["relative", "absolute"])? {
+            ("relative", v) => Tolerance::Relative(v.number_if(size, |x| x > 0.0)?),
+            (_, v) => Tolerance::Absolute(v.number_if(size, |x| x > 0.0)?),
+        };
+        let wanted = table.required("value")?;
+        let number = wanted.number()?;
+        if number == 0.0 && matches!(tolerance, Tolerance::Relative(_)) {
+            let allowed = "values other than 0, or `absolute`";
+            return Err(wanted.refuse(allowed, "a relative tolerance of zero is zero"));
+        }
+        Ok(Expect {
+            span: table.span(),
+            quantity: table.required("quantity")?.line()?,
+            at: table
+                .get("at")
+                .map_or(Ok(String::new()), |v| self.place(v))?,
+            component: table
+                .get("component")
+                .map_or(Ok(""), component)?
+                .to_string(),
+            friction: table
+                .get("friction")
+                .map(|v| self.friction(v))
+                .transpose()?,
+            refine: table.get("refine").map(|v| self.factor(v)).transpose()?,
+            method: table.get("method").map(|v| v.line()).transpose()?,
+            increment: table
+                .get("increment")
+                .map(|v| v.integer(1..=self.increments))
+                .transpose()?,
+            value: number,
+            unit: table.required("unit")?.line()?,
+            tolerance,
+            kind: table.required("kind")?.one_of(&[
+                ("analytic", ExpectKind::Analytic),
+                ("published", ExpectKind::Published),
+                ("independent", ExpectKind::Independent),
+                ("snapshot", ExpectKind::Snapshot),
+            ])?,
+            source: table.required("source")?.line()?,
+            assumptions: match table.get("assumptions") {
+                Some(v) => v
+                    .list()?
+                    .iter()
+                    .map(Value::line)
+                    .collect::<Result<_, _>>()?,
+                None => Vec::new(),
+            },
+        })
+    }
+
+    /// `at`: a side, a crack or a probe; empty for the whole body.
+    fn place(&self, value: Value<'_>) -> Result<String, CaseError> {
+        let place = value.string()?;
+        if !place.is_empty() && !self.places.iter().any(|p| p == place) {
+            return Err(value.refuse(self.places.join(", "), "unknown place"));
+        }
+        Ok(place.to_string())
+    }
+
+    fn friction(&self, value: Value<'_>) -> Result<f64, CaseError> {
+        let allowed = format!("one of {}", join(&self.frictions));
+        let found = friction(value)?;
+        if self.frictions.contains(&found) {
+            Ok(found)
+        } else {
+            Err(value.refuse(allowed, NO_RUN))
+        }
+    }
+
+    fn factor(&self, value: Value<'_>) -> Result<usize, CaseError> {
+        let allowed = format!("one of {}", join(&self.refine));
+        let found = value.integer(1..=MAX_REFINE)?;
+        if self.refine.contains(&found) {
+            Ok(found)
+        } else {
+            Err(value.refuse(allowed, NO_RUN))
+        }
+    }
+}
+
+/// An axis of the body or of the contact frame; empty for none.
+fn component(value: Value<'_>) -> Result<&'static str, CaseError> {
+    value.one_of(&["x", "y", "z", "n", "a", "b", ""].map(|name| (name, name)))
+}
+
+fn join<T: ToString>(values: &[T]) -> String {
+    values
+        .iter()
+        .map(T::to_string)
+        .collect::<Vec<_>>()
+        .join(", ")
+}

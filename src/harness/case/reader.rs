@@ -1,0 +1,367 @@
+//! Typed access to a parsed TOML document that keeps the place of every value.
+//!
+//! The document is walked by hand instead of through serde: every refusal can then name the exact place, the value as
+//! written and the allowed range, also inside arrays and alternatives.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::Span;
+use super::error::{CaseError, Source, clip};
+
+/// A value of the document with its place.
+#[derive(Clone, Copy)]
+pub(super) struct Value<'a> {
+    source: Source<'a>,
+    item: &'a Spanned<DeValue<'a>>,
+}
+
+/// A table whose keys have been checked against the allowed ones.
+#[derive(Clone)]
+pub(super) struct Table<'a> {
+    source: Source<'a>,
+    span: Span,
+    map: &'a DeTable<'a>,
+}
+
+impl<'a> Value<'a> {
+    /// Place of the value.
+    pub(super) fn span(&self) -> Span {
+        self.item.span()
+    }
+
+    /// Error about this value, shown as written.
+    pub(super) fn refuse(&self, allowed: impl Display, message: impl Display) -> CaseError {
+        let span = self.span();
+        self.source
+            .error(&span, self.source.slice(&span), allowed, message)
+    }
+
+    /// Error about a byte range inside this string, whose decoded text is `text`.
+    pub(super) fn refuse_part(
+        &self,
+        text: &str,
+        part: Span,
+        allowed: impl Display,
+        message: impl Display,
+    ) -> CaseError {
+        let span = self.span();
+        let raw = self.source.slice(&span);
+        // Where quotes, escapes or folded lines make the text differ from the source, the whole value is marked.
+        let place = match raw.find(text) {
+            Some(offset) if !text.is_empty() => {
+                span.start + offset + part.start..span.start + offset + part.end
+            }
+            _ => span,
+        };
+        let value = if part.is_empty() { raw } else { &text[part] };
+        self.source.error(&place, value, allowed, message)
+    }
+
+    fn wrong_type(&self, wanted: &str) -> CaseError {
+        let found = match self.item.get_ref() {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) => "an integer",
+            DeValue::Float(_) => "a number",
+            DeValue::Boolean(_) => "a boolean",
+            DeValue::Datetime(_) => "a date",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        self.refuse(wanted, format_args!("wrong type, {found}"))
+    }
+
+    /// A finite number, written as integer or float.
+    pub(super) fn number(&self) -> Result<f64, CaseError> {
+        self.number_if("finite numbers", |_| true)
+    }
+
+    /// A finite number that passes a test; `allowed` says which do.
+    pub(super) fn number_if(
+        &self,
+        allowed: &str,
+        test: impl Fn(f64) -> bool,
+    ) -> Result<f64, CaseError> {
+        let number = match self.item.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            DeValue::Integer(integer) => u64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|n| n as f64),
+            _ => return Err(self.wrong_type(allowed)),
+        };
+        match number {
+            Some(number) if !f64::is_finite(number) => {
+                Err(self.refuse(allowed, "not a finite number"))
+            }
+            Some(number) if test(number) => Ok(number),
+            _ => Err(self.refuse(allowed, "out of range")),
+        }
+    }
+
+    /// An integer in a range.
+    pub(super) fn integer(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
+        let allowed = format!("integers from {} to {}", range.start(), range.end());
+        let DeValue::Integer(integer) = self.item.get_ref() else {
+            return Err(self.wrong_type(&allowed));
+        };
+        match usize::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(number) if range.contains(&number) => Ok(number),
+            _ => Err(self.refuse(allowed, "out of range")),
+        }
+    }
+
+    /// A string.
+    pub(super) fn string(&self) -> Result<&'a str, CaseError> {
+        self.item
+            .get_ref()
+            .as_str()
+            .ok_or_else(|| self.wrong_type("a string"))
+    }
+
+    /// A non-empty string of one line: it ends up in tables.
+    pub(super) fn line(&self) -> Result<String, CaseError> {
+        let text = self.string()?;
+        if text.trim().is_empty() || text.chars().any(char::is_control) {
+            return Err(self.refuse("non-empty text on one line", "not one line of text"));
+        }
+        Ok(text.to_string())
+    }
+
+    /// One of several names.
+    pub(super) fn one_of<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, CaseError> {
+        let names: Vec<&str> = choices.iter().map(|c| c.0).collect();
+        let allowed = names.join(", ");
+        let DeValue::String(text) = self.item.get_ref() else {
+            return Err(self.wrong_type(&allowed));
+        };
+        choices
+            .iter()
+            .find(|c| c.0 == text)
+            .map(|c| c.1)
+            .ok_or_else(|| {
+                self.refuse(
+                    &allowed,
+                    format_args!("unknown name{}", suggestion(text, &names)),
+                )
+            })
+    }
+
+    /// Entries of an array.
+    pub(super) fn list(&self) -> Result<Vec<Value<'a>>, CaseError> {
+        match self.item.get_ref() {
+            DeValue::Array(array) => Ok(array
+                .iter()
+                .map(|item| Value {
+                    source: self.source,
+                    item,
+                })
+                .collect()),
+            _ => Err(self.wrong_type("an array")),
+        }
+    }
+
+    /// Array of `length` entries.
+    pub(super) fn list_of(&self, length: usize) -> Result<Vec<Value<'a>>, CaseError> {
+        let list = self.list()?;
+        if list.len() != length {
+            return Err(self.refuse(
+                format_args!("{length} entries"),
+                format_args!("{} entries", list.len()),
+            ));
+        }
+        Ok(list)
+    }
+
+    /// Array of `length` finite numbers.
+    pub(super) fn numbers(&self, length: usize) -> Result<Vec<f64>, CaseError> {
+        self.list_of(length)?.iter().map(Value::number).collect()
+    }
+
+    /// A table with no other keys than the allowed ones.
+    pub(super) fn table(&self, keys: &[&str]) -> Result<Table<'a>, CaseError> {
+        let table = self.any_table()?;
+        table.only(keys)?;
+        Ok(table)
+    }
+
+    /// A table whose keys are not known beforehand.
+    pub(super) fn any_table(&self) -> Result<Table<'a>, CaseError> {
+        match self.item.get_ref() {
+            DeValue::Table(map) => Ok(Table {
+                source: self.source,
+                span: self.span(),
+                map,
+            }),
+            _ => Err(self.wrong_type("a table")),
+        }
+    }
+}
+
+impl<'a> Table<'a> {
+    /// The whole document.
+    pub(super) fn root(
+        source: Source<'a>,
+        map: &'a DeTable<'a>,
+        keys: &[&str],
+    ) -> Result<Self, CaseError> {
+        let table = Table {
+            source,
+            span: 0..0,
+            map,
+        };
+        table.only(keys)?;
+        Ok(table)
+    }
+
+    fn only(&self, keys: &[&str]) -> Result<(), CaseError> {
+        let unknown = self
+            .entries()
+            .into_iter()
+            .find(|(key, _, _)| !keys.contains(key));
+        unknown.map_or(Ok(()), |(key, span, _)| {
+            let message = format!("unknown key{}", suggestion(key, keys));
+            Err(self
+                .source
+                .error(&span, clip(key), keys.join(", "), message))
+        })
+    }
+
+    /// Place of the table: its header, or its braces.
+    pub(super) fn span(&self) -> Span {
+        self.span.clone()
+    }
+
+    /// Keys with their places and values, in file order.
+    pub(super) fn entries(&self) -> Vec<(&'a str, Span, Value<'a>)> {
+        let value = |item| Value {
+            source: self.source,
+            item,
+        };
+        let mut entries: Vec<_> = self
+            .map
+            .iter()
+            .map(|(key, item)| (key.get_ref().as_ref(), key.span(), value(item)))
+            .collect();
+        entries.sort_by_key(|e| e.1.start);
+        entries
+    }
+
+    /// Value of a key that may be absent.
+    pub(super) fn get(&self, key: &str) -> Option<Value<'a>> {
+        self.map.get(key).map(|item| Value {
+            source: self.source,
+            item,
+        })
+    }
+
+    /// Value of a key that must be given.
+    pub(super) fn required(&self, key: &str) -> Result<Value<'a>, CaseError> {
+        self.get(key)
+            .ok_or_else(|| self.missing(&format!("`{key}`")))
+    }
+
+    /// The one key of several that is given, exactly one of which must be.
+    pub(super) fn exactly_one<'k>(
+        &self,
+        keys: &[&'k str],
+    ) -> Result<(&'k str, Value<'a>), CaseError> {
+        let mut given = keys
+            .iter()
+            .filter_map(|key| self.get(key).map(|value| (*key, value)));
+        let first = given
+            .next()
+            .ok_or_else(|| self.missing(&format!("exactly one of `{}`", keys.join("`, `"))))?;
+        match given.next() {
+            None => Ok(first),
+            Some((key, value)) => Err(self.source.error(
+                &value.span(),
+                format_args!("`{key}` beside `{}`", first.0),
+                format_args!("exactly one of `{}`", keys.join("`, `")),
+                "keys exclude each other",
+            )),
+        }
+    }
+
+    /// Error about what is not there, at the table itself.
+    pub(super) fn missing(&self, wanted: &str) -> CaseError {
+        self.source.error(
+            &self.span,
+            "nothing",
+            wanted,
+            format_args!("missing {wanted}"),
+        )
+    }
+
+    /// Tables of an array of tables; none if the key is absent.
+    pub(super) fn tables(&self, key: &str) -> Result<Vec<Value<'a>>, CaseError> {
+        let Some(value) = self.get(key) else {
+            return Ok(Vec::new());
+        };
+        let wanted = format!("an array of tables, each headed `[[{key}]]`");
+        let list = value.list().map_err(|_| value.wrong_type(&wanted))?;
+        match list.iter().find(|v| !v.item.get_ref().is_table()) {
+            Some(other) => Err(other.wrong_type(&wanted)),
+            None => Ok(list),
+        }
+    }
+}
+
+/// `, did you mean ...?` where one of the names is close.
+fn suggestion(found: &str, names: &[&str]) -> String {
+    // Names of the format have at most 14 letters; nothing much longer can be a slip of the finger.
+    if found.len() > 32 {
+        return String::new();
+    }
+    let nearest = names
+        .iter()
+        .map(|name| (distance(found, name), *name))
+        .min();
+    match nearest {
+        Some((errors, name)) if errors <= 2.max(name.len() / 3) => {
+            format!(", did you mean `{name}`?")
+        }
+        _ => String::new(),
+    }
+}
+
+/// Levenshtein distance (insertions, deletions, substitutions).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distance_counts_single_letter_errors() {
+        assert_eq!(distance("young_pa", "young_pa"), 0);
+        assert_eq!(distance("yuong_pa", "young_pa"), 2);
+        assert_eq!(distance("poison", "poisson"), 1);
+        assert_eq!(distance("", "abc"), 3);
+    }
+
+    #[test]
+    fn only_close_names_are_suggested() {
+        assert_eq!(
+            suggestion("poison", &["young_pa", "poisson"]),
+            ", did you mean `poisson`?"
+        );
+        assert_eq!(suggestion("zzzzzzz", &["young_pa", "poisson"]), "");
+    }
+}

@@ -1,0 +1,76 @@
+//! Expected numbers of a case against what its runs found.
+
+use crate::harness::case::{Case, Expect, ExpectKind, Tolerance};
+use crate::harness::record::{ExpectRow, QuantityRow, Results, RunKey};
+use crate::harness::run::Choice;
+
+/// Rows of `expectations.csv` for one run, last increment `key`.
+pub fn expectation_rows(
+    case: &Case,
+    choice: &Choice,
+    refine: usize,
+    key: &RunKey,
+    results: &Results,
+) -> Vec<ExpectRow> {
+    case.expects
+        .iter()
+        .filter(|e| applies(e, choice, refine, key.friction))
+        .map(|e| {
+            let increment = e.increment.unwrap_or(case.path.increments);
+            let key = RunKey {
+                increment,
+                ..key.clone()
+            };
+            compare(e, key, &results.quantities)
+        })
+        .collect()
+}
+
+/// An expectation without a method speaks of the exact ones.
+fn applies(expect: &Expect, choice: &Choice, refine: usize, friction: f64) -> bool {
+    let method = match &expect.method {
+        Some(name) => name == choice.method.name,
+        None => choice.method.exact,
+    };
+    method
+        && expect.friction.is_none_or(|mu| mu == friction)
+        && expect.refine.is_none_or(|factor| factor == refine)
+}
+
+fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
+    let found = rows
+        .iter()
+        .find(|row| {
+            row.key.increment == key.increment
+                && row.quantity == expect.quantity
+                && row.at == expect.at
+                && row.component == expect.component
+                && row.unit == expect.unit
+        })
+        .map_or(f64::NAN, |row| row.value);
+    let allowed = match expect.tolerance {
+        Tolerance::Relative(t) => t * expect.value.abs(),
+        Tolerance::Absolute(t) => t,
+    };
+    // NaN (the run has no such number) is never within the tolerance.
+    let met = (found - expect.value).abs() <= allowed;
+    ExpectRow {
+        key,
+        quantity: expect.quantity.clone(),
+        at: expect.at.clone(),
+        component: expect.component.clone(),
+        expected: expect.value,
+        found,
+        allowed,
+        unit: expect.unit.clone(),
+        kind: match expect.kind {
+            ExpectKind::Analytic => "analytic",
+            ExpectKind::Published => "published",
+            ExpectKind::Independent => "independent",
+            ExpectKind::Snapshot => "snapshot",
+        }
+        .into(),
+        source: expect.source.clone(),
+        verdict: if met { "met" } else { "missed" }.into(),
+    }
+}

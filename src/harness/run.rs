@@ -1,0 +1,341 @@
+//! Runs: a case times its meshes, friction values and methods, increment by increment.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use stickslip_methods::{
+    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, Monitor, Options, OptionError, Outcome,
+    Residuals, Tier, point_status, residuals,
+};
+
+use crate::harness::body::{Body, BodyError};
+use crate::harness::case::{Case, CaseError, MethodSpec};
+use crate::harness::expect::expectation_rows;
+use crate::harness::picture::field_step;
+use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
+use crate::harness::record::{HistoryRow, Results, RunFields, RunKey, RunRow, SCHEMA};
+use crate::harness::verdict::Verdict;
+
+/// A method with its options.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    /// Method.
+    pub method: &'static Method,
+    /// Options, defaults filled in.
+    pub options: Options,
+    /// Name in tables: registry name, changed options in brackets.
+    pub label: String,
+}
+
+impl Choice {
+    /// A method with some of its options changed.
+    pub fn new(method: &'static Method, given: &[(String, f64)]) -> Result<Self, OptionError> {
+        let options = Options::new(method.options, given)?;
+        let changed: Vec<String> = given.iter().map(|(name, value)| format!("{name}={value:e}")).collect();
+        let label = match changed.as_slice() {
+            [] => method.name.to_owned(),
+            list => format!("{}[{}]", method.name, list.join(",")),
+        };
+        Ok(Choice { method, options, label })
+    }
+}
+
+/// How to run cases.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// Tier asked for; `None`: the case's own.
+    pub tier: Option<Tier>,
+    /// Cells run at the same time; times are recorded for one only.
+    pub jobs: usize,
+}
+
+/// Watches the runs of a command.
+pub trait Progress: Sync {
+    /// So many runs will follow.
+    fn plan(&self, runs: usize);
+    /// One run (case, mesh, friction, method) ended.
+    fn done(&self, label: &str);
+}
+
+/// No progress report.
+pub struct Quiet;
+
+impl Progress for Quiet {
+    fn plan(&self, _: usize) {}
+    fn done(&self, _: &str) {}
+}
+
+/// Why a command cannot run.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case or its discretisation.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// The thread pool.
+    #[error("cannot start the worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl From<CaseError> for RunError {
+    fn from(error: CaseError) -> Self {
+        RunError::Body(error.into())
+    }
+}
+
+/// Methods a case runs: its own list, or the given ones, or all of the registry.
+pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> {
+    if !given.is_empty() {
+        return Ok(given.to_vec());
+    }
+    if case.methods.is_empty() {
+        let all = stickslip_methods::METHODS.iter();
+        return Ok(all.filter_map(|&method| Choice::new(method, &[]).ok()).collect());
+    }
+    case.methods
+        .iter()
+        .map(|spec| {
+            let Some(method) = stickslip_methods::method(&spec.name) else {
+                let names: Vec<&str> = stickslip_methods::METHODS.iter().map(|m| m.name).collect();
+                return Err(case.error(&spec.span, &spec.name, names.join(", "), "unknown method"));
+            };
+            Choice::new(method, &spec.options).map_err(|e| option_error(case, spec, &e))
+        })
+        .collect()
+}
+
+fn option_error(case: &Case, spec: &MethodSpec, error: &OptionError) -> CaseError {
+    let (name, allowed) = match error {
+        OptionError::Unknown { name, known, .. } => (name, known.clone()),
+        OptionError::OutOfRange { name, allowed, .. } => (name, allowed.clone()),
+        OptionError::Repeated { name, .. } => (name, "each option once".to_owned()),
+    };
+    // The last one of the name: a repeated option is wrong where it stands again.
+    let position = spec.options.iter().rposition(|(given, _)| given == name);
+    let span = position.map_or(&spec.span, |i| &spec.option_spans[i]);
+    case.error(span, case.text(span), allowed, error)
+}
+
+/// One run before it starts.
+struct Cell<'a> {
+    body: &'a Body,
+    friction: f64,
+    system: Arc<ContactSystem>,
+    choice: &'a Choice,
+    refine: usize,
+}
+
+/// Runs a case for some methods and gathers everything it produced.
+pub fn run_case(case: &Case, given: &[Choice], settings: Settings, progress: &dyn Progress) -> Result<Results, RunError> {
+    let choices = choices(case, given)?;
+    let tier = settings.tier.unwrap_or(case.tier);
+    let frictions = friction_values(case);
+    progress.plan(case.sweep.refine.len() * frictions.len() * choices.len());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.jobs).build()?;
+    let mut results = Results::default();
+    for &refine in &case.sweep.refine {
+        let frictionless = frictions.iter().all(|per_crack| per_crack.iter().all(|&mu| mu == 0.0));
+        let body = Body::new(case, refine, frictionless)?;
+        let mut cells = Vec::new();
+        for per_crack in &frictions {
+            let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
+            let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?);
+            for choice in &choices {
+                cells.push(Cell {
+                    body: &body,
+                    friction: per_crack.first().copied().unwrap_or(0.0),
+                    system: system.clone(),
+                    choice,
+                    refine,
+                });
+            }
+        }
+        let run = |cell: &Cell<'_>| {
+            let results = run_cell(case, cell, tier);
+            progress.done(&format!("{} {} mu={} {}", case.name, body.label, cell.friction, cell.choice.label));
+            results
+        };
+        // One after the other unless asked otherwise, so that times mean something.
+        let parts: Vec<Results> = if settings.jobs > 1 {
+            pool.install(|| cells.par_iter().map(run).collect())
+        } else {
+            cells.iter().map(run).collect()
+        };
+        for part in parts {
+            results.append(part);
+        }
+    }
+    if settings.jobs > 1 {
+        results.runs.iter_mut().for_each(RunRow::forget_times);
+    }
+    Ok(results)
+}
+
+/// Friction coefficients per run and crack.
+fn friction_values(case: &Case) -> Vec<Vec<f64>> {
+    if case.sweep.friction.is_empty() {
+        return vec![case.cracks.iter().map(|c| c.friction).collect()];
+    }
+    case.sweep.friction.iter().map(|&mu| vec![mu; case.cracks.len()]).collect()
+}
+
+/// Seconds a call took, less the time the shared factorisation and condensation took inside it.
+fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
+    let shared = || {
+        let t = system.elastic().timings();
+        t.analysis_s + t.factorisation_s + t.condensation_s
+    };
+    let (before, clock) = (shared(), Instant::now());
+    let value = call();
+    let seconds = clock.elapsed().as_secs_f64() - (shared() - before);
+    (value, seconds.max(0.0))
+}
+
+/// Never stops a run.
+struct Unwatched;
+
+impl Monitor for Unwatched {
+    fn step(&mut self, _: usize, _: f64) -> bool {
+        true
+    }
+}
+
+/// The load path of one run.
+fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
+    let Cell { body, system, choice, .. } = cell;
+    let mut results = Results::default();
+    let mut key = RunKey {
+        case: case.name.clone(),
+        mesh: body.label.clone(),
+        space: body.space.clone(),
+        method: choice.label.clone(),
+        friction: cell.friction,
+        increment: 1,
+    };
+    let (mut method, prepare_s) = match prepare(choice, system) {
+        Ok(prepared) => prepared,
+        Err(verdict) => {
+            let mut refused = row(&key, cell, tier, f64::NAN);
+            refused.verdict = verdict.to_string();
+            results.runs.push(refused);
+            return results;
+        }
+    };
+    let mut state = ContactState::zero(system);
+    let mut now = Snapshot::virgin(body);
+    // Nothing acts before the first increment, whatever the histories say at t = 0.
+    let mut start_load = Load {
+        force: vec![0.0; body.elastic.unknowns()],
+        offset: vec![0.0; now.jump.len()],
+    };
+    let mut steps = Vec::new();
+    for increment in 1..=case.path.increments {
+        let time = case.path.end * increment as f64 / case.path.increments as f64;
+        key.increment = increment;
+        let load = body.load(time);
+        let problem = Increment {
+            system,
+            load: &load,
+            start_load: &start_load,
+            start: &state,
+            index: increment - 1,
+            // A tier asked for on the command line replaces the case's own tolerance.
+            tolerance: if tier == case.tier { case.tolerance } else { tier.tolerance() },
+        };
+        let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Unwatched));
+        let judged = solved.and_then(|outcome| {
+            let found = residuals(&problem, &outcome.state)?;
+            let status = point_status(&problem, &outcome.state)?;
+            Ok((outcome, found, status))
+        });
+        let mut run = row(&key, cell, tier, if increment == 1 { prepare_s } else { 0.0 });
+        let shared = system.elastic().timings();
+        run.factorisations = system.elastic().counters().factorisations;
+        run.factorisation_s = shared.analysis_s + shared.factorisation_s;
+        run.condensation_s = shared.condensation_s;
+        run.solve_s = solve_s;
+        let (outcome, found, status) = match judged {
+            Ok(parts) => parts,
+            Err(error) => {
+                run.verdict = Verdict::Crashed(error.to_string()).to_string();
+                run.forget_times();
+                results.runs.push(run);
+                break;
+            }
+        };
+        let verdict = Verdict::of(&outcome, &found, tier);
+        record_run(&mut run, &verdict, &outcome, &found);
+        results.runs.push(run);
+        record_history(&mut results, &key, &outcome);
+        now = Snapshot::new(body, time, &outcome.state, status, &now);
+        if verdict.is_honest() {
+            results.quantities.extend(quantity_rows(case, body, &key, &now));
+            results.points.extend(point_rows(body, &key, &now));
+            steps.push(field_step(body, &now));
+        } else {
+            // What follows would start from a state nobody vouches for.
+            break;
+        }
+        state = outcome.state;
+        start_load = load;
+    }
+    results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
+    results.fields.push(RunFields { key, steps });
+    results
+}
+
+/// Builds and prepares a method: the method and its seconds, or why not.
+fn prepare(choice: &Choice, system: &ContactSystem) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
+    let crashed = |e: MethodError| Verdict::Crashed(e.to_string());
+    let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
+    if let Some(reason) = method.refuses(system) {
+        return Err(Verdict::Refused(reason));
+    }
+    let (prepared, seconds) = timed(system, || method.prepare(system));
+    prepared.map_err(crashed)?;
+    Ok((method, seconds))
+}
+
+fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
+    RunRow {
+        key: key.clone(),
+        tier: tier.to_string(),
+        verdict: String::new(),
+        natural_map: f64::NAN,
+        iterations: 0,
+        factorisations: 0,
+        solves: 0,
+        unknowns: cell.system.rows(),
+        points: cell.system.points(),
+        dofs: cell.body.elastic.unknowns(),
+        setup_s: cell.body.setup_s,
+        assembly_s: cell.body.assembly_s,
+        factorisation_s: f64::NAN,
+        condensation_s: f64::NAN,
+        prepare_s,
+        solve_s: f64::NAN,
+        equilibrium: f64::NAN,
+        schema: SCHEMA,
+    }
+}
+
+fn record_run(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Residuals) {
+    run.verdict = verdict.to_string();
+    run.natural_map = found.natural_map;
+    run.equilibrium = found.equilibrium;
+    run.iterations = outcome.counters.iterations;
+    run.solves = outcome.counters.solves;
+    if !verdict.is_honest() {
+        run.forget_times();
+    }
+}
+
+fn record_history(results: &mut Results, key: &RunKey, outcome: &Outcome) {
+    for (iteration, entry) in outcome.history.iter().enumerate() {
+        results.history.push(HistoryRow {
+            key: key.clone(),
+            iteration,
+            natural_map: entry.natural_map,
+        });
+    }
+}

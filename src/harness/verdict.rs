@@ -1,0 +1,120 @@
+//! Verdict = claim × check. Methods claim, [`residuals`](stickslip_methods::residuals) checks, nobody else judges.
+
+use std::fmt;
+
+use stickslip_methods::{Claim, Outcome, Residuals, Status, Tier};
+
+/// Largest relative equilibrium residual of a direct solve; above it the natural map does not measure contact alone.
+pub const EQUILIBRIUM: f64 = 1e-12;
+
+/// What a run is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// Claimed the contact laws and the judge agrees.
+    Solved(Tier),
+    /// Solved its own penalised laws; the judge found the contact laws held to this tier, or to none.
+    Penalised(Option<Tier>),
+    /// Claimed the contact laws and the judge disagrees.
+    FalseClaim,
+    /// Ended without a claim.
+    GaveUp(Status),
+    /// Declined the system, with the reason.
+    Refused(String),
+    /// Failed with an error.
+    Crashed(String),
+}
+
+impl Verdict {
+    /// Judges an outcome against the tier asked for.
+    pub fn of(outcome: &Outcome, found: &Residuals, tier: Tier) -> Self {
+        let balanced = found.equilibrium <= EQUILIBRIUM;
+        // NaN passes no comparison.
+        let holds = |tier: Tier| balanced && found.natural_map <= tier.tolerance();
+        match (outcome.status, outcome.claim) {
+            (Status::Converged, Claim::Exact) if holds(tier) => Verdict::Solved(tier),
+            (Status::Converged, Claim::Penalised { .. }) if holds(tier) => Verdict::Solved(tier),
+            (Status::Converged, Claim::Penalised { .. }) if balanced => {
+                Verdict::Penalised(Tier::ALL.into_iter().rev().find(|&t| holds(t)))
+            }
+            (Status::Converged, _) => Verdict::FalseClaim,
+            (status, _) => Verdict::GaveUp(status),
+        }
+    }
+
+    /// True if the run did what it said: its times may be published.
+    pub fn is_honest(&self) -> bool {
+        matches!(self, Verdict::Solved(_) | Verdict::Penalised(_))
+    }
+
+    /// True if the command must report failure.
+    pub fn is_failure(&self) -> bool {
+        matches!(self, Verdict::FalseClaim | Verdict::GaveUp(_) | Verdict::Crashed(_))
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Verdict::Solved(_) => write!(f, "solved"),
+            Verdict::Penalised(Some(tier)) => write!(f, "penalised: {tier}"),
+            Verdict::Penalised(None) => write!(f, "penalised: none"),
+            Verdict::FalseClaim => write!(f, "false-claim"),
+            Verdict::GaveUp(status) => write!(f, "gave-up: {status}"),
+            Verdict::Refused(reason) => write!(f, "refused: {reason}"),
+            Verdict::Crashed(error) => write!(f, "crashed: {error}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stickslip_methods::{ContactState, Counters};
+
+    fn outcome(status: Status, claim: Claim) -> Outcome {
+        Outcome {
+            status,
+            claim,
+            state: ContactState { u: vec![], p: vec![] },
+            history: vec![],
+            counters: Counters::default(),
+        }
+    }
+
+    fn found(natural_map: f64, equilibrium: f64) -> Residuals {
+        Residuals {
+            equilibrium,
+            penetration: 0.0,
+            adhesion: 0.0,
+            complementarity: 0.0,
+            cone: 0.0,
+            slip_direction: 0.0,
+            natural_map,
+        }
+    }
+
+    #[test]
+    fn a_claim_counts_only_if_the_judge_agrees() {
+        let converged = outcome(Status::Converged, Claim::Exact);
+        assert_eq!(Verdict::of(&converged, &found(1e-10, 1e-14), Tier::High), Verdict::Solved(Tier::High));
+        for (map, equilibrium) in [(1e-8, 1e-14), (1e-10, 1e-9), (f64::NAN, 1e-14), (1e-10, f64::NAN)] {
+            let verdict = Verdict::of(&converged, &found(map, equilibrium), Tier::High);
+            assert_eq!(verdict, Verdict::FalseClaim);
+            assert!(!verdict.is_honest() && verdict.is_failure());
+        }
+        let stalled = outcome(Status::Stalled, Claim::Exact);
+        assert_eq!(Verdict::of(&stalled, &found(1e-15, 0.0), Tier::Low), Verdict::GaveUp(Status::Stalled));
+    }
+
+    #[test]
+    fn a_penalised_claim_is_graded_by_the_tier_it_reaches() {
+        let claim = Claim::Penalised { normal: 1.0, tangential: 1.0 };
+        let converged = outcome(Status::Converged, claim);
+        let grade = |map| Verdict::of(&converged, &found(map, 1e-14), Tier::High);
+        assert_eq!(grade(1e-4), Verdict::Penalised(Some(Tier::Low)));
+        assert_eq!(grade(1e-2), Verdict::Penalised(None));
+        assert_eq!(grade(1e-10), Verdict::Solved(Tier::High));
+        let unbalanced = Verdict::of(&converged, &found(1e-4, 1e-3), Tier::High);
+        assert_eq!(unbalanced, Verdict::FalseClaim);
+    }
+}
