@@ -3,7 +3,7 @@
 mod report_data;
 
 use report_data::{beam, key, plate, points, results};
-use stickslip::harness::record::{HistoryRow, PointRow};
+use stickslip::harness::record::{HistoryRow, Picture, PictureCell, PointRow};
 use stickslip::report::ReportError;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification, Tier};
 
@@ -277,4 +277,55 @@ fn unit_marks_in_data_do_not_reach_the_typesetting() {
     let svg = plot::residual_history(&[row], None).expect("a figure");
     assert!(!svg.contains("<script>") && svg.contains("&lt;script&gt;&amp;"));
     assert!(svg.contains(">ab<"));
+}
+
+/// The same picture with points of its own for every cell.
+fn unshared(picture: &Picture) -> Picture {
+    let mut own = Picture {
+        dim: picture.dim,
+        ..Picture::default()
+    };
+    let mut u = Vec::new();
+    for cell in &picture.cells {
+        let first = own.points.len();
+        for point in &cell.points {
+            own.points.push(picture.points[*point]);
+            u.push(picture.point_vectors[0].1[*point]);
+        }
+        let points = (first..own.points.len()).collect();
+        own.cells.push(PictureCell {
+            shape: cell.shape,
+            points,
+        });
+    }
+    own.point_vectors
+        .push((picture.point_vectors[0].0.clone(), u));
+    own
+}
+
+#[test]
+fn figures_do_not_depend_on_whether_cells_share_points() {
+    let plane = |picture: &Picture| {
+        plot::displacement_contours(picture, Magnification::Auto, "").expect("a figure")
+    };
+    assert_eq!(plane(&plate()), plane(&unshared(&plate())));
+    // Patches at one depth may come in another order.
+    let solid = |picture: &Picture| {
+        let svg = plot::solid_displacement(picture, Axis3::X, Magnification::Auto, "");
+        let mut lines: Vec<String> = svg.expect("a figure").lines().map(str::to_owned).collect();
+        lines.sort();
+        lines
+    };
+    assert!(solid(&beam()) == solid(&unshared(&beam())));
+}
+
+#[test]
+fn cells_without_a_finite_displacement_are_left_out() {
+    let mut picture = plate();
+    picture.point_vectors[0].1[200] = [f64::NAN; 3];
+    let svg = plot::displacement_contours(&picture, Magnification::Auto, "").expect("a figure");
+    assert!(!svg.contains("NaN") && svg.contains("[mm]"));
+    let mut solid = beam();
+    solid.point_vectors[0].1[3] = [f64::NAN; 3];
+    plot::solid_displacement(&solid, Axis3::Y, Magnification::Auto, "").expect("a figure");
 }

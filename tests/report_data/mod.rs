@@ -68,6 +68,7 @@ fn add_run(results: &mut Results, key: RunKey) {
         unknowns: 22,
         points: 11,
         dofs: 1016,
+        setup_s: 0.000_123_45,
         assembly_s: 0.001_234_567,
         factorisation_s: 0.002_345_678,
         condensation_s: 0.000_345_678_9,

@@ -7,6 +7,8 @@ use super::canvas::{
 };
 use super::chart::{LABEL_PT, TICK_PT};
 use super::colour::{BLACK, LIGHT};
+use super::outline::{Face, Weld, cell_scalar, outline};
+use super::surface::SIDE;
 use crate::harness::record::{Picture, PictureShape};
 use crate::report::ReportError;
 use std::collections::BTreeSet;
@@ -61,12 +63,12 @@ pub fn displacement_contours(
         ));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
-    let faces = plane_faces(picture)?;
     let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
         .ok_or_else(|| unfit("points", "no finite points".into()))?;
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
+        .filter(|u| u.is_finite())
         .fold(0.0, f64::max);
     let factor = magnification.factor(size.diameter(), largest);
     let places: Vec<[f64; 2]> = picture
@@ -79,12 +81,14 @@ pub fn displacement_contours(
         return Err(unfit(DISPLACEMENT, "no finite values".into()));
     };
     let shown = deformed.joined(&size);
+    let faces = plane_faces(picture, &places)?;
+    let outline = outline(picture, &faces, &Weld::new(picture, displacement));
 
     let body = Body {
         picture,
         displacement,
         places,
-        outline: boundary(&faces),
+        outline,
         faces,
         shown,
     };
@@ -107,7 +111,7 @@ struct Body<'a> {
     displacement: &'a [[f64; 3]],
     /// Deformed positions [m].
     places: Vec<[f64; 2]>,
-    faces: Vec<Vec<usize>>,
+    faces: Vec<Face>,
     /// Edges of the boundary and of crack faces.
     outline: Vec<[usize; 2]>,
     /// Undeformed and deformed body together [m].
@@ -201,7 +205,7 @@ fn draw_component(
     let triangles: Vec<Triangle> = body
         .faces
         .iter()
-        .flat_map(|face| split(face, corner))
+        .flat_map(|face| split(&face.points, corner))
         .collect();
     bands::fill(canvas, &triangles, &levels, 0.05);
     stroke(canvas, &body.outline, deformed, BLACK, 0.2);
@@ -273,7 +277,7 @@ fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
 /// The values of a point vector.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when it is missing, has not one value per point, or one that is not finite.
+/// [`ReportError::Picture`] when it is missing or has not one value per point.
 pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
     let found = picture.point_vectors.iter().find(|(n, _)| n == name);
     let Some((_, values)) = found else {
@@ -287,31 +291,33 @@ pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3
         );
         return Err(unfit(name, reason));
     }
-    if let Some(point) = values.iter().position(|v| v.iter().any(|c| !c.is_finite())) {
-        return Err(unfit(
-            name,
-            format!("the value at point {point} is not finite"),
-        ));
-    }
     Ok(values)
 }
 
-/// Point numbers of all plane cells, in cyclic order.
-fn plane_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
+/// All plane cells whose points have a finite place.
+fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
+    let sides = cell_scalar(picture, SIDE);
     let mut faces = Vec::new();
-    for cell in &picture.cells {
-        if let Some(point) = cell.points.iter().find(|p| **p >= picture.points.len()) {
-            return Err(unfit(
-                "cells",
-                format!("point {point} of {}", picture.points.len()),
-            ));
+    for (cell, side) in picture.cells.iter().zip(sides) {
+        if let Some(point) = cell.points.iter().find(|p| **p >= places.len()) {
+            return Err(unfit("cells", format!("point {point} of {}", places.len())));
         }
+        let drawn = cell
+            .points
+            .iter()
+            .all(|p| places[*p].iter().all(|c| c.is_finite()));
         if let PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad = cell.shape {
-            faces.push(cell.points.clone());
+            faces.extend(drawn.then(|| Face {
+                points: cell.points.clone(),
+                side,
+            }));
         }
     }
     if faces.is_empty() {
-        return Err(unfit("cells", "no triangle, polygon or quad".into()));
+        return Err(unfit(
+            "cells",
+            "no triangle, polygon or quad to draw".into(),
+        ));
     }
     Ok(faces)
 }
@@ -346,22 +352,8 @@ fn extent(corners: &[(Pixel, f64)]) -> i32 {
     along(0).max(along(1))
 }
 
-/// Edges of exactly one face.
-fn boundary(faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
-    let mut edges: Vec<[usize; 2]> = faces
-        .iter()
-        .flat_map(|face| (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()])))
-        .map(|(a, b)| [a.min(b), a.max(b)])
-        .collect();
-    edges.sort_unstable();
-    edges
-        .chunk_by(|a, b| a == b)
-        .filter(|equal| equal.len() == 1)
-        .map(|equal| equal[0])
-        .collect()
-}
-
-fn stroke(
+/// Lines along edges, joined where they meet.
+pub(super) fn stroke(
     canvas: &mut Canvas,
     edges: &[[usize; 2]],
     place: impl Fn(usize) -> Pixel,

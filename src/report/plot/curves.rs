@@ -62,18 +62,16 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
     };
 
     let x = if logarithmic {
-        Axis::log("iteration [-]", rows.iter().map(iteration))
+        Axis::many_counts("iteration [-]", most)
     } else {
-        Some(Axis::counts("iteration [-]", most))
+        Axis::counts("iteration [-]", most)
     };
     let shown = rows
         .iter()
         .map(residual)
         .chain(tier.map(|tier| tier.residual));
     let y = Axis::log("natural-map residual [-]", shown);
-    let (Some(x), Some(y)) = (x, y) else {
-        return Err(ReportError::figure(FIGURE, "no finite residual"));
-    };
+    let y = y.ok_or_else(|| ReportError::figure(FIGURE, "no finite residual"))?;
     let curves = runs
         .iter()
         .map(|run| {
