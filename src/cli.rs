@@ -230,10 +230,11 @@ fn provenance(settings: Settings) -> Provenance {
 
 /// Expected numbers that were missed, on standard error.
 fn print_missed(results: &Results) {
-    for e in results.expectations.iter().filter(|e| e.verdict != "met") {
+    for e in results.expectations.iter().filter(|e| !e.as_stated()) {
         let k = &e.key;
         eprintln!(
-            "missed: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
+            "{}: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
+            e.verdict,
             k.case,
             k.mesh,
             k.method,

@@ -122,6 +122,7 @@ impl Paper {
             penalty_table(&self.penalty)?,
             refinement_table(&self.refinement)?,
             limit_table(&self.limits)?,
+            standard::expectation_summary(&self.results.expectations)?,
         ] {
             text.push_str(&table.terminal());
             text.push('\n');
@@ -144,19 +145,19 @@ pub fn summary(results: &Results) -> String {
             .filter(|r| r.verdict.starts_with(prefix))
             .count()
     };
-    let met = results
+    let stated = results
         .expectations
         .iter()
-        .filter(|e| e.verdict == "met")
+        .filter(|e| e.as_stated())
         .count();
     format!(
-        "{} increments: {} solved, {} penalised, {} refused, {} failed; {} of {} expected numbers met",
+        "{} increments: {} solved, {} penalised, {} refused, {} failed; {} of {} expected numbers as stated",
         results.runs.len(),
         count("solved"),
         count("penalised"),
         count("refused"),
         failures(results),
-        met,
+        stated,
         results.expectations.len()
     )
 }
@@ -173,7 +174,7 @@ pub fn failures(results: &Results) -> usize {
 
 /// True if no run failed and every expected number was met.
 pub fn as_expected(results: &Results) -> bool {
-    failures(results) == 0 && results.expectations.iter().all(|e| e.verdict == "met")
+    failures(results) == 0 && results.expectations.iter().all(|e| e.as_stated())
 }
 
 fn case(name: &str) -> Result<Case, PaperError> {

@@ -370,6 +370,8 @@ pub struct Expect {
     pub source: String,
     /// What had to be assumed.
     pub assumptions: Vec<String>,
+    /// True for a documented limitation: the number must be found outside its tolerance.
+    pub missed: bool,
 }
 
 /// Tolerance of an expected number.

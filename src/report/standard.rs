@@ -7,6 +7,7 @@ use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, csv, paper, vtu};
+use crate::harness::expect;
 use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -158,6 +159,40 @@ pub fn expectations_table(rows: &[ExpectRow]) -> Result<Table, ReportError> {
             row.kind.clone(),
             row.source.clone(),
             row.verdict.clone(),
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Expected numbers by case, for a terminal.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Expected numbers, all exact methods",
+        vec![
+            Column::new("case", "", Align::Left),
+            Column::new("numbers", "", Align::Right),
+            Column::new("met", "", Align::Right),
+            Column::new("missed as documented", "", Align::Right),
+            Column::new("worst met, of its tolerance", "", Align::Right),
+        ],
+    );
+    let cases: BTreeSet<&str> = rows.iter().map(|row| row.key.case.as_str()).collect();
+    for case in cases {
+        let own = || rows.iter().filter(move |row| row.key.case == case);
+        let count = |verdict: &str| own().filter(|row| row.verdict == verdict).count();
+        let worst = own()
+            .filter(|row| row.verdict == expect::MET)
+            .map(|row| (row.found - row.expected).abs() / row.allowed)
+            .fold(0.0, f64::max);
+        table.push(vec![
+            case.to_owned(),
+            own().count().to_string(),
+            count(expect::MET).to_string(),
+            count(expect::MISSED_AS_DOCUMENTED).to_string(),
+            format!("{worst:.1e}"),
         ])?;
     }
     Ok(table)

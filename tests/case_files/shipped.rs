@@ -37,6 +37,7 @@ fn every_shipped_case_is_accepted() {
         "sliding_block_cycle",
         "sliding_block_cycle_conforming",
         "sliding_block_embedded",
+        "sliding_block_off_grid",
         "tension_open",
     ] {
         assert!(
@@ -271,7 +272,10 @@ fn cracks_of_the_sliding_blocks_lie_on_the_followed_line() {
         .iter()
         .filter(|(name, _)| name.starts_with("sliding_block"))
     {
-        let follow = case.mesh.follow.as_ref().unwrap();
+        let Some(follow) = case.mesh.follow.as_ref() else {
+            assert_eq!(name, "sliding_block_off_grid");
+            continue;
+        };
         let CrackShape::Segment(ends) = &case.cracks[0].geometry else {
             panic!("{name}")
         };

@@ -72,6 +72,7 @@ impl Runs {
             "kind",
             "source",
             "assumptions",
+            "outcome",
         ])?;
         let size = "a tolerance > 0";
         let tolerance = match table.exactly_one(&["relative", "absolute"])? {
@@ -122,6 +123,9 @@ impl Runs {
                     .collect::<Result<_, _>>()?,
                 None => Vec::new(),
             },
+            missed: table
+                .get("outcome")
+                .map_or(Ok(false), |v| v.one_of(&[("met", false), ("missed", true)]))?,
         })
     }
 
