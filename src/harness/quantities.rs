@@ -140,7 +140,7 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
         }
     }
     for probe in &case.probes {
-        if let Some(node) = probe_node(body, &probe.point) {
+        if let Some(node) = body.mesh.node_at(&probe.point) {
             for a in 0..dim {
                 push(
                     "displacement",
@@ -199,15 +199,6 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
     push("strain_energy", "", "", now.strain_energy, energy_unit);
     push("energy_identity", "", "", now.energy_identity, "-");
     rows
-}
-
-/// The node at a point, within 1e-9 of the body's size.
-pub fn probe_node(body: &Body, x: &[f64; 3]) -> Option<usize> {
-    let (size, _) = body.mesh.extent();
-    body.mesh
-        .nodes
-        .iter()
-        .position(|node| (0..3).all(|a| (node[a] - x[a]).abs() <= 1e-9 * size))
 }
 
 /// Rows of `points.csv` for one increment.

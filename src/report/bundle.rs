@@ -8,6 +8,7 @@ use super::ReportError;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files of one command, by path relative to the output folder.
 #[derive(Debug, Default)]
@@ -100,8 +101,10 @@ struct Swapped<'a> {
 
 impl Staging {
     fn create(dir: &Path) -> Result<Self, ReportError> {
-        // The process number keeps two commands with the same output folder apart.
-        let root = dir.join(format!(".stickslip-partial-{}", std::process::id()));
+        // The numbers keep two commands, and two threads of one, with the same output folder apart.
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let root = dir.join(format!(".stickslip-partial-{}-{count}", std::process::id()));
         if root.exists() {
             fs::remove_dir_all(&root).map_err(|e| ReportError::io("remove folder", &root, e))?;
         }

@@ -14,7 +14,7 @@ pub const RESIDUAL_FLOOR: f64 = 1e-12;
 
 /// A value with `digits` significant digits, trailing zeros dropped.
 ///
-/// Plain notation for decimal exponents −5 to 9, otherwise scientific (`1.5e-7`). −0 is `0`; not-a-number is `NaN`,
+/// Plain notation for decimal exponents −4 to 9, otherwise scientific (`1.5e-7`). −0 is `0`; not-a-number is `NaN`,
 /// infinities are `inf` and `-inf`, as pandas and numpy read them.
 pub fn significant(value: f64, digits: usize) -> String {
     if value.is_nan() {
@@ -34,7 +34,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     let Ok(exponent) = exponent.parse::<i32>() else {
         return scientific;
     };
-    if (-5..=9).contains(&exponent) {
+    if (-4..=9).contains(&exponent) {
         let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
         // Where the digits end left of the point, round to them first: 4 digits of 123456 are 123500.
         let rounded: f64 = scientific.parse().unwrap_or(value);
@@ -94,6 +94,7 @@ mod tests {
             (1e10, "1e10"),
             (1.234_567_890_123e-7, "1.23456789e-7"),
             (9_999_999_999.9, "1e10"),
+            (0.000_02, "2e-5"),
             (-0.0, "0"),
             (f64::NAN, "NaN"),
             (f64::NEG_INFINITY, "-inf"),

@@ -117,9 +117,9 @@ pub struct Table2Row {
     pub component: String,
     /// Method label, or [`PRINTED`].
     pub method: String,
-    /// Displacement of P1 … P7 [mm]; NaN where the method gave no solution.
+    /// Displacement of P1 … P7 (mm); NaN where the method gave no solution.
     pub p_mm: [f64; 7],
-    /// Largest |computed − printed| over the seven points [mm]; none for the printed line itself.
+    /// Largest |computed − printed| over the seven points (mm); none for the printed line itself.
     pub max_difference_mm: Option<f64>,
     /// Claim × check; empty for the printed line.
     pub verdict: String,

@@ -16,9 +16,11 @@ mod contour;
 mod curves;
 mod legend;
 mod names;
+mod outline;
 mod profile;
 mod solid;
 mod style;
+mod surface;
 
 pub use canvas::{Width, italic, subscript};
 pub use contour::{Magnification, displacement_contours};

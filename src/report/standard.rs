@@ -3,7 +3,7 @@
 //! Figures and profiles show solved runs of the last increment only, a wrong answer never stands beside right ones;
 //! residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
 
-use super::number::{residual, time, value};
+use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, csv, paper, vtu};
@@ -152,8 +152,8 @@ pub fn expectations_table(rows: &[ExpectRow]) -> Result<Table, ReportError> {
             quantity.collect::<Vec<_>>().join(" "),
             value(row.expected),
             value(row.found),
-            residual(row.found - row.expected),
-            residual(row.allowed),
+            significant(row.found - row.expected, 3),
+            significant(row.allowed, 3),
             row.unit.clone(),
             row.kind.clone(),
             row.source.clone(),

@@ -300,8 +300,8 @@ pub fn add_refinement(
     };
     let plot = CurvePlot {
         caption: "plate, b-newton, edge pairs".into(),
-        x_label: "cell width h, m".into(),
-        y_label: "relative distance from the mean limit".into(),
+        x_label: "cell width h [m]".into(),
+        y_label: "relative distance to limit".into(),
         curves: curves(
             rows,
             |r| (r.friction, format!("Mesh {}, ", r.family)),

@@ -1,5 +1,24 @@
 //! Axes: range, ticks and tick labels, linear or logarithmic.
 
+/// How values become places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scale {
+    Linear,
+    Log,
+    /// ln(1 + value): shows few and many iterations and has a zero.
+    LogFromZero,
+}
+
+impl Scale {
+    fn map(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Log => value.ln(),
+            Self::LogFromZero => value.ln_1p(),
+        }
+    }
+}
+
 /// One axis.
 #[derive(Debug, Clone)]
 pub struct Axis {
@@ -7,7 +26,7 @@ pub struct Axis {
     pub label: String,
     low: f64,
     high: f64,
-    logarithmic: bool,
+    scale: Scale,
     /// Ticks with labels.
     pub major: Vec<(f64, String)>,
     /// Ticks without.
@@ -41,7 +60,7 @@ impl Axis {
             label: with_power(label, exponent),
             low,
             high,
-            logarithmic: false,
+            scale: Scale::Linear,
             major: ticks
                 .iter()
                 .map(|t| (*t, number(t / scale, decimals)))
@@ -59,7 +78,7 @@ impl Axis {
             label: label.to_owned(),
             low: -0.03 * high,
             high: 1.03 * high,
-            logarithmic: false,
+            scale: Scale::Linear,
             major: major.into_iter().map(|t| (t, number(t, 0))).collect(),
             minor: Vec::new(),
         }
@@ -83,7 +102,7 @@ impl Axis {
             label: label.to_owned(),
             low,
             high,
-            logarithmic: true,
+            scale: Scale::Log,
             major: Vec::new(),
             // Over many decades only the powers themselves get ticks.
             minor: subdivided.filter(|v| within(v) && decades < 8.0).collect(),
@@ -123,13 +142,33 @@ impl Axis {
         Some(axis)
     }
 
+    /// A logarithmic axis for whole numbers from 0: equal steps multiply 1 + number.
+    pub fn many_counts(label: &str, largest: usize) -> Self {
+        let high = largest.max(1) as f64;
+        let decades = (0..=high.log10() as i32).map(|e| 10f64.powi(e));
+        let steps: Vec<f64> = decades
+            .flat_map(|p| [1.0, 2.0, 5.0].map(|m| m * p))
+            .collect();
+        // Over many decades the labels of 2 and 5 would touch those of the decades.
+        let shown = |t: &f64| high < 2e3 || t.log10().fract() == 0.0;
+        let ticks = std::iter::once(0.0).chain(steps.into_iter().filter(shown));
+        Self {
+            label: label.to_owned(),
+            low: (high + 1.0).powf(-0.03) - 1.0,
+            high: (high + 1.0).powf(1.03) - 1.0,
+            scale: Scale::LogFromZero,
+            major: ticks
+                .filter(|t| *t <= high)
+                .map(|t| (t, number(t, 0)))
+                .collect(),
+            minor: Vec::new(),
+        }
+    }
+
     /// Place of a value: 0 at the lower end, 1 at the upper.
     pub fn place(&self, value: f64) -> f64 {
-        if self.logarithmic {
-            (value / self.low).ln() / (self.high / self.low).ln()
-        } else {
-            (value - self.low) / (self.high - self.low)
-        }
+        let [value, low, high] = [value, self.low, self.high].map(|v| self.scale.map(v));
+        (value - low) / (high - low)
     }
 }
 
@@ -182,7 +221,7 @@ pub fn superscript(exponent: i32) -> String {
 fn log_number(mantissa: f64, power: f64) -> String {
     let exponent = power.log10().round() as i32;
     match exponent {
-        -3..=3 => number(mantissa * power, (-exponent).max(0) as usize),
+        -3..=4 => number(mantissa * power, (-exponent).max(0) as usize),
         _ if mantissa == 1.0 => format!("10{}", superscript(exponent)),
         _ => format!("{mantissa}·10{}", superscript(exponent)),
     }

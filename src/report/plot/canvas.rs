@@ -389,6 +389,11 @@ pub fn text_width(text: &str, size_pt: f64) -> f64 {
     em * size_pt * MM_PER_PT
 }
 
+/// The size, at most `size_pt`, at which a text is at most `width` [mm] wide; never below 5 pt.
+pub fn fitting_size(text: &str, size_pt: f64, width: f64) -> f64 {
+    (size_pt * width / text_width(text, size_pt)).clamp(5.0, size_pt)
+}
+
 /// The text cut with an ellipsis so that it is at most `width` [mm] wide.
 pub fn fitted(text: &str, size_pt: f64, width: f64) -> String {
     let mut kept: String = text.to_owned();

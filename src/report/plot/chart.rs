@@ -1,8 +1,10 @@
 //! Charts: panels one above the other over a shared legend.
 
 use super::axis::Axis;
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, text_width, wrapped};
-use super::colour::{BLACK, GREY, LIGHT};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitted, fitting_size, text_width, wrapped,
+};
+use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::{Marker, Style, draw_marker};
 use crate::report::ReportError;
@@ -50,8 +52,8 @@ pub struct Panel {
     pub x: Axis,
     pub y: Axis,
     pub series: Vec<Series>,
-    /// Horizontal lines, drawn dashed in grey, with their text.
-    pub levels: Vec<(f64, String)>,
+    /// Horizontal lines in [`Style::level`].
+    pub levels: Vec<f64>,
     pub slope: Option<SlopeTriangle>,
 }
 
@@ -134,16 +136,15 @@ impl Frame {
 
 fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
     draw_axes(canvas, panel, frame, last);
-    for (value, text) in &panel.levels {
+    for value in &panel.levels {
         let [_, y] = frame.at(panel, [0.0, *value]);
-        canvas.dashed(&[[frame.left, y], [frame.right, y]], GREY, 0.2, &[1.5, 1.0]);
-        canvas.text(
-            text,
-            [frame.right - 1.0, y - 1.5],
-            SMALL_PT,
-            Anchor::End,
-            GREY,
-        );
+        let Style {
+            colour,
+            width,
+            dashes,
+            ..
+        } = Style::level();
+        canvas.dashed(&[[frame.left, y], [frame.right, y]], colour, width, dashes);
     }
     if let Some(slope) = &panel.slope {
         draw_slope(canvas, panel, frame, slope);
@@ -200,10 +201,14 @@ fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
             canvas.text(label, [x, bottom + 2.2], TICK_PT, Anchor::Middle, BLACK);
         }
         let middle = [0.5 * (left + right), bottom + 6.3];
-        canvas.text(&panel.x.label, middle, LABEL_PT, Anchor::Middle, BLACK);
+        let size = fitting_size(&panel.x.label, LABEL_PT, right - left);
+        canvas.text(&panel.x.label, middle, size, Anchor::Middle, BLACK);
     }
     let middle = [MARGIN_MM + 1.5, 0.5 * (top + bottom)];
-    canvas.text_upwards(&panel.y.label, middle, LABEL_PT, BLACK);
+    // A long label may stand a little above and below its panel.
+    let size = fitting_size(&panel.y.label, LABEL_PT, bottom - top + 5.0);
+    let label = fitted(&panel.y.label, size, bottom - top + 6.0);
+    canvas.text_upwards(&label, middle, size, BLACK);
 }
 
 fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Series) {

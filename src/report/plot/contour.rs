@@ -7,6 +7,8 @@ use super::canvas::{
 };
 use super::chart::{LABEL_PT, TICK_PT};
 use super::colour::{BLACK, LIGHT};
+use super::outline::{Face, Weld, cell_scalar, outline};
+use super::surface::SIDE;
 use crate::harness::record::{Picture, PictureShape};
 use crate::report::ReportError;
 use std::collections::BTreeSet;
@@ -14,6 +16,11 @@ use std::collections::BTreeSet;
 const FIGURE: &str = "displacement contours";
 /// Name of the point vector that is drawn.
 pub const DISPLACEMENT: &str = "displacement_m";
+
+/// Faces below this size on paper are not refined [pixels].
+const SMALL: i32 = 12;
+/// Least and greatest height of a colour bar [mm].
+const BAR_MM: [f64; 2] = [32.0, 60.0];
 
 /// Factor by which displacements are enlarged in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +32,7 @@ pub enum Magnification {
 }
 
 impl Magnification {
-    /// The factor for a body of this diameter [m] and this largest displacement [m].
+    /// The factor for a body of this diameter (m) and this largest displacement (m).
     pub fn factor(self, diameter: f64, displacement: f64) -> f64 {
         match self {
             Self::Factor(factor) => factor,
@@ -56,12 +63,12 @@ pub fn displacement_contours(
         ));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
-    let faces = plane_faces(picture)?;
     let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
         .ok_or_else(|| unfit("points", "no finite points".into()))?;
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
+        .filter(|u| u.is_finite())
         .fold(0.0, f64::max);
     let factor = magnification.factor(size.diameter(), largest);
     let places: Vec<[f64; 2]> = picture
@@ -74,66 +81,144 @@ pub fn displacement_contours(
         return Err(unfit(DISPLACEMENT, "no finite values".into()));
     };
     let shown = deformed.joined(&size);
+    let faces = plane_faces(picture, &places)?;
+    let outline = outline(picture, &faces, &Weld::new(picture, displacement));
 
-    // Per panel: axis labels left, colour bar right, the rest for the body.
-    let panel_width = 0.5 * Width::Page.mm();
-    let room = [panel_width - 14.0 - 19.0, 90.0];
-    let scale = (room[0] / shown.width()).min(room[1] / shown.height());
-    let body = [scale * shown.width(), scale * shown.height()];
+    let body = Body {
+        picture,
+        displacement,
+        places,
+        outline,
+        faces,
+        shown,
+    };
+    let layout = Layout::new(&body.shown);
     let caption = full_caption(caption, factor);
     let lines = wrapped(&caption, CAPTION_PT, Width::Page.mm() - 3.0);
-    // Above the body stands the label of the colour bar.
-    let top = caption_height(&lines) + 6.0;
-    let bottom = top + body[1];
-    let mut canvas = Canvas::new(Width::Page.mm(), bottom + 10.0);
+    let top = caption_height(&lines);
+    let mut canvas = Canvas::new(Width::Page.mm(), top + layout.height());
     canvas.caption(&lines);
-
-    let outline = boundary(&faces);
-    for (component, name) in ["x", "y"].into_iter().enumerate() {
-        let left = component as f64 * panel_width + 13.0;
-        let paper = |p: [f64; 2]| {
-            [
-                left + scale * (p[0] - shown.low[0]),
-                bottom - scale * (p[1] - shown.low[1]),
-            ]
-        };
-        let (low, high) = range(displacement.iter().map(|u| u[component])).unwrap_or((0.0, 0.0));
-        let (unit_factor, unit) = prefixed(low.abs().max(high.abs()), "m");
-        let levels = Levels::new(low * unit_factor, high * unit_factor);
-
-        stroke(
-            &mut canvas,
-            &outline,
-            |p| {
-                let [x, y, _] = picture.points[p];
-                pixel(paper([x, y]))
-            },
-            LIGHT,
-            0.15,
-        );
-        let corner = |p: usize| {
-            (
-                pixel(paper(places[p])),
-                displacement[p][component] * unit_factor,
-            )
-        };
-        let triangles: Vec<Triangle> = faces.iter().flat_map(|face| split(face, corner)).collect();
-        bands::fill(&mut canvas, &triangles, &levels, 0.05);
-        stroke(
-            &mut canvas,
-            &outline,
-            |p| pixel(paper(places[p])),
-            BLACK,
-            0.2,
-        );
-
-        let frame = [left - 1.5, bottom + 1.5];
-        draw_axes(&mut canvas, frame, &shown, scale);
-        let bar = [left + body[0] + 4.0, bottom];
-        let label = format!("{}{} [{unit}]", italic("u"), subscript(name));
-        bands::colour_bar(&mut canvas, &levels, bar, body[1].min(60.0), &label);
+    for component in 0..2 {
+        let [x, y] = layout.origin(component);
+        draw_component(&mut canvas, &body, component, [x, top + y], &layout);
     }
     canvas.finish(&format!("Displacement contours: {caption}"))
+}
+
+/// What is drawn, the same in both panels.
+struct Body<'a> {
+    picture: &'a Picture,
+    displacement: &'a [[f64; 3]],
+    /// Deformed positions [m].
+    places: Vec<[f64; 2]>,
+    faces: Vec<Face>,
+    /// Edges of the boundary and of crack faces.
+    outline: Vec<[usize; 2]>,
+    /// Undeformed and deformed body together [m].
+    shown: Box2,
+}
+
+/// Two panels, side by side, or one above the other for flat bodies.
+struct Layout {
+    stacked: bool,
+    /// Millimetres on paper per metre.
+    scale: f64,
+    body: [f64; 2],
+}
+
+impl Layout {
+    /// Room left of a body for the axis, right of it for the colour bar, above and below it [mm].
+    const LEFT: f64 = 13.0;
+    const RIGHT: f64 = 20.0;
+    const ABOVE: f64 = 6.0;
+    const BELOW: f64 = 10.0;
+
+    fn new(shown: &Box2) -> Self {
+        let stacked = shown.width() > 2.5 * shown.height();
+        let width = if stacked {
+            Width::Page.mm()
+        } else {
+            0.5 * Width::Page.mm()
+        };
+        let room = [width - Self::LEFT - Self::RIGHT, 90.0];
+        let scale = (room[0] / shown.width()).min(room[1] / shown.height());
+        Self {
+            stacked,
+            scale,
+            body: [scale * shown.width(), scale * shown.height()],
+        }
+    }
+
+    /// A flat body leaves room for a readable colour bar all the same.
+    fn panel_height(&self) -> f64 {
+        Self::ABOVE + self.body[1].max(BAR_MM[0]) + Self::BELOW
+    }
+
+    fn height(&self) -> f64 {
+        if self.stacked {
+            2.0 * self.panel_height()
+        } else {
+            self.panel_height()
+        }
+    }
+
+    /// Lower left corner of the body in a panel.
+    fn origin(&self, panel: usize) -> [f64; 2] {
+        let n = panel as f64;
+        let bottom = self.panel_height() - Self::BELOW;
+        if self.stacked {
+            [Self::LEFT, bottom + n * self.panel_height()]
+        } else {
+            [Self::LEFT + n * 0.5 * Width::Page.mm(), bottom]
+        }
+    }
+}
+
+/// Bands of one displacement component, outlines, axes, colour bar.
+fn draw_component(
+    canvas: &mut Canvas,
+    body: &Body<'_>,
+    component: usize,
+    origin: [f64; 2],
+    layout: &Layout,
+) {
+    let [left, bottom] = origin;
+    let (scale, shown) = (layout.scale, &body.shown);
+    let paper = |[x, y]: [f64; 2]| {
+        pixel([
+            left + scale * (x - shown.low[0]),
+            bottom - scale * (y - shown.low[1]),
+        ])
+    };
+    let u = |point: usize| body.displacement[point][component];
+    let (low, high) = range((0..body.displacement.len()).map(u)).unwrap_or((0.0, 0.0));
+    let (factor, unit) = prefixed(low.abs().max(high.abs()), "m");
+    let levels = Levels::new(low * factor, high * factor);
+
+    let undeformed = |point: usize| {
+        let [x, y, _] = body.picture.points[point];
+        paper([x, y])
+    };
+    let deformed = |point: usize| paper(body.places[point]);
+    stroke(canvas, &body.outline, undeformed, LIGHT, 0.15);
+    let corner = |point: usize| (deformed(point), u(point) * factor);
+    let triangles: Vec<Triangle> = body
+        .faces
+        .iter()
+        .flat_map(|face| split(&face.points, corner))
+        .collect();
+    bands::fill(canvas, &triangles, &levels, 0.05);
+    stroke(canvas, &body.outline, deformed, BLACK, 0.2);
+
+    draw_axes(canvas, [left - 1.5, bottom + 1.5], shown, scale);
+    let bar = [left + layout.body[0] + 4.0, bottom];
+    let height = layout.body[1].clamp(BAR_MM[0], BAR_MM[1]);
+    let label = format!(
+        "{}{} [{unit}]",
+        italic("u"),
+        subscript(["x", "y"][component])
+    );
+    bands::colour_bar(canvas, &levels, bar, height, &label);
 }
 
 /// The caption with the magnification.
@@ -147,7 +232,12 @@ pub(super) fn full_caption(caption: &str, factor: f64) -> String {
 
 /// Left and lower axis, a little off the body.
 fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
-    let ticks = |label: &str, c: usize| Axis::linear(label, [shown.low[c], shown.high[c]], 5);
+    // About a tick every 12 mm, fewer on short axes.
+    let count = |length: f64| ((scale * length / 12.0) as usize).clamp(2, 5);
+    let ticks = |label: &str, c: usize| {
+        let (low, high) = (shown.low[c], shown.high[c]);
+        Axis::linear(label, [low, high], count(high - low))
+    };
     let inside = |c: usize, v: f64| v >= shown.low[c] && v <= shown.high[c];
     let end = [
         origin[0] + 1.5 + scale * shown.width(),
@@ -204,22 +294,30 @@ pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3
     Ok(values)
 }
 
-/// Point numbers of all plane cells, in cyclic order.
-fn plane_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
+/// All plane cells whose points have a finite place.
+fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
+    let sides = cell_scalar(picture, SIDE);
     let mut faces = Vec::new();
-    for cell in &picture.cells {
-        if let Some(point) = cell.points.iter().find(|p| **p >= picture.points.len()) {
-            return Err(unfit(
-                "cells",
-                format!("point {point} of {}", picture.points.len()),
-            ));
+    for (cell, side) in picture.cells.iter().zip(sides) {
+        if let Some(point) = cell.points.iter().find(|p| **p >= places.len()) {
+            return Err(unfit("cells", format!("point {point} of {}", places.len())));
         }
+        let drawn = cell
+            .points
+            .iter()
+            .all(|p| places[*p].iter().all(|c| c.is_finite()));
         if let PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad = cell.shape {
-            faces.push(cell.points.clone());
+            faces.extend(drawn.then(|| Face {
+                points: cell.points.clone(),
+                side,
+            }));
         }
     }
     if faces.is_empty() {
-        return Err(unfit("cells", "no triangle, polygon or quad".into()));
+        return Err(unfit(
+            "cells",
+            "no triangle, polygon or quad to draw".into(),
+        ));
     }
     Ok(faces)
 }
@@ -227,8 +325,11 @@ fn plane_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
 /// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).
 pub fn split(face: &[usize], corner: impl Fn(usize) -> (Pixel, f64)) -> Vec<Triangle> {
     let corners: Vec<(Pixel, f64)> = face.iter().map(|p| corner(*p)).collect();
-    if let [a, b, c] = corners[..] {
-        return vec![[a, b, c]];
+    match corners[..] {
+        [a, b, c] => return vec![[a, b, c]],
+        // Nobody sees the middle of a face that is a fraction of a millimetre wide.
+        [a, b, c, d] if extent(&corners) < SMALL => return vec![[a, b, c], [a, c, d]],
+        _ => {}
     }
     let n = corners.len();
     let mean = |c: usize| {
@@ -242,22 +343,17 @@ pub fn split(face: &[usize], corner: impl Fn(usize) -> (Pixel, f64)) -> Vec<Tria
         .collect()
 }
 
-/// Edges of exactly one face.
-fn boundary(faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
-    let mut edges: Vec<[usize; 2]> = faces
-        .iter()
-        .flat_map(|face| (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()])))
-        .map(|(a, b)| [a.min(b), a.max(b)])
-        .collect();
-    edges.sort_unstable();
-    edges
-        .chunk_by(|a, b| a == b)
-        .filter(|equal| equal.len() == 1)
-        .map(|equal| equal[0])
-        .collect()
+/// Largest side of the upright rectangle around the corners [pixels].
+fn extent(corners: &[(Pixel, f64)]) -> i32 {
+    let along = |c: usize| {
+        let values = || corners.iter().map(|(p, _)| p[c]);
+        values().max().unwrap_or(0) - values().min().unwrap_or(0)
+    };
+    along(0).max(along(1))
 }
 
-fn stroke(
+/// Lines along edges, joined where they meet.
+pub(super) fn stroke(
     canvas: &mut Canvas,
     edges: &[[usize; 2]],
     place: impl Fn(usize) -> Pixel,

@@ -62,18 +62,16 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
     };
 
     let x = if logarithmic {
-        Axis::log("iteration [-]", rows.iter().map(iteration))
+        Axis::many_counts("iteration [-]", most)
     } else {
-        Some(Axis::counts("iteration [-]", most))
+        Axis::counts("iteration [-]", most)
     };
     let shown = rows
         .iter()
         .map(residual)
         .chain(tier.map(|tier| tier.residual));
     let y = Axis::log("natural-map residual [-]", shown);
-    let (Some(x), Some(y)) = (x, y) else {
-        return Err(ReportError::figure(FIGURE, "no finite residual"));
-    };
+    let y = y.ok_or_else(|| ReportError::figure(FIGURE, "no finite residual"))?;
     let curves = runs
         .iter()
         .map(|run| {
@@ -82,8 +80,13 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
                 .collect()
         })
         .collect();
-    let level = |tier: &Tier| (tier.residual, plain(&tier.label));
-    let levels = tier.map(level).into_iter().collect();
+    let level = |tier: &Tier| Entry {
+        label: format!("{} ({:e})", plain(&tier.label), tier.residual),
+        style: Style::level(),
+        line: true,
+    };
+    let marks = tier.map(level).into_iter().collect();
+    let levels = tier.map(|tier| tier.residual).into_iter().collect();
     let panel = Panel {
         x,
         y,
@@ -92,7 +95,7 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
         slope: None,
     };
     let title = format!("Residual against iteration: {}", names.common);
-    draw(title, names.common, panel, names.labels, curves)
+    draw(title, names.common, panel, names.labels, curves, marks)
 }
 
 /// A curve of [`error_plot`] and [`line_plot`].
@@ -104,7 +107,8 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
-/// What [`error_plot`] and [`line_plot`] draw. Labels may hold [`subscript`] and [`italic`].
+/// What [`error_plot`] and [`line_plot`] draw. Labels may hold [`subscript`](super::subscript) and
+/// [`italic`](super::italic).
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvePlot {
     /// Small text above the axes, e.g. the case.
@@ -189,16 +193,24 @@ fn generic(
         .map(|curve| curve.label.clone())
         .collect();
     let title = format!("{} against {}", plot.y_label, plot.x_label);
-    draw(title, plain(&plot.caption), panel, labels, curves)
+    draw(
+        title,
+        plain(&plot.caption),
+        panel,
+        labels,
+        curves,
+        Vec::new(),
+    )
 }
 
-/// One panel with its curves and a legend.
+/// One panel with its curves; the legend tells curves, then `marks`.
 fn draw(
     title: String,
     caption: String,
     mut panel: Panel,
     labels: Vec<String>,
     curves: Vec<Vec<[f64; 2]>>,
+    marks: Vec<Entry>,
 ) -> Result<String, ReportError> {
     let places = |curve: &Vec<[f64; 2]>| -> Vec<f64> {
         curve
@@ -231,7 +243,7 @@ fn draw(
         width: Width::Column,
         height: 46.0,
         panels: vec![panel],
-        legend: vec![legend],
+        legend: vec![legend, marks],
     };
     chart.svg()
 }

@@ -1,19 +1,22 @@
 //! One displacement component on the deformed boundary of a solid, seen along the diagonal of the axes.
 //!
-//! Faces of exactly one cell are drawn from back to front (painter's algorithm), those that look away are left out. The
+//! The boundary is drawn from back to front (painter's algorithm), patches that look away are left out. The
 //! view is isometric: x points to the lower left, y to the lower right, z up.
 
 use super::axis::{prefixed, range};
-use super::bands::{self, Levels};
+use super::bands::{self, Levels, Triangle};
 use super::canvas::{
     Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, subscript, wrapped,
 };
 use super::chart::TICK_PT;
 use super::colour::BLACK;
-use super::contour::{Box2, DISPLACEMENT, Magnification, full_caption, point_vector, split, unfit};
-use crate::harness::record::{Picture, PictureCell, PictureShape};
+use super::contour::{
+    Box2, DISPLACEMENT, Magnification, full_caption, point_vector, split, stroke, unfit,
+};
+use super::outline::Weld;
+use super::surface::{self, Patch};
+use crate::harness::record::Picture;
 use crate::report::ReportError;
-use std::collections::BTreeMap;
 
 /// Component of a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,17 +39,10 @@ impl Axis3 {
     }
 }
 
-/// Faces of a hexahedron, corners in VTK's order, normals outwards.
-const HEXAHEDRON: [&[usize]; 6] = [
-    &[0, 3, 2, 1],
-    &[4, 5, 6, 7],
-    &[0, 1, 5, 4],
-    &[1, 2, 6, 5],
-    &[2, 3, 7, 6],
-    &[3, 0, 4, 7],
-];
-/// Faces of a tetrahedron.
-const TETRA: [&[usize]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+/// Height of the colour bar [mm].
+const BAR_MM: f64 = 40.0;
+/// Room for the axes below it [mm].
+const TRIAD_MM: f64 = 16.0;
 
 /// One component of `displacement_m` of a 3D picture as filled bands on the deformed boundary.
 ///
@@ -65,12 +61,16 @@ pub fn solid_displacement(
         ));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
-    let faces = boundary_faces(picture)?;
+    let patches = surface::boundary(picture, &Weld::new(picture, displacement))?;
     let length = |u: &[f64; 3]| u.iter().map(|c| c * c).sum::<f64>().sqrt();
     let diagonal: [f64; 3] = std::array::from_fn(|c| {
         range(picture.points.iter().map(|p| p[c])).map_or(0.0, |(low, high)| high - low)
     });
-    let largest = displacement.iter().map(length).fold(0.0, f64::max);
+    let largest = displacement
+        .iter()
+        .map(length)
+        .filter(|u| u.is_finite())
+        .fold(0.0, f64::max);
     let factor = magnification.factor(length(&diagonal), largest);
     let places: Vec<[f64; 3]> = picture
         .points
@@ -87,7 +87,8 @@ pub fn solid_displacement(
     let body = [scale * shown.width(), scale * shown.height()];
     let caption = full_caption(caption, factor);
     let lines = wrapped(&caption, CAPTION_PT, width - 3.0);
-    let (left, bottom) = (3.0, caption_height(&lines) + 4.0 + body[1]);
+    let top = caption_height(&lines) + 4.0;
+    let (left, bottom) = (3.0, top + body[1].max(BAR_MM + TRIAD_MM));
     let paper = |p: [f64; 3]| {
         let [x, y] = project(p);
         [
@@ -100,33 +101,41 @@ pub fn solid_displacement(
     let (unit_factor, unit) = prefixed(low.abs().max(high.abs()), "m");
     let levels = Levels::new(low * unit_factor, high * unit_factor);
 
-    let mut canvas = Canvas::new(width, bottom + 9.0);
-    let mut visible: Vec<(f64, &Vec<usize>)> = faces
+    let mut canvas = Canvas::new(width, bottom + 4.0);
+    let mut visible: Vec<(f64, &Patch)> = patches
         .iter()
-        .filter(|face| faces_viewer(face.iter().map(|p| project(places[*p]))))
-        .map(|face| {
-            (
-                face.iter().map(|p| depth(places[*p])).sum::<f64>() / face.len() as f64,
-                face,
-            )
+        .filter(|patch| !patch.outline.is_empty())
+        .filter(|patch| patch.faces.iter().flatten().all(|p| finite(places[*p])))
+        .filter(|patch| faces_viewer(patch.faces[0].iter().map(|p| project(places[*p]))))
+        .map(|patch| {
+            let corners = patch.outline.iter().flatten();
+            let total: f64 = corners.map(|p| depth(places[*p])).sum();
+            (total / (2 * patch.outline.len()) as f64, patch)
         })
         .collect();
     visible.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (_, face) in visible {
-        let corner = |p: usize| (pixel(paper(places[p])), displacement[p][c] * unit_factor);
-        bands::fill(&mut canvas, &split(face, corner), &levels, 0.0);
-        // The mesh line also covers the hairline between neighbouring faces.
-        let mut ring: Vec<_> = face.iter().map(|p| pixel(paper(places[*p]))).collect();
-        ring.push(ring[0]);
-        canvas.pixel_line(ring, BLACK, 0.05);
+    let corner = |p: usize| (pixel(paper(places[p])), displacement[p][c] * unit_factor);
+    for (_, patch) in visible {
+        let triangles: Vec<Triangle> = patch
+            .faces
+            .iter()
+            .flat_map(|face| split(face, corner))
+            .collect();
+        bands::fill(&mut canvas, &triangles, &levels, 0.0);
+        // The mesh line also covers the hairline between neighbouring patches.
+        stroke(&mut canvas, &patch.outline, |p| corner(p).0, BLACK, 0.05);
     }
 
     canvas.caption(&lines);
     let label = format!("{}{} [{unit}]", italic("u"), subscript(component.name()));
-    let bar = [width - 15.0, bottom];
-    bands::colour_bar(&mut canvas, &levels, bar, body[1].min(55.0), &label);
-    draw_triad(&mut canvas, [10.0, bottom + 2.0]);
+    let bar = [width - 15.0, bottom - TRIAD_MM];
+    bands::colour_bar(&mut canvas, &levels, bar, BAR_MM, &label);
+    draw_triad(&mut canvas, [width - 10.5, bottom - 3.0]);
     canvas.finish(&format!("Displacement {}: {caption}", component.name()))
+}
+
+fn finite(place: [f64; 3]) -> bool {
+    place.iter().all(|c| c.is_finite())
 }
 
 /// Isometric projection: right and up on the paper [m].
@@ -152,50 +161,9 @@ fn faces_viewer(corners: impl Iterator<Item = [f64; 2]>) -> bool {
     twice_area > 0.0
 }
 
-fn cell_faces(cell: &PictureCell) -> Vec<Vec<usize>> {
-    let faces: &[&[usize]] = match cell.shape {
-        PictureShape::Hexahedron => &HEXAHEDRON,
-        PictureShape::Tetra => &TETRA,
-        _ => &[],
-    };
-    faces
-        .iter()
-        .map(|face| face.iter().map(|i| cell.points[*i]).collect())
-        .collect()
-}
-
-/// Faces of exactly one cell, in the order of their sorted points.
-fn boundary_faces(picture: &Picture) -> Result<Vec<Vec<usize>>, ReportError> {
-    let mut count: BTreeMap<Vec<usize>, (usize, Vec<usize>)> = BTreeMap::new();
-    for (index, cell) in picture.cells.iter().enumerate() {
-        let needed = match cell.shape {
-            PictureShape::Hexahedron => 8,
-            PictureShape::Tetra => 4,
-            _ => continue,
-        };
-        let known = cell.points.iter().all(|p| *p < picture.points.len());
-        if cell.points.len() != needed || !known {
-            return Err(unfit("cells", format!("cell {index} has wrong points")));
-        }
-        for face in cell_faces(cell) {
-            let mut key = face.clone();
-            key.sort_unstable();
-            count.entry(key).or_insert((0, face)).0 += 1;
-        }
-    }
-    if count.is_empty() {
-        return Err(unfit("cells", "no hexahedron or tetrahedron".into()));
-    }
-    Ok(count
-        .into_values()
-        .filter(|(n, _)| *n == 1)
-        .map(|(_, face)| face)
-        .collect())
-}
-
 /// The three axes with their names.
 fn draw_triad(canvas: &mut Canvas, origin: [f64; 2]) {
-    const LENGTH: f64 = 6.0;
+    const LENGTH: f64 = 5.0;
     for (direction, name) in [
         ([1.0, 0.0, 0.0], "x"),
         ([0.0, 1.0, 0.0], "y"),

@@ -114,6 +114,14 @@ impl Style {
         }
     }
 
+    /// A horizontal line such as a tolerance.
+    pub fn level() -> Self {
+        Self {
+            dashes: &[1.5, 1.0],
+            ..Self::reference(colour::GREY)
+        }
+    }
+
     /// A thin line without markers.
     pub fn reference(colour: Rgb) -> Self {
         Self {

@@ -27,7 +27,10 @@ pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>
     let mut work: Vec<(usize, Vec<f64>)> = modes
         .iter()
         .enumerate()
-        .map(|(mode, r)| (mode, r.iter().map(|v| v / largest(r)).collect()))
+        .map(|(mode, r)| {
+            let size = largest(r);
+            (mode, r.iter().map(|v| v / size).collect())
+        })
         .collect();
     let mut pins = Vec::with_capacity(modes.len());
     while !work.is_empty() {
