@@ -154,6 +154,7 @@ pub fn edge_pairs(
         }
         facets.push(keys);
     }
+    let at_tip = 1e-9 * mesh.extent().0;
     let points = found
         .into_iter()
         .map(|(nodes, (x, weight))| {
@@ -167,7 +168,7 @@ pub fn edge_pairs(
                 },
                 frame: crack.frame,
                 weight,
-                terms: jump_terms(index, crack, enrichment, nodes, &x),
+                terms: jump_terms(index, crack, enrichment, nodes, &x, at_tip),
             };
             (nodes, point)
         })
@@ -209,13 +210,15 @@ fn weighted_vertices(
         .collect()
 }
 
-/// Coefficients of the functions that jump at a point between two nodes (equal: at the node).
+/// Coefficients of the functions that jump at a point between two nodes (equal: at the node); a point closer than
+/// `at_tip` to a tip lies at the tip.
 fn jump_terms(
     index: usize,
     crack: &Crack,
     enrichment: &Enrichment,
     nodes: [u32; 2],
     x: &Point,
+    at_tip: f64,
 ) -> Vec<(u32, f64)> {
     let [i, j] = nodes.map(|n| n as usize);
     let shares = if i == j {
@@ -233,7 +236,13 @@ fn jump_terms(
                 FunctionKind::Branch { tip, order: 0 }
                     if enrichment.tips[tip as usize].crack == index =>
                 {
-                    2.0 * norm(&sub(x, &enrichment.tips[tip as usize].position)).sqrt() * share
+                    // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
+                    let r = norm(&sub(x, &enrichment.tips[tip as usize].position));
+                    if r > at_tip {
+                        2.0 * r.sqrt() * share
+                    } else {
+                        0.0
+                    }
                 }
                 _ => 0.0,
             };

@@ -1,0 +1,272 @@
+//! What the whole-chain tests share: cases from text, one increment by hand, rows by name.
+
+// Every test binary uses its own part.
+#![allow(dead_code)]
+
+use std::sync::Arc;
+
+use stickslip::harness::body::{Body, BodyError};
+use stickslip::harness::case::{self, Case};
+use stickslip::harness::record::Results;
+use stickslip::harness::run::{Choice, Quiet, Settings, run_case};
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
+};
+
+/// A method whose limit are the contact laws and that ends in round-off: the default where the method does not matter.
+pub const METHOD: &str = "b-newton";
+
+/// Natural map asked for where a test is held to round-off.
+pub const TOLERANCE: f64 = 1e-12;
+
+/// The case of a text that must be accepted.
+pub fn parse(text: &str) -> Case {
+    case::parse("test.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// A body of a text that must be accepted.
+pub fn body(text: &str) -> Body {
+    try_body(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// A body, or why not.
+pub fn try_body(text: &str) -> Result<Body, BodyError> {
+    Body::new(&parse(text), 1, false)
+}
+
+/// One increment solved by hand.
+pub struct Solved {
+    pub body: Body,
+    pub system: Arc<ContactSystem>,
+    pub outcome: Outcome,
+    /// All unknowns [m].
+    pub u: Vec<f64>,
+    /// Jump, `dim` per point [m].
+    pub jump: Vec<f64>,
+}
+
+impl Solved {
+    /// Contact forces, `dim` per point.
+    pub fn p(&self) -> &[f64] {
+        &self.outcome.state.p
+    }
+
+    /// Mean traction component of every point: force over tributary measure.
+    pub fn traction(&self, component: usize) -> Vec<f64> {
+        let dim = self.body.mesh.dim();
+        let forces = self.p().chunks_exact(dim).map(|p| p[component]);
+        let points = self.body.points.iter();
+        forces.zip(points).map(|(f, p)| f / p.weight).collect()
+    }
+
+    /// Largest difference of the nodal displacements from a field [m].
+    pub fn displacement_error(&self, field: impl Fn(&[f64; 3]) -> [f64; 3]) -> f64 {
+        let dim = self.body.mesh.dim();
+        let mut worst: f64 = 0.0;
+        for (node, x) in self.body.mesh.nodes.iter().enumerate() {
+            for a in 0..dim {
+                worst = worst.max((self.u[node * dim + a] - field(x)[a]).abs());
+            }
+        }
+        worst
+    }
+
+    /// Force of the supports on a side, one component: rows of K u − Bᵀ P less the loads.
+    pub fn reaction(&self, side: &str, component: usize) -> f64 {
+        let dim = self.body.mesh.dim();
+        let mut force = self.body.stiffness.mul(&self.u);
+        for (f, b) in force.iter_mut().zip(contact_force(&self.body, self.p())) {
+            *f -= b;
+        }
+        let external = self.body.external_force(1.0);
+        let nodes = self.body.mesh.side_nodes(side);
+        let rows = nodes.iter().map(|n| n * dim + component);
+        rows.map(|i| force[i] - external[i]).sum()
+    }
+}
+
+/// Bᵀ P over all unknowns, prescribed ones too.
+pub fn contact_force(body: &Body, p: &[f64]) -> Vec<f64> {
+    let dim = body.mesh.dim();
+    let mut force = vec![0.0; body.numbers.len()];
+    for (point, p) in body.points.iter().zip(p.chunks_exact(dim)) {
+        for &(f, c) in &point.terms {
+            for (axis, value) in point.frame.iter().zip(p) {
+                for a in 0..dim {
+                    force[f as usize * dim + a] += c * axis[a] * value;
+                }
+            }
+        }
+    }
+    force
+}
+
+/// Friction of every contact point as the case file states it.
+pub fn friction(case: &Case, body: &Body) -> Vec<f64> {
+    let points = body.points.iter();
+    points.map(|p| case.cracks[p.crack].friction).collect()
+}
+
+/// The load of a body nothing acts on.
+pub fn no_load(body: &Body) -> Load {
+    Load {
+        force: vec![0.0; body.elastic.unknowns()],
+        offset: vec![0.0; body.points.len() * body.mesh.dim()],
+    }
+}
+
+/// Solves the last load of a case in one increment; the method must converge to the tolerance.
+pub fn solve_with(text: &str, name: &str, tolerance: f64) -> Solved {
+    let case = parse(text);
+    let body = Body::new(&case, 1, false).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let friction = friction(&case, &body);
+    let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).unwrap());
+    let registered = method(name).expect("registered");
+    let options = Options::new(registered.options, &[]).unwrap();
+    let mut enforcement = (registered.build)(&options).unwrap();
+    let increment = Increment {
+        system: &system,
+        load: &body.load(case.path.end),
+        start_load: &no_load(&body),
+        start: &ContactState::zero(&system),
+        index: 0,
+        tolerance,
+    };
+    let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
+    assert_eq!(outcome.status, Status::Converged, "{name}\n{text}");
+    let u = body.all_unknowns(case.path.end, &outcome.state.u);
+    let jump = body.jump(&u);
+    Solved {
+        body,
+        system,
+        outcome,
+        u,
+        jump,
+    }
+}
+
+/// As [`solve_with`], by [`METHOD`] to [`TOLERANCE`].
+pub fn solve(text: &str) -> Solved {
+    solve_with(text, METHOD, TOLERANCE)
+}
+
+/// Runs a case by methods with their default options, one after the other.
+pub fn run(case: &Case, methods: &[&str]) -> Results {
+    let settings = Settings {
+        tier: None,
+        jobs: 1,
+    };
+    run_case(case, &choices(methods), settings, &Quiet).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Methods with their default options.
+pub fn choices(methods: &[&str]) -> Vec<Choice> {
+    let choice = |name: &&str| Choice::new(method(name).expect("registered"), &[]).unwrap();
+    methods.iter().map(choice).collect()
+}
+
+/// The only value of a quantity in the rows that fulfil a condition.
+pub fn value(
+    results: &Results,
+    keep: impl Fn(&stickslip::harness::record::RunKey) -> bool,
+    [quantity, at, component]: [&str; 3],
+) -> f64 {
+    let found: Vec<f64> = results
+        .quantities
+        .iter()
+        .filter(|q| q.quantity == quantity && q.at == at && q.component == component)
+        .filter(|q| keep(&q.key))
+        .map(|q| q.value)
+        .collect();
+    assert_eq!(found.len(), 1, "{quantity} {at} {component}: {found:?}");
+    found[0]
+}
+
+/// Largest |a − b| over the largest |b|.
+pub fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let size = b.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+    let difference = a.iter().zip(b).map(|(x, y)| (x - y).abs());
+    // `max` drops NaN, and a NaN must fail.
+    difference.fold(0.0, |m: f64, d| if d.is_nan() { d } else { m.max(d) }) / size
+}
+
+/// Reproducible numbers between 0 and 1 (xorshift64*, Vigna 2016).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    pub fn vector(&mut self, n: usize) -> Vec<f64> {
+        (0..n).map(|_| self.between(-1.0, 1.0)).collect()
+    }
+}
+
+/// What the files of the tests of one chain have in common: a 2D box and everything after it.
+pub fn plane(min: [f64; 2], max: [f64; 2], cells: [usize; 2], rest: &str) -> String {
+    format!(
+        "title = \"t\"\nmodel = \"plane-strain\"\nmaterial = {{ young_pa = 1, poisson = 0.3 }}\n\
+         mesh = {{ box = {{ min_m = {min:?}, max_m = {max:?}, cells = {cells:?} }} }}\n{rest}"
+    )
+}
+
+/// A straight crack in 2D.
+pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
+    format!("[[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = {friction:?}\ntip = \"{tip}\"\n")
+}
+
+/// A support on sides (TOML), with its displacement (TOML).
+pub fn support(on: &str, displacement: &str) -> String {
+    format!("[[support]]\non = {on}\ndisplacement_m = {displacement}\n")
+}
+
+/// A load on one side: kind and value as one TOML line.
+pub fn load(on: &str, what: &str) -> String {
+    format!("[[load]]\non = \"{on}\"\n{what}\n")
+}
+
+/// A solid box with planes: point, normal, friction.
+pub fn solid(
+    max: [f64; 3],
+    cells: [usize; 3],
+    planes: &[([f64; 3], [f64; 3], f64)],
+    rest: &str,
+) -> String {
+    let cracks: String = planes
+        .iter()
+        .map(|(point, normal, friction)| {
+            format!(
+                "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n"
+            )
+        })
+        .collect();
+    format!(
+        "title = \"t\"\nmodel = \"solid\"\nmaterial = {{ young_pa = 1, poisson = 0.3 }}\n\
+         mesh = {{ box = {{ min_m = [0, 0, 0], max_m = {max:?}, cells = {cells:?} }} }}\n{cracks}{rest}"
+    )
+}
+
+/// Every node of the outline held: the body of tests that look at K and B only.
+pub fn clamped(dim: usize) -> String {
+    let (sides, zero): (&[&str], &str) = if dim == 2 {
+        (&["left", "right", "bottom", "top"], "[0, 0]")
+    } else {
+        (
+            &["left", "right", "front", "back", "bottom", "top"],
+            "[0, 0, 0]",
+        )
+    };
+    sides
+        .iter()
+        .map(|side| support(&format!("\"{side}\""), zero))
+        .collect()
+}
