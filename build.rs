@@ -66,7 +66,12 @@ fn embed_cases() {
     names.sort();
     let entries: String = names
         .iter()
-        .map(|name| format!("    ({name:?}, include_str!({:?})),\n", format!("{root}/cases/{name}.toml")))
+        .map(|name| {
+            format!(
+                "    ({name:?}, include_str!({:?})),\n",
+                format!("{root}/cases/{name}.toml")
+            )
+        })
         .collect();
     let target = std::env::var("OUT_DIR").unwrap_or_else(|_| ".".into());
     let list = format!("&[\n{entries}]\n");

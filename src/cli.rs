@@ -17,7 +17,11 @@ use crate::report::{Provenance, ReportError, prepare_output, standard};
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
 #[derive(Debug, Parser)]
-#[command(version, about, after_help = "Exit codes: 0 all runs as expected, 1 a run or an expected number failed, 2 bad input or files.")]
+#[command(
+    version,
+    about,
+    after_help = "Exit codes: 0 all runs as expected, 1 a run or an expected number failed, 2 bad input or files."
+)]
 pub struct Cli {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -159,9 +163,20 @@ fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     Ok(paper::as_expected(&paper.results))
 }
 
-fn run_verb(names: &[String], methods: &[String], settings: Settings, out: &Path) -> Result<bool, CliError> {
-    let cases = names.iter().map(|name| find_case(name)).collect::<Result<Vec<_>, _>>()?;
-    let given = methods.iter().map(|m| parse_choice(m)).collect::<Result<Vec<_>, _>>()?;
+fn run_verb(
+    names: &[String],
+    methods: &[String],
+    settings: Settings,
+    out: &Path,
+) -> Result<bool, CliError> {
+    let cases = names
+        .iter()
+        .map(|name| find_case(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let given = methods
+        .iter()
+        .map(|m| parse_choice(m))
+        .collect::<Result<Vec<_>, _>>()?;
     for case in &cases {
         choices(case, &given)?;
     }
@@ -175,7 +190,10 @@ fn run_verb(names: &[String], methods: &[String], settings: Settings, out: &Path
     standard::write(out, &results, &provenance(settings))?;
     println!("{}", standard::runs_table(&results.runs)?.terminal());
     if !results.expectations.is_empty() {
-        println!("{}", standard::expectations_table(&results.expectations)?.terminal());
+        println!(
+            "{}",
+            standard::expectations_table(&results.expectations)?.terminal()
+        );
     }
     println!("{}\nResults: {}", paper::summary(&results), out.display());
     Ok(paper::as_expected(&results))
@@ -202,7 +220,9 @@ fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
 }
 
 fn provenance(settings: Settings) -> Provenance {
-    let tier = settings.tier.map_or_else(|| "of each case".to_owned(), |t| t.to_string());
+    let tier = settings
+        .tier
+        .map_or_else(|| "of each case".to_owned(), |t| t.to_string());
     Provenance::collect(settings.jobs.max(rayon::current_num_threads()))
         .with_option("jobs", settings.jobs.to_string())
         .with_option("tier", tier)
@@ -214,7 +234,18 @@ fn print_missed(results: &Results) {
         let k = &e.key;
         eprintln!(
             "missed: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
-            k.case, k.mesh, k.method, k.friction, k.increment, e.quantity, e.at, e.component, e.found, e.expected, e.allowed, e.unit
+            k.case,
+            k.mesh,
+            k.method,
+            k.friction,
+            k.increment,
+            e.quantity,
+            e.at,
+            e.component,
+            e.found,
+            e.expected,
+            e.allowed,
+            e.unit
         );
     }
 }
@@ -229,7 +260,11 @@ fn find_case(name: &str) -> Result<Case, CliError> {
             return Err(CliError::Unknown {
                 what: "case",
                 name: name.into(),
-                known: shipped::CASES.iter().map(|c| c.0).collect::<Vec<_>>().join(", "),
+                known: shipped::CASES
+                    .iter()
+                    .map(|c| c.0)
+                    .collect::<Vec<_>>()
+                    .join(", "),
             });
         }
     }
@@ -240,7 +275,11 @@ fn find_method(name: &str) -> Result<&'static Method, CliError> {
     stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
         what: "method",
         name: name.into(),
-        known: METHODS.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
+        known: METHODS
+            .iter()
+            .map(|m| m.name)
+            .collect::<Vec<_>>()
+            .join(", "),
     })
 }
 
@@ -330,7 +369,9 @@ impl Bar {
             return Bar(ProgressBar::hidden());
         }
         let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}")
+        {
             bar.set_style(style);
         }
         Bar(bar)

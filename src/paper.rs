@@ -11,11 +11,11 @@ use crate::harness::case::{Case, CaseError};
 use crate::harness::record::{Results, RunKey};
 use crate::harness::run::{Choice, Progress, RunError, Settings, run_case};
 use crate::harness::shipped;
-use crate::report::paper::{
-    Digits, LimitRow, PenaltyRow, RefinementRow, Table1Row, Table2Row, limit_table, penalty_table, refinement_table, table1,
-    table2,
+use crate::report::paper::{Digits, Table1Row, Table2Row, table1, table2};
+use crate::report::study::{
+    LimitRow, PenaltyRow, RefinementRow, limit_table, penalty_table, refinement_table,
 };
-use crate::report::{Bundle, Provenance, ReportError, paper as tables, standard};
+use crate::report::{Bundle, Provenance, ReportError, paper as tables, standard, study};
 
 /// Printed numbers.
 const TABLE1: &str = include_str!("../cases/reference/plate_table1.csv");
@@ -31,7 +31,10 @@ const VARIANTS: [(&str, f64); 2] = [("as-printed", 0.0), ("as-stated", 0.1)];
 /// Multiples of the natural scale that the penalty stiffness is swept over.
 const PENALTIES: [f64; 7] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 /// Refinement factors: even ones would put the crack of Mesh II on a grid line.
-const REFINEMENTS: [(&str, &str, &[usize]); 2] = [("plate_mesh1", "I", &[1, 2, 4, 8]), ("plate_mesh2", "II", &[1, 3, 5, 7])];
+const REFINEMENTS: [(&str, &str, &[usize]); 2] = [
+    ("plate_mesh1", "I", &[1, 2, 4, 8]),
+    ("plate_mesh2", "II", &[1, 3, 5, 7]),
+];
 /// Method of the refinement study.
 const REFERENCE_METHOD: &str = "b-newton";
 
@@ -100,8 +103,8 @@ impl Paper {
         let mut bundle = standard::bundle(&self.results, provenance)?;
         tables::add_table1(&mut bundle, &self.table1)?;
         tables::add_table2(&mut bundle, &self.table2)?;
-        tables::add_penalty(&mut bundle, &self.penalty)?;
-        tables::add_refinement(&mut bundle, &self.refinement, &self.limits)?;
+        study::add_penalty(&mut bundle, &self.penalty)?;
+        study::add_refinement(&mut bundle, &self.refinement, &self.limits)?;
         Ok(bundle)
     }
 
@@ -134,8 +137,18 @@ impl Paper {
 
 /// One line on the verdicts and expectations of all runs.
 pub fn summary(results: &Results) -> String {
-    let count = |prefix: &str| results.runs.iter().filter(|r| r.verdict.starts_with(prefix)).count();
-    let met = results.expectations.iter().filter(|e| e.verdict == "met").count();
+    let count = |prefix: &str| {
+        results
+            .runs
+            .iter()
+            .filter(|r| r.verdict.starts_with(prefix))
+            .count()
+    };
+    let met = results
+        .expectations
+        .iter()
+        .filter(|e| e.verdict == "met")
+        .count();
     format!(
         "{} increments: {} solved, {} penalised, {} refused, {} failed; {} of {} expected numbers met",
         results.runs.len(),
@@ -150,7 +163,11 @@ pub fn summary(results: &Results) -> String {
 
 /// Number of runs that did not do what they claimed, gave up or crashed.
 pub fn failures(results: &Results) -> usize {
-    let bad = |verdict: &str| ["false-claim", "gave-up", "crashed"].iter().any(|p| verdict.starts_with(p));
+    let bad = |verdict: &str| {
+        ["false-claim", "gave-up", "crashed"]
+            .iter()
+            .any(|p| verdict.starts_with(p))
+    };
     results.runs.iter().filter(|r| bad(&r.verdict)).count()
 }
 
@@ -173,7 +190,13 @@ fn choice(name: &str, options: &[(String, f64)]) -> Result<Choice, PaperError> {
 }
 
 /// Value of a quantity of a run; `None` where the run has none.
-fn value(results: &Results, key: impl Fn(&RunKey) -> bool, quantity: &str, at: &str, component: &str) -> Option<f64> {
+fn value(
+    results: &Results,
+    key: impl Fn(&RunKey) -> bool,
+    quantity: &str,
+    at: &str,
+    component: &str,
+) -> Option<f64> {
     results
         .quantities
         .iter()
@@ -193,11 +216,20 @@ fn plate_rows(results: &Results) -> Result<Vec<Table1Row>, PaperError> {
         let (mesh, friction, printed): (String, f64, f64) = record?;
         for (name, _) in PLATES.iter().filter(|(_, own)| *own == mesh) {
             for method in METHODS {
-                let key = |k: &RunKey| k.case == *name && k.friction == friction && k.method == method.name;
+                let key = |k: &RunKey| {
+                    k.case == *name && k.friction == friction && k.method == method.name
+                };
                 // The support pushes down on the body; the paper prints the magnitude.
                 let reaction = value(results, key, "reaction", "top", "y").map(|r| -r / 1e6);
                 let verdict = verdict(results, key);
-                rows.push(Table1Row::new(&mesh, friction, method.name, reaction, Some(printed), verdict));
+                rows.push(Table1Row::new(
+                    &mesh,
+                    friction,
+                    method.name,
+                    reaction,
+                    Some(printed),
+                    verdict,
+                ));
             }
         }
     }
@@ -212,9 +244,16 @@ fn beam_rows(results: &Results) -> Result<Vec<Table2Row>, PaperError> {
             let reference = Table2Row::printed(&model, variant, &component, printed);
             for (name, _) in BEAMS.iter().filter(|(_, own)| *own == model) {
                 for method in METHODS {
-                    let key = |k: &RunKey| k.case == *name && k.friction == friction && k.method == method.name;
+                    let key = |k: &RunKey| {
+                        k.case == *name && k.friction == friction && k.method == method.name
+                    };
                     let row = probe_row(results, key, &component);
-                    rows.push(Table2Row::computed(&reference, method.name, row, verdict(results, key)));
+                    rows.push(Table2Row::computed(
+                        &reference,
+                        method.name,
+                        row,
+                        verdict(results, key),
+                    ));
                 }
             }
             rows.push(reference);
@@ -238,13 +277,19 @@ fn beam_difference(results: &Results) -> f64 {
         for (_, friction) in VARIANTS {
             for component in ["x", "y", "z"] {
                 let of = |case: &str| {
-                    let key = |k: &RunKey| k.case == case && k.friction == friction && k.method == method.name;
+                    let key = |k: &RunKey| {
+                        k.case == case && k.friction == friction && k.method == method.name
+                    };
                     probe_row(results, key, component)
                 };
                 for (one, two) in of(EXACT_BEAM).iter().zip(of(BEAMS[1].0)) {
                     let difference = (one - two).abs();
                     // `max` would drop a NaN, and a missing run must show.
-                    largest = if difference.is_nan() { f64::NAN } else { largest.max(difference) };
+                    largest = if difference.is_nan() {
+                        f64::NAN
+                    } else {
+                        largest.max(difference)
+                    };
                 }
             }
         }
@@ -253,11 +298,18 @@ fn beam_difference(results: &Results) -> f64 {
 }
 
 /// The penalty method on Mesh I: reaction against that of the reference method.
-fn penalty_rows(results: &Results, settings: Settings, progress: &dyn Progress) -> Result<Vec<PenaltyRow>, PaperError> {
+fn penalty_rows(
+    results: &Results,
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Vec<PenaltyRow>, PaperError> {
     let plate = case(PLATES[0].0)?;
     let mut choices = Vec::new();
     for c in PENALTIES {
-        choices.push(choice("penalty", &[("normal".into(), c), ("tangential".into(), c)])?);
+        choices.push(choice(
+            "penalty",
+            &[("normal".into(), c), ("tangential".into(), c)],
+        )?);
     }
     let swept = run_case(&plate, &choices, settings, progress)?;
     let mut rows = Vec::new();
@@ -281,7 +333,8 @@ fn penalty_rows(results: &Results, settings: Settings, progress: &dyn Progress) 
                     (Some(found), Some(exact)) => ((found - exact) / exact).abs(),
                     _ => f64::NAN,
                 },
-                max_penetration_m: value(&swept, key, "max_penetration", "crack-1", "").unwrap_or(f64::NAN),
+                max_penetration_m: value(&swept, key, "max_penetration", "crack-1", "")
+                    .unwrap_or(f64::NAN),
                 natural_map: run.map_or(f64::NAN, |r| r.natural_map),
                 verdict: run.map_or_else(|| "not run".into(), |r| r.verdict.clone()),
             });
@@ -290,7 +343,10 @@ fn penalty_rows(results: &Results, settings: Settings, progress: &dyn Progress) 
     Ok(rows)
 }
 
-fn refinement_rows(settings: Settings, progress: &dyn Progress) -> Result<Vec<RefinementRow>, PaperError> {
+fn refinement_rows(
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Vec<RefinementRow>, PaperError> {
     let method = choice(REFERENCE_METHOD, &[])?;
     let mut rows = Vec::new();
     for (name, family, factors) in REFINEMENTS {
@@ -302,14 +358,21 @@ fn refinement_rows(settings: Settings, progress: &dyn Progress) -> Result<Vec<Re
         let columns = plate.mesh.lines[0].len() - 1;
         for run in &results.runs {
             // The label begins with the number of columns.
-            let found: usize = run.key.mesh.split('x').next().and_then(|n| n.parse().ok()).unwrap_or(columns);
+            let found: usize = run
+                .key
+                .mesh
+                .split('x')
+                .next()
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(columns);
             rows.push(RefinementRow {
                 family: family.into(),
                 mesh: run.key.mesh.clone(),
                 h_m: width / found as f64,
                 friction: run.key.friction,
                 dofs: run.dofs,
-                reaction_mn_per_m: value(&results, |k| *k == run.key, "reaction", "top", "y").map_or(f64::NAN, |r| -r / 1e6),
+                reaction_mn_per_m: value(&results, |k| *k == run.key, "reaction", "top", "y")
+                    .map_or(f64::NAN, |r| -r / 1e6),
                 verdict: run.verdict.clone(),
             });
         }
@@ -327,12 +390,15 @@ fn limit_rows(rows: &[RefinementRow]) -> Vec<LimitRow> {
         .into_iter()
         .map(|friction| {
             let limit = |family: &str| {
-                let mut own: Vec<&RefinementRow> =
-                    rows.iter().filter(|r| r.family == family && r.friction == friction).collect();
+                let mut own: Vec<&RefinementRow> = rows
+                    .iter()
+                    .filter(|r| r.family == family && r.friction == friction)
+                    .collect();
                 own.sort_by(|a, b| a.h_m.total_cmp(&b.h_m));
                 match own.as_slice() {
                     [fine, next, ..] => {
-                        let slope = (next.reaction_mn_per_m - fine.reaction_mn_per_m) / (next.h_m - fine.h_m);
+                        let slope = (next.reaction_mn_per_m - fine.reaction_mn_per_m)
+                            / (next.h_m - fine.h_m);
                         fine.reaction_mn_per_m - slope * fine.h_m
                     }
                     _ => f64::NAN,

@@ -12,6 +12,7 @@ pub mod paper;
 pub mod plot;
 pub mod provenance;
 pub mod standard;
+pub mod study;
 pub mod tables;
 pub mod vtu;
 

@@ -23,7 +23,7 @@
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
 use crate::problem::penalised::Springs;
-use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome, Status,
@@ -73,6 +73,9 @@ static OPTIONS: [OptionSpec; 3] = [
 /// The inner problem is solved this much more accurately than the outer loop is stopped.
 const INNER_FRACTION: f64 = 1e-2;
 
+/// Multiplier updates without progress after which the iteration counts as stalled.
+const PATIENCE: usize = 200;
+
 struct AugmentedLagrangian {
     stiffness: f64,
     max_outer: usize,
@@ -91,7 +94,7 @@ impl AugmentedLagrangian {
 
 impl Enforcement for AugmentedLagrangian {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.condensed().map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(
@@ -113,12 +116,19 @@ impl Enforcement for AugmentedLagrangian {
         };
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;
+        let limits = Limits {
+            iterations: self.max_outer,
+            patience: PATIENCE,
+        };
 
         let status = loop {
             let v = problem.jump(&p, &beta);
             let natural_map = problem.natural_map(&p, &v);
-            if let Some(status) = problem.ends(natural_map, changes, self.max_outer, monitor) {
-                break status;
+            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
+                match problem.confirm(status, &p, &beta)? {
+                    Some(status) => break status,
+                    None => continue,
+                }
             }
             springs.anchor.clone_from(&p);
             let start = springs.predict(&problem, &p, beta);
@@ -135,7 +145,8 @@ impl Enforcement for AugmentedLagrangian {
             );
             (p, beta) = (end.p, end.beta);
             problem.rebalance(&mut p);
-            if inner != Status::Converged {
+            // Stalled: solved to rounding, which the outer loop can still use.
+            if !matches!(inner, Status::Converged | Status::Stalled) {
                 break inner;
             }
         };

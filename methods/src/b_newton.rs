@@ -33,8 +33,8 @@
 //! minimisation.
 //!
 //! # Failure modes
-//! Cycling or stalling for large μ (outside the range where the solution is unique), a singular tangent at P_n = 0,
-//! d = 0 corners. If contact points are redundant, W is singular and so is the tangent of sticking points: the step is
+//! Cycling or stalling for large μ, outside the range where the solution is unique (on random, strongly coupled
+//! systems: none fails up to μ = 1, one in ten at μ = 2, half at μ = 5); a singular tangent at P_n = 0, d = 0 corners. If contact points are redundant, W is singular and so is the tangent of sticking points: the step is
 //! then regularised by 1e-10/ρ, which leaves the solution untouched and picks one of the possible P. If all points of a
 //! floating piece open or slide on the way, the tangent cannot hold it: a few local and global stages (as in LATIN) move
 //! the iterate on, and if that happens again and again the piece is reported as a mechanism.
@@ -46,7 +46,7 @@ use faer::Mat;
 use crate::problem::law::{ball_derivative, project_ball, tangential_norm};
 use crate::problem::line_search::LineSearch;
 use crate::problem::linear::dense::{mul_add, solve_dense};
-use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::problem::stages::{Pair, rescue};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -85,6 +85,8 @@ static OPTIONS: [OptionSpec; 2] = [
     },
 ];
 
+/// Steps without progress after which the iteration counts as cycling.
+const PATIENCE: usize = 60;
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;
 /// Regularisation of a singular tangent of redundant points, relative to 1/ρ.
@@ -140,7 +142,7 @@ struct Kink {
 
 impl Enforcement for BNewton {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.condensed().map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(
@@ -152,9 +154,9 @@ impl Enforcement for BNewton {
             Begin::Done(outcome) => return Ok(outcome),
             Begin::Contact(problem) => problem,
         };
-        let none = vec![0.0; problem.len()];
+        let rigid_springs = vec![0.0; problem.len()];
         let r: Vec<f64> = problem
-            .scales(&none)
+            .scales(&rigid_springs)
             .iter()
             .map(|scale| self.r * scale)
             .collect();
@@ -162,6 +164,10 @@ impl Enforcement for BNewton {
         let mut x = Iterate {
             beta: problem.start_amplitudes(&P),
             P,
+        };
+        let limits = Limits {
+            iterations: self.max_iterations,
+            patience: PATIENCE,
         };
         let mut search = LineSearch::default();
         let mut before: Vec<Piece> = Vec::new();
@@ -171,8 +177,11 @@ impl Enforcement for BNewton {
             let (pieces, kinks) = classify(&problem, &r, &x.P, &v);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let natural_map = problem.natural_map(&x.P, &v);
-            if let Some(status) = problem.ends(natural_map, changes, self.max_iterations, monitor) {
-                break status;
+            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
+                match problem.confirm(status, &x.P, &x.beta)? {
+                    Some(status) => break status,
+                    None => continue,
+                }
             }
             before.clone_from(&pieces);
             let Some(step) = direction(&mut problem, &r, &x, &v, pieces, &kinks) else {

@@ -26,8 +26,10 @@
 //! # Failure modes
 //! Slow far from the best k₀ (times ten in iterations for a factor of ten), and on ill-conditioned W.
 
+use std::sync::Arc;
+
 use crate::problem::law::Branch;
-use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::problem::stages::{GlobalStage, Pair};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -75,11 +77,16 @@ static OPTIONS: [OptionSpec; 3] = [
     },
 ];
 
+/// Iterations without progress after which the iteration counts as stalled: plateaus of some hundred are normal.
+const PATIENCE: usize = 2000;
+
 struct Latin {
     search_direction: f64,
     relaxation: f64,
     max_iterations: usize,
-    global: Option<GlobalStage>,
+    global: Option<Arc<GlobalStage>>,
+    /// Factorisations not yet counted in an outcome.
+    new_factors: usize,
 }
 
 impl Latin {
@@ -89,28 +96,28 @@ impl Latin {
             relaxation: options.own("relaxation"),
             max_iterations: options.own("max_iterations") as usize,
             global: None,
+            new_factors: 0,
         }
     }
 
     /// The global stage of a system; kept for as long as the system stays the same.
-    fn stage(&mut self, system: &ContactSystem) -> Result<(&GlobalStage, bool), MethodError> {
+    fn stage(&mut self, system: &ContactSystem) -> Result<Arc<GlobalStage>, MethodError> {
         let condensed = system.condensed()?;
-        let cached = self
-            .global
-            .take()
-            .filter(|stage| stage.belongs_to(&condensed));
-        let fresh = cached.is_none();
-        let stage = match cached {
-            Some(stage) => stage,
-            None => GlobalStage::new(condensed, self.search_direction)?,
-        };
-        Ok((self.global.insert(stage), fresh))
+        if let Some(stage) = &self.global
+            && stage.belongs_to(&condensed)
+        {
+            return Ok(stage.clone());
+        }
+        let stage = Arc::new(GlobalStage::new(condensed, self.search_direction)?);
+        self.global = Some(stage.clone());
+        self.new_factors += 1;
+        Ok(stage)
     }
 }
 
 impl Enforcement for Latin {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        self.stage(system).map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(
@@ -122,9 +129,13 @@ impl Enforcement for Latin {
             Begin::Done(outcome) => return Ok(outcome),
             Begin::Contact(problem) => problem,
         };
-        let (relaxation, max_iterations) = (self.relaxation, self.max_iterations);
-        let (global, fresh) = self.stage(increment.system)?;
-        problem.counters.factorisations += usize::from(fresh);
+        let relaxation = self.relaxation;
+        let limits = Limits {
+            iterations: self.max_iterations,
+            patience: PATIENCE,
+        };
+        let global = self.stage(increment.system)?;
+        problem.counters.factorisations += std::mem::take(&mut self.new_factors);
         let mut pair = Pair::start(&problem);
         let mut before: Vec<Branch> = Vec::new();
         let mut changes = 0;
@@ -136,8 +147,14 @@ impl Enforcement for Latin {
                 pair.v = problem.jump(&pair.p, &pair.beta);
                 natural_map = problem.natural_map(&pair.p, &pair.v);
             }
-            if let Some(status) = problem.ends(natural_map, changes, max_iterations, monitor) {
-                break status;
+            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
+                match problem.confirm(status, &pair.p, &pair.beta)? {
+                    Some(status) => break status,
+                    None => {
+                        pair.v = problem.jump(&pair.p, &pair.beta);
+                        continue;
+                    }
+                }
             }
             let (target, branches) = global.local_stage(&mut problem, &pair);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();

@@ -2,7 +2,7 @@
 //!
 //! # The problem
 //!
-//! A linear elastic body with contact points, each with a local frame (n, a[, b]); n points from side 2 to side 1.
+//! A linear elastic body with contact points, each with a local frame `(n, a[, b])`; n points from side 2 to side 1.
 //! ```text
 //! K u = f + Bᵀ P            equilibrium; P acts on side 1
 //! [[u]] = B u + offset      jump u₁ − u₂ at the contact points
@@ -23,7 +23,43 @@
 //! # Use
 //!
 //! Build an [`Elastic`] from [`ElasticParts`], a [`ContactSystem`] from it per set of friction coefficients, and an
-//! [`Increment`] per load. Any entry of [`METHODS`] solves the increment; [`residuals`] judges the answer.
+//! [`Increment`] per load. Any entry of [`METHODS`] solves the increment; [`residuals`] judges the answer. One point on
+//! two springs, pressed by 4 N and pulled sideways by 3 N, slips at μ = 0.5 with P_t = −2 N:
+//! ```
+//! use stickslip_methods::*;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let elastic = Elastic::new(ElasticParts {
+//!     dim: 2,
+//!     stiffness: SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![2.0, 5.0])?,
+//!     jump: JumpOperator::new(2, 2, vec![0, 1, 2], vec![0, 1], vec![1.0, 1.0])?,
+//!     weight: vec![1.0],
+//!     order: vec![0, 1],
+//!     floating: vec![],
+//!     frictionless: false,
+//! })?;
+//! let system = ContactSystem::new(elastic, vec![0.5])?;
+//! let rest = Load { force: vec![0.0, 0.0], offset: vec![0.0, 0.0] };
+//! let load = Load { force: vec![-4.0, 3.0], offset: vec![0.0, 0.0] };
+//! let start = ContactState::zero(&system);
+//! let increment = Increment {
+//!     system: &system,
+//!     load: &load,
+//!     start_load: &rest,
+//!     start: &start,
+//!     index: 0,
+//!     tolerance: Tier::High.tolerance(),
+//! };
+//! for method in METHODS.iter().filter(|m| m.exact) {
+//!     let mut solver = (method.build)(&Options::new(method.options, &[])?)?;
+//!     let outcome = solver.solve(&increment, &mut Silent)?;
+//!     assert_eq!(outcome.status, Status::Converged);
+//!     assert!((outcome.state.p[1] + 2.0).abs() < 1e-8);
+//!     assert!(residuals(&increment, &outcome.state)?.natural_map <= increment.tolerance);
+//! }
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Add a method
 //!
@@ -48,7 +84,9 @@ pub trait Enforcement: Send {
         None
     }
 
-    /// Work that depends on the system only. `solve` does it if it was not done before.
+    /// Factors what any load needs: K. `solve` does it if it was not done before. The condensation to the contact
+    /// points waits for the first load that closes the contact, because an open crack does not need it;
+    /// [`ContactSystem::condense`] brings it forward, [`Elastic::timings`] tells its time apart.
     ///
     /// # Errors
     /// Input that no method could treat; see [`MethodError`].

@@ -15,7 +15,7 @@
 //! finds measures the modelling error.
 //!
 //! # Options
-//! `normal`, `tangential`: multiples of ρ, the mean stiffness the body itself opposes to a contact force.
+//! `normal`, `tangential`: k as multiples of ρ, the mean stiffness the body itself opposes to a contact force.
 //! `max_iterations`.
 //!
 //! # Guarantees
@@ -23,7 +23,8 @@
 //! gradient ends after finitely many steps. With friction quadratic convergence at regular points.
 //!
 //! # Failure modes
-//! Beyond about 1e8 rounding of the gap is amplified to visible forces; with large μ the Newton iteration may cycle.
+//! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
+//! to W as compliances 1/k.
 
 use crate::problem::penalised::{Springs, recorded};
 use crate::problem::reduced::{Begin, Reduced};
@@ -91,7 +92,7 @@ impl Penalty {
 
 impl Enforcement for Penalty {
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.condensed().map(|_| ())
+        system.elastic().factorise()
     }
 
     fn solve(

@@ -143,6 +143,28 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
 }
 
 #[test]
+fn exact_methods_can_be_driven_to_rounding() {
+    let (s, load, _) = specimen();
+    for m in exact() {
+        let outcome = run(m, &[], &s, &load, 1e-13);
+        assert_eq!(outcome.status, Status::Converged, "{}", m.name);
+        assert!(
+            judge(&s, &load, &outcome.state).natural_map <= 1e-13,
+            "{}",
+            m.name
+        );
+        // Beyond rounding there is nothing to claim.
+        let outcome = run(m, &[], &s, &load, 1e-20);
+        assert!(
+            outcome.status != Status::Converged
+                || outcome.history.last().unwrap().natural_map == 0.0,
+            "{}",
+            m.name
+        );
+    }
+}
+
+#[test]
 fn every_exact_method_reaches_tier_high_within_its_default_limits_on_a_stiff_range_of_systems() {
     // Condition of K from about 10 to 1e6: LATIN is the one that feels it.
     for shift in [1.0, 1e-2, 1e-4] {

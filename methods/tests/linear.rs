@@ -225,8 +225,7 @@ fn solve_reaches_the_equilibrium_that_the_judge_demands() {
     );
 }
 
-/// The Delassus operator is not public; with one method and P known, W shows in the jump: all exact methods use it and
-/// the judge checks K u = f + BᵀP apart. Here: elements of W through unit forces, against full solves.
+/// Methods see W, the judge sees the jump of u: their natural maps agree only if W is right.
 #[test]
 fn condensed_answers_agree_with_the_uncondensed_body() {
     for frictionless in [false, true] {
@@ -242,7 +241,6 @@ fn condensed_answers_agree_with_the_uncondensed_body() {
             let outcome = run(m, &[], &s, &load, 1e-9);
             let judged = judge(&s, &load, &outcome.state);
             assert_eq!(outcome.status, Status::Converged, "{}", m.name);
-            // `last` comes from q + W P, the judged one from the jump of u: they agree only if W is right.
             let last = outcome.history.last().unwrap().natural_map;
             assert!(
                 (last - judged.natural_map).abs() < 1e-11,
@@ -293,6 +291,48 @@ fn floating_upper_half_is_held_by_contact_alone() {
     );
 }
 
+/// Other bases of the same rigid motions choose other pins and another W; what is reported must not notice.
+#[test]
+fn residuals_of_a_floating_body_do_not_depend_on_the_pins() {
+    let parts = cracked_box(3, 3, true);
+    let n = parts.stiffness.size();
+    let mut mixed = parts.clone();
+    for j in 0..n {
+        let r: Vec<f64> = parts.floating.iter().map(|r| r[j]).collect();
+        for (mode, entry) in mixed.floating.iter_mut().enumerate() {
+            entry[j] = r[mode] + 0.7 * r[(mode + 1) % 6] - 0.4 * r[(mode + 3) % 6];
+        }
+    }
+    let bodies = [parts, mixed].map(|p| Elastic::new(p).unwrap());
+    let f: Vec<f64> = (0..n).map(|j| [3e-3, 0.0, -1e-2][j % 3]).collect();
+    let mut judged = Vec::new();
+    let first = system(&bodies[0], 0.4);
+    let load = force(&first, &f);
+    // Far from converged, so that the natural map is no rounding.
+    let state = run(
+        method("latin").unwrap(),
+        &[("max_iterations", 3.0)],
+        &first,
+        &load,
+        1e-9,
+    )
+    .state;
+    for body in &bodies {
+        let s = system(body, 0.4);
+        judged.push(judge(&s, &load, &state));
+        for m in exact() {
+            let outcome = run(m, &[], &s, &load, 1e-10);
+            assert_eq!(outcome.status, Status::Converged, "{}", m.name);
+        }
+    }
+    assert!(judged[0].natural_map > 1e-4, "{:?}", judged[0]);
+    assert!(
+        (judged[0].natural_map / judged[1].natural_map - 1.0).abs() < 1e-9,
+        "{judged:?}"
+    );
+    assert!(judged.iter().all(|j| j.equilibrium < 1e-12), "{judged:?}");
+}
+
 #[test]
 fn wrong_rigid_motions_are_refused_with_their_number() {
     let refusal = |change: &dyn Fn(&mut ElasticParts)| {
@@ -337,7 +377,7 @@ fn wrong_rigid_motions_are_refused_with_their_number() {
     ));
 }
 
-/// Condensation costs at most 0.3 of the factorisation: 30³ cubes, 17² − … points.
+/// Condensation costs at most 0.3 of the factorisation: 30³ cubes, 17² points, 867 rows on 1734 contact unknowns.
 #[test]
 #[ignore = "timing: run with --release -- --ignored --nocapture"]
 fn condensation_is_cheap_beside_the_factorisation() {
@@ -348,6 +388,12 @@ fn condensation_is_cheap_beside_the_factorisation() {
     for m in METHODS {
         let clock = std::time::Instant::now();
         let outcome = run(m, &[], &s, &load, 1e-9);
+        let judged = judge(&s, &load, &outcome.state);
+        let last = outcome.history.last().unwrap().natural_map;
+        println!(
+            "judged {:.2e} own {last:.2e} equilibrium {:.1e}",
+            judged.natural_map, judged.equilibrium
+        );
         println!(
             "{:22} {:?} {:?} {:.3} s",
             m.name,

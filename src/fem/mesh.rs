@@ -124,6 +124,14 @@ impl Mesh {
         common
     }
 
+    /// The node at a point, within 1e-9 of the body's size; of a pair on a crack the one on side 2.
+    pub fn node_at(&self, x: &Point) -> Option<usize> {
+        let (size, _) = self.extent();
+        self.nodes
+            .iter()
+            .position(|node| (0..3).all(|a| (node[a] - x[a]).abs() <= 1e-9 * size))
+    }
+
     /// Shortest cell edge at every node [m]: the local length to which distances are compared.
     pub fn node_sizes(&self) -> Vec<f64> {
         let mut size = vec![f64::INFINITY; self.nodes.len()];

@@ -125,6 +125,7 @@ impl Body {
         };
         let fixed = prescribed(case, &integrator);
         check_supports(case, &integrator)?;
+        check_probes(case, &mesh)?;
         let dim = mesh.dim();
         let mut free = 0;
         let numbers: Vec<Option<u32>> = (0..enrichment.functions.len() * dim)
@@ -139,7 +140,9 @@ impl Body {
         let mut surface = ContactSurface::default();
         for number in 0..case.cracks.len() {
             match cracks.iter().position(|c| c.number == number) {
-                Some(index) => surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment)),
+                Some(index) => {
+                    surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment))
+                }
                 None => surface.append(doubled.remove(&number).unwrap_or_default()),
             }
         }
@@ -431,6 +434,17 @@ fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), Ca
                 "a region with at least one node",
                 "the support holds nothing",
             ));
+        }
+    }
+    Ok(())
+}
+
+fn check_probes(case: &Case, mesh: &Mesh) -> Result<(), CaseError> {
+    for probe in &case.probes {
+        if mesh.node_at(&probe.point).is_none() {
+            let found = case.text(&probe.span);
+            let message = format!("probe `{}` is at no node", probe.name);
+            return Err(case.error(&probe.span, found, "the place of a node of the mesh", message));
         }
     }
     Ok(())

@@ -51,7 +51,13 @@ impl Snapshot {
     }
 
     /// The state a method returned at time t, after the given one.
-    pub fn new(body: &Body, time: f64, state: &ContactState, status: Vec<PointStatus>, before: &Snapshot) -> Self {
+    pub fn new(
+        body: &Body,
+        time: f64,
+        state: &ContactState,
+        status: Vec<PointStatus>,
+        before: &Snapshot,
+    ) -> Self {
         let dim = body.mesh.dim();
         let u = body.all_unknowns(time, &state.u);
         let jump = body.jump(&u);
@@ -74,7 +80,9 @@ impl Snapshot {
             .sum();
         // F·du = dE + ½ du·K du + D + P_n g_old, because P_n g_new = 0; F includes the reactions.
         let du: Vec<f64> = u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
-        let opening: f64 = (0..body.points.len()).map(|i| state.p[i * dim] * before.jump[i * dim]).sum();
+        let opening: f64 = (0..body.points.len())
+            .map(|i| state.p[i * dim] * before.jump[i * dim])
+            .sum();
         let stored = strain_energy - before.strain_energy;
         let second = 0.5 * dot(&du, &body.stiffness.mul(&du));
         let work = dot(&force, &du);
@@ -117,24 +125,43 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
         let nodes = body.region_nodes(&support.on);
         for (a, amount) in support.displacement.iter().enumerate() {
             if amount.is_some() {
-                let total = nodes.iter().map(|&n| now.force[n * dim + a] - now.external[n * dim + a]).sum();
-                push("reaction", &region_name(&support.on), AXES[a], total, force_unit);
+                let total = nodes
+                    .iter()
+                    .map(|&n| now.force[n * dim + a] - now.external[n * dim + a])
+                    .sum();
+                push(
+                    "reaction",
+                    &region_name(&support.on),
+                    AXES[a],
+                    total,
+                    force_unit,
+                );
             }
         }
     }
     for probe in &case.probes {
-        if let Some(node) = probe_node(body, &probe.point) {
+        if let Some(node) = body.mesh.node_at(&probe.point) {
             for a in 0..dim {
-                push("displacement", &probe.name, AXES[a], now.u[node * dim + a], "m");
+                push(
+                    "displacement",
+                    &probe.name,
+                    AXES[a],
+                    now.u[node * dim + a],
+                    "m",
+                );
             }
         }
     }
     // Every crack, and all of them together.
     let all: Vec<usize> = (0..body.points.len()).collect();
-    let places = std::iter::once((String::new(), all.clone())).chain((0..case.cracks.len()).map(|crack| {
-        let own = all.iter().copied().filter(|&i| body.points[i].crack == crack);
-        (format!("crack-{}", crack + 1), own.collect())
-    }));
+    let places =
+        std::iter::once((String::new(), all.clone())).chain((0..case.cracks.len()).map(|crack| {
+            let own = all
+                .iter()
+                .copied()
+                .filter(|&i| body.points[i].crack == crack);
+            (format!("crack-{}", crack + 1), own.collect())
+        }));
     for (at, own) in places {
         if !at.is_empty() {
             for c in 0..dim {
@@ -152,23 +179,26 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
         }
         let largest = |f: &dyn Fn(usize) -> f64| own.iter().map(|&i| f(i)).fold(0.0, f64::max);
         push("max_gap", &at, "", largest(&|i| now.jump[i * dim]), "m");
-        push("max_penetration", &at, "", largest(&|i| -now.jump[i * dim]), "m");
-        let slip = |i: usize| now.jump[i * dim + 1..(i + 1) * dim].iter().map(|v| v * v).sum::<f64>().sqrt();
+        push(
+            "max_penetration",
+            &at,
+            "",
+            largest(&|i| -now.jump[i * dim]),
+            "m",
+        );
+        let slip = |i: usize| {
+            now.jump[i * dim + 1..(i + 1) * dim]
+                .iter()
+                .map(|v| v * v)
+                .sum::<f64>()
+                .sqrt()
+        };
         push("max_slip", &at, "", largest(&slip), "m");
     }
     push("dissipation", "", "", now.dissipation, energy_unit);
     push("strain_energy", "", "", now.strain_energy, energy_unit);
     push("energy_identity", "", "", now.energy_identity, "-");
     rows
-}
-
-/// The node at a point, within 1e-9 of the body's size.
-pub fn probe_node(body: &Body, x: &[f64; 3]) -> Option<usize> {
-    let (size, _) = body.mesh.extent();
-    body.mesh
-        .nodes
-        .iter()
-        .position(|node| (0..3).all(|a| (node[a] - x[a]).abs() <= 1e-9 * size))
 }
 
 /// Rows of `points.csv` for one increment.
@@ -183,7 +213,10 @@ pub fn point_rows(body: &Body, key: &RunKey, now: &Snapshot) -> Vec<PointRow> {
         .map(|(i, point)| {
             number = if point.crack == last { number + 1 } else { 1 };
             last = point.crack;
-            let (jump, p) = (&now.jump[i * dim..(i + 1) * dim], &now.p[i * dim..(i + 1) * dim]);
+            let (jump, p) = (
+                &now.jump[i * dim..(i + 1) * dim],
+                &now.p[i * dim..(i + 1) * dim],
+            );
             PointRow {
                 key: key.clone(),
                 crack: point.crack + 1,
@@ -205,4 +238,3 @@ pub fn point_rows(body: &Body, key: &RunKey, now: &Snapshot) -> Vec<PointRow> {
         })
         .collect()
 }
-

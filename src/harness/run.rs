@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, Monitor, Options, OptionError, Outcome,
-    Residuals, Tier, point_status, residuals,
+    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, Monitor,
+    OptionError, Options, Outcome, Residuals, Tier, point_status, residuals,
 };
 
 use crate::harness::body::{Body, BodyError};
@@ -32,12 +32,19 @@ impl Choice {
     /// A method with some of its options changed.
     pub fn new(method: &'static Method, given: &[(String, f64)]) -> Result<Self, OptionError> {
         let options = Options::new(method.options, given)?;
-        let changed: Vec<String> = given.iter().map(|(name, value)| format!("{name}={value:e}")).collect();
+        let changed: Vec<String> = given
+            .iter()
+            .map(|(name, value)| format!("{name}={value:e}"))
+            .collect();
         let label = match changed.as_slice() {
             [] => method.name.to_owned(),
             list => format!("{}[{}]", method.name, list.join(",")),
         };
-        Ok(Choice { method, options, label })
+        Ok(Choice {
+            method,
+            options,
+            label,
+        })
     }
 }
 
@@ -90,7 +97,9 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
     }
     if case.methods.is_empty() {
         let all = stickslip_methods::METHODS.iter();
-        return Ok(all.filter_map(|&method| Choice::new(method, &[]).ok()).collect());
+        return Ok(all
+            .filter_map(|&method| Choice::new(method, &[]).ok())
+            .collect());
     }
     case.methods
         .iter()
@@ -126,20 +135,31 @@ struct Cell<'a> {
 }
 
 /// Runs a case for some methods and gathers everything it produced.
-pub fn run_case(case: &Case, given: &[Choice], settings: Settings, progress: &dyn Progress) -> Result<Results, RunError> {
+pub fn run_case(
+    case: &Case,
+    given: &[Choice],
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Results, RunError> {
     let choices = choices(case, given)?;
     let tier = settings.tier.unwrap_or(case.tier);
     let frictions = friction_values(case);
     progress.plan(case.sweep.refine.len() * frictions.len() * choices.len());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.jobs).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.jobs)
+        .build()?;
     let mut results = Results::default();
     for &refine in &case.sweep.refine {
-        let frictionless = frictions.iter().all(|per_crack| per_crack.iter().all(|&mu| mu == 0.0));
+        let frictionless = frictions
+            .iter()
+            .all(|per_crack| per_crack.iter().all(|&mu| mu == 0.0));
         let body = Body::new(case, refine, frictionless)?;
         let mut cells = Vec::new();
         for per_crack in &frictions {
             let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
-            let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?);
+            let system = Arc::new(
+                ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?,
+            );
             for choice in &choices {
                 cells.push(Cell {
                     body: &body,
@@ -152,7 +172,10 @@ pub fn run_case(case: &Case, given: &[Choice], settings: Settings, progress: &dy
         }
         let run = |cell: &Cell<'_>| {
             let results = run_cell(case, cell, tier);
-            progress.done(&format!("{} {} mu={} {}", case.name, body.label, cell.friction, cell.choice.label));
+            progress.done(&format!(
+                "{} {} mu={} {}",
+                case.name, body.label, cell.friction, cell.choice.label
+            ));
             results
         };
         // One after the other unless asked otherwise, so that times mean something.
@@ -176,7 +199,11 @@ fn friction_values(case: &Case) -> Vec<Vec<f64>> {
     if case.sweep.friction.is_empty() {
         return vec![case.cracks.iter().map(|c| c.friction).collect()];
     }
-    case.sweep.friction.iter().map(|&mu| vec![mu; case.cracks.len()]).collect()
+    case.sweep
+        .friction
+        .iter()
+        .map(|&mu| vec![mu; case.cracks.len()])
+        .collect()
 }
 
 /// Seconds a call took, less the time the shared factorisation and condensation took inside it.
@@ -202,7 +229,12 @@ impl Monitor for Unwatched {
 
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
-    let Cell { body, system, choice, .. } = cell;
+    let Cell {
+        body,
+        system,
+        choice,
+        ..
+    } = cell;
     let mut results = Results::default();
     let mut key = RunKey {
         case: case.name.clone(),
@@ -240,7 +272,11 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             start: &state,
             index: increment - 1,
             // A tier asked for on the command line replaces the case's own tolerance.
-            tolerance: if tier == case.tier { case.tolerance } else { tier.tolerance() },
+            tolerance: if tier == case.tier {
+                case.tolerance
+            } else {
+                tier.tolerance()
+            },
         };
         let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Unwatched));
         let judged = solved.and_then(|outcome| {
@@ -248,7 +284,12 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             let status = point_status(&problem, &outcome.state)?;
             Ok((outcome, found, status))
         });
-        let mut run = row(&key, cell, tier, if increment == 1 { prepare_s } else { 0.0 });
+        let mut run = row(
+            &key,
+            cell,
+            tier,
+            if increment == 1 { prepare_s } else { 0.0 },
+        );
         let shared = system.elastic().timings();
         run.factorisations = system.elastic().counters().factorisations;
         run.factorisation_s = shared.analysis_s + shared.factorisation_s;
@@ -269,7 +310,9 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         record_history(&mut results, &key, &outcome);
         now = Snapshot::new(body, time, &outcome.state, status, &now);
         if verdict.is_honest() {
-            results.quantities.extend(quantity_rows(case, body, &key, &now));
+            results
+                .quantities
+                .extend(quantity_rows(case, body, &key, &now));
             results.points.extend(point_rows(body, &key, &now));
             steps.push(field_step(body, &now));
         } else {
@@ -285,7 +328,10 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
 }
 
 /// Builds and prepares a method: the method and its seconds, or why not.
-fn prepare(choice: &Choice, system: &ContactSystem) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
+fn prepare(
+    choice: &Choice,
+    system: &ContactSystem,
+) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
     let crashed = |e: MethodError| Verdict::Crashed(e.to_string());
     let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
     if let Some(reason) = method.refuses(system) {

@@ -48,7 +48,10 @@ impl Verdict {
 
     /// True if the command must report failure.
     pub fn is_failure(&self) -> bool {
-        matches!(self, Verdict::FalseClaim | Verdict::GaveUp(_) | Verdict::Crashed(_))
+        matches!(
+            self,
+            Verdict::FalseClaim | Verdict::GaveUp(_) | Verdict::Crashed(_)
+        )
     }
 }
 
@@ -75,7 +78,10 @@ mod tests {
         Outcome {
             status,
             claim,
-            state: ContactState { u: vec![], p: vec![] },
+            state: ContactState {
+                u: vec![],
+                p: vec![],
+            },
             history: vec![],
             counters: Counters::default(),
         }
@@ -96,19 +102,33 @@ mod tests {
     #[test]
     fn a_claim_counts_only_if_the_judge_agrees() {
         let converged = outcome(Status::Converged, Claim::Exact);
-        assert_eq!(Verdict::of(&converged, &found(1e-10, 1e-14), Tier::High), Verdict::Solved(Tier::High));
-        for (map, equilibrium) in [(1e-8, 1e-14), (1e-10, 1e-9), (f64::NAN, 1e-14), (1e-10, f64::NAN)] {
+        assert_eq!(
+            Verdict::of(&converged, &found(1e-10, 1e-14), Tier::High),
+            Verdict::Solved(Tier::High)
+        );
+        for (map, equilibrium) in [
+            (1e-8, 1e-14),
+            (1e-10, 1e-9),
+            (f64::NAN, 1e-14),
+            (1e-10, f64::NAN),
+        ] {
             let verdict = Verdict::of(&converged, &found(map, equilibrium), Tier::High);
             assert_eq!(verdict, Verdict::FalseClaim);
             assert!(!verdict.is_honest() && verdict.is_failure());
         }
         let stalled = outcome(Status::Stalled, Claim::Exact);
-        assert_eq!(Verdict::of(&stalled, &found(1e-15, 0.0), Tier::Low), Verdict::GaveUp(Status::Stalled));
+        assert_eq!(
+            Verdict::of(&stalled, &found(1e-15, 0.0), Tier::Low),
+            Verdict::GaveUp(Status::Stalled)
+        );
     }
 
     #[test]
     fn a_penalised_claim_is_graded_by_the_tier_it_reaches() {
-        let claim = Claim::Penalised { normal: 1.0, tangential: 1.0 };
+        let claim = Claim::Penalised {
+            normal: 1.0,
+            tangential: 1.0,
+        };
         let converged = outcome(Status::Converged, claim);
         let grade = |map| Verdict::of(&converged, &found(map, 1e-14), Tier::High);
         assert_eq!(grade(1e-4), Verdict::Penalised(Some(Tier::Low)));

@@ -92,7 +92,7 @@ pub struct CellFunction {
     pub kind: FunctionKind,
     /// H(x_j) (Heaviside) or g_l(x_k) (branch) at the node.
     pub shift: f64,
-    /// H in the whole cell, for the Heaviside function of a crack that does not split it.
+    /// Side of the function's crack that the whole cell lies on, if the crack does not split it.
     pub whole: Option<Side>,
 }
 
@@ -147,8 +147,8 @@ impl CellBasis<'_> {
                         Some((number, g, dg)) if number == tip => (g, dg),
                         _ => {
                             let frame = &self.tips[tip as usize];
-                            let own = self.crack == Some(frame.crack);
-                            let (g, dg) = frame.branch(x, own.then_some(side));
+                            let split = (self.crack == Some(frame.crack)).then_some(side);
+                            let (g, dg) = frame.branch(x, split.or(f.whole));
                             cached = Some((tip, g, dg));
                             (g, dg)
                         }

@@ -73,7 +73,10 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
         };
         points.push((node, point));
     }
-    let faces = facets.iter().map(|&facet| mesh.facet_nodes(facet).collect()).collect();
+    let faces = facets
+        .iter()
+        .map(|&facet| mesh.facet_nodes(facet).collect())
+        .collect();
     let surface = ContactSurface::new(points, faces);
     for cell in 0..mesh.cell_count() {
         if crack.distance(&mesh.centre(cell)) > 0.0 {

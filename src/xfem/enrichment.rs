@@ -78,7 +78,7 @@ pub struct Enrichment {
     pub tip_cells: Vec<(usize, usize)>,
     cell_ptr: Vec<usize>,
     cell_functions: Vec<u32>,
-    /// Per entry of `cell_functions`: H in the whole cell for Heaviside functions of cracks that do not split it.
+    /// Per entry of `cell_functions`: the side of the function's crack that the whole cell lies on, if it lies on one.
     cell_sides: Vec<Option<Side>>,
     node_ptr: Vec<usize>,
     standard: usize,
@@ -252,6 +252,13 @@ impl Enrichment {
                             }
                             Some(side)
                         }
+                        // On the crack itself a branch function takes the value of the cell's side.
+                        FunctionKind::Branch { tip, .. } => {
+                            let index = self.tips[tip as usize].crack;
+                            let phi = cracks[index].cell_phi(mesh, cell);
+                            let apart = self.split[cell] != Some(index as u32) && !cut::is_split(mesh.kind, &phi);
+                            apart.then(|| whole_side(&cracks[index], nodes))
+                        }
                         _ => None,
                     };
                     self.cell_functions.push(f as u32);
@@ -321,7 +328,11 @@ impl Enrichment {
 
 /// Side of a crack that a cell it does not split lies on.
 fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
-    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) { -1.0 } else { 1.0 }
+    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) {
+        -1.0
+    } else {
+        1.0
+    }
 }
 
 /// Where a split cell lies along the crack.

@@ -80,10 +80,19 @@ impl ContactSurface {
                 .then(p.x[1].total_cmp(&q.x[1]))
                 .then(p.x[0].total_cmp(&q.x[0]))
         });
-        let number: BTreeMap<&K, usize> = points.iter().enumerate().map(|(i, (key, _))| (key, i)).collect();
+        let number: BTreeMap<&K, usize> = points
+            .iter()
+            .enumerate()
+            .map(|(i, (key, _))| (key, i))
+            .collect();
         let facets = facets
             .iter()
-            .map(|facet| facet.iter().filter_map(|key| number.get(key).copied()).collect())
+            .map(|facet| {
+                facet
+                    .iter()
+                    .filter_map(|key| number.get(key).copied())
+                    .collect()
+            })
             .collect();
         ContactSurface {
             facets,
@@ -96,7 +105,8 @@ impl ContactSurface {
         let shift = self.points.len();
         self.points.extend(other.points);
         let moved = other.facets.into_iter();
-        self.facets.extend(moved.map(|f| f.into_iter().map(|i| i + shift).collect()));
+        self.facets
+            .extend(moved.map(|f| f.into_iter().map(|i| i + shift).collect()));
     }
 
     /// Keeps the points that fulfil a condition.
@@ -116,7 +126,12 @@ impl ContactSurface {
 }
 
 /// Contact surface of a crack through cells: the `index`-th of the enrichment.
-pub fn edge_pairs(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichment) -> ContactSurface {
+pub fn edge_pairs(
+    mesh: &Mesh,
+    index: usize,
+    crack: &Crack,
+    enrichment: &Enrichment,
+) -> ContactSurface {
     let mut found: BTreeMap<[u32; 2], (Point, f64)> = BTreeMap::new();
     let mut facets = Vec::new();
     for cell in 0..mesh.cell_count() {
@@ -125,7 +140,11 @@ pub fn edge_pairs(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichm
         }
         let corners = mesh.corners(cell);
         let nodes = mesh.cell(cell);
-        let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], &crack.cell_phi(mesh, cell));
+        let facet = cut::facet(
+            mesh.kind,
+            &corners[..mesh.kind.nodes()],
+            &crack.cell_phi(mesh, cell),
+        );
         let mut keys = Vec::with_capacity(facet.len());
         for (x, [i, j], weight) in weighted_vertices(crack, &facet, &corners) {
             let (a, b) = (nodes[i], nodes[j]);
@@ -141,7 +160,11 @@ pub fn edge_pairs(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichm
             let point = ContactPoint {
                 crack: crack.number,
                 x,
-                s: if mesh.dim() == 2 { crack.abscissa(&x) } else { 0.0 },
+                s: if mesh.dim() == 2 {
+                    crack.abscissa(&x)
+                } else {
+                    0.0
+                },
                 frame: crack.frame,
                 weight,
                 terms: jump_terms(index, crack, enrichment, nodes, &x),
@@ -221,4 +244,3 @@ fn jump_terms(
     }
     terms
 }
-

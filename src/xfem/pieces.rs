@@ -66,7 +66,11 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usiz
                         return false;
                     };
                     // A whole cell lists only the functions of cracks it lies across.
-                    if Some(crack) == split { enrichment.shifts[f] != side } else { enrichment.cell(cell).contains(&(f as u32)) }
+                    if Some(crack) == split {
+                        enrichment.shifts[f] != side
+                    } else {
+                        enrichment.cell(cell).contains(&(f as u32))
+                    }
                 });
                 let copy = root(&mut parent, across.unwrap_or(node as usize));
                 match first {

@@ -225,7 +225,10 @@ fn published_expectations_are_the_printed_numbers() {
     let cases = shipped();
     let mut count = 0;
     // The second mesh of the paper is lost: its numbers are printed beside ours, not expected of them.
-    for row in printed("plate_table1.csv").iter().filter(|row| row[0] == "I") {
+    for row in printed("plate_table1.csv")
+        .iter()
+        .filter(|row| row[0] == "I")
+    {
         let case = &cases["plate_mesh1"];
         let friction = row[1].parse().unwrap();
         let found = expected(case, "reaction", "y", Some(friction), None);
@@ -233,7 +236,11 @@ fn published_expectations_are_the_printed_numbers() {
         count += 1;
     }
     for row in printed("beam_table2.csv") {
-        let case = &cases[if row[0] == "I" { "beam_model1_gauss6" } else { "beam_model2" }];
+        let case = &cases[if row[0] == "I" {
+            "beam_model1_gauss6"
+        } else {
+            "beam_model2"
+        }];
         for (i, number) in row[2..].iter().enumerate() {
             let at = format!("P{}", i + 1);
             let found: Vec<&Expect> = case

@@ -1,4 +1,4 @@
-//! The problem seen from the contact points: [[u]] = q + W P + Q β.
+//! The problem seen from the contact points: `[[u]] = q + W P + Q β`.
 //!
 //! W is the Delassus operator on the rows in use; Q spans the jumps of rigid motions (no columns if K is definite).
 
@@ -62,11 +62,11 @@ impl RowSet {
 
 /// W, Q and the scale of the natural map for one set of rows.
 pub(crate) struct Condensed {
-    /// Delassus operator, symmetric positive semi-definite [m/N].
+    /// Delassus operator, symmetric positive semi-definite, in m/N.
     pub w: Mat<f64>,
     /// Jumps of rigid motions.
     pub modes: ModeJumps,
-    /// ρ = rows / trace(W⊥) [N/m], W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
+    /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
     pub rho: f64,
 }
 

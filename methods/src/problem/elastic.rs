@@ -16,11 +16,12 @@ use super::matrix::{JumpOperator, SymmetricMatrix};
 pub struct ElasticParts {
     /// Space dimension, 2 or 3.
     pub dim: usize,
-    /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating` [N/m, in 2D N/m²].
+    /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating`. In N/m, in 2D
+    /// N/m².
     pub stiffness: SymmetricMatrix,
-    /// Jump operator B, `dim` rows per contact point, n columns [-].
+    /// Jump operator B, `dim` rows per contact point, n columns; dimensionless.
     pub jump: JumpOperator,
-    /// Tributary area (2D: length) per contact point, > 0 [m² or m].
+    /// Tributary area (2D: length) per contact point, > 0, in m² (m).
     pub weight: Vec<f64>,
     /// Preferred fill-reducing elimination order of the n unknowns, a permutation.
     pub order: Vec<usize>,
@@ -41,7 +42,7 @@ pub struct ElasticCounters {
     pub condensations: usize,
 }
 
-/// Wall-clock times of the work shared by all runs on the body [s]; 0 for work not done.
+/// Wall-clock times of the work shared by all runs on the body, in s; 0 for work not done.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ElasticTimings {
     /// Elimination order and symbolic factorisation.
@@ -59,6 +60,16 @@ pub struct Elastic {
     factor: OnceLock<Result<Factor, MethodError>>,
     condensed: OnceLock<Result<(Arc<Condensed>, f64), MethodError>>,
     solves: AtomicUsize,
+}
+
+impl std::fmt::Debug for Elastic {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Elastic")
+            .field("dim", &self.dim())
+            .field("unknowns", &self.unknowns())
+            .field("points", &self.points())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Elastic {
@@ -206,15 +217,23 @@ impl Elastic {
         factor.solve(&self.parts.stiffness, x)
     }
 
-    /// Computes the factor unless it exists.
+    /// Factors K unless that is done.
+    ///
+    /// # Errors
+    /// K not positive definite apart from the given rigid motions; out of memory.
+    pub fn factorise(&self) -> Result<(), MethodError> {
+        self.factor().map(|_| ())
+    }
+
+    /// The factor, computed on first use.
     pub(crate) fn factor(&self) -> Result<&Factor, MethodError> {
         self.factor
-            .get_or_init(|| self.factorise())
+            .get_or_init(|| self.new_factor())
             .as_ref()
             .map_err(Clone::clone)
     }
 
-    fn factorise(&self) -> Result<Factor, MethodError> {
+    fn new_factor(&self) -> Result<Factor, MethodError> {
         let ElasticParts {
             stiffness,
             jump,

@@ -93,7 +93,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// The jump operator B in compressed rows: `[[u]] = B u`, rows point by point, each (n, a[, b]).
+/// The jump operator B in compressed rows: `[[u]] = B u`, rows point by point, each `(n, a[, b])`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JumpOperator {
     rows: usize,

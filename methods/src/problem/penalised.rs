@@ -8,7 +8,7 @@
 //! The springs sit in series with the body: in terms of v' = v + (P − A)/k the law is the exact one, P = Π(P − r v')
 //! for *any* r > 0. Newton's method runs on
 //! ```text
-//! F(z, β) = (z − P)/r + v'(P, β) = 0,   P = Π(z)              [m]
+//! F(z, β) = (z − P)/r + v'(P, β) = 0,   P = Π(z)
 //! ```
 //! with the consistent tangent through Π'(z), non-symmetric where points slip (Simo & Laursen 1992). r = k gives the
 //! textbook iteration z = A − k v. We take r = 1/(W_ii + 1/k): the solution is the same, but for k far above the
@@ -25,6 +25,9 @@ use super::linear::dense::{mul_add, solve_dense};
 use super::reduced::Reduced;
 use super::stages::{Pair, rescue};
 use super::state::{Monitor, Status};
+
+/// Below this a residual that no longer halves has met rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Penalty stiffnesses and anchor.
 pub(crate) struct Springs {
@@ -65,7 +68,7 @@ impl Springs {
         Point::new(problem, z, beta)
     }
 
-    /// F by row [m].
+    /// F by row, in m.
     fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], c: &[f64], at: &Point) -> Vec<f64> {
         let mut f = problem.jump(&at.p, &at.beta);
         for k in 0..f.len() {
@@ -87,6 +90,7 @@ impl Springs {
         let (r, c) = (self.scales(problem), self.compliance(problem));
         let mut search = LineSearch::default();
         let mut before = at.branches.clone();
+        let mut last = f64::INFINITY;
         for iteration in 0.. {
             let mismatch = self.mismatch(problem, &r, &c, &at);
             let residual = residual(problem, &at, &mismatch);
@@ -107,6 +111,10 @@ impl Springs {
             if !go_on {
                 return (Status::Stopped, at);
             }
+            if residual <= ROUNDING && residual > 0.5 * last {
+                return (Status::Stalled, at);
+            }
+            last = residual;
             if iteration == max_iterations {
                 break;
             }

@@ -46,13 +46,22 @@ pub fn point_status(i: &Increment<'_>, s: &ContactState) -> Result<Vec<PointStat
     }
     let rho = system.condensed()?.rho;
     let start = i.start_jump();
-    let since_start = |r: usize| if r % dim == 0 { jump[r] } else { jump[r] - start[r] };
+    let since_start = |r: usize| {
+        if r % dim == 0 {
+            jump[r]
+        } else {
+            jump[r] - start[r]
+        }
+    };
     let d: Vec<f64> = (0..jump.len()).map(since_start).collect();
     let largest = s.p.iter().fold(0.0f64, |m, p| m.max(p.abs()));
     let slack = SLACK * largest;
     Ok((0..system.points())
         .map(|point| {
-            let (p, v) = (&s.p[dim * point..dim * (point + 1)], &d[dim * point..dim * (point + 1)]);
+            let (p, v) = (
+                &s.p[dim * point..dim * (point + 1)],
+                &d[dim * point..dim * (point + 1)],
+            );
             let z: Vec<f64> = p.iter().zip(v).map(|(p, v)| p - rho * v).collect();
             if z[0] <= slack {
                 PointStatus::Open

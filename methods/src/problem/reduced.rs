@@ -22,7 +22,22 @@ const STOP_FRACTION: f64 = 0.5;
 const COMPLIANCE_FLOOR: f64 = 1e-2;
 
 /// Rescues per increment.
-const MAX_RESCUES: usize = 5;
+const MAX_RESCUES: usize = 6;
+
+/// Corrections of q per increment; each gains the digits that W has right.
+const MAX_CORRECTIONS: usize = 3;
+
+/// A natural map counts as progress below this fraction of the best before.
+const IMPROVEMENT: f64 = 0.99;
+
+/// When to give up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Iterations in all.
+    pub iterations: usize,
+    /// Iterations without progress.
+    pub patience: usize,
+}
 
 /// How an increment begins.
 pub(crate) enum Begin<'a> {
@@ -49,7 +64,12 @@ pub(crate) struct Reduced<'a> {
     /// |q| of the natural map's denominator.
     free_jump: f64,
     rescues: usize,
+    /// Smallest natural map so far and its iteration.
+    best: (f64, usize),
     claim: Claim,
+    corrections: usize,
+    /// Displacements of the iterate confirmed last.
+    confirmed: Option<Vec<f64>>,
 }
 
 impl<'a> Reduced<'a> {
@@ -109,9 +129,12 @@ impl<'a> Reduced<'a> {
             increment,
             rows,
             rescues: 0,
+            best: (f64::INFINITY, 0),
             balance,
             counters,
             claim: claim(condensed.rho),
+            corrections: 0,
+            confirmed: None,
             condensed,
         }))
     }
@@ -207,6 +230,11 @@ impl<'a> Reduced<'a> {
         self.modes() > 0 && self.rescues <= MAX_RESCUES
     }
 
+    /// Rescues before the current one.
+    pub fn earlier_rescues(&self) -> usize {
+        self.rescues.saturating_sub(1)
+    }
+
     /// What a singular tangent means here.
     pub fn singular(&self) -> Status {
         if self.modes() > 0 {
@@ -242,9 +270,12 @@ impl<'a> Reduced<'a> {
         &mut self,
         natural_map: f64,
         changes: usize,
-        max_iterations: usize,
+        limits: Limits,
         monitor: &mut dyn Monitor,
     ) -> Option<Status> {
+        if natural_map < IMPROVEMENT * self.best.0 {
+            self.best = (natural_map, self.counters.iterations);
+        }
         self.history.push(Iteration {
             natural_map,
             changes,
@@ -256,42 +287,97 @@ impl<'a> Reduced<'a> {
             Some(Status::Diverged)
         } else if !monitor.step(iteration, natural_map) {
             Some(Status::Stopped)
-        } else if iteration == max_iterations {
+        } else if iteration == limits.iterations {
             Some(Status::MaxIterations)
+        } else if iteration >= self.best.1 + limits.patience {
+            Some(Status::Stalled)
         } else {
             self.counters.iterations += 1;
             None
         }
     }
 
-    /// Recovers the displacements with one solve and closes the outcome.
+    /// Checks a converged iterate against K itself, as the judge will: W has lost digits to its own condition.
+    ///
+    /// If the recovered displacements do not fulfil the laws, q takes up the difference between their jump and the
+    /// condensed one, and the method goes on from where it is (`None`): iterative refinement of the condensed problem.
+    pub fn confirm(
+        &mut self,
+        status: Status,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Option<Status>, MethodError> {
+        if status != Status::Converged {
+            return Ok(Some(status));
+        }
+        let Some(u) = self.recover(p, beta)? else {
+            return Ok(Some(Status::Diverged));
+        };
+        let increment = self.increment;
+        let dim = increment.system.dim();
+        let found = slip_from(self.rows, dim, &increment.jump(&u), &increment.start_jump());
+        let natural_map = self.natural_map(p, &found);
+        if natural_map <= increment.tolerance {
+            self.confirmed = Some(u);
+            return Ok(Some(status));
+        }
+        if self.corrections == MAX_CORRECTIONS {
+            return Ok(Some(Status::Stalled));
+        }
+        self.corrections += 1;
+        self.counters.iterations += 1;
+        self.best = (f64::INFINITY, self.counters.iterations);
+        let condensed = self.jump(p, beta);
+        for ((q, found), condensed) in self.q.iter_mut().zip(&found).zip(&condensed) {
+            *q += found - condensed;
+        }
+        Ok(None)
+    }
+
+    /// Contact forces with all `dim` rows per point.
+    fn all_forces(&self, p: &[f64]) -> Vec<f64> {
+        let system = self.increment.system;
+        let mut all = vec![0.0; system.dim() * system.points()];
+        for (&row, &force) in self.rows.source.iter().zip(p) {
+            all[row] = force;
+        }
+        all
+    }
+
+    /// u = K⁻¹ (f + Bᵀ P) + R α with one solve; `None` if the forces left the finite range.
+    fn recover(&mut self, p: &[f64], beta: &[f64]) -> Result<Option<Vec<f64>>, MethodError> {
+        let elastic = self.increment.system.elastic();
+        let mut u = self.increment.load.force.clone();
+        elastic.jump().mul_transpose_add(&self.all_forces(p), &mut u);
+        if !u.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        elastic.solve(&mut u)?;
+        self.counters.solves += 1;
+        let amplitudes = self.condensed.modes.amplitudes(beta);
+        for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
+            u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
+        }
+        Ok(Some(u))
+    }
+
+    /// Closes the outcome with the displacements of the last iterate.
     pub fn finish(
         mut self,
         status: Status,
         p: &[f64],
         beta: &[f64],
     ) -> Result<Outcome, MethodError> {
-        let system = self.increment.system;
-        let elastic = system.elastic();
-        let mut all = vec![0.0; system.dim() * system.points()];
-        for (&row, &force) in self.rows.source.iter().zip(p) {
-            all[row] = force;
-        }
-        let mut u = self.increment.load.force.clone();
-        elastic.jump().mul_transpose_add(&all, &mut u);
-        let state = if u.iter().all(|x| x.is_finite()) {
-            elastic.solve(&mut u)?;
-            self.counters.solves += 1;
-            for (r, alpha) in elastic
-                .floating()
-                .iter()
-                .zip(self.condensed.modes.amplitudes(beta))
-            {
-                u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
-            }
-            ContactState { u, p: all }
-        } else {
-            self.increment.start.clone()
+        let u = match self.confirmed.take() {
+            Some(u) => Some(u),
+            None => self.recover(p, beta)?,
+        };
+        let state = match u {
+            Some(u) => ContactState {
+                u,
+                p: self.all_forces(p),
+            },
+            None => self.increment.start.clone(),
         };
         Ok(Outcome {
             status,

@@ -23,7 +23,8 @@ use super::reduced::Reduced;
 
 /// Relaxation of the sweeps that rescue a Newton method.
 const RESCUE_RELAXATION: f64 = 0.8;
-/// Their number.
+/// Their number at the first rescue of an increment; each further one takes twice as many, so that it ends closer to the
+/// solution than the one that was not enough.
 const RESCUE_SWEEPS: usize = 20;
 
 /// Contact forces, jump rows and rigid amplitudes that fulfil equilibrium.
@@ -155,7 +156,7 @@ impl GlobalStage {
 pub(crate) fn rescue(problem: &mut Reduced<'_>, mut pair: Pair) -> Option<Pair> {
     let stage = GlobalStage::new(problem.condensed.clone(), 1.0).ok()?;
     problem.counters.factorisations += 1;
-    for _ in 0..RESCUE_SWEEPS {
+    for _ in 0..RESCUE_SWEEPS << problem.earlier_rescues() {
         let (target, _) = stage.local_stage(problem, &pair);
         let new = stage.global_stage(problem, &target)?;
         pair.relax(problem, RESCUE_RELAXATION, &new);

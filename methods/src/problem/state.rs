@@ -6,10 +6,10 @@ use super::system::ContactSystem;
 /// the jump of the state an increment starts from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactState {
-    /// Unknowns u, n entries [m].
+    /// Unknowns u, n entries, in m.
     pub u: Vec<f64>,
-    /// Contact forces on side 1, `dim` per point (n, a[, b]), compression positive; tangential entries are exactly 0
-    /// where friction is 0 [N, in 2D N/m].
+    /// Contact forces on side 1, `dim` per point `(n, a[, b])`, compression positive; tangential entries are exactly 0
+    /// where friction is 0. In N, in 2D N/m.
     pub p: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ pub enum Status {
     Converged,
     /// The iteration limit was reached first.
     MaxIterations,
-    /// The residual stopped falling.
+    /// The residual stopped falling well before the iteration limit.
     Stalled,
     /// The tangent of the contact equations is singular at an iterate.
     SingularTangent,
@@ -73,9 +73,9 @@ pub enum Claim {
     /// Penalised laws, whose distance from the contact laws is a modelling error: the natural map is reported, not
     /// promised. P_n = k_n max(−g, 0), and |P_t| <= μ P_n with the elastic slip P_t/k_t.
     Penalised {
-        /// Normal stiffness k_n [N/m].
+        /// Normal stiffness k_n, in N/m.
         normal: f64,
-        /// Tangential stiffness k_t [N/m].
+        /// Tangential stiffness k_t, in N/m.
         tangential: f64,
     },
 }
@@ -84,7 +84,7 @@ pub enum Claim {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
     /// Residual the method stops on: the natural map, or for [`Claim::Penalised`] the residual of the penalised
-    /// equations on the same scale [-].
+    /// equations on the same scale; dimensionless.
     pub natural_map: f64,
     /// Points that changed between open, stick and slip since the entry before.
     pub changes: usize,

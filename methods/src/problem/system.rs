@@ -16,6 +16,15 @@ pub struct ContactSystem {
     condensed: OnceLock<Result<Arc<Condensed>, MethodError>>,
 }
 
+impl std::fmt::Debug for ContactSystem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ContactSystem")
+            .field("elastic", &self.elastic)
+            .field("friction", &self.friction)
+            .finish_non_exhaustive()
+    }
+}
+
 impl ContactSystem {
     /// Sets the friction coefficient of each point.
     ///
@@ -98,6 +107,15 @@ impl ContactSystem {
         &self.rows
     }
 
+    /// Computes the Delassus operator of the rows in use unless that is done. Solving an increment does it when a load
+    /// closes the contact; a timed run may want it before.
+    ///
+    /// # Errors
+    /// Too many rows; the errors of the factorisation.
+    pub fn condense(&self) -> Result<(), MethodError> {
+        self.condensed().map(|_| ())
+    }
+
     /// W and Q on the rows in use; shared with the body where those are all rows, a copy of the block elsewhere.
     pub(crate) fn condensed(&self) -> Result<Arc<Condensed>, MethodError> {
         let build = || {
@@ -115,9 +133,9 @@ impl ContactSystem {
 /// Load at the end of an increment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// Force vector f, n entries, prescribed displacements included [N, in 2D N/m].
+    /// Force vector f, n entries, prescribed displacements included. In N, in 2D N/m.
     pub force: Vec<f64>,
-    /// Jump carried by prescribed unknowns and initial gaps, `dim` per point [m]: [[u]] = B u + offset.
+    /// Jump carried by prescribed unknowns and initial gaps, `dim` per point, in m: `[[u]] = B u + offset`.
     pub offset: Vec<f64>,
 }
 
@@ -138,12 +156,12 @@ pub struct Increment<'a> {
 }
 
 impl Increment<'_> {
-    /// [[u]] = B u + offset at the end of the increment, `dim` per point [m].
+    /// `[[u]] = B u + offset` at the end of the increment, `dim` per point, in m.
     pub fn jump(&self, u: &[f64]) -> Vec<f64> {
         jump(self.system, self.load, u)
     }
 
-    /// [[u]] at the start of the increment, `dim` per point [m].
+    /// `[[u]]` at the start of the increment, `dim` per point, in m.
     pub fn start_jump(&self) -> Vec<f64> {
         jump(self.system, self.start_load, &self.start.u)
     }

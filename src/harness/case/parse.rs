@@ -16,7 +16,7 @@ use super::{Case, Model, schema};
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Keys of the document itself.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "title",
     "model",
     "quadrature",
@@ -136,7 +136,10 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         v.one_of(&Tier::ALL.map(|tier| (tier.as_str(), tier)))
     })?;
     let tolerance = root.get("tolerance").map_or(Ok(tier.tolerance()), |v| {
-        let allowed = format!("1e-14 <= tolerance <= {:e}, that of the tier", tier.tolerance());
+        let allowed = format!(
+            "1e-14 <= tolerance <= {:e}, that of the tier",
+            tier.tolerance()
+        );
         v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
     })?;
     let quadrature = schema::quadrature(root)?;

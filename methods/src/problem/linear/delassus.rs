@@ -155,3 +155,96 @@ fn forward_solve(factor: &Factor, y: &mut Mat<f64>, first: &[usize]) -> Result<(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Elastic, ElasticParts, SymmetricMatrix};
+
+    /// Two separate strips of `long` × 3 nodes with springs to all neighbours; contact couples unknowns of each strip
+    /// with itself only, so the trailing block has several supernodes.
+    fn strips(long: usize, order: impl Fn(usize) -> usize) -> ElasticParts {
+        let n = 2 * long * 3;
+        let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..n {
+            row_idx.push(j);
+            values.push(4.0 + (j % 7) as f64 / 10.0);
+            for (step, ok) in [(1, j % 3 < 2), (3, j % (3 * long) + 3 < 3 * long)] {
+                if ok {
+                    row_idx.push(j + step);
+                    values.push(-1.0);
+                }
+            }
+            col_ptr.push(row_idx.len());
+        }
+        let rows = n / 3;
+        let col_idx: Vec<usize> = (0..rows).flat_map(|i| [3 * i, (3 * i + 3) % n]).collect();
+        let entries: Vec<f64> = (0..rows)
+            .flat_map(|i| [1.0, -0.5 - (i % 3) as f64])
+            .collect();
+        ElasticParts {
+            dim: 2,
+            stiffness: SymmetricMatrix::new(n, col_ptr, row_idx, values).unwrap(),
+            jump: JumpOperator::new(
+                rows,
+                n,
+                (0..=rows).map(|i| 2 * i).collect(),
+                col_idx,
+                entries,
+            )
+            .unwrap(),
+            weight: vec![1.0; rows / 2],
+            order: (0..n).map(order).collect(),
+            floating: Vec::new(),
+            frictionless: false,
+        }
+    }
+
+    #[test]
+    fn condensed_operator_equals_full_solves_in_every_elimination_order() {
+        let long = 90;
+        let n = 6 * long;
+        for stride in [1, 7, 77] {
+            let body = Elastic::new(strips(long, |k| k * stride % n)).unwrap();
+            let rows = body.rows();
+            let w = condense(body.factor().unwrap(), body.jump(), &rows.source).unwrap();
+            for j in (0..rows.len()).step_by(17) {
+                let mut unit = vec![0.0; rows.len()];
+                unit[j] = 1.0;
+                let mut u = vec![0.0; n];
+                body.jump().mul_transpose_add(&unit, &mut u);
+                body.solve(&mut u).unwrap();
+                let mut column = vec![0.0; rows.len()];
+                body.jump().mul(&u, &mut column);
+                for i in 0..rows.len() {
+                    assert!((w[(i, j)] - column[i]).abs() < 1e-13, "{stride}: {i} {j}");
+                    assert_eq!(w[(i, j)], w[(j, i)]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn too_many_rows_are_refused_before_memory_is_asked_for() {
+        let n = MAX_CONDENSED_ROWS + 2;
+        let unit = |n: usize| (0..=n).collect::<Vec<_>>();
+        let body = Elastic::new(ElasticParts {
+            dim: 2,
+            stiffness: SymmetricMatrix::new(n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
+            jump: JumpOperator::new(n, n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
+            weight: vec![1.0; n / 2],
+            order: (0..n).collect(),
+            floating: Vec::new(),
+            frictionless: false,
+        })
+        .unwrap();
+        let error = body.condensed().err().unwrap();
+        assert_eq!(
+            error,
+            MethodError::TooManyRows {
+                rows: n,
+                limit: MAX_CONDENSED_ROWS
+            }
+        );
+    }
+}
