@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use stickslip::harness::record::RunRow;
+use stickslip::report::csv::Row;
 use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
+use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::report::tables::{Align, Column, Table};
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
 
@@ -23,6 +25,14 @@ fn csv_bundle() -> Bundle {
     csv::add_to(&mut bundle, &results()).expect("CSV");
     paper::add_table1(&mut bundle, &table1_rows()).expect("Table 1");
     paper::add_table2(&mut bundle, &table2_rows()).expect("Table 2");
+    let file = |name, contents: Result<Vec<u8>, ReportError>| (name, contents.expect("CSV"));
+    for (name, contents) in [
+        file(PenaltyRow::FILE, csv::file::<PenaltyRow>(&[])),
+        file(RefinementRow::FILE, csv::file::<RefinementRow>(&[])),
+        file(LimitRow::FILE, csv::file::<LimitRow>(&[])),
+    ] {
+        bundle.add(name, contents).expect("a name of its own");
+    }
     bundle
 }
 

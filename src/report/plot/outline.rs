@@ -88,7 +88,7 @@ pub fn outline(picture: &Picture, faces: &[Face], weld: &Weld<'_>) -> Vec<[usize
         })
         .filter(|(places, _, _)| places[0] != places[1])
         .collect();
-    edges.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)));
+    edges.sort_by_key(|(places, edge, _)| (*places, *edge));
 
     let (mut kept, mut single) = (Vec::new(), Vec::new());
     for equal in edges.chunk_by(|a, b| a.0 == b.0) {
