@@ -86,7 +86,7 @@ fn every_allowed_key_is_documented() {
             count += 1;
         }
     }
-    assert_eq!(count, 14 + 2 + 3 + 3 + 5 + 4 + 7 + 2 + 2 + 2 + 14);
+    assert_eq!(count, 15 + 2 + 3 + 3 + 5 + 4 + 7 + 2 + 2 + 2 + 15);
 }
 
 #[test]
