@@ -56,14 +56,17 @@ fn bodies() -> Vec<(&'static str, Body)> {
     ]
 }
 
+/// A displacement field.
+type Motion = Box<dyn Fn(&[f64; 3]) -> [f64; 3]>;
+
 /// Rigid motions about the origin: translations, then rotations.
-fn motions(dim: usize) -> Vec<Box<dyn Fn(&[f64; 3]) -> [f64; 3]>> {
+fn motions(dim: usize) -> Vec<Motion> {
     let rotations: &[[usize; 2]] = if dim == 2 {
         &[[0, 1]]
     } else {
         &[[0, 1], [1, 2], [2, 0]]
     };
-    let mut all: Vec<Box<dyn Fn(&[f64; 3]) -> [f64; 3]>> = Vec::new();
+    let mut all: Vec<Motion> = Vec::new();
     for a in 0..dim {
         all.push(Box::new(move |_| {
             let mut r = [0.0; 3];

@@ -141,7 +141,10 @@ mod tests {
             });
             large / small
         };
-        let (dissected, banded) = (growth(nested_dissection), growth(|p| (0..p.len()).collect()));
+        let (dissected, banded) = (
+            growth(nested_dissection),
+            growth(|p| (0..p.len()).collect()),
+        );
         assert!(dissected < 6.0 && banded > 7.5, "{dissected} {banded}");
     }
 }

@@ -378,7 +378,7 @@ pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(Point, Point)> {
         .collect()
 }
 
-/// Cells whose closure contains a point, within [`ON_EDGE`].
+/// Cells whose closure contains a point, within 1e-9 of their diagonal.
 pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
     let count = mesh.kind.nodes();
     (0..mesh.cell_count())

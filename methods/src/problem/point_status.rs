@@ -1,6 +1,8 @@
 //! Open, stick or slip: what the contact law says of every point of a state.
 
+use super::condensed::RowSet;
 use super::error::MethodError;
+use super::judge::slip_from;
 use super::law::tangential_norm;
 use super::state::ContactState;
 use super::system::Increment;
@@ -45,15 +47,8 @@ pub fn point_status(i: &Increment<'_>, s: &ContactState) -> Result<Vec<PointStat
         return Ok(vec![PointStatus::Open; system.points()]);
     }
     let rho = system.condensed()?.rho;
-    let start = i.start_jump();
-    let since_start = |r: usize| {
-        if r % dim == 0 {
-            jump[r]
-        } else {
-            jump[r] - start[r]
-        }
-    };
-    let d: Vec<f64> = (0..jump.len()).map(since_start).collect();
+    let all = RowSet::new(dim, &vec![dim; system.points()]);
+    let d = slip_from(&all, dim, &jump, &i.start_jump());
     let largest = s.p.iter().fold(0.0f64, |m, p| m.max(p.abs()));
     let slack = SLACK * largest;
     Ok((0..system.points())
