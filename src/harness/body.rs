@@ -444,7 +444,12 @@ fn check_probes(case: &Case, mesh: &Mesh) -> Result<(), CaseError> {
         if mesh.node_at(&probe.point).is_none() {
             let found = case.text(&probe.span);
             let message = format!("probe `{}` is at no node", probe.name);
-            return Err(case.error(&probe.span, found, "the place of a node of the mesh", message));
+            return Err(case.error(
+                &probe.span,
+                found,
+                "the place of a node of the mesh",
+                message,
+            ));
         }
     }
     Ok(())

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use stickslip_methods::PointStatus;
 
-use crate::fem::{Point, cross, dot, norm, sub};
 use crate::fem::cell::CellKind;
+use crate::fem::{Point, cross, dot, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::harness::record::{FieldStep, Picture, PictureCell, PictureShape};
@@ -38,7 +38,10 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
         let Some(crack) = body.enrichment.split[cell] else {
             cells.push(PictureCell {
                 shape: whole,
-                points: corners.iter().map(|x| vertices.of(cell, x, 1.0, now)).collect(),
+                points: corners
+                    .iter()
+                    .map(|x| vertices.of(cell, x, 1.0, now))
+                    .collect(),
             });
             let h = integrator.displacement_gradient(cell, &[0.0; 3], 1.0, &now.u);
             stress.push(body.lame.von_mises(&h, dim));
@@ -50,7 +53,10 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
             for (shape, part) in cell_parts(body, cell, corners, &phi, side) {
                 cells.push(PictureCell {
                     shape,
-                    points: part.iter().map(|x| vertices.of(cell, x, side, now)).collect(),
+                    points: part
+                        .iter()
+                        .map(|x| vertices.of(cell, x, side, now))
+                        .collect(),
                 });
                 let mut centre = [0.0; 3];
                 for x in &part {
@@ -93,7 +99,11 @@ impl<'a> Vertices<'a> {
             .chunks_exact(dim)
             .map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)])
             .collect();
-        let smallest = body.mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+        let smallest = body
+            .mesh
+            .node_sizes()
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
         Vertices {
             body,
             points: body.mesh.nodes.clone(),
@@ -107,7 +117,10 @@ impl<'a> Vertices<'a> {
     fn of(&mut self, cell: usize, x: &Point, side: Side, now: &Snapshot) -> usize {
         let body = self.body;
         let nodes = body.mesh.cell(cell);
-        let node = nodes.iter().map(|&n| n as usize).find(|&n| body.mesh.nodes[n] == *x);
+        let node = nodes
+            .iter()
+            .map(|&n| n as usize)
+            .find(|&n| body.mesh.nodes[n] == *x);
         let across = match body.enrichment.split[cell] {
             Some(crack) => self.jumps(crack as usize, x).then_some(side),
             None => node.and_then(|node| self.reached_side(cell, node)),
@@ -122,7 +135,10 @@ impl<'a> Vertices<'a> {
                 return node;
             }
         }
-        let key = (x.map(|v| (v / self.quantum).round() as i64), across.map(|side| side > 0.0));
+        let key = (
+            x.map(|v| (v / self.quantum).round() as i64),
+            across.map(|side| side > 0.0),
+        );
         *self.found.entry(key).or_insert_with(|| {
             let u = body.integrator().displacement(cell, x, side, &now.u);
             self.points.push(*x);
@@ -147,15 +163,23 @@ impl<'a> Vertices<'a> {
                 FunctionKind::Heaviside { crack } => crack as usize,
                 FunctionKind::Branch { tip, .. } => enrichment.tips[tip as usize].crack,
             };
-            let here = mesh.cell(cell)[f.local] as usize == node && self.jumps(crack, &mesh.nodes[node]);
-            f.whole.filter(|&side| here && side != self.body.cracks[crack].side_of(node))
+            let here =
+                mesh.cell(cell)[f.local] as usize == node && self.jumps(crack, &mesh.nodes[node]);
+            f.whole
+                .filter(|&side| here && side != self.body.cracks[crack].side_of(node))
         })
     }
 }
 
 /// Parts of a cut cell on one side: a polygon in 2D; in 3D a hexahedron where the crack parts two opposite faces,
 /// tetrahedra elsewhere.
-fn cell_parts(body: &Body, cell: usize, corners: &[Point], phi: &[f64], side: Side) -> Vec<(PictureShape, Vec<Point>)> {
+fn cell_parts(
+    body: &Body,
+    cell: usize,
+    corners: &[Point],
+    phi: &[f64],
+    side: Side,
+) -> Vec<(PictureShape, Vec<Point>)> {
     let kind = body.mesh.kind;
     if kind == CellKind::Quad4 {
         let mut polygon = cut::polygon_part(corners, &phi[..4], side);
@@ -167,16 +191,25 @@ fn cell_parts(body: &Body, cell: usize, corners: &[Point], phi: &[f64], side: Si
     for axis in 0..3 {
         let level = phi[0].signum() * kind.corner(0)[axis];
         if (0..8).all(|i| phi[i] * level * kind.corner(i)[axis] > 0.0) {
-            let opposite = |i: usize| (0..8).find(|&j| (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis)));
+            let opposite = |i: usize| {
+                (0..8).find(|&j| {
+                    (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis))
+                })
+            };
             let part = (0..8).map(|i| match opposite(i) {
-                Some(j) if phi[i] * side < 0.0 => cut::crossing(&corners[i], phi[i], &corners[j], phi[j]),
+                Some(j) if phi[i] * side < 0.0 => {
+                    cut::crossing(&corners[i], phi[i], &corners[j], phi[j])
+                }
                 _ => corners[i],
             });
             return vec![(PictureShape::Hexahedron, part.collect())];
         }
     }
     let parts = SubCells::of(kind, corners, phi, side).tetrahedra;
-    parts.iter().map(|t| (PictureShape::Tetra, t.to_vec())).collect()
+    parts
+        .iter()
+        .map(|t| (PictureShape::Tetra, t.to_vec()))
+        .collect()
 }
 
 /// Makes a point on an edge of a polygon a vertex of it.

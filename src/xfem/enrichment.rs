@@ -256,7 +256,8 @@ impl Enrichment {
                         FunctionKind::Branch { tip, .. } => {
                             let index = self.tips[tip as usize].crack;
                             let phi = cracks[index].cell_phi(mesh, cell);
-                            let apart = self.split[cell] != Some(index as u32) && !cut::is_split(mesh.kind, &phi);
+                            let apart = self.split[cell] != Some(index as u32)
+                                && !cut::is_split(mesh.kind, &phi);
                             apart.then(|| whole_side(&cracks[index], nodes))
                         }
                         _ => None,

@@ -348,7 +348,9 @@ impl<'a> Reduced<'a> {
     fn recover(&mut self, p: &[f64], beta: &[f64]) -> Result<Option<Vec<f64>>, MethodError> {
         let elastic = self.increment.system.elastic();
         let mut u = self.increment.load.force.clone();
-        elastic.jump().mul_transpose_add(&self.all_forces(p), &mut u);
+        elastic
+            .jump()
+            .mul_transpose_add(&self.all_forces(p), &mut u);
         if !u.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
