@@ -55,8 +55,7 @@ fn assert_mixed(found: &Solved, opens: bool) {
 /// ```
 #[test]
 fn a_plate_with_cracks_through_cells_equals_one_with_cracks_on_edges() {
-    let held =
-        "[[support]]\non = \"right\"\nwhere = \"y > 0.39 and y < 0.61 or y > 0.99\"\ndisplacement_m = [0, 0]\n";
+    let held = "[[support]]\non = \"right\"\nwhere = \"y > 0.39 and y < 0.61 or y > 0.99\"\ndisplacement_m = [0, 0]\n";
     for heights in [&[0.3][..], &[0.3, 0.7]] {
         let rest = heights
             .iter()
