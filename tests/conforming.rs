@@ -30,8 +30,8 @@ fn assert_equal(cut: &Solved, conforming: &Solved, sides: &[&str]) {
     }
 }
 
-/// Open, sticking and slipping points in one answer, or the comparison proves little.
-fn assert_mixed(found: &Solved) {
+/// Open (if asked for), sticking and slipping points in one answer, or the comparison proves little.
+fn assert_mixed(found: &Solved, opens: bool) {
     let dim = found.body.mesh.dim();
     let points = found.p().chunks_exact(dim);
     let open = points.clone().filter(|p| p[0] == 0.0).count();
@@ -41,10 +41,8 @@ fn assert_mixed(found: &Solved) {
         .filter(|p| p[0] > 0.0 && ratio(p) > 0.2999)
         .count();
     let all = points.len();
-    assert!(
-        open > 0 && slip > 0 && open + slip < all,
-        "{open} {slip} {all}"
-    );
+    println!("{open} open, {slip} slip, {all} in all");
+    assert!(slip > 0 && open + slip < all && (open > 0) == opens);
 }
 
 /// A plate on its base, one and two horizontal cracks at mid-row, pushed unevenly: open, sticking and slipping pairs.
@@ -52,13 +50,12 @@ fn assert_mixed(found: &Solved) {
 /// ```text
 ///   ↓↓↓↓↓    →     pressure on the top, shear on the left
 ///   ————————       y = 0.7
-///   ————————       y = 0.3 (held at the left between the cracks)
+///   ————————       y = 0.3 (held at the right between the cracks and above them)
 ///   ////////
 /// ```
 #[test]
 fn a_plate_with_cracks_through_cells_equals_one_with_cracks_on_edges() {
-    let held =
-        "[[support]]\non = \"right\"\nwhere = \"y > 0.39 and y < 0.61\"\ndisplacement_m = [0, 0]\n";
+    let held = "[[support]]\non = \"right\"\nwhere = \"y > 0.39 and y < 0.61 or y > 0.99\"\ndisplacement_m = [0, 0]\n";
     for heights in [&[0.3][..], &[0.3, 0.7]] {
         let rest = heights
             .iter()
@@ -66,8 +63,8 @@ fn a_plate_with_cracks_through_cells_equals_one_with_cracks_on_edges() {
             .collect::<String>()
             + &support("\"bottom\"", "[0, 0]")
             + held
-            + &load("top", "traction_pa = [1e-4, -1e-3]")
-            + &load("left", "traction_pa = [3e-4, 0]");
+            + "[[load]]\non = \"top\"\nwhere = \"x >= 0.8\"\ntraction_pa = [2e-4, -1e-3]\n"
+            + &load("left", "traction_pa = [2e-4, 1e-4]");
         let cut = solve(&plane([0.0, 0.0], [1.5, 1.0], [9, 5], &rest));
         let lines = [0.0, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 1.0];
         let y: Vec<f64> = lines
@@ -80,7 +77,7 @@ fn a_plate_with_cracks_through_cells_equals_one_with_cracks_on_edges() {
         let start = text.find("mesh = ").unwrap();
         let end = start + text[start..].find('\n').unwrap() + 1;
         let conforming = solve(&(text[..start].to_owned() + &mesh + &text[end..]));
-        assert_mixed(&cut);
+        assert_mixed(&cut, true);
         assert_equal(&cut, &conforming, &["bottom", "right"]);
     }
 }
@@ -91,8 +88,8 @@ fn a_stack_of_blocks_cut_through_cells_equals_one_on_faces() {
     let planes = [([0.0, 0.0, 0.5], [0.0, 0.0, 1.0], 0.3)];
     let rest = support("\"bottom\"", "[0, 0, 0]")
         + "[[support]]\non = \"left\"\nwhere = \"z > 0.6\"\ndisplacement_m = [0, 0, \"free\"]\n"
-        + &load("top", "traction_pa = [2e-4, 1e-4, -1e-3]")
-        + &load("right", "traction_pa = [0, 1e-4, 4e-4]");
+        + "[[load]]\non = \"top\"\nwhere = \"x <= 0.7\"\ntraction_pa = [2e-4, 1e-4, -1e-3]\n"
+        + &load("right", "traction_pa = [0, 1e-4, 2e-4]");
     let text = solid([1.2, 0.8, 1.0], [4, 3, 3], &planes, &rest);
     let cut = solve(&text);
     let start = text.find("mesh = ").unwrap();
@@ -105,6 +102,6 @@ fn a_stack_of_blocks_cut_through_cells_equals_one_on_faces() {
         third(3, 0.8)
     );
     let conforming = solve(&(text[..start].to_owned() + &mesh + &text[end..]));
-    assert_mixed(&cut);
+    assert_mixed(&cut, false);
     assert_equal(&cut, &conforming, &["bottom", "left"]);
 }

@@ -10,6 +10,10 @@ use stickslip::harness::shipped;
 /// Rounding times the conditioning of a plate of a few hundred unknowns.
 const EQUAL: f64 = 1e-10;
 
+/// With tips: the triangles of the cells around a tip start at their first corner, which turns with the body, and their
+/// rule is good to 1e-10; contact forces feel that most.
+const EQUAL_WITH_TIPS: f64 = 1e-8;
+
 /// A change of coordinates: a signed permutation with determinant ±1, a factor and a shift; and a factor on stresses.
 struct Change {
     /// Column a: image of axis a, as (axis, sign).
@@ -44,14 +48,14 @@ impl Change {
     }
 
     /// A plate 1.5 × 1.2 with an inclined crack with two tips and one that runs through, pushed, sheared and loaded.
-    fn case(&self) -> String {
+    fn case(&self, tip: &str) -> String {
         let (low, high) = (self.place([0.0, 0.0]), self.place([1.5, 1.2]));
         let min = [0, 1].map(|a| low[a].min(high[a]));
         let max = [0, 1].map(|a| low[a].max(high[a]));
         let swapped = self.axes[0].0 == 1;
         let cells = if swapped { [8, 10] } else { [10, 8] };
         let cracks = [
-            ([0.31, 0.27], [1.02, 0.43], 0.4, "branch"),
+            ([0.31, 0.27], [1.02, 0.43], 0.4, tip),
             ([-0.2, 0.88], [1.7, 0.81], 0.2, "none"),
         ];
         let displacement = self.vector([1e-3, -2e-3]).map(|v| self.length * v);
@@ -74,8 +78,8 @@ impl Change {
     }
 
     /// Reaction at the former top, in former axes, over E L; forces over E L; jumps over L.
-    fn numbers(&self) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-        let found = solve(&self.case());
+    fn numbers(&self, tip: &str) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let found = solve(&self.case(tip));
         let force = self.stress * self.length;
         let reaction = [0, 1].map(|a| {
             let (axis, sign) = self.axes[a];
@@ -110,8 +114,7 @@ fn a_turned_shifted_and_rescaled_body_gives_the_same_numbers() {
     let quarter = [(1, 1.0), (0, -1.0)];
     let half = [(0, -1.0), (1, -1.0)];
     let three = [(1, -1.0), (0, 1.0)];
-    let (reaction, forces, jumps) = PLAIN.numbers();
-    for change in [
+    let changes = [
         turned(quarter, 1.0, [0.0, 0.0], 1.0),
         turned(half, 1.0, [0.0, 0.0], 1.0),
         turned(three, 1.0, [0.0, 0.0], 1.0),
@@ -120,16 +123,19 @@ fn a_turned_shifted_and_rescaled_body_gives_the_same_numbers() {
         turned(plain, 1.0, [0.0, 0.0], 1e10),
         turned(plain, 1.0, [17.3, -5.1], 1.0),
         turned(three, 1e3, [-4e3, 9e2], 2.1e11),
-    ] {
-        let (r, p, j) = change.numbers();
-        let name = format!("{:?} {:e} {:e}", change.axes, change.length, change.stress);
-        for (what, found, exact) in [
-            ("reaction", r, &reaction),
-            ("forces", p, &forces),
-            ("jumps", j, &jumps),
-        ] {
-            let change = relative_difference(&found, exact);
-            assert!(change < EQUAL, "{name}: {what} {change:e}");
+    ];
+    for (tip, equal) in [("none", EQUAL), ("branch", EQUAL_WITH_TIPS)] {
+        let (reaction, forces, jumps) = PLAIN.numbers(tip);
+        for change in &changes {
+            let (r, p, j) = change.numbers(tip);
+            let differences = [(r, &reaction), (p, &forces), (j, &jumps)]
+                .map(|(found, exact)| relative_difference(&found, exact));
+            let name = format!("{:?} {:e} {:e}", change.axes, change.length, change.stress);
+            println!("{tip} {name}: {differences:?}");
+            assert!(
+                differences.iter().all(|d| *d < equal),
+                "{tip} {name}: {differences:?}"
+            );
         }
     }
 }
@@ -142,17 +148,18 @@ fn a_mirrored_body_gives_mirrored_numbers() {
         axes: [(0, -1.0), (1, 1.0)],
         ..PLAIN
     };
-    let (reaction, forces, jumps) = PLAIN.numbers();
-    let (r, p, j) = mirror.numbers();
+    let (reaction, forces, jumps) = PLAIN.numbers("branch");
+    let (r, p, j) = mirror.numbers("branch");
     let flip = |v: Vec<f64>| -> Vec<f64> {
         v.into_iter()
             .enumerate()
             .map(|(i, v)| if i % 2 == 1 { -v } else { v })
             .collect()
     };
-    assert!(relative_difference(&r, &reaction) < EQUAL);
-    assert!(relative_difference(&flip(p), &forces) < EQUAL);
-    assert!(relative_difference(&flip(j), &jumps) < EQUAL);
+    for (found, exact) in [(r, reaction), (flip(p), forces), (flip(j), jumps)] {
+        let change = relative_difference(&found, &exact);
+        assert!(change < EQUAL_WITH_TIPS, "{change:e}");
+    }
 }
 
 /// Source: objectivity. Goal: a solid with its axes renamed x → y → z → x gives the same reactions and point forces.
