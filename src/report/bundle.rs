@@ -78,13 +78,24 @@ impl Bundle {
     }
 }
 
-/// Creates `dir` and proves that files can be written there; to be called before any computing.
+/// Proves that files can be written into `dir`, which need not exist yet, and leaves nothing behind; to be called before
+/// any computing.
 ///
 /// # Errors
 /// [`ReportError::Io`] naming the path.
 pub fn prepare_output(dir: &Path) -> Result<(), ReportError> {
-    create_dir(dir)?;
-    let staging = Staging::create(dir)?;
+    // A folder that is still to be made takes its rights from the nearest one that exists.
+    let existing = dir.ancestors().find(|path| path.exists());
+    let folder = match existing {
+        Some(path) if path.as_os_str().is_empty() => Path::new("."),
+        Some(path) => path,
+        None => Path::new("."),
+    };
+    if !folder.is_dir() {
+        let source = std::io::Error::from(std::io::ErrorKind::NotADirectory);
+        return Err(ReportError::io("create folder", dir, source));
+    }
+    let staging = Staging::create(folder)?;
     write(&staging.new_files().join("probe"), b"probe")
 }
 
