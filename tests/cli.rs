@@ -357,3 +357,37 @@ fn the_same_command_twice_writes_the_same_files_but_for_times() {
         }
     }
 }
+
+/// The main job: both tables of the paper on the terminal and in files, every expectation met, the same bytes without a
+/// verb as with it.
+#[test]
+fn paper_shows_and_writes_both_tables_and_is_what_runs_without_a_verb() {
+    let dir = tempfile::tempdir().unwrap();
+    let named = stickslip(&["paper", "--out", "named"], dir.path());
+    assert_eq!(named.status.code(), Some(0), "{}", text(&named.stderr));
+    assert!(named.stderr.is_empty(), "{}", text(&named.stderr));
+    let shown = text(&named.stdout);
+    for printed in ["973.3", "1107.4", "1137.5", "1.782853", "0.5293037"] {
+        assert!(shown.contains(printed), "{printed} missing in\n{shown}");
+    }
+    let plain = stickslip(&[], dir.path());
+    assert_eq!(plain.status.code(), Some(0), "{}", text(&plain.stderr));
+    let (named, plain) = (
+        files(&dir.path().join("named")),
+        files(&dir.path().join("reports")),
+    );
+    assert_eq!(
+        named.keys().collect::<Vec<_>>(),
+        plain.keys().collect::<Vec<_>>()
+    );
+    for table in ["table1", "table2"] {
+        for kind in ["csv", "md", "tex"] {
+            let name = format!("{table}.{kind}");
+            assert!(named.contains_key(&name), "{name} missing");
+            assert!(named[&name] == plain[&name], "{name} differs");
+        }
+    }
+    for name in ["quantities.csv", "history.csv", "points.csv"] {
+        assert!(named[name] == plain[name], "{name} differs");
+    }
+}
