@@ -10,7 +10,7 @@ use stickslip_methods::{METHODS, Method, OptionError, Tier};
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
 use crate::harness::record::Results;
-use crate::harness::run::{Choice, Progress, RunError, Settings, choices, run_case};
+use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
@@ -49,6 +49,9 @@ enum Verb {
         /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9); the case's own by default
         #[arg(long)]
         tier: Option<Tier>,
+        /// Methods whose fields are written for pictures: none, first (the first exact method) or all
+        #[arg(long, value_enum, default_value = "first")]
+        fields: FieldsOf,
         /// Folder for the results
         #[arg(long, default_value = "results")]
         out: PathBuf,
@@ -69,6 +72,14 @@ enum Verb {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+}
+
+/// Values of `--fields`.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum FieldsOf {
+    None,
+    First,
+    All,
 }
 
 /// Why a command ended with exit code 2.
@@ -129,12 +140,18 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             cases,
             method,
             tier,
+            fields,
             out,
             jobs,
         } => {
             let settings = Settings {
                 tier,
                 jobs: usize::from(jobs),
+                fields: match fields {
+                    FieldsOf::None => Fields::None,
+                    FieldsOf::First => Fields::First,
+                    FieldsOf::All => Fields::All,
+                },
             };
             run_verb(&cases, &method, settings, &out)
         }
@@ -152,7 +169,11 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
 
 fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     prepare_output(out)?;
-    let settings = Settings { tier: None, jobs };
+    let settings = Settings {
+        tier: None,
+        jobs,
+        fields: Fields::First,
+    };
     let bar = Bar::new();
     let paper = paper::run(settings, &bar)?;
     bar.finish();

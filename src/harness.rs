@@ -7,6 +7,7 @@ pub mod expect;
 pub mod picture;
 pub mod quantities;
 pub mod record;
+pub mod refusals;
 pub mod run;
 pub mod shipped;
 pub mod verdict;

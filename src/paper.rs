@@ -9,7 +9,7 @@ use stickslip_methods::METHODS;
 
 use crate::harness::case::{Case, CaseError};
 use crate::harness::record::{Results, RunKey};
-use crate::harness::run::{Choice, Progress, RunError, Settings, run_case};
+use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, run_case};
 use crate::harness::shipped;
 use crate::report::paper::{Digits, Table1Row, Table2Row, table1, table2};
 use crate::report::study::{
@@ -83,6 +83,10 @@ impl From<CaseError> for PaperError {
 /// Runs everything.
 pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperError> {
     let mut paper = Paper::default();
+    let numbers_only = Settings {
+        fields: Fields::None,
+        ..settings
+    };
     for (name, _) in shipped::CASES {
         let results = run_case(&case(name)?, &[], settings, progress)?;
         paper.results.append(results);
@@ -90,10 +94,9 @@ pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperEr
     paper.table1 = plate_rows(&paper.results)?;
     paper.table2 = beam_rows(&paper.results)?;
     paper.beam_models_mm = beam_difference(&paper.results);
-    paper.penalty = penalty_rows(&paper.results, settings, progress)?;
-    paper.refinement = refinement_rows(settings, progress)?;
+    paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
+    paper.refinement = refinement_rows(numbers_only, progress)?;
     paper.limits = limit_rows(&paper.refinement);
-    keep_reference_fields(&mut paper.results);
     Ok(paper)
 }
 
@@ -408,9 +411,4 @@ fn limit_rows(rows: &[RefinementRow]) -> Vec<LimitRow> {
             LimitRow::new(friction, limit("I"), limit("II"))
         })
         .collect()
-}
-
-/// One method's fields per problem are enough for pictures: the exact methods agree to many digits.
-fn keep_reference_fields(results: &mut Results) {
-    results.fields.retain(|f| f.key.method == REFERENCE_METHOD);
 }

@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use stickslip::harness::run::{Quiet, Settings};
+use stickslip::harness::run::{Fields, Quiet, Settings};
 use stickslip::paper;
 use stickslip::report::Provenance;
 
@@ -46,6 +46,7 @@ fn the_committed_tables_are_those_of_this_source() {
     let settings = Settings {
         tier: None,
         jobs: 1,
+        fields: Fields::None,
     };
     let paper = paper::run(settings, &Quiet).expect("the main job runs");
     assert!(

@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use stickslip::harness::record::Results;
-use stickslip::harness::run::{Quiet, Settings, run_case};
+use stickslip::harness::run::{Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
 
 /// Rounding times the conditioning of a plate of a few hundred unknowns.
@@ -283,7 +283,19 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 fn jobs_change_nothing_but_the_times() {
     let case = shipped::find("sliding_block_embedded").unwrap().unwrap();
     let methods = choices(&["penalty", "latin"]);
-    let rows = |jobs| run_case(&case, &methods, Settings { tier: None, jobs }, &Quiet).unwrap();
+    let rows = |jobs| {
+        run_case(
+            &case,
+            &methods,
+            Settings {
+                tier: None,
+                jobs,
+                fields: Fields::None,
+            },
+            &Quiet,
+        )
+        .unwrap()
+    };
     let (one, two) = (rows(1), rows(2));
     assert!(bits(&one) == bits(&two));
     assert!(one.runs.iter().any(|r| r.solve_s.is_finite()));

@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 use common::*;
 use stickslip::harness::body::BodyError;
 use stickslip::harness::record::Results;
-use stickslip::harness::run::{Quiet, RunError, Settings, run_case};
+use stickslip::harness::run::{Fields, Quiet, RunError, Settings, run_case};
 use stickslip_methods::METHODS;
 
 const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
+    fields: Fields::None,
 };
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];

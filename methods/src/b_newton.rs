@@ -37,20 +37,22 @@
 //! systems: none fails up to μ = 1, one in ten at μ = 2, half at μ = 5); a singular tangent at P_n = 0, d = 0 corners. If contact points are redundant, W is singular and so is the tangent of sticking points: the step is
 //! then regularised by 1e-10/ρ, which leaves the solution untouched and picks one of the possible P. If all points of a
 //! floating piece open or slide on the way, the tangent cannot hold it: a few local and global stages (as in LATIN) move
-//! the iterate on, and if that happens again and again the piece is reported as a mechanism.
+//! the iterate on, and if that happens again and again the piece is reported as a mechanism. The same stages move it on
+//! after 15 steps without progress.
 
 #![allow(non_snake_case)]
 
 use faer::Mat;
 
-use crate::problem::law::{ball_derivative, project_ball, tangential_norm};
+use crate::problem::b_equations::{Piece, Row, equations, linearise, trial};
+use crate::problem::law::tangential_norm;
 use crate::problem::line_search::LineSearch;
 use crate::problem::linear::dense::{mul_add, solve_dense};
 use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::problem::stages::{Pair, rescue};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
+    Options, Outcome, Status,
 };
 
 /// Registry entry.
@@ -123,15 +125,6 @@ impl Iterate {
     }
 }
 
-/// Pieces of H' in use at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Piece {
-    closed: bool,
-    /// δs = μ δP_n instead of 0.
-    bound_moves: bool,
-    slip: bool,
-}
-
 /// Which pieces of H' meet at the iterate, so that the direction decides.
 #[derive(Debug, Clone, Copy)]
 struct Kink {
@@ -184,7 +177,9 @@ impl Enforcement for BNewton {
                 }
             }
             before.clone_from(&pieces);
-            let Some(step) = direction(&mut problem, &r, &x, &v, pieces, &kinks) else {
+            let stuck = problem.stagnates();
+            let step = (!stuck).then(|| direction(&mut problem, &r, &x, &v, pieces, &kinks));
+            let Some(step) = step.flatten() else {
                 if problem.rescue_left() {
                     let pair = Pair {
                         p: x.P.clone(),
@@ -199,7 +194,11 @@ impl Enforcement for BNewton {
                         continue;
                     }
                 }
-                break problem.singular();
+                break if stuck {
+                    Status::Stalled
+                } else {
+                    problem.singular()
+                };
             };
             search.record(merit(&problem, &r, &x.P, &v));
             let t = search.length(|t| {
@@ -212,20 +211,6 @@ impl Enforcement for BNewton {
         };
         problem.finish(status, &x.P, &x.beta)
     }
-}
-
-/// H at one point; `P`, `v`, `r` are its rows.
-fn equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut H = [0.0; 3];
-    H[0] = (r[0] * v[0]).min(P[0]);
-    for k in 1..P.len() {
-        H[k] = P[k] - r[k] * v[k];
-    }
-    project_ball(mu * P[0].max(0.0), &mut H[1..P.len()]);
-    for k in 1..P.len() {
-        H[k] = P[k] - H[k];
-    }
-    H
 }
 
 /// Σ H²/r over all rows, an energy.
@@ -271,15 +256,6 @@ fn classify(problem: &Reduced<'_>, r: &[f64], P: &[f64], v: &[f64]) -> (Vec<Piec
         )
     };
     (0..problem.rows.points()).map(point).unzip()
-}
-
-/// (−, z_t) with z_t = P_t − r_t d.
-fn trial(r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut z = [0.0; 3];
-    for k in 1..P.len() {
-        z[k] = P[k] - r[k] * v[k];
-    }
-    z
 }
 
 /// Newton direction H(x) + H'(x; δ) = 0; `None` if the tangent is singular.
@@ -375,52 +351,6 @@ fn correct_pieces(
         *piece = wanted;
     }
     contradicted
-}
-
-/// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
-struct Row {
-    a: [f64; 3],
-    c: [f64; 3],
-    h: f64,
-}
-
-fn linearise(mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [Row; 3] {
-    let H = equations(mu, r, P, v);
-    let mut rows = [0, 1, 2].map(|k| Row {
-        a: [0.0; 3],
-        c: [0.0; 3],
-        h: H[k],
-    });
-    if piece.closed {
-        rows[0].c[0] = r[0];
-    } else {
-        rows[0].a[0] = 1.0;
-    }
-    let z = trial(r, P, v);
-    let z = &z[..P.len()];
-    if !piece.slip {
-        for k in 1..P.len() {
-            rows[k].c[k] = r[k];
-        }
-    } else {
-        let t = tangential_norm(z);
-        let (e, S) = if t > 0.0 {
-            ball_derivative(mu * P[0].max(0.0), &z[1..])
-        } else {
-            Default::default()
-        };
-        for k in 1..P.len() {
-            rows[k].a[k] = 1.0;
-            if piece.bound_moves {
-                rows[k].a[0] = -mu * e[k - 1];
-            }
-            for l in 1..P.len() {
-                rows[k].a[l] -= S[k - 1][l - 1];
-                rows[k].c[l] += S[k - 1][l - 1] * r[l];
-            }
-        }
-    }
-    rows
 }
 
 /// Solves the linear problem of the given pieces. `ridge`/ρ is added to the diagonal of W.

@@ -13,14 +13,17 @@ use crate::fem::box_mesh::box_mesh;
 use crate::fem::elasticity::{CellMatrix, Lame};
 use crate::fem::mesh::Mesh;
 use crate::fem::ordering::nested_dissection;
-use crate::harness::boundary::{LoadError, Prescribed, nodal_forces, prescribed, region_nodes};
-use crate::harness::case::{Case, CaseError, History, LoadKind, Quadrature};
+use crate::harness::boundary::{Prescribed, nodal_forces, prescribed, region_nodes};
+use crate::harness::case::{Case, CaseError, History, Quadrature};
+use crate::harness::refusals::{
+    check_probes, check_supports, crack_error, load_error, motion_error,
+};
 use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
 use crate::xfem::crack::Crack;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
 use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs};
-use crate::xfem::pieces::{MotionError, free_motions};
+use crate::xfem::pieces::free_motions;
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -422,92 +425,4 @@ fn cell_matrices(
     }
     distinct.extend(own);
     Ok((distinct, of_cell))
-}
-
-fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {
-    for support in &case.supports {
-        if region_nodes(integrator, &support.on).is_empty() {
-            let found = "no node";
-            return Err(case.error(
-                &support.on.span,
-                found,
-                "a region with at least one node",
-                "the support holds nothing",
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn check_probes(case: &Case, mesh: &Mesh) -> Result<(), CaseError> {
-    for probe in &case.probes {
-        if mesh.node_at(&probe.point).is_none() {
-            let found = case.text(&probe.span);
-            let message = format!("probe `{}` is at no node", probe.name);
-            return Err(case.error(
-                &probe.span,
-                found,
-                "the place of a node of the mesh",
-                message,
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
-    let (crack, allowed) = match error {
-        EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
-        EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
-        EnrichmentError::Crossing { second, .. } => (*second, "cracks at least one cell apart"),
-        EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
-        EnrichmentError::ConformingTip { crack } => (
-            *crack,
-            "tip = \"none\", or a mesh whose edges the crack crosses",
-        ),
-    };
-    let spec = &case.cracks[crack];
-    let span = match error {
-        EnrichmentError::ConformingTip { .. } => &spec.tip_span,
-        _ => &spec.geometry_span,
-    };
-    case.error(span, case.text(span), allowed, error)
-}
-
-fn motion_error(case: &Case, error: &MotionError) -> CaseError {
-    let (span, allowed) = match (error, case.supports.first()) {
-        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
-            &case.cracks[0].geometry_span,
-            "a support on every piece the cracks cut off",
-        ),
-        (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
-        (_, None) => (&case.mesh.span, "at least one [[support]]"),
-    };
-    case.error(span, case.text(span), allowed, error)
-}
-
-fn load_error(
-    case: &Case,
-    kind: &LoadKind,
-    span: &crate::harness::case::Span,
-    error: LoadError,
-) -> BodyError {
-    match error {
-        LoadError::Cell(e) => e.into(),
-        LoadError::Empty(_) => {
-            let span = match kind {
-                LoadKind::Traction(region, _)
-                | LoadKind::Pressure(region, _)
-                | LoadKind::Line(region, _) => &region.span,
-                LoadKind::Body(_) => span,
-            };
-            case.error(
-                span,
-                case.text(span),
-                "a region with facets or edges to load",
-                error,
-            )
-            .into()
-        }
-    }
 }

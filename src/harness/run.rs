@@ -55,6 +55,19 @@ pub struct Settings {
     pub tier: Option<Tier>,
     /// Cells run at the same time; times are recorded for one only.
     pub jobs: usize,
+    /// Whose fields are kept for pictures.
+    pub fields: Fields,
+}
+
+/// Methods whose fields are kept: pictures cost more than solving, and exact methods agree to many digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fields {
+    /// Nobody's.
+    None,
+    /// The first exact method's of every problem, or the first method's if none is exact.
+    First,
+    /// Everybody's.
+    All,
 }
 
 /// Watches the runs of a command.
@@ -132,6 +145,7 @@ struct Cell<'a> {
     system: Arc<ContactSystem>,
     choice: &'a Choice,
     refine: usize,
+    fields: bool,
 }
 
 /// Runs a case for some methods and gathers everything it produced.
@@ -160,8 +174,14 @@ pub fn run_case(
             let system = Arc::new(
                 ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?,
             );
-            for choice in &choices {
+            let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
+            for (number, choice) in choices.iter().enumerate() {
                 cells.push(Cell {
+                    fields: match settings.fields {
+                        Fields::None => false,
+                        Fields::First => number == first,
+                        Fields::All => true,
+                    },
                     body: &body,
                     friction: per_crack.first().copied().unwrap_or(0.0),
                     system: system.clone(),
@@ -314,7 +334,9 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
                 .quantities
                 .extend(quantity_rows(case, body, &key, &now));
             results.points.extend(point_rows(body, &key, &now));
-            steps.push(field_step(body, &now));
+            if cell.fields {
+                steps.push(field_step(body, &now));
+            }
         } else {
             // What follows would start from a state nobody vouches for.
             break;
@@ -323,7 +345,9 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         start_load = load;
     }
     results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
-    results.fields.push(RunFields { key, steps });
+    if !steps.is_empty() {
+        results.fields.push(RunFields { key, steps });
+    }
     results
 }
 

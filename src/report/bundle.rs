@@ -86,11 +86,7 @@ impl Bundle {
 pub fn prepare_output(dir: &Path) -> Result<(), ReportError> {
     // A folder that is still to be made takes its rights from the nearest one that exists.
     let existing = dir.ancestors().find(|path| path.exists());
-    let folder = match existing {
-        Some(path) if path.as_os_str().is_empty() => Path::new("."),
-        Some(path) => path,
-        None => Path::new("."),
-    };
+    let folder = existing.unwrap_or(Path::new("."));
     if !folder.is_dir() {
         let source = std::io::Error::from(std::io::ErrorKind::NotADirectory);
         return Err(ReportError::io("create folder", dir, source));

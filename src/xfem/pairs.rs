@@ -20,6 +20,10 @@ use super::crack::Crack;
 use super::cut;
 use super::enrichment::Enrichment;
 
+/// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
+/// by 2 √r there, and a force that has to act through a jump this small grows like r^−½ without meaning anything.
+const AT_TIP: f64 = 1e-3;
+
 /// A contact point.
 #[derive(Debug, Clone)]
 pub struct ContactPoint {
@@ -132,7 +136,8 @@ pub fn edge_pairs(
     crack: &Crack,
     enrichment: &Enrichment,
 ) -> ContactSurface {
-    let mut found: BTreeMap<[u32; 2], (Point, f64)> = BTreeMap::new();
+    let sizes = mesh.node_sizes();
+    let mut found: BTreeMap<[u32; 2], ContactPoint> = BTreeMap::new();
     let mut facets = Vec::new();
     for cell in 0..mesh.cell_count() {
         if enrichment.split[cell] != Some(index as u32) {
@@ -140,25 +145,20 @@ pub fn edge_pairs(
         }
         let corners = mesh.corners(cell);
         let nodes = mesh.cell(cell);
-        let facet = cut::facet(
-            mesh.kind,
-            &corners[..mesh.kind.nodes()],
-            &crack.cell_phi(mesh, cell),
-        );
-        let mut keys = Vec::with_capacity(facet.len());
+        let phi = crack.cell_phi(mesh, cell);
+        let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], &phi);
+        let mut kept = Vec::with_capacity(facet.len());
+        let mut lost = 0.0;
         for (x, [i, j], weight) in weighted_vertices(crack, &facet, &corners) {
             let (a, b) = (nodes[i], nodes[j]);
             let key = [a.min(b), a.max(b)];
-            found.entry(key).or_insert((x, 0.0)).1 += weight;
-            keys.push(key);
-        }
-        facets.push(keys);
-    }
-    let at_tip = 1e-9 * mesh.extent().0;
-    let points = found
-        .into_iter()
-        .map(|(nodes, (x, weight))| {
-            let point = ContactPoint {
+            let at_tip = AT_TIP * sizes[a as usize].min(sizes[b as usize]);
+            let terms = jump_terms(index, crack, enrichment, key, &x, at_tip);
+            if terms.is_empty() {
+                lost += weight;
+                continue;
+            }
+            found.entry(key).or_insert_with(|| ContactPoint {
                 crack: crack.number,
                 x,
                 s: if mesh.dim() == 2 {
@@ -167,14 +167,21 @@ pub fn edge_pairs(
                     0.0
                 },
                 frame: crack.frame,
-                weight,
-                terms: jump_terms(index, crack, enrichment, nodes, &x, at_tip),
-            };
-            (nodes, point)
-        })
-        .filter(|(_, point)| !point.terms.is_empty())
-        .collect();
-    ContactSurface::new(points, facets)
+                weight: 0.0,
+                terms,
+            });
+            kept.push((key, weight));
+        }
+        // What belongs to a vertex without a point is carried by the others of its facet.
+        let share = lost / kept.len().max(1) as f64;
+        for (key, weight) in &kept {
+            if let Some(point) = found.get_mut(key) {
+                point.weight += weight + share;
+            }
+        }
+        facets.push(kept.into_iter().map(|(key, _)| key).collect());
+    }
+    ContactSurface::new(found.into_iter().collect(), facets)
 }
 
 /// Vertices of a facet that carry a point, with their share of the facet inside the crack.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use stickslip::harness::body::{Body, BodyError};
 use stickslip::harness::case::{self, Case};
 use stickslip::harness::record::Results;
-use stickslip::harness::run::{Choice, Quiet, Settings, run_case};
+use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
 };
@@ -155,6 +155,7 @@ pub fn run(case: &Case, methods: &[&str]) -> Results {
     let settings = Settings {
         tier: None,
         jobs: 1,
+        fields: Fields::None,
     };
     run_case(case, &choices(methods), settings, &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }

@@ -29,14 +29,12 @@ impl LineSearch {
     pub fn length(&self, mut merit: impl FnMut(f64) -> f64) -> f64 {
         let bound = self.recent.iter().copied().fold(0.0, f64::max);
         let mut t = 1.0;
-        if merit(t) <= bound {
-            return t;
-        }
-        for _ in 0..HALVINGS {
-            t *= 0.5;
+        for _ in 0..=HALVINGS {
+            // Strictly below: a cycle of full steps between equal merits must not pass for ever.
             if merit(t) <= (1.0 - 2.0 * DECREASE * t) * bound {
                 return t;
             }
+            t *= 0.5;
         }
         1.0
     }

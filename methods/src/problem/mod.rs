@@ -1,5 +1,6 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
+pub(crate) mod b_equations;
 pub(crate) mod condensed;
 mod elastic;
 mod error;

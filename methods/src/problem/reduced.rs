@@ -24,6 +24,9 @@ const COMPLIANCE_FLOOR: f64 = 1e-2;
 /// Rescues per increment.
 const MAX_RESCUES: usize = 6;
 
+/// Iterations without progress after which a Newton method is moved on.
+const STAGNATION: usize = 15;
+
 /// Corrections of q per increment; each gains the digits that W has right.
 const MAX_CORRECTIONS: usize = 3;
 
@@ -223,11 +226,21 @@ impl<'a> Reduced<'a> {
         self.condensed.modes.add(&missing, p);
     }
 
-    /// Whether a floating body whose tangent is singular may be moved on by [`rescue`](super::stages::rescue): on the
-    /// way all points of a piece may open or slide, but a piece that gets loose again and again is a mechanism.
+    /// Whether a Newton method that cannot go on by itself may be moved on by [`rescue`](super::stages::rescue): after
+    /// too long without progress, or where the tangent of a floating body is singular. On the way all points of a piece
+    /// may open or slide, but a piece that gets loose again and again is a mechanism.
     pub fn rescue_left(&mut self) -> bool {
+        if self.modes() == 0 && !self.stagnates() {
+            return false;
+        }
         self.rescues += 1;
-        self.modes() > 0 && self.rescues <= MAX_RESCUES
+        self.best.1 = self.counters.iterations;
+        self.rescues <= MAX_RESCUES
+    }
+
+    /// Whether the natural map has not fallen for [`STAGNATION`] iterations.
+    pub fn stagnates(&self) -> bool {
+        self.counters.iterations >= self.best.1 + STAGNATION
     }
 
     /// Rescues before the current one.

@@ -1,0 +1,97 @@
+//! What only the discretisation finds wrong with a case, said at the place in its file.
+
+use crate::fem::mesh::Mesh;
+use crate::harness::body::BodyError;
+use crate::harness::boundary::{LoadError, region_nodes};
+use crate::harness::case::{Case, CaseError, LoadKind, Span};
+use crate::xfem::cell_matrix::CellIntegrator;
+use crate::xfem::enrichment::EnrichmentError;
+use crate::xfem::pieces::MotionError;
+
+/// Refuses a support whose region holds no node.
+pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {
+    for support in &case.supports {
+        if region_nodes(integrator, &support.on).is_empty() {
+            let found = "no node";
+            return Err(case.error(
+                &support.on.span,
+                found,
+                "a region with at least one node",
+                "the support holds nothing",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a probe that is at no node.
+pub fn check_probes(case: &Case, mesh: &Mesh) -> Result<(), CaseError> {
+    for probe in &case.probes {
+        if mesh.node_at(&probe.point).is_none() {
+            let found = case.text(&probe.span);
+            let message = format!("probe `{}` is at no node", probe.name);
+            return Err(case.error(
+                &probe.span,
+                found,
+                "the place of a node of the mesh",
+                message,
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The error of a crack, at its geometry or its `tip`.
+pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
+    let (crack, allowed) = match error {
+        EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
+        EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
+        EnrichmentError::Crossing { second, .. } => (*second, "cracks at least one cell apart"),
+        EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
+        EnrichmentError::ConformingTip { crack } => (
+            *crack,
+            "tip = \"none\", or a mesh whose edges the crack crosses",
+        ),
+    };
+    let spec = &case.cracks[crack];
+    let span = match error {
+        EnrichmentError::ConformingTip { .. } => &spec.tip_span,
+        _ => &spec.geometry_span,
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+/// The error of a body that can move, at the crack that cuts a piece off or at the supports.
+pub fn motion_error(case: &Case, error: &MotionError) -> CaseError {
+    let (span, allowed) = match (error, case.supports.first()) {
+        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
+            &case.cracks[0].geometry_span,
+            "a support on every piece the cracks cut off",
+        ),
+        (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
+        (_, None) => (&case.mesh.span, "at least one [[support]]"),
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+/// The error of a load, at its region.
+pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -> BodyError {
+    match error {
+        LoadError::Cell(e) => e.into(),
+        LoadError::Empty(_) => {
+            let span = match kind {
+                LoadKind::Traction(region, _)
+                | LoadKind::Pressure(region, _)
+                | LoadKind::Line(region, _) => &region.span,
+                LoadKind::Body(_) => span,
+            };
+            case.error(
+                span,
+                case.text(span),
+                "a region with facets or edges to load",
+                error,
+            )
+            .into()
+        }
+    }
+}
