@@ -49,7 +49,7 @@ use crate::problem::law::tangential_norm;
 use crate::problem::line_search::LineSearch;
 use crate::problem::linear::dense::{mul_add, solve_dense};
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::stages::{Pair, rescue};
+use crate::problem::stages::rescue;
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome, Status,
@@ -181,12 +181,7 @@ impl Enforcement for BNewton {
             let step = (!stuck).then(|| direction(&mut problem, &r, &x, &v, pieces, &kinks));
             let Some(step) = step.flatten() else {
                 if problem.rescue_left() {
-                    let pair = Pair {
-                        p: x.P.clone(),
-                        v,
-                        beta: x.beta.clone(),
-                    };
-                    if let Some(pair) = rescue(&mut problem, pair) {
+                    if let Some(pair) = rescue(&mut problem) {
                         x = Iterate {
                             P: pair.p,
                             beta: pair.beta,

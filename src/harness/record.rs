@@ -63,7 +63,7 @@ pub struct RunRow {
     pub prepare_s: f64,
     /// Method's solve of this increment [s].
     pub solve_s: f64,
-    /// Relative equilibrium residual found by the judge [-].
+    /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
     /// Schema version.
     pub schema: u32,

@@ -4,7 +4,7 @@ use std::fmt;
 
 use stickslip_methods::{Claim, Outcome, Residuals, Status, Tier};
 
-/// Largest relative equilibrium residual of a direct solve; above it the natural map does not measure contact alone.
+/// Largest backward error of equilibrium after a direct solve; above it the natural map does not measure contact alone.
 pub const EQUILIBRIUM: f64 = 1e-12;
 
 /// What a run is worth.

@@ -14,7 +14,8 @@ use super::system::Increment;
 /// rows / trace(W), and Euclidean norms over all points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
-    /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + |K u|).
+    /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
+    /// or large bodies is far above ε |K u|.
     pub equilibrium: f64,
     /// max −g / u_ref over the points.
     pub penetration: f64,
@@ -167,5 +168,6 @@ fn equilibrium(i: &Increment<'_>, s: &ContactState) -> f64 {
         .mul_transpose_add(&s.p, &mut contact);
     let f = &i.load.force;
     let residual: Vec<f64> = (0..n).map(|j| ku[j] - f[j] - contact[j]).collect();
+    i.system.elastic().stiffness().mul_abs(&s.u, &mut ku);
     ratio(norm(&residual), norm(f) + norm(&contact) + norm(&ku))
 }

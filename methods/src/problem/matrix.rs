@@ -91,6 +91,22 @@ impl SymmetricMatrix {
             y[j] += sum;
         }
     }
+
+    /// |A| |x| with absolute values throughout: what rounding of A x is relative to.
+    pub fn mul_abs(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for j in 0..self.n {
+            let (begin, end) = (self.col_ptr[j], self.col_ptr[j + 1]);
+            let mut sum = (self.values[begin] * x[j]).abs();
+            for k in begin + 1..end {
+                let i = self.row_idx[k];
+                let value = self.values[k].abs();
+                y[i] += value * x[j].abs();
+                sum += value * x[i].abs();
+            }
+            y[j] += sum;
+        }
+    }
 }
 
 /// The jump operator B in compressed rows: `[[u]] = B u`, rows point by point, each `(n, a[, b])`.

@@ -23,7 +23,7 @@ use super::law::{Branch, return_map, return_map_derivative};
 use super::line_search::LineSearch;
 use super::linear::dense::{mul_add, solve_dense};
 use super::reduced::Reduced;
-use super::stages::{Pair, rescue};
+use super::stages::rescue;
 use super::state::{Monitor, Status};
 
 /// Below this a residual that no longer halves has met rounding.
@@ -78,14 +78,14 @@ impl Springs {
     }
 
     /// Newton's method from `at` until the residual is at most `stop`. The residual is F and the missing balance on
-    /// the scale of the natural map. `report(residual, changes)` is called for every iterate and may stop.
+    /// the scale of the natural map. `report(iterate, changes)` is called for every iterate and may stop.
     pub fn solve(
         &self,
         problem: &mut Reduced<'_>,
         mut at: Point,
         stop: f64,
         max_iterations: usize,
-        mut report: impl FnMut(&mut Reduced<'_>, f64, usize) -> bool,
+        mut report: impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool,
     ) -> (Status, Point) {
         let (r, c) = (self.scales(problem), self.compliance(problem));
         let mut search = LineSearch::default();
@@ -104,7 +104,7 @@ impl Springs {
             if !residual.is_finite() {
                 return (Status::Diverged, at);
             }
-            let go_on = report(problem, residual, changes);
+            let go_on = report(problem, &at, changes);
             if residual <= stop {
                 return (Status::Converged, at);
             }
@@ -121,13 +121,7 @@ impl Springs {
             problem.counters.factorisations += 1;
             let Some((dz, dbeta)) = direction(problem, &r, &c, &at, &mismatch) else {
                 if problem.rescue_left() {
-                    let v = problem.jump(&at.p, &at.beta);
-                    let pair = Pair {
-                        p: at.p.clone(),
-                        v,
-                        beta: at.beta.clone(),
-                    };
-                    if let Some(pair) = rescue(problem, pair) {
+                    if let Some(pair) = rescue(problem) {
                         at = self.predict(problem, &pair.p, pair.beta);
                         continue;
                     }
@@ -263,18 +257,21 @@ impl Point {
     }
 }
 
-/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`].
+/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`]. What is noted is the natural map
+/// of the contact laws, as for every method: it ends at the modelling error, not at zero.
 pub(crate) fn recorded<'m>(
     monitor: &'m mut dyn Monitor,
-) -> impl FnMut(&mut Reduced<'_>, f64, usize) -> bool + 'm {
+) -> impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool + 'm {
     let mut iteration = 0;
-    move |problem, residual, changes| {
+    move |problem, at, changes| {
+        let v = problem.jump(&at.p, &at.beta);
+        let natural_map = problem.natural_map(&at.p, &v);
         problem.history.push(super::state::Iteration {
-            natural_map: residual,
+            natural_map,
             changes,
         });
         problem.counters.iterations = iteration;
         iteration += 1;
-        monitor.step(iteration - 1, residual)
+        monitor.step(iteration - 1, natural_map)
     }
 }

@@ -152,8 +152,11 @@ impl GlobalStage {
     }
 }
 
-/// Moves a pair by some sweeps of both stages, out of the reach of a singular tangent.
-pub(crate) fn rescue(problem: &mut Reduced<'_>, mut pair: Pair) -> Option<Pair> {
+/// A pair out of the reach of a singular tangent or a cycle: sweeps of both stages from the start of the increment.
+///
+/// Not from the iterate that failed: a floating block it has pushed far down a slope slides on from there.
+pub(crate) fn rescue(problem: &mut Reduced<'_>) -> Option<Pair> {
+    let mut pair = Pair::start(problem);
     let stage = GlobalStage::new(problem.condensed.clone(), 1.0).ok()?;
     problem.counters.factorisations += 1;
     for _ in 0..RESCUE_SWEEPS << problem.earlier_rescues() {

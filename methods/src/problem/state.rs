@@ -83,8 +83,7 @@ pub enum Claim {
 /// One entry of the iteration history; the first describes the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
-    /// Residual the method stops on: the natural map, or for [`Claim::Penalised`] the residual of the penalised
-    /// equations on the same scale; dimensionless.
+    /// Natural map of the contact laws [-]; under [`Claim::Penalised`] it ends at the modelling error.
     pub natural_map: f64,
     /// Points that changed between open, stick and slip since the entry before.
     pub changes: usize,

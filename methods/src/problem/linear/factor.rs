@@ -21,8 +21,8 @@ use super::super::error::MethodError;
 use super::super::matrix::SymmetricMatrix;
 use super::ordering::Ordering;
 
-/// Refinement aims at this residual |K u − f| / (|K u| + |f|), well below the 1e-12 that equilibrium is held to.
-const REFINED: f64 = 1e-14;
+/// Refinement aims at this backward error |K u − f| / (||K| |u|| + |f|), a few units of rounding.
+const REFINED: f64 = 1e-15;
 /// Pivots of D K D, whose diagonal is 1, lie above this unless K is singular to working precision.
 const SMALLEST_PIVOT: f64 = 1e-12;
 /// More refinement steps do not help once rounding of the residual itself dominates.
@@ -140,6 +140,7 @@ impl Factor {
             for j in 0..n {
                 residual[j] = f[j] - kx[j];
             }
+            k.mul_abs(x, &mut kx);
             let size = norm(&kx) + norm(&f);
             let relative = if size > 0.0 {
                 norm(&residual) / size
