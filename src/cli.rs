@@ -1,5 +1,6 @@
 //! The command line: verbs, arguments, what is printed.
 
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +10,7 @@ use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
+use crate::harness::expect;
 use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
@@ -104,6 +106,14 @@ pub enum CliError {
         /// The choices.
         known: String,
     },
+    /// Two runs of one name.
+    #[error("{what} `{name}` is given twice: their results would have the same name")]
+    Twice {
+        /// Method or case.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
     /// A method option.
     #[error("--method {argument}: {source}")]
     Option {
@@ -198,8 +208,11 @@ fn run_verb(
         .iter()
         .map(|m| parse_choice(m))
         .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     for case in &cases {
-        choices(case, &given)?;
+        let chosen = choices(case, &given)?;
+        refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+        expect::check(case)?;
     }
     prepare_output(out)?;
     let bar = Bar::new();
@@ -220,10 +233,28 @@ fn run_verb(
     Ok(paper::as_expected(&results))
 }
 
+/// Two runs of one name would write the same files.
+fn refuse_twins<'a>(
+    what: &'static str,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), CliError> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(name) {
+            return Err(CliError::Twice {
+                what,
+                name: name.into(),
+            });
+        }
+    }
+    Ok(())
+}
+
 fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
     for file in files {
         let case = case::read(file)?;
         choices(&case, &[])?;
+        expect::check(&case)?;
         for &refine in &case.sweep.refine {
             let body = Body::new(&case, refine, false).map_err(RunError::from)?;
             println!(

@@ -253,3 +253,31 @@ fn a_method_option_out_of_range_is_refused_at_its_value() {
         assert!(walk(&out).is_empty());
     }
 }
+
+/// Goal: a probe on the crack, between two faces, and expectations that no run can answer are refused where they stand.
+#[test]
+fn probes_between_the_faces_and_expectations_without_an_answer_are_refused() {
+    let through = crack([-2.0, 0.0], [2.0, 0.0], 0.3, "none") + &clamped(2);
+    let probe = "[[probe]]\nname = \"P\"\npoint_m = [0, 0]\n";
+    let text = plane([-1.0, -1.0], [1.0, 1.0], [8, 8], &(through + probe));
+    assert_refused(&text, "[[probe]]", "lies on a crack");
+    for (quantity, at, unit, words) in [
+        ("reactions", "top", "N/m", "unknown quantity"),
+        ("reaction", "left", "N/m", "`at`"),
+        ("reaction", "top", "N", "`unit`"),
+    ] {
+        let text = good()
+            + &format!(
+                "[[expect]]\nquantity = \"{quantity}\"\nat = \"{at}\"\ncomponent = \"y\"\nvalue = 1\nunit = \"{unit}\"\n\
+                 relative = 1e-3\nkind = \"analytic\"\nsource = \"none\"\n"
+            );
+        let case = parse(&text);
+        let error = stickslip::harness::expect::check(&case).expect_err("no run has it");
+        assert_eq!(
+            (error.line(), error.column()),
+            place(&text, "[[expect]]"),
+            "{error}"
+        );
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}

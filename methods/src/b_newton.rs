@@ -180,14 +180,14 @@ impl Enforcement for BNewton {
             let stuck = problem.stagnates();
             let step = (!stuck).then(|| direction(&mut problem, &r, &x, &v, pieces, &kinks));
             let Some(step) = step.flatten() else {
-                if problem.rescue_left() {
-                    if let Some(pair) = rescue(&mut problem) {
-                        x = Iterate {
-                            P: pair.p,
-                            beta: pair.beta,
-                        };
-                        continue;
-                    }
+                if problem.rescue_left()
+                    && let Some(pair) = rescue(&mut problem)
+                {
+                    x = Iterate {
+                        P: pair.p,
+                        beta: pair.beta,
+                    };
+                    continue;
                 }
                 break if stuck {
                     Status::Stalled

@@ -128,7 +128,7 @@ impl Body {
         };
         let fixed = prescribed(case, &integrator);
         check_supports(case, &integrator)?;
-        check_probes(case, &mesh)?;
+        check_probes(case, &mesh, &enrichment)?;
         let dim = mesh.dim();
         let mut free = 0;
         let numbers: Vec<Option<u32>> = (0..enrichment.functions.len() * dim)

@@ -1,6 +1,7 @@
 //! Expected numbers of a case against what its runs found.
 
-use crate::harness::case::{Case, Expect, ExpectKind, Tolerance};
+use crate::harness::boundary::region_name;
+use crate::harness::case::{Case, CaseError, Expect, ExpectKind, Tolerance};
 use crate::harness::record::{ExpectRow, QuantityRow, Results, RunKey};
 use crate::harness::run::Choice;
 
@@ -8,6 +9,72 @@ use crate::harness::run::Choice;
 pub const MET: &str = "met";
 /// Verdict of a documented limitation.
 pub const MISSED_AS_DOCUMENTED: &str = "missed as documented";
+
+/// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
+///
+/// # Errors
+/// The first such expectation, at its place in the file.
+pub fn check(case: &Case) -> Result<(), CaseError> {
+    let plane = case.model.dim() == 2;
+    let (force, energy) = if plane { ("N/m", "J/m") } else { ("N", "J") };
+    let axes: &[&str] = if plane { &["x", "y"] } else { &["x", "y", "z"] };
+    let local: &[&str] = if plane { &["n", "a"] } else { &["n", "a", "b"] };
+    let cracks: Vec<String> = (1..=case.cracks.len())
+        .map(|i| format!("crack-{i}"))
+        .collect();
+    let body_or_crack = || {
+        std::iter::once(String::new())
+            .chain(cracks.clone())
+            .collect::<Vec<_>>()
+    };
+    for expect in &case.expects {
+        let (places, components, unit): (Vec<String>, &[&str], &str) =
+            match expect.quantity.as_str() {
+                "reaction" => (
+                    case.supports.iter().map(|s| region_name(&s.on)).collect(),
+                    axes,
+                    force,
+                ),
+                "displacement" => (
+                    case.probes.iter().map(|p| p.name.clone()).collect(),
+                    axes,
+                    "m",
+                ),
+                "contact_force" => (cracks.clone(), local, force),
+                "points_open" | "points_stick" | "points_slip" => (body_or_crack(), &[""], "-"),
+                "max_gap" | "max_penetration" | "max_slip" => (body_or_crack(), &[""], "m"),
+                "dissipation" | "strain_energy" => (vec![String::new()], &[""], energy),
+                "energy_identity" => (vec![String::new()], &[""], "-"),
+                unknown => {
+                    let allowed = "a quantity of quantities.csv, see docs/schema.md";
+                    return Err(case.error(&expect.span, unknown, allowed, "unknown quantity"));
+                }
+            };
+        let quote = |list: &[&str]| {
+            list.iter()
+                .map(|x| format!("{x:?}"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let names: Vec<&str> = places.iter().map(String::as_str).collect();
+        for (what, found, allowed) in [
+            ("at", expect.at.as_str(), names.as_slice()),
+            ("component", expect.component.as_str(), components),
+            ("unit", expect.unit.as_str(), &[unit]),
+        ] {
+            if !allowed.contains(&found) {
+                let message = format!("no run has a `{}` with this `{what}`", expect.quantity);
+                return Err(case.error(
+                    &expect.span,
+                    format!("{found:?}"),
+                    quote(allowed),
+                    message,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
 
 /// Rows of `expectations.csv` for one run, last increment `key`.
 pub fn expectation_rows(

@@ -121,23 +121,8 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
             unit: unit.into(),
         });
     };
-    for support in &case.supports {
-        let nodes = body.region_nodes(&support.on);
-        for (a, amount) in support.displacement.iter().enumerate() {
-            if amount.is_some() {
-                let total = nodes
-                    .iter()
-                    .map(|&n| now.force[n * dim + a] - now.external[n * dim + a])
-                    .sum();
-                push(
-                    "reaction",
-                    &region_name(&support.on),
-                    AXES[a],
-                    total,
-                    force_unit,
-                );
-            }
-        }
+    for (at, component, total) in reactions(case, body, now) {
+        push("reaction", &at, AXES[component], total, force_unit);
     }
     for probe in &case.probes {
         if let Some(node) = body.mesh.node_at(&probe.point) {
@@ -199,6 +184,28 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
     push("strain_energy", "", "", now.strain_energy, energy_unit);
     push("energy_identity", "", "", now.energy_identity, "-");
     rows
+}
+
+/// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place
+/// add up; an unknown that several places hold counts at the one whose support is in force, the last.
+fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<(String, usize, f64)> {
+    let dim = body.mesh.dim();
+    let mut totals: Vec<(String, usize, f64)> = Vec::new();
+    for (number, support) in case.supports.iter().enumerate() {
+        let (at, nodes) = (region_name(&support.on), body.region_nodes(&support.on));
+        for component in (0..dim).filter(|&a| support.displacement[a].is_some()) {
+            let own = nodes.iter().map(|&node| node * dim + component);
+            let force: f64 = own
+                .filter(|i| body.prescribed.get(i).is_some_and(|p| p.support == number))
+                .map(|i| now.force[i] - now.external[i])
+                .sum();
+            match totals.iter_mut().find(|t| t.0 == at && t.1 == component) {
+                Some(total) => total.2 += force,
+                None => totals.push((at.clone(), component, force)),
+            }
+        }
+    }
+    totals
 }
 
 /// Rows of `points.csv` for one increment.

@@ -65,6 +65,10 @@ pub struct RunRow {
     pub solve_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
+    /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
+    pub tangent_factorisations: usize,
+    /// Evaluations of the contact law at one point in this increment.
+    pub local_solves: usize,
     /// Schema version.
     pub schema: u32,
 }

@@ -5,7 +5,7 @@ use crate::harness::body::BodyError;
 use crate::harness::boundary::{LoadError, region_nodes};
 use crate::harness::case::{Case, CaseError, LoadKind, Span};
 use crate::xfem::cell_matrix::CellIntegrator;
-use crate::xfem::enrichment::EnrichmentError;
+use crate::xfem::enrichment::{Enrichment, EnrichmentError};
 use crate::xfem::pieces::MotionError;
 
 /// Refuses a support whose region holds no node.
@@ -24,18 +24,27 @@ pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<()
     Ok(())
 }
 
-/// Refuses a probe that is at no node.
-pub fn check_probes(case: &Case, mesh: &Mesh) -> Result<(), CaseError> {
+/// Refuses a probe that is at no node, or on a crack, where the displacement has two values.
+pub fn check_probes(case: &Case, mesh: &Mesh, enrichment: &Enrichment) -> Result<(), CaseError> {
+    let (size, _) = mesh.extent();
     for probe in &case.probes {
-        if mesh.node_at(&probe.point).is_none() {
-            let found = case.text(&probe.span);
-            let message = format!("probe `{}` is at no node", probe.name);
-            return Err(case.error(
-                &probe.span,
-                found,
-                "the place of a node of the mesh",
-                message,
-            ));
+        let refuse = |allowed: &str, reason: &str| {
+            let message = format!("probe `{}` {reason}", probe.name);
+            Err(case.error(&probe.span, case.text(&probe.span), allowed, message))
+        };
+        let Some(node) = mesh.node_at(&probe.point) else {
+            return refuse("the place of a node of the mesh", "is at no node");
+        };
+        let twin = mesh.nodes[node + 1..]
+            .iter()
+            .any(|x| (0..3).all(|a| (x[a] - probe.point[a]).abs() <= 1e-9 * size));
+        // A function that jumps at its own node: H reaches across, or the node lies between the faces.
+        let faces = enrichment.jumps_at(node);
+        if twin || faces {
+            return refuse(
+                "a node beside the crack",
+                "lies on a crack, where two displacements meet",
+            );
         }
     }
     Ok(())

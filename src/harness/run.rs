@@ -11,7 +11,7 @@ use stickslip_methods::{
 
 use crate::harness::body::{Body, BodyError};
 use crate::harness::case::{Case, CaseError, MethodSpec};
-use crate::harness::expect::expectation_rows;
+use crate::harness::expect::{self, expectation_rows};
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
 use crate::harness::record::{HistoryRow, Results, RunFields, RunKey, RunRow, SCHEMA};
@@ -32,9 +32,11 @@ impl Choice {
     /// A method with some of its options changed.
     pub fn new(method: &'static Method, given: &[(String, f64)]) -> Result<Self, OptionError> {
         let options = Options::new(method.options, given)?;
-        let changed: Vec<String> = given
+        // In the order of the method, and only what differs: the same settings have the same name.
+        let changed: Vec<String> = options
             .iter()
-            .map(|(name, value)| format!("{name}={value:e}"))
+            .filter(|(spec, value)| *value != spec.default)
+            .map(|(spec, value)| format!("{}={value:e}", spec.name))
             .collect();
         let label = match changed.as_slice() {
             [] => method.name.to_owned(),
@@ -156,6 +158,7 @@ pub fn run_case(
     progress: &dyn Progress,
 ) -> Result<Results, RunError> {
     let choices = choices(case, given)?;
+    expect::check(case)?;
     let tier = settings.tier.unwrap_or(case.tier);
     let frictions = friction_values(case);
     progress.plan(case.sweep.refine.len() * frictions.len() * choices.len());
@@ -385,6 +388,8 @@ fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
         prepare_s,
         solve_s: f64::NAN,
         equilibrium: f64::NAN,
+        tangent_factorisations: 0,
+        local_solves: 0,
         schema: SCHEMA,
     }
 }
@@ -395,6 +400,8 @@ fn record_run(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Re
     run.equilibrium = found.equilibrium;
     run.iterations = outcome.counters.iterations;
     run.solves = outcome.counters.solves;
+    run.tangent_factorisations = outcome.counters.factorisations;
+    run.local_solves = outcome.counters.local_solves;
     if !verdict.is_honest() {
         run.forget_times();
     }

@@ -128,6 +128,8 @@ impl Row for RunRow {
         "prepare_s",
         "solve_s",
         "equilibrium",
+        "tangent_factorisations",
+        "local_solves",
         "schema",
     ];
 
@@ -154,6 +156,8 @@ impl Row for RunRow {
             prepare_s,
             solve_s,
             equilibrium,
+            tangent_factorisations,
+            local_solves,
             schema,
         } = self;
         vec![
@@ -173,6 +177,8 @@ impl Row for RunRow {
             time(*prepare_s),
             time(*solve_s),
             residual(*equilibrium),
+            tangent_factorisations.to_string(),
+            local_solves.to_string(),
             schema.to_string(),
         ]
     }

@@ -134,7 +134,8 @@ impl Table {
         text
     }
 
-    /// A `table` float with `booktabs` rules; `label` is the target of `\ref`.
+    /// A `table` float with `booktabs` rules, a `longtable` where it would not fit on a page; `label` is the target of
+    /// `\ref`.
     pub fn latex(&self, label: &str) -> String {
         let line = |cells: Vec<String>| format!("    {} \\\\\n", cells.join(" & "));
         let spec: String = self
@@ -142,11 +143,17 @@ impl Table {
             .iter()
             .map(|c| if c.align == Align::Left { 'l' } else { 'r' })
             .collect();
-        let mut text =
-            String::from("% needs \\usepackage{booktabs}\n\\begin{table}\n  \\centering\n");
-        text += &format!("  \\caption{{{}}}\n", escape_latex(&self.title));
-        text += &format!("  \\label{{{label}}}\n");
-        text += &format!("  \\begin{{tabular}}{{{spec}}}\n    \\toprule\n");
+        let long = self.rows.len() > PAGE_ROWS;
+        let title = escape_latex(&self.title);
+        let mut text = if long {
+            format!(
+                "% needs \\usepackage{{booktabs,longtable}}\n\\begin{{longtable}}{{{spec}}}\n  \\caption{{{title}}}\n  \\label{{{label}}}\\\\\n    \\toprule\n"
+            )
+        } else {
+            format!(
+                "% needs \\usepackage{{booktabs}}\n\\begin{{table}}\n  \\centering\n  \\caption{{{title}}}\n  \\label{{{label}}}\n  \\begin{{tabular}}{{{spec}}}\n    \\toprule\n"
+            )
+        };
         text += &line(
             self.columns
                 .iter()
@@ -154,6 +161,10 @@ impl Table {
                 .collect(),
         );
         text += "    \\midrule\n";
+        if long {
+            // The heading comes again on every page.
+            text += "    \\endhead\n";
+        }
         for row in &self.rows {
             let cells = row.iter().enumerate().map(|(column, cell)| {
                 let padding = match self.padding(column, cell) {
@@ -166,7 +177,12 @@ impl Table {
             });
             text += &line(cells.collect());
         }
-        text += "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+        text += "    \\bottomrule\n";
+        text += if long {
+            "\\end{longtable}\n"
+        } else {
+            "  \\end{tabular}\n\\end{table}\n"
+        };
         text
     }
 
@@ -234,6 +250,9 @@ fn escape_markdown(text: &str) -> String {
     out
 }
 
+/// Rows that fit on a page beside the caption.
+const PAGE_ROWS: usize = 40;
+
 /// A number becomes mathematics (a true minus sign, powers of ten), anything else text.
 fn latex_cell(cell: &str) -> String {
     match cell.parse::<f64>() {
@@ -263,6 +282,8 @@ pub fn escape_latex(text: &str) -> String {
             '\n' => out.push(' '),
             'μ' | 'µ' => out += "$\\mu$",
             'ν' => out += "$\\nu$",
+            'ρ' => out += "$\\rho$",
+            '→' => out += "$\\to$",
             '×' => out += "$\\times$",
             '−' => out += "$-$",
             '·' => out += "$\\cdot$",

@@ -81,6 +81,8 @@ pub struct Enrichment {
     /// Per entry of `cell_functions`: the side of the function's crack that the whole cell lies on, if it lies on one.
     cell_sides: Vec<Option<Side>>,
     node_ptr: Vec<usize>,
+    /// Nodes with φ = 0 for some crack.
+    on_crack: Vec<bool>,
     standard: usize,
 }
 
@@ -212,6 +214,9 @@ impl Enrichment {
             cell_functions: Vec::new(),
             cell_sides: Vec::new(),
             node_ptr: Vec::new(),
+            on_crack: (0..standard)
+                .map(|node| cracks.iter().any(|crack| crack.phi[node] == 0.0))
+                .collect(),
             standard,
         };
         enrichment.index_nodes();
@@ -273,6 +278,11 @@ impl Enrichment {
     /// Enriched functions of a node.
     pub fn enriched_of(&self, node: usize) -> std::ops::Range<usize> {
         self.node_ptr[node]..self.node_ptr[node + 1]
+    }
+
+    /// True if a node lies on a crack between its ends, so that the displacement jumps there.
+    pub fn jumps_at(&self, node: usize) -> bool {
+        !self.enriched_of(node).is_empty() && self.on_crack[node]
     }
 
     /// Functions of a cell, the standard ones first.

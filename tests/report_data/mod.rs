@@ -75,6 +75,8 @@ fn add_run(results: &mut Results, key: RunKey) {
         prepare_s: 1.234e-5,
         solve_s: 4.567_891e-4,
         equilibrium: 3.2e-14,
+        tangent_factorisations: 3,
+        local_solves: 33,
         schema: SCHEMA,
     });
     for (component, value) in [("y", -973_543_210.987_65), ("x", -0.0)] {

@@ -120,11 +120,11 @@ impl Springs {
             }
             problem.counters.factorisations += 1;
             let Some((dz, dbeta)) = direction(problem, &r, &c, &at, &mismatch) else {
-                if problem.rescue_left() {
-                    if let Some(pair) = rescue(problem) {
-                        at = self.predict(problem, &pair.p, pair.beta);
-                        continue;
-                    }
+                if problem.rescue_left()
+                    && let Some(pair) = rescue(problem)
+                {
+                    at = self.predict(problem, &pair.p, pair.beta);
+                    continue;
                 }
                 return (problem.singular(), at);
             };
