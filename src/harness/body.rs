@@ -57,6 +57,8 @@ pub struct Body {
     pub setup_s: f64,
     /// Seconds for cell matrices and their sum.
     pub assembly_s: f64,
+    /// Jump operator over all unknowns: rows point by point, (n, a[, b]), as (unknown, coefficient).
+    pub jump_rows: Vec<Vec<(usize, f64)>>,
     loads: Vec<(Vec<f64>, History)>,
     support_histories: Vec<History>,
     end: f64,
@@ -224,6 +226,7 @@ impl Body {
             space,
             setup_s,
             assembly_s,
+            jump_rows: jump,
             loads,
             support_histories: case.supports.iter().map(|s| s.history.clone()).collect(),
             end: case.path.end,
@@ -293,7 +296,7 @@ impl Body {
 
     /// Jump at the contact points in local frames (n, a[, b]) from all unknowns [m].
     pub fn jump(&self, all: &[f64]) -> Vec<f64> {
-        jump_rows(self.mesh.dim(), &self.points)
+        self.jump_rows
             .iter()
             .map(|row| row.iter().map(|&(i, v)| v * all[i]).sum())
             .collect()

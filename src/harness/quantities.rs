@@ -63,13 +63,9 @@ impl Snapshot {
         let jump = body.jump(&u);
         let internal = body.stiffness.mul(&u);
         let mut force = internal.clone();
-        for (point, p) in body.points.iter().zip(state.p.chunks_exact(dim)) {
-            for &(f, c) in &point.terms {
-                for (axis, value) in point.frame.iter().zip(p) {
-                    for a in 0..dim {
-                        force[f as usize * dim + a] -= c * axis[a] * value;
-                    }
-                }
+        for (row, p) in body.jump_rows.iter().zip(&state.p) {
+            for &(i, coefficient) in row {
+                force[i] -= coefficient * p;
             }
         }
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };

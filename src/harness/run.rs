@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, Monitor,
-    OptionError, Options, Outcome, Residuals, Tier, point_status, residuals,
+    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, OptionError,
+    Options, Outcome, Residuals, Silent, Tier, point_status, residuals,
 };
 
 use crate::harness::body::{Body, BodyError};
@@ -112,9 +112,13 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
     }
     if case.methods.is_empty() {
         let all = stickslip_methods::METHODS.iter();
-        return Ok(all
-            .filter_map(|&method| Choice::new(method, &[]).ok())
-            .collect());
+        let default = |&method: &&'static Method| {
+            Choice::new(method, &[]).map_err(|e| {
+                let message = "a method refuses its own defaults";
+                case.error(&case.mesh.span, method.name, e, message)
+            })
+        };
+        return all.map(default).collect();
     }
     case.methods
         .iter()
@@ -241,15 +245,6 @@ fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
     (value, seconds.max(0.0))
 }
 
-/// Never stops a run.
-struct Unwatched;
-
-impl Monitor for Unwatched {
-    fn step(&mut self, _: usize, _: f64) -> bool {
-        true
-    }
-}
-
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let Cell {
@@ -301,7 +296,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
                 tier.tolerance()
             },
         };
-        let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Unwatched));
+        let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Silent));
         let judged = solved.and_then(|outcome| {
             let found = residuals(&problem, &outcome.state)?;
             let status = point_status(&problem, &outcome.state)?;

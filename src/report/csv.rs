@@ -17,7 +17,9 @@ pub trait Row {
     /// Whether the columns of the run's key come first.
     const KEYED: bool = true;
     /// The run the row belongs to; present where [`Row::KEYED`].
-    fn key(&self) -> Option<&RunKey>;
+    fn key(&self) -> Option<&RunKey> {
+        None
+    }
     /// Cells in the order of [`Row::COLUMNS`].
     fn cells(&self) -> Vec<String>;
     /// Order among rows of the same key.

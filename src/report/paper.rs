@@ -7,7 +7,6 @@ use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError};
-use crate::harness::record::RunKey;
 use std::cmp::Ordering;
 
 /// Method name of lines that repeat the published numbers.
@@ -79,10 +78,6 @@ impl Row for Table1Row {
         "verdict",
     ];
     const KEYED: bool = false;
-
-    fn key(&self) -> Option<&RunKey> {
-        None
-    }
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -187,10 +182,6 @@ impl Row for Table2Row {
         "verdict",
     ];
     const KEYED: bool = false;
-
-    fn key(&self) -> Option<&RunKey> {
-        None
-    }
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![

@@ -7,7 +7,6 @@ use super::number::{fixed, residual, significant, value};
 use super::plot::{Curve, CurvePlot, error_plot};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
-use crate::harness::record::RunKey;
 
 /// Error of the penalty method for one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,10 +39,6 @@ impl Row for PenaltyRow {
         "verdict",
     ];
     const KEYED: bool = false;
-
-    fn key(&self) -> Option<&RunKey> {
-        None
-    }
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -94,10 +89,6 @@ impl Row for RefinementRow {
         "verdict",
     ];
     const KEYED: bool = false;
-
-    fn key(&self) -> Option<&RunKey> {
-        None
-    }
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -154,10 +145,6 @@ impl Row for LimitRow {
         "relative_gap",
     ];
     const KEYED: bool = false;
-
-    fn key(&self) -> Option<&RunKey> {
-        None
-    }
 
     fn cells(&self) -> Vec<String> {
         vec![
