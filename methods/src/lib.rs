@@ -70,6 +70,7 @@ pub mod problem;
 mod augmented_lagrangian;
 mod b_newton;
 mod latin;
+mod nsgs;
 mod penalty;
 
 pub use problem::law;
@@ -128,6 +129,7 @@ pub static METHODS: &[&Method] = &[
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
+    &nsgs::METHOD,
 ];
 
 /// The method of that name.
