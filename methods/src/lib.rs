@@ -67,6 +67,7 @@
 
 pub mod problem;
 
+mod admm;
 mod augmented_lagrangian;
 mod b_newton;
 mod latin;
@@ -130,6 +131,7 @@ pub static METHODS: &[&Method] = &[
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
     &nsgs::METHOD,
+    &admm::METHOD,
 ];
 
 /// The method of that name.
