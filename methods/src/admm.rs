@@ -235,12 +235,7 @@ impl Cone {
         let mut changes = 0;
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
-            project_cone(problem.friction(i), &mut z[rows.clone()]);
-            let branch = match () {
-                () if z[rows.start] == 0.0 => Branch::Open,
-                () if z[rows.clone()] == self.xi[rows] => Branch::Stick,
-                () => Branch::Slip,
-            };
+            let branch = project_cone(problem.friction(i), &mut z[rows]);
             changes += usize::from(std::mem::replace(&mut self.branches[i], branch) != branch);
         }
         let old = std::mem::replace(&mut self.y, z);

@@ -73,6 +73,7 @@ mod b_newton;
 mod latin;
 mod nsgs;
 mod penalty;
+mod projection;
 
 pub use problem::law;
 pub use problem::*;
@@ -132,6 +133,7 @@ pub static METHODS: &[&Method] = &[
     &latin::METHOD,
     &nsgs::METHOD,
     &admm::METHOD,
+    &projection::METHOD,
 ];
 
 /// The method of that name.

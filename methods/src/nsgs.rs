@@ -32,7 +32,7 @@
 use crate::problem::law::Branch;
 use crate::problem::local::LocalOperator;
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::saddle::{Iterate, Saddle};
+use crate::problem::saddle::{Iterate, REFRESH, Saddle};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome,
@@ -76,8 +76,6 @@ const PATIENCE: usize = 5000;
 const STAGNATION: usize = 300;
 /// Halvings of the relaxation.
 const MAX_HALVINGS: usize = 4;
-/// Sweeps after which v is computed afresh.
-const REFRESH: usize = 100;
 /// Proximal term on local problems, relative to 1/ρ: regularises points that do not move at all, and no fixed point
 /// notices.
 const PROXIMAL: f64 = 1e-10;
