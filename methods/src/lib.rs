@@ -68,10 +68,12 @@
 
 pub mod problem;
 
+mod admm;
 mod augmented_lagrangian;
 mod b_newton;
 mod latin;
 mod newton_ac;
+mod nsgs;
 mod pdas;
 mod penalty;
 
@@ -145,6 +147,8 @@ pub static METHODS: &[&Method] = &[
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
+    &nsgs::METHOD,
+    &admm::METHOD,
 ];
 
 /// The method of that name.

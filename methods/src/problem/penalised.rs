@@ -277,7 +277,7 @@ fn whole_direction(
         }
         rows.push(of_point);
     }
-    let (dp, dv) = whole_body(global, problem, &rows, Global::explicit)?;
+    let (dp, dv) = whole_body(global, problem, &at.p, &mut rows, Global::explicit)?;
     let dz = (0..dp.len())
         .map(|k| dp[k] - r[k] * (mismatch[k] + dv[k] + c[k] * dp[k]))
         .collect();

@@ -77,22 +77,29 @@ pub(crate) struct At<'p, 'i> {
 impl At<'_, '_> {
     /// The step of the given pieces, regularised if their tangent is singular.
     pub fn step<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) -> Option<Iterate> {
-        let mut rows: Vec<[Row; 3]> = (0..pieces.len())
+        let mut rows = self.rows(scheme, pieces);
+        self.tangent
+            .solve(self.problem, self.x, &mut rows)
+            .or_else(|| {
+                let mut rows = self.rows(scheme, pieces);
+                let ridge = RIDGE / self.problem.condensed.rho;
+                for row in rows.iter_mut().flatten() {
+                    for l in 0..3 {
+                        row.a[l] += ridge * row.c[l];
+                    }
+                }
+                self.tangent.solve(self.problem, self.x, &mut rows)
+            })
+    }
+
+    fn rows<S: Scheme + ?Sized>(&self, scheme: &S, pieces: &[S::Piece]) -> Vec<[Row; 3]> {
+        (0..pieces.len())
             .map(|i| {
                 let (own, mu) = (self.problem.rows.of(i), self.problem.friction(i));
                 let (r, P) = (&self.r[own.clone()], &self.x.P[own.clone()]);
                 scheme.linearise(mu, r, P, &self.v[own], pieces[i])
             })
-            .collect();
-        self.tangent.solve(self.problem, self.x, &rows).or_else(|| {
-            let ridge = RIDGE / self.problem.condensed.rho;
-            for row in rows.iter_mut().flatten() {
-                for l in 0..3 {
-                    row.a[l] += ridge * row.c[l];
-                }
-            }
-            self.tangent.solve(self.problem, self.x, &rows)
-        })
+            .collect()
     }
 }
 

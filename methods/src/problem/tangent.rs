@@ -57,7 +57,7 @@ impl Tangent {
         &mut self,
         problem: &mut Reduced<'_>,
         x: &Iterate,
-        rows: &[[Row; 3]],
+        rows: &mut [[Row; 3]],
     ) -> Option<Iterate> {
         match self {
             Tangent::Condensed => {
@@ -65,7 +65,7 @@ impl Tangent {
                 condensed_step(problem, x, rows)
             }
             Tangent::Monolithic(global) => {
-                let (P, dv) = whole_body(global, problem, rows, Global::saddle)?;
+                let (P, dv) = whole_body(global, problem, &x.P, rows, Global::saddle)?;
                 let beta = amplitudes(problem, &P, dv);
                 Some(Iterate { P, beta })
             }
@@ -77,16 +77,34 @@ impl Tangent {
 pub(crate) fn whole_body(
     global: &mut Option<Box<Global>>,
     problem: &mut Reduced<'_>,
-    rows: &[[Row; 3]],
+    P: &[f64],
+    rows: &mut [[Row; 3]],
     new: fn(&ContactSystem) -> Option<Global>,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     problem.counters.global_factorisations += 1;
+    // Without balance there is no equilibrium to linearise: step from the nearest balanced forces P + Q (c − Qᵀ P).
+    let (mut lack, mut response) = (vec![0.0; P.len()], vec![0.0; P.len()]);
+    if problem.modes() > 0 {
+        problem.condensed.modes.add(&problem.missing(P), &mut lack);
+        mul_add(&problem.condensed.w, &lack, &mut response);
+    }
+    for (i, of_point) in rows.iter_mut().enumerate() {
+        let own = problem.rows.of(i);
+        for row in of_point.iter_mut().take(own.len()) {
+            for (l, k) in own.clone().enumerate() {
+                row.h += row.a[l] * lack[k] + row.c[l] * response[k];
+            }
+        }
+    }
     let system = problem.increment.system;
     let global = match global {
         Some(global) if global.belongs_to(system) => global,
         stale => stale.insert(Box::new(new(system)?)),
     };
-    global.solve(rows)
+    let (mut dP, mut dv) = global.solve(rows)?;
+    dP.iter_mut().zip(&lack).for_each(|(x, l)| *x += l);
+    dv.iter_mut().zip(&response).for_each(|(x, l)| *x += l);
+    Some((dP, dv))
 }
 
 /// δβ = Qᵀ (δv − W δP).
