@@ -17,6 +17,7 @@ pub(crate) mod stages;
 mod state;
 mod system;
 mod tier;
+mod uniqueness;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use error::MethodError;
@@ -28,3 +29,4 @@ pub use point_status::{PointStatus, point_status};
 pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
 pub use system::{ContactSystem, Increment, Load};
 pub use tier::{Tier, UnknownTier};
+pub use uniqueness::contact_wise_margin;
