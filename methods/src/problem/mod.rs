@@ -21,6 +21,7 @@ mod state;
 mod system;
 pub(crate) mod tangent;
 mod tier;
+mod uniqueness;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use error::MethodError;
@@ -32,3 +33,4 @@ pub use point_status::{PointStatus, point_status};
 pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
 pub use system::{ContactSystem, Increment, Load};
 pub use tier::{Tier, UnknownTier};
+pub use uniqueness::contact_wise_margin;
