@@ -70,6 +70,7 @@ pub mod problem;
 
 mod augmented_lagrangian;
 mod b_newton;
+mod interior_point;
 mod latin;
 mod penalty;
 
@@ -141,6 +142,7 @@ pub static METHODS: &[&Method] = &[
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
+    &interior_point::METHOD,
 ];
 
 /// The method of that name.
