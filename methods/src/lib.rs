@@ -72,6 +72,8 @@ mod augmented_lagrangian;
 mod b_newton;
 mod interior_point;
 mod latin;
+mod newton_ac;
+mod pdas;
 mod penalty;
 
 pub use problem::law;
@@ -139,6 +141,8 @@ impl Method {
 /// All methods.
 pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
+    &newton_ac::METHOD,
+    &pdas::METHOD,
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
