@@ -71,6 +71,7 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod interior_point;
 mod latin;
 mod newton_ac;
 mod nsgs;
@@ -149,6 +150,7 @@ pub static METHODS: &[&Method] = &[
     &latin::METHOD,
     &nsgs::METHOD,
     &admm::METHOD,
+    &interior_point::METHOD,
 ];
 
 /// The method of that name.

@@ -1,6 +1,8 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
 pub(crate) mod b_equations;
+pub(crate) mod branches;
+pub(crate) mod central_path;
 pub(crate) mod condensed;
 mod elastic;
 mod error;
