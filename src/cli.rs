@@ -1,5 +1,7 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod stress;
+
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -14,6 +16,7 @@ use crate::harness::expect;
 use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
+use crate::harness::stress::StressError;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 
@@ -61,6 +64,8 @@ enum Verb {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
         jobs: u16,
     },
+    /// Run every method on random problems: how often each succeeds, by friction coefficient
+    Stress(stress::Arguments),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case
@@ -90,6 +95,9 @@ pub enum CliError {
     /// A run could not start.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The robustness study.
+    #[error(transparent)]
+    Stress(#[from] StressError),
     /// The main job.
     #[error(transparent)]
     Paper(#[from] PaperError),
@@ -165,6 +173,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             };
             run_verb(&cases, &method, settings, &out)
         }
+        Verb::Stress(arguments) => stress::run(arguments),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)

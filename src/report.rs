@@ -11,6 +11,7 @@ pub mod number;
 pub mod paper;
 pub mod plot;
 pub mod provenance;
+pub mod robustness;
 pub mod standard;
 pub mod study;
 pub mod tables;

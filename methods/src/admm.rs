@@ -57,6 +57,7 @@ pub static METHOD: Method = Method {
     summary: "alternates linear equilibrium and projections on Coulomb's cone, with De Saxce's correction",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("admm.rs"),
     build: |options| Ok(Box::new(Admm::new(options))),
 };
 

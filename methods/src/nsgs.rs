@@ -46,6 +46,7 @@ pub static METHOD: Method = Method {
     summary: "sweeps over the points and solves the contact law of each exactly with all others held",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("nsgs.rs"),
     build: |options| Ok(Box::new(Nsgs::new(options))),
 };
 

@@ -53,6 +53,7 @@ pub static METHOD: Method = Method {
     summary: "steps against the corrected jump and projects on Coulomb's cone, with a step length that adapts",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("projection.rs"),
     build: |options| Ok(Box::new(Projection::new(options))),
 };
 

@@ -289,3 +289,26 @@ fn non_unique_contact_is_claimed_only_with_one_of_its_three_solutions() {
         }
     }
 }
+
+/// One contact point with W = [[1, -1], [-1, 2]]: several solutions exist from mu = w_nn/|w_nt| = 1 on (Klarbring 1990),
+/// and a point beside it without friction and coupling changes nothing. rho = rows/trace(W).
+#[test]
+fn the_contact_wise_margin_changes_sign_at_the_critical_friction() {
+    // K = W⁻¹.
+    let k = vec![
+        vec![2.0, 1.0, 0.0, 0.0],
+        vec![1.0, 1.0, 0.0, 0.0],
+        vec![0.0, 0.0, 0.5, 0.0],
+        vec![0.0, 0.0, 0.0, 0.5],
+    ];
+    let body = elastic(2, &k, &diagonal(&[1.0; 4]), vec![], false);
+    for mu in [0.0, 0.3, 1.0, 2.0] {
+        let s = ContactSystem::new(body.clone(), vec![mu, 0.0]).unwrap();
+        let (rows, trace) = if mu > 0.0 { (3.0, 5.0) } else { (2.0, 3.0) };
+        let margin = contact_wise_margin(&s).unwrap();
+        assert!(
+            (margin - rows / trace * (1.0 - mu)).abs() < 1e-14,
+            "{mu}: {margin}"
+        );
+    }
+}

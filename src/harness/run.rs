@@ -1,14 +1,14 @@
 //! Runs: a case times its meshes, friction values and methods, increment by increment.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, OptionError,
-    Options, Outcome, Residuals, Silent, Tier, point_status, residuals,
+    ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Outcome, Residuals,
+    Tier,
 };
 
+use crate::harness::attempt::{Judged, attempt, prepare};
 use crate::harness::body::{Body, BodyError};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
@@ -233,18 +233,6 @@ fn friction_values(case: &Case) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Seconds a call took, less the time the shared factorisation and condensation took inside it.
-fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
-    let shared = || {
-        let t = system.elastic().timings();
-        t.analysis_s + t.factorisation_s + t.condensation_s
-    };
-    let (before, clock) = (shared(), Instant::now());
-    let value = call();
-    let seconds = clock.elapsed().as_secs_f64() - (shared() - before);
-    (value, seconds.max(0.0))
-}
-
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let Cell {
@@ -274,10 +262,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let mut state = ContactState::zero(system);
     let mut now = Snapshot::virgin(body);
     // Nothing acts before the first increment, whatever the histories say at t = 0.
-    let mut start_load = Load {
-        force: vec![0.0; body.elastic.unknowns()],
-        offset: vec![0.0; now.jump.len()],
-    };
+    let mut start_load = Load::zero(&body.elastic);
     let mut steps = Vec::new();
     for increment in 1..=case.path.increments {
         let time = case.path.end * increment as f64 / case.path.increments as f64;
@@ -296,12 +281,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
                 tier.tolerance()
             },
         };
-        let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Silent));
-        let judged = solved.and_then(|outcome| {
-            let found = residuals(&problem, &outcome.state)?;
-            let status = point_status(&problem, &outcome.state)?;
-            Ok((outcome, found, status))
-        });
+        let tried = attempt(method.as_mut(), &problem, tier);
         let mut run = row(
             &key,
             cell,
@@ -312,17 +292,19 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         run.factorisations = system.elastic().counters().factorisations;
         run.factorisation_s = shared.analysis_s + shared.factorisation_s;
         run.condensation_s = shared.condensation_s;
-        run.solve_s = solve_s;
-        let (outcome, found, status) = match judged {
-            Ok(parts) => parts,
-            Err(error) => {
-                run.verdict = Verdict::Crashed(error.to_string()).to_string();
-                run.forget_times();
-                results.runs.push(run);
-                break;
-            }
+        run.solve_s = tried.solve_s;
+        let verdict = tried.verdict;
+        let Some(Judged {
+            outcome,
+            found,
+            status,
+        }) = tried.judged
+        else {
+            run.verdict = verdict.to_string();
+            run.forget_times();
+            results.runs.push(run);
+            break;
         };
-        let verdict = Verdict::of(&outcome, &found, tier);
         record_run(&mut run, &verdict, &outcome, &found);
         results.runs.push(run);
         record_history(&mut results, &key, &outcome);
@@ -349,21 +331,6 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     results
 }
 
-/// Builds and prepares a method: the method and its seconds, or why not.
-fn prepare(
-    choice: &Choice,
-    system: &ContactSystem,
-) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
-    let crashed = |e: MethodError| Verdict::Crashed(e.to_string());
-    let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
-    if let Some(reason) = method.refuses(system) {
-        return Err(Verdict::Refused(reason));
-    }
-    let (prepared, seconds) = timed(system, || method.prepare(system));
-    prepared.map_err(crashed)?;
-    Ok((method, seconds))
-}
-
 fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
     RunRow {
         key: key.clone(),
@@ -383,7 +350,9 @@ fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
         prepare_s,
         solve_s: f64::NAN,
         equilibrium: f64::NAN,
+        claimed: f64::NAN,
         tangent_factorisations: 0,
+        global_factorisations: 0,
         local_solves: 0,
         schema: SCHEMA,
     }
@@ -393,9 +362,11 @@ fn record_run(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Re
     run.verdict = verdict.to_string();
     run.natural_map = found.natural_map;
     run.equilibrium = found.equilibrium;
+    run.claimed = found.claimed;
     run.iterations = outcome.counters.iterations;
     run.solves = outcome.counters.solves;
     run.tangent_factorisations = outcome.counters.factorisations;
+    run.global_factorisations = outcome.counters.global_factorisations;
     run.local_solves = outcome.counters.local_solves;
     if !verdict.is_honest() {
         run.forget_times();

@@ -7,6 +7,8 @@ enum Scale {
     Log,
     /// ln(1 + value): shows few and many iterations and has a zero.
     LogFromZero,
+    /// −ln(101 − value): percentages, 100 apart from 99 as far as 50 from 0 or so.
+    TowardsHundred,
 }
 
 impl Scale {
@@ -15,6 +17,7 @@ impl Scale {
             Self::Linear => value,
             Self::Log => value.ln(),
             Self::LogFromZero => value.ln_1p(),
+            Self::TowardsHundred => -(101.0 - value).ln(),
         }
     }
 }
@@ -162,6 +165,33 @@ impl Axis {
                 .map(|t| (t, number(t, 0)))
                 .collect(),
             minor: Vec::new(),
+        }
+    }
+
+    /// An axis of classes at 0, 1, 2, ..., each with its label.
+    pub fn classes(label: &str, labels: impl IntoIterator<Item = String>) -> Self {
+        let ticks = labels.into_iter().enumerate().map(|(k, l)| (k as f64, l));
+        let major: Vec<(f64, String)> = ticks.collect();
+        Self {
+            label: label.to_owned(),
+            low: -0.5,
+            high: major.len() as f64 - 0.5,
+            scale: Scale::Linear,
+            major,
+            minor: Vec::new(),
+        }
+    }
+
+    /// An axis of percentages that shows those close to 100 apart.
+    pub fn towards_hundred(label: &str) -> Self {
+        let ticks = [0.0, 50.0, 80.0, 90.0, 95.0, 98.0, 99.0, 100.0];
+        Self {
+            label: label.to_owned(),
+            low: -10.0,
+            high: 100.15,
+            scale: Scale::TowardsHundred,
+            major: ticks.into_iter().map(|t| (t, number(t, 0))).collect(),
+            minor: vec![10.0, 20.0, 30.0, 40.0, 60.0, 70.0, 85.0, 96.0, 97.0],
         }
     }
 

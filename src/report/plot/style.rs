@@ -83,6 +83,27 @@ impl Style {
         }
     }
 
+    /// Look of the n-th of many curves whose points stand beside each other: thin dashed lines, the markers tell.
+    pub fn beside_others(index: usize) -> Self {
+        Self {
+            width: 0.15,
+            // Every second time round the palette the markers are not those of the first.
+            marker: Some(MARKERS[(index + index / MARKERS.len()) % MARKERS.len()]),
+            filled: (index / MARKERS.len()).is_multiple_of(2),
+            ..Self::of_curve(index)
+        }
+    }
+
+    /// A line of the same colour without markers.
+    pub fn bar(&self) -> Self {
+        Self {
+            dashes: &[],
+            width: 0.2,
+            marker: None,
+            ..self.clone()
+        }
+    }
+
     /// Looks of curves given by their values, scaled to at most 1: nested where two of them lie on each other.
     pub fn of_curves(values: &[Vec<f64>]) -> Vec<Self> {
         let agree = |a: &[f64], b: &[f64]| {

@@ -1,0 +1,127 @@
+//! The verb `stress`: the random robustness study.
+
+use std::path::PathBuf;
+
+use stickslip_methods::{METHODS, Tier};
+
+use super::{Bar, CliError, parse_choice, refuse_twins};
+use crate::harness::stress::{self, Study, Trial};
+use crate::harness::verdict::Verdict;
+use crate::report::{Provenance, prepare_output, robustness};
+
+/// Arguments of the verb.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Problems per friction coefficient and dimension
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    problems: u32,
+    /// Seed: the same problems on every machine
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only this problem of the study, e.g. one of failures.csv; its case files are written too
+    #[arg(long, value_name = "INDEX")]
+    only: Option<u32>,
+    /// Dimension, 2 or 3; may be repeated
+    #[arg(long = "dim", default_values_t = [2, 3], value_parser = clap::value_parser!(u8).range(2..=3))]
+    dims: Vec<u8>,
+    /// Friction coefficients
+    #[arg(long, value_delimiter = ',', default_values_t = [0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0], value_parser = friction)]
+    friction: Vec<f64>,
+    /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all methods by default
+    #[arg(long, short)]
+    method: Vec<String>,
+    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    #[arg(long, default_value = "high")]
+    tier: Tier,
+    /// Folder for the results
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+    /// Bodies worked on at the same time; times are recorded for 1 only
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+}
+
+fn friction(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mu) if mu >= 0.0 && mu.is_finite() => Ok(mu),
+        _ => Err("a finite number >= 0".into()),
+    }
+}
+
+/// Runs the study; false if a method claimed what does not hold, or failed with an error. Giving up is a result here.
+pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+    let given: Vec<String> = if arguments.method.is_empty() {
+        METHODS.iter().map(|m| m.name.to_owned()).collect()
+    } else {
+        arguments.method
+    };
+    let choices = given
+        .iter()
+        .map(|m| parse_choice(m))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("method", choices.iter().map(|c| c.label.as_str()))?;
+    let sorted = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    };
+    let mut dims: Vec<usize> = arguments.dims.iter().map(|&d| usize::from(d)).collect();
+    dims.sort_unstable();
+    dims.dedup();
+    let study = Study {
+        seed: arguments.seed,
+        dims,
+        problems: arguments.problems as usize,
+        only: arguments.only.map(|index| index as usize),
+        friction: sorted(arguments.friction),
+        tier: arguments.tier,
+        jobs: usize::from(arguments.jobs),
+    };
+    prepare_output(&arguments.out)?;
+    let bar = Bar::new();
+    let trials = stress::run(&study, &choices, &bar)?;
+    bar.finish();
+
+    let provenance = Provenance::collect(study.jobs)
+        .with_option("jobs", study.jobs.to_string())
+        .with_option("tier", study.tier.to_string())
+        .with_option("seed", study.seed.to_string())
+        .with_option("problems", study.problems.to_string());
+    let mut bundle = robustness::bundle(&study, &trials, &provenance)?;
+    if let Some(problem) = study.only {
+        for &dim in &study.dims {
+            let name = format!("problem-{dim}d-{problem}.toml");
+            bundle.add(name, stress::case_of(&study, dim, problem)?)?;
+        }
+    }
+    bundle.commit(&arguments.out)?;
+    let table = robustness::table(&robustness::rows(&study, &trials))?;
+    println!("{}", table.terminal());
+    println!("{}\nResults: {}", summary(&trials), arguments.out.display());
+    for trial in trials.iter().filter(|t| is_wrong(&t.verdict)) {
+        eprintln!(
+            "{}: {}D problem {} mu={} {}",
+            trial.verdict, trial.dim, trial.problem, trial.friction, trial.method
+        );
+    }
+    Ok(!trials.iter().any(|t| is_wrong(&t.verdict)))
+}
+
+fn is_wrong(verdict: &Verdict) -> bool {
+    matches!(verdict, Verdict::FalseClaim | Verdict::Crashed(_))
+}
+
+fn summary(trials: &[Trial]) -> String {
+    let count =
+        |keep: &dyn Fn(&Verdict) -> bool| trials.iter().filter(|t| keep(&t.verdict)).count();
+    format!(
+        "{} runs: {} solved, {} approximate, {} gave up, {} refused, {} false claims, {} crashed",
+        trials.len(),
+        count(&|v| matches!(v, Verdict::Solved(_))),
+        count(&|v| matches!(v, Verdict::Approximate(_))),
+        count(&|v| matches!(v, Verdict::GaveUp(_))),
+        count(&|v| matches!(v, Verdict::Refused(_))),
+        count(&|v| *v == Verdict::FalseClaim),
+        count(&|v| matches!(v, Verdict::Crashed(_))),
+    )
+}

@@ -1,0 +1,94 @@
+//! One method on one increment: prepared, timed, judged. Cases and random studies go through here alike.
+
+use std::time::Instant;
+
+use stickslip_methods::{
+    ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
+    Tier, point_status, residuals_of,
+};
+
+use super::run::Choice;
+use super::verdict::Verdict;
+
+/// What came of an increment.
+pub struct Attempt {
+    /// Claim × check.
+    pub verdict: Verdict,
+    /// Time the method took, in s, without the factorisation and condensation it shares with others.
+    pub solve_s: f64,
+    /// What was judged; `None` if the method failed with an error.
+    pub judged: Option<Judged>,
+}
+
+/// An outcome with what the judge found.
+pub struct Judged {
+    /// As the method returned it.
+    pub outcome: Outcome,
+    /// Residuals of equilibrium, of the contact laws, and of the laws claimed.
+    pub found: Residuals,
+    /// Open, stick or slip, by point.
+    pub status: Vec<PointStatus>,
+}
+
+impl Attempt {
+    /// No outcome to judge.
+    pub fn unsolved(verdict: Verdict) -> Self {
+        Self {
+            verdict,
+            solve_s: f64::NAN,
+            judged: None,
+        }
+    }
+}
+
+/// Builds and prepares a method: the method and its seconds, or why not.
+///
+/// # Errors
+/// [`Verdict::Refused`] or [`Verdict::Crashed`].
+pub fn prepare(
+    choice: &Choice,
+    system: &ContactSystem,
+) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
+    let crashed = |e: MethodError| Verdict::Crashed(e.to_string());
+    let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
+    if let Some(reason) = method.refuses(system) {
+        return Err(Verdict::Refused(reason));
+    }
+    let (prepared, seconds) = timed(system, || method.prepare(system));
+    prepared.map_err(crashed)?;
+    Ok((method, seconds))
+}
+
+/// Solves an increment and judges the outcome.
+pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, tier: Tier) -> Attempt {
+    let (solved, solve_s) = timed(increment.system, || method.solve(increment, &mut Silent));
+    let judged = solved.and_then(|outcome| {
+        let found = residuals_of(increment, &outcome.state, outcome.claim)?;
+        let status = point_status(increment, &outcome.state)?;
+        Ok(Judged {
+            outcome,
+            found,
+            status,
+        })
+    });
+    match judged {
+        Ok(judged) => Attempt {
+            verdict: Verdict::of(&judged.outcome, &judged.found, tier),
+            solve_s,
+            judged: Some(judged),
+        },
+        Err(error) => Attempt::unsolved(Verdict::Crashed(error.to_string())),
+    }
+}
+
+/// Seconds a call took, less the time the shared factorisation and condensation took inside it.
+fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
+    let shared = || {
+        let t = system.elastic().timings();
+        t.analysis_s + t.factorisation_s + t.condensation_s
+    };
+    let (before, clock) = (shared(), Instant::now());
+    let value = call();
+    let seconds = clock.elapsed().as_secs_f64() - (shared() - before);
+    (value, seconds.max(0.0))
+}

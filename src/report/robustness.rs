@@ -1,0 +1,386 @@
+//! The random robustness study: success rates with their confidence intervals, and every failure.
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+use stickslip_methods::{Status, Tier};
+
+use super::csv::{self, Row};
+use super::number::{fixed, residual, significant, time, value};
+use super::plot::success_rates;
+use super::tables::{Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, paper};
+use crate::harness::stress::{Study, Trial};
+use crate::harness::verdict::Verdict;
+
+/// Ends without a claim that have a column of their own.
+const GIVE_UPS: [Status; 5] = [
+    Status::MaxIterations,
+    Status::Stalled,
+    Status::SingularTangent,
+    Status::Mechanism,
+    Status::Diverged,
+];
+
+/// Two-sided 95 % quantile of the normal distribution.
+const Z: f64 = 1.959_963_984_540_054;
+
+/// One method on all problems of one dimension and friction coefficient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobustnessRow {
+    /// Space dimension.
+    pub dimension: usize,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Method label.
+    pub method: String,
+    /// Accuracy asked for.
+    pub tier: Tier,
+    /// Problems posed.
+    pub problems: usize,
+    /// Contact laws solved.
+    pub solved: usize,
+    /// Own laws solved, contact laws not to the tier.
+    pub approximate: usize,
+    /// Ended without a claim.
+    pub gave_up: usize,
+    /// Those of them with each status of `GIVE_UPS`.
+    pub gave_up_by: [usize; 5],
+    /// Claims the judge refuted.
+    pub false_claims: usize,
+    /// Errors.
+    pub crashed: usize,
+    /// Problems declined; they count neither as success nor as failure.
+    pub refused: usize,
+    /// (solved + approximate)/(problems − refused), with Wilson's 95 % interval.
+    pub success: [f64; 3],
+    /// Median, 90 % quantile and largest number of iterations of the successful runs.
+    pub iterations: [f64; 3],
+    /// Median number of factorisations of the successful runs.
+    pub factorisations: f64,
+    /// Median time of the successful runs [s].
+    pub solve_s: f64,
+    /// Median natural map of the successful runs.
+    pub natural_map: f64,
+    /// Share of problems where every point alone has one solution.
+    pub unique_share: f64,
+    /// Shares of open, sticking and slipping points in the successful runs.
+    pub shares: [f64; 3],
+}
+
+/// One problem that one method did not solve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailureRow {
+    /// Seed of the study.
+    pub seed: u64,
+    /// Space dimension.
+    pub dimension: usize,
+    /// Number of the problem.
+    pub problem: usize,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Method label.
+    pub method: String,
+    /// Claim × check.
+    pub verdict: String,
+    /// Natural map found by the judge.
+    pub natural_map: f64,
+    /// Whether every contact point alone has one solution.
+    pub unique: bool,
+    /// Contact points.
+    pub points: usize,
+}
+
+/// Rate of `hits` among `count` and Wilson's 95 % interval (J. Am. Stat. Assoc. 22 (1927) 209); NaN if nothing was tried.
+pub fn wilson(hits: usize, count: usize) -> [f64; 3] {
+    let (n, p) = (count as f64, hits as f64 / count as f64);
+    let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+    let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();
+    // Rounding may leave the ends just outside of what a rate can be.
+    [
+        p,
+        (centre - half).clamp(0.0, p),
+        (centre + half).clamp(p, 1.0),
+    ]
+}
+
+/// The smallest value that a fraction `q` of the values does not exceed; NaN of nothing.
+fn quantile(q: f64, values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted
+        .get(rank.saturating_sub(1))
+        .copied()
+        .unwrap_or(f64::NAN)
+}
+
+impl RobustnessRow {
+    /// Sums up the trials of one dimension, friction coefficient and method.
+    fn of(trials: &[&Trial], tier: Tier) -> Option<Self> {
+        let first = trials.first()?;
+        let count =
+            |keep: &dyn Fn(&Verdict) -> bool| trials.iter().filter(|t| keep(&t.verdict)).count();
+        let honest = || trials.iter().filter(|t| t.verdict.is_honest());
+        let iterations = |q| quantile(q, honest().map(|t| t.iterations as f64));
+        let refused = count(&|v| matches!(v, Verdict::Refused(_)));
+        let statuses = honest().fold([0; 3], |sum: [usize; 3], t| {
+            std::array::from_fn(|k| sum[k] + t.statuses[k])
+        });
+        let points: usize = honest().map(|t| t.points).sum();
+        Some(Self {
+            dimension: first.dim,
+            friction: first.friction,
+            method: first.method.clone(),
+            tier,
+            problems: trials.len(),
+            solved: count(&|v| matches!(v, Verdict::Solved(_))),
+            approximate: count(&|v| matches!(v, Verdict::Approximate(_))),
+            gave_up: count(&|v| matches!(v, Verdict::GaveUp(_))),
+            gave_up_by: GIVE_UPS.map(|status| count(&|v| *v == Verdict::GaveUp(status))),
+            false_claims: count(&|v| *v == Verdict::FalseClaim),
+            crashed: count(&|v| matches!(v, Verdict::Crashed(_))),
+            refused,
+            success: wilson(honest().count(), trials.len() - refused),
+            iterations: [iterations(0.5), iterations(0.9), iterations(1.0)],
+            factorisations: quantile(0.5, honest().map(|t| t.factorisations as f64)),
+            solve_s: quantile(0.5, honest().map(|t| t.solve_s)),
+            natural_map: quantile(0.5, honest().map(|t| t.natural_map)),
+            unique_share: trials.iter().filter(|t| t.unique).count() as f64 / trials.len() as f64,
+            shares: statuses.map(|s| s as f64 / points as f64),
+        })
+    }
+}
+
+/// Sums the study up: rows by dimension, method and friction.
+pub fn rows(study: &Study, trials: &[Trial]) -> Vec<RobustnessRow> {
+    let mut sorted: Vec<&Trial> = trials.iter().collect();
+    let key = |t: &Trial| (t.dim, t.method.clone());
+    sorted.sort_by(|a, b| key(a).cmp(&key(b)).then(a.friction.total_cmp(&b.friction)));
+    sorted
+        .chunk_by(|a, b| key(a) == key(b) && a.friction == b.friction)
+        .filter_map(|group| RobustnessRow::of(group, study.tier))
+        .collect()
+}
+
+/// Everything that was neither solved nor declined.
+pub fn failures(study: &Study, trials: &[Trial]) -> Vec<FailureRow> {
+    let failed = trials.iter().filter(|t| t.verdict.is_failure());
+    failed
+        .map(|t| FailureRow {
+            seed: study.seed,
+            dimension: t.dim,
+            problem: t.problem,
+            friction: t.friction,
+            method: t.method.clone(),
+            verdict: t.verdict.to_string(),
+            natural_map: t.natural_map,
+            unique: t.unique,
+            points: t.points,
+        })
+        .collect()
+}
+
+impl Row for RobustnessRow {
+    const FILE: &'static str = "robustness.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "dimension",
+        "method",
+        "friction",
+        "tier",
+        "problems",
+        "solved",
+        "approximate",
+        "gave_up",
+        "max_iterations",
+        "stalled",
+        "singular_tangent",
+        "mechanism",
+        "diverged",
+        "false_claims",
+        "crashed",
+        "refused",
+        "success_rate",
+        "success_low",
+        "success_high",
+        "iterations_median",
+        "iterations_p90",
+        "iterations_max",
+        "factorisations_median",
+        "solve_s_median",
+        "natural_map_median",
+        "unique_share",
+        "open_share",
+        "stick_share",
+        "slip_share",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let mut cells = vec![
+            self.dimension.to_string(),
+            self.method.clone(),
+            value(self.friction),
+            self.tier.to_string(),
+        ];
+        let counts = [self.problems, self.solved, self.approximate, self.gave_up];
+        let ends = [self.false_claims, self.crashed, self.refused];
+        let counts = counts.iter().chain(&self.gave_up_by).chain(&ends);
+        cells.extend(counts.map(usize::to_string));
+        cells.extend(self.success.map(|x| significant(x, 4)));
+        cells.extend(self.iterations.map(value));
+        cells.push(value(self.factorisations));
+        cells.push(time(self.solve_s));
+        cells.push(residual(self.natural_map));
+        cells.push(significant(self.unique_share, 4));
+        cells.extend(self.shares.map(|x| significant(x, 4)));
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        (self.dimension, &self.method)
+            .cmp(&(other.dimension, &other.method))
+            .then(self.friction.total_cmp(&other.friction))
+    }
+}
+
+impl Row for FailureRow {
+    const FILE: &'static str = "failures.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "seed",
+        "dimension",
+        "problem",
+        "friction",
+        "method",
+        "verdict",
+        "natural_map",
+        "unique",
+        "points",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.seed.to_string(),
+            self.dimension.to_string(),
+            self.problem.to_string(),
+            value(self.friction),
+            self.method.clone(),
+            self.verdict.clone(),
+            residual(self.natural_map),
+            self.unique.to_string(),
+            self.points.to_string(),
+        ]
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        (self.dimension, self.problem)
+            .cmp(&(other.dimension, other.problem))
+            .then(self.friction.total_cmp(&other.friction))
+            .then_with(|| self.method.cmp(&other.method))
+    }
+}
+
+/// Success rates for reading: one line per dimension and method, one column per friction coefficient.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn table(rows: &[RobustnessRow]) -> Result<Table, ReportError> {
+    let mut friction: Vec<f64> = rows.iter().map(|row| row.friction).collect();
+    friction.sort_by(f64::total_cmp);
+    friction.dedup();
+    let most = rows.iter().map(|row| row.problems).max().unwrap_or(0);
+    let mut columns = vec![
+        Column::new("dim", "", Align::Right),
+        Column::new("method", "", Align::Left),
+    ];
+    let rate = |mu: &f64| Column::new(format!("μ = {}", value(*mu)), "%", Align::Decimal);
+    columns.extend(friction.iter().map(rate));
+    columns.extend([
+        Column::new("iterations, worst median", "", Align::Right),
+        Column::new("false claims", "", Align::Right),
+        Column::new("crashed", "", Align::Right),
+    ]);
+    let title = format!("Random problems solved, {most} per friction coefficient and dimension");
+    let mut table = Table::new(title, columns);
+    let lines: BTreeSet<(usize, &str)> = rows
+        .iter()
+        .map(|r| (r.dimension, r.method.as_str()))
+        .collect();
+    for (dimension, method) in lines {
+        let own = || {
+            rows.iter()
+                .filter(|r| r.dimension == dimension && r.method == method)
+        };
+        let mut cells = vec![dimension.to_string(), method.to_owned()];
+        cells.extend(friction.iter().map(|mu| {
+            let found = own()
+                .find(|r| r.friction == *mu)
+                .map(|r| 100.0 * r.success[0]);
+            match found {
+                Some(rate) if rate.is_finite() => fixed(rate, 1),
+                _ => "refused".into(),
+            }
+        }));
+        let iterations = own().map(|r| r.iterations[0]).filter(|i| i.is_finite());
+        cells.push(
+            iterations
+                .fold(None, |m: Option<f64>, i| Some(m.map_or(i, |m| m.max(i))))
+                .map_or_else(String::new, value),
+        );
+        cells.push(own().map(|r| r.false_claims).sum::<usize>().to_string());
+        cells.push(own().map(|r| r.crashed).sum::<usize>().to_string());
+        table.push(cells)?;
+    }
+    Ok(table)
+}
+
+/// Files of the study: `robustness.*`, `failures.csv`, the figure, provenance.
+///
+/// # Errors
+/// Those of [`Bundle::add`] and of the figure.
+pub fn bundle(
+    study: &Study,
+    trials: &[Trial],
+    provenance: &Provenance,
+) -> Result<Bundle, ReportError> {
+    let rows = rows(study, trials);
+    let mut bundle = Bundle::new();
+    bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
+    bundle.add(FailureRow::FILE, csv::file(&failures(study, trials))?)?;
+    paper::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
+    bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
+    provenance.add_to(&mut bundle)?;
+    Ok(bundle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Source: Newcombe, Stat. Med. 17 (1998) 857, Table I, method 3 (Wilson without continuity correction).
+    #[test]
+    fn intervals_agree_with_newcombe() {
+        for (hits, count, low, high) in [
+            (81, 263, 0.2553, 0.3662),
+            (15, 148, 0.0624, 0.1605),
+            (0, 20, 0.0, 0.1611),
+            (1, 29, 0.0061, 0.1718),
+        ] {
+            let [rate, found_low, found_high] = wilson(hits, count);
+            assert_eq!(rate, hits as f64 / count as f64);
+            assert!((found_low - low).abs() < 5e-5 && (found_high - high).abs() < 5e-5);
+        }
+        assert!(wilson(0, 0).iter().all(|x| x.is_nan()));
+    }
+
+    #[test]
+    fn quantiles_are_values_of_the_sample() {
+        let sample = || [4.0, 1.0, 3.0, 2.0].into_iter();
+        assert_eq!(
+            [0.5, 0.9, 1.0].map(|q| quantile(q, sample())),
+            [2.0, 4.0, 4.0]
+        );
+        assert!(quantile(0.5, std::iter::empty()).is_nan());
+    }
+}
