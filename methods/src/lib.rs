@@ -71,6 +71,7 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod hybrid;
 mod interior_point;
 mod latin;
 mod newton_ac;
@@ -151,6 +152,7 @@ pub static METHODS: &[&Method] = &[
     &nsgs::METHOD,
     &admm::METHOD,
     &interior_point::METHOD,
+    &hybrid::METHOD,
 ];
 
 /// The method of that name.
