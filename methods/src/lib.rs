@@ -78,6 +78,7 @@ mod newton_ac;
 mod nsgs;
 mod pdas;
 mod penalty;
+mod projection;
 
 pub use problem::law;
 pub use problem::*;
@@ -151,6 +152,7 @@ pub static METHODS: &[&Method] = &[
     &latin::METHOD,
     &nsgs::METHOD,
     &admm::METHOD,
+    &projection::METHOD,
     &interior_point::METHOD,
     &hybrid::METHOD,
 ];

@@ -31,7 +31,7 @@
 
 use crate::problem::law::Branch;
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::saddle::Saddle;
+use crate::problem::saddle::{REFRESH, Saddle};
 use crate::problem::sweeps::Sweeps;
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -77,8 +77,6 @@ const PATIENCE: usize = 5000;
 const STAGNATION: usize = 300;
 /// Halvings of the relaxation.
 const MAX_HALVINGS: usize = 4;
-/// Sweeps after which v is computed afresh.
-const REFRESH: usize = 100;
 
 struct Nsgs {
     relaxation: f64,

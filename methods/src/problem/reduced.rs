@@ -19,7 +19,7 @@ use super::system::Increment;
 const STOP_FRACTION: f64 = 0.5;
 
 /// Compliance below which a point counts as rigid, as a fraction of the mean 1/ρ.
-const COMPLIANCE_FLOOR: f64 = 1e-2;
+pub(crate) const COMPLIANCE_FLOOR: f64 = 1e-2;
 
 /// Rescues per increment.
 const MAX_RESCUES: usize = 6;
