@@ -68,9 +68,14 @@
 
 pub mod problem;
 
+mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod interior_point;
 mod latin;
+mod newton_ac;
+mod nsgs;
+mod pdas;
 mod penalty;
 
 pub use problem::law;
@@ -138,9 +143,14 @@ impl Method {
 /// All methods.
 pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
+    &newton_ac::METHOD,
+    &pdas::METHOD,
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
+    &nsgs::METHOD,
+    &admm::METHOD,
+    &interior_point::METHOD,
 ];
 
 /// The method of that name.

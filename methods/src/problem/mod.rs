@@ -1,6 +1,8 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
 pub(crate) mod b_equations;
+pub(crate) mod branches;
+pub(crate) mod central_path;
 pub(crate) mod condensed;
 mod elastic;
 mod error;
@@ -8,14 +10,18 @@ mod judge;
 pub mod law;
 pub(crate) mod line_search;
 pub(crate) mod linear;
+pub(crate) mod local;
 mod matrix;
 mod options;
 pub(crate) mod penalised;
 mod point_status;
 pub(crate) mod reduced;
+pub(crate) mod saddle;
+pub(crate) mod semismooth;
 pub(crate) mod stages;
 mod state;
 mod system;
+pub(crate) mod tangent;
 mod tier;
 mod uniqueness;
 

@@ -240,7 +240,12 @@ impl<'a> Reduced<'a> {
 
     /// Whether the natural map has not fallen for [`STAGNATION`] iterations.
     pub fn stagnates(&self) -> bool {
-        self.counters.iterations >= self.best.1 + STAGNATION
+        self.idle() >= STAGNATION
+    }
+
+    /// Iterations since the natural map last fell.
+    pub fn idle(&self) -> usize {
+        self.counters.iterations - self.best.1
     }
 
     /// Rescues before the current one.

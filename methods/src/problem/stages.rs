@@ -75,11 +75,15 @@ pub(crate) struct GlobalStage {
 impl GlobalStage {
     /// k₀ = `multiple`/√(w_min w_max).
     pub fn new(condensed: Arc<Condensed>, multiple: f64) -> Result<Self, MethodError> {
-        let w = &condensed.w;
         // A body that is rigid at its contact points has no best direction; ρ still has the right units.
-        let best = extremes(w, &condensed.modes)
+        let best = extremes(&condensed.w, &condensed.modes)
             .map_or(condensed.rho, |(least, most)| 1.0 / (least * most).sqrt());
-        let k0 = multiple * best;
+        Self::along(condensed, multiple * best)
+    }
+
+    /// With the given k₀ in N/m.
+    pub fn along(condensed: Arc<Condensed>, k0: f64) -> Result<Self, MethodError> {
+        let w = &condensed.w;
         let m = w.nrows();
         let a = Mat::from_fn(m, m, |i, j| k0 * w[(i, j)] + f64::from(u8::from(i == j)));
         let factor = Llt::new(a.as_ref(), Side::Lower)
@@ -100,6 +104,11 @@ impl GlobalStage {
             border,
             schur,
         })
+    }
+
+    /// k₀ in N/m.
+    pub fn k0(&self) -> f64 {
+        self.k0
     }
 
     /// Whether the stage was made for this operator.

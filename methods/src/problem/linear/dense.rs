@@ -6,27 +6,40 @@ use faer::{Mat, MatMut};
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
 
+/// LU factors of a regular matrix.
+pub(crate) struct DenseLu(PartialPivLu<f64>);
+
+impl DenseLu {
+    /// `None` if A is singular to working precision.
+    pub fn new(a: &Mat<f64>) -> Option<Self> {
+        let lu = PartialPivLu::new(a.as_ref());
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for i in 0..a.nrows() {
+            let pivot = lu.U()[(i, i)].abs();
+            if pivot.is_nan() {
+                return None;
+            }
+            (least, most) = (least.min(pivot), most.max(pivot));
+        }
+        let regular = a.nrows() == 0 || least > SINGULAR * a.nrows() as f64 * most;
+        regular.then_some(Self(lu))
+    }
+
+    /// x with A x = b; `None` if it is not finite.
+    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+        let (mut x, n) = (b.to_vec(), b.len());
+        self.0
+            .solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
+        x.iter().all(|v| v.is_finite()).then_some(x)
+    }
+}
+
 /// Solves A x = b; `None` if A is singular to working precision or the solution is not finite.
 pub(crate) fn solve_dense(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
-    let n = b.len();
-    if n == 0 {
+    if b.is_empty() {
         return Some(Vec::new());
     }
-    let lu = PartialPivLu::new(a.as_ref());
-    let pivots = (0..n).map(|i| lu.U()[(i, i)].abs());
-    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-    for p in pivots {
-        if p.is_nan() {
-            return None;
-        }
-        (least, most) = (least.min(p), most.max(p));
-    }
-    if least <= SINGULAR * n as f64 * most {
-        return None;
-    }
-    let mut x = b.to_vec();
-    lu.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
-    x.iter().all(|v| v.is_finite()).then_some(x)
+    DenseLu::new(a)?.solve(b)
 }
 
 /// y += A x for a full matrix.
