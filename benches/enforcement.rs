@@ -29,10 +29,7 @@ fn enforcement(criterion: &mut Criterion) {
             ContactSystem::new(body.elastic.clone(), frictions).expect("friction is valid");
         system.condense().expect("the body is held");
         let load = body.load(case.path.end);
-        let nothing = Load {
-            force: vec![0.0; load.force.len()],
-            offset: vec![0.0; load.offset.len()],
-        };
+        let nothing = Load::zero(&body.elastic);
         let start = ContactState::zero(&system);
         let mut group = criterion.benchmark_group(format!("enforcement/{name}"));
         group

@@ -154,10 +154,10 @@ pub fn summary(results: &Results) -> String {
         .filter(|e| e.as_stated())
         .count();
     format!(
-        "{} increments: {} solved, {} penalised, {} refused, {} failed; {} of {} expected numbers as stated",
+        "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
         results.runs.len(),
         count("solved"),
-        count("penalised"),
+        count("approximate"),
         count("refused"),
         failures(results),
         stated,

@@ -266,7 +266,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
                 .unwrap();
             pool.install(|| {
                 let body = stickslip::harness::body::Body::new(case, 1, false).unwrap();
-                let k = body.elastic.stiffness().values();
+                let k = body.elastic.stiffness().unwrap().values();
                 let k: Vec<u64> = k.iter().map(|v| v.to_bits()).collect();
                 (k, bits(&run(case, methods)))
             })

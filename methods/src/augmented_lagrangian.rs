@@ -37,6 +37,7 @@ pub static METHOD: Method = Method {
     summary: "repeats a penalised solve, each time anchored at the contact forces of the last, until the springs are slack",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("augmented_lagrangian.rs"),
     build: |options| Ok(Box::new(AugmentedLagrangian::new(options))),
 };
 

@@ -63,6 +63,7 @@ pub static METHOD: Method = Method {
     summary: "Newton's method on the non-smooth equations min(r g, P_n) = 0 and P_t = proj(P_t - r d)",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("b_newton.rs"),
     build: |options| Ok(Box::new(BNewton::new(options))),
 };
 

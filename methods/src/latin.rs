@@ -44,6 +44,7 @@ pub static METHOD: Method = Method {
     summary: "alternates the contact laws point by point with linear equilibrium along fixed search directions",
     exact: true,
     options: &OPTIONS,
+    source: include_str!("latin.rs"),
     build: |options| Ok(Box::new(Latin::new(options))),
 };
 

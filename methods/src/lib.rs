@@ -37,10 +37,11 @@
 //!     order: vec![0, 1],
 //!     floating: vec![],
 //!     frictionless: false,
+//!     traction: None,
 //! })?;
 //! let system = ContactSystem::new(elastic, vec![0.5])?;
-//! let rest = Load { force: vec![0.0, 0.0], offset: vec![0.0, 0.0] };
-//! let load = Load { force: vec![-4.0, 3.0], offset: vec![0.0, 0.0] };
+//! let rest = Load { force: vec![0.0, 0.0], offset: vec![0.0, 0.0], traction: vec![] };
+//! let load = Load { force: vec![-4.0, 3.0], offset: vec![0.0, 0.0], traction: vec![] };
 //! let start = ContactState::zero(&system);
 //! let increment = Increment {
 //!     system: &system,
@@ -118,8 +119,20 @@ pub struct Method {
     pub exact: bool,
     /// Options it takes.
     pub options: &'static [OptionSpec],
+    /// Its own file, whose head is its page; see [`page`](Method::page).
+    pub source: &'static str,
     /// Makes an instance.
     pub build: fn(&Options) -> Result<Box<dyn Enforcement>, MethodError>,
+}
+
+impl Method {
+    /// What there is to know about the method, in Markdown: equations, options, guarantees, failure modes, what it skips.
+    /// It is the documentation at the head of the method's file, so that there is one text.
+    pub fn page(&self) -> String {
+        let head = self.source.lines().map_while(|l| l.strip_prefix("//!"));
+        let lines: Vec<&str> = head.map(|l| l.strip_prefix(' ').unwrap_or(l)).collect();
+        lines.join("\n") + "\n"
+    }
 }
 
 /// All methods.

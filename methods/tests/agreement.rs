@@ -217,7 +217,11 @@ fn frictionless_contact_is_the_quadratic_programme_that_clarabel_solves() {
         solver.solve();
 
         let s = system(&elastic(dim, &k, &b, vec![], false), 0.0);
-        let load = Load { force: f, offset };
+        let load = Load {
+            force: f,
+            offset,
+            traction: vec![],
+        };
         for (m, options, tolerance) in all() {
             let outcome = run(m, &options, &s, &load, 1e-10);
             let p: Vec<f64> = outcome.state.p.iter().step_by(dim).copied().collect();

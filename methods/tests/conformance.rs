@@ -109,6 +109,7 @@ fn large_friction_under_closing_load_is_the_tied_solution() {
     let load = Load {
         force: vec![0.0; k.len()],
         offset: q,
+        traction: vec![],
     };
     for (m, options, tolerance) in all() {
         let outcome = run(m, &options, &s, &load, 1e-11);
@@ -138,6 +139,7 @@ fn open_crack_is_one_linear_solve_and_is_never_condensed() {
         let load = Load {
             force: f.clone(),
             offset: Vec::clone(&offset),
+            traction: vec![],
         };
         let outcome = run(m, &[], &s, &load, 1e-9);
         assert_eq!(
@@ -466,10 +468,12 @@ fn malformed_input_is_refused_with_typed_errors() {
         let short = Load {
             force: vec![0.0],
             offset: vec![0.0; 2],
+            traction: vec![],
         };
         let nan = Load {
             force: vec![0.0, f64::NAN],
             offset: vec![0.0; 2],
+            traction: vec![],
         };
         assert!(matches!(
             solve(&short, 1e-9),

@@ -198,6 +198,7 @@ impl Body {
             order,
             floating: motions.modes,
             frictionless,
+            traction: None,
         })?;
         let loads = case
             .loads
@@ -280,6 +281,7 @@ impl Body {
                 .map(|i| external[i] - held[i])
                 .collect(),
             offset: self.jump(&prescribed),
+            traction: vec![],
         }
     }
 

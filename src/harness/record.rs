@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::expect;
 
 /// Version of the CSV schema, written in every `runs.csv` row.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// What identifies a run; first columns of every table.
 #[derive(Debug, Clone, PartialEq, PartialOrd, Serialize)]
@@ -65,8 +65,12 @@ pub struct RunRow {
     pub solve_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
+    /// Residual of the laws the method claims to have solved, found by the judge [-].
+    pub claimed: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
     pub tangent_factorisations: usize,
+    /// Sparse factorisations of matrices over all unknowns in this increment, by monolithic variants.
+    pub global_factorisations: usize,
     /// Evaluations of the contact law at one point in this increment.
     pub local_solves: usize,
     /// Schema version.

@@ -6,7 +6,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use stickslip_methods::{
     ContactState, ContactSystem, Enforcement, Increment, Load, Method, MethodError, OptionError,
-    Options, Outcome, Residuals, Silent, Tier, point_status, residuals,
+    Options, Outcome, Residuals, Silent, Tier, point_status, residuals_of,
 };
 
 use crate::harness::body::{Body, BodyError};
@@ -274,10 +274,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let mut state = ContactState::zero(system);
     let mut now = Snapshot::virgin(body);
     // Nothing acts before the first increment, whatever the histories say at t = 0.
-    let mut start_load = Load {
-        force: vec![0.0; body.elastic.unknowns()],
-        offset: vec![0.0; now.jump.len()],
-    };
+    let mut start_load = Load::zero(&body.elastic);
     let mut steps = Vec::new();
     for increment in 1..=case.path.increments {
         let time = case.path.end * increment as f64 / case.path.increments as f64;
@@ -298,7 +295,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         };
         let (solved, solve_s) = timed(system, || method.solve(&problem, &mut Silent));
         let judged = solved.and_then(|outcome| {
-            let found = residuals(&problem, &outcome.state)?;
+            let found = residuals_of(&problem, &outcome.state, outcome.claim)?;
             let status = point_status(&problem, &outcome.state)?;
             Ok((outcome, found, status))
         });
@@ -383,7 +380,9 @@ fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
         prepare_s,
         solve_s: f64::NAN,
         equilibrium: f64::NAN,
+        claimed: f64::NAN,
         tangent_factorisations: 0,
+        global_factorisations: 0,
         local_solves: 0,
         schema: SCHEMA,
     }
@@ -393,9 +392,11 @@ fn record_run(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Re
     run.verdict = verdict.to_string();
     run.natural_map = found.natural_map;
     run.equilibrium = found.equilibrium;
+    run.claimed = found.claimed;
     run.iterations = outcome.counters.iterations;
     run.solves = outcome.counters.solves;
     run.tangent_factorisations = outcome.counters.factorisations;
+    run.global_factorisations = outcome.counters.global_factorisations;
     run.local_solves = outcome.counters.local_solves;
     if !verdict.is_honest() {
         run.forget_times();

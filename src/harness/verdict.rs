@@ -12,8 +12,8 @@ pub const EQUILIBRIUM: f64 = 1e-12;
 pub enum Verdict {
     /// Claimed the contact laws and the judge agrees.
     Solved(Tier),
-    /// Solved its own penalised laws; the judge found the contact laws held to this tier, or to none.
-    Penalised(Option<Tier>),
+    /// Solved its own laws, as the judge agrees; it found the contact laws held to this tier, or to none.
+    Approximate(Option<Tier>),
     /// Claimed the contact laws and the judge disagrees.
     FalseClaim,
     /// Ended without a claim.
@@ -27,14 +27,15 @@ pub enum Verdict {
 impl Verdict {
     /// Judges an outcome against the tier asked for.
     pub fn of(outcome: &Outcome, found: &Residuals, tier: Tier) -> Self {
-        let balanced = found.equilibrium <= EQUILIBRIUM;
         // NaN passes no comparison.
+        let balanced = found.equilibrium <= EQUILIBRIUM;
         let holds = |tier: Tier| balanced && found.natural_map <= tier.tolerance();
+        let as_claimed = balanced && found.claimed <= tier.tolerance();
         match (outcome.status, outcome.claim) {
-            (Status::Converged, Claim::Exact) if holds(tier) => Verdict::Solved(tier),
-            (Status::Converged, Claim::Penalised { .. }) if holds(tier) => Verdict::Solved(tier),
-            (Status::Converged, Claim::Penalised { .. }) if balanced => {
-                Verdict::Penalised(Tier::ALL.into_iter().rev().find(|&t| holds(t)))
+            (Status::Converged, _) if as_claimed && holds(tier) => Verdict::Solved(tier),
+            (Status::Converged, Claim::Exact) => Verdict::FalseClaim,
+            (Status::Converged, _) if as_claimed => {
+                Verdict::Approximate(Tier::ALL.into_iter().rev().find(|&t| holds(t)))
             }
             (Status::Converged, _) => Verdict::FalseClaim,
             (status, _) => Verdict::GaveUp(status),
@@ -43,7 +44,7 @@ impl Verdict {
 
     /// True if the run did what it said: its times may be published.
     pub fn is_honest(&self) -> bool {
-        matches!(self, Verdict::Solved(_) | Verdict::Penalised(_))
+        matches!(self, Verdict::Solved(_) | Verdict::Approximate(_))
     }
 
     /// True if the command must report failure.
@@ -59,8 +60,8 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Verdict::Solved(_) => write!(f, "solved"),
-            Verdict::Penalised(Some(tier)) => write!(f, "penalised: {tier}"),
-            Verdict::Penalised(None) => write!(f, "penalised: none"),
+            Verdict::Approximate(Some(tier)) => write!(f, "approximate: {tier}"),
+            Verdict::Approximate(None) => write!(f, "approximate: none"),
             Verdict::FalseClaim => write!(f, "false-claim"),
             Verdict::GaveUp(status) => write!(f, "gave-up: {status}"),
             Verdict::Refused(reason) => write!(f, "refused: {reason}"),
@@ -90,6 +91,7 @@ mod tests {
     fn found(natural_map: f64, equilibrium: f64) -> Residuals {
         Residuals {
             equilibrium,
+            claimed: natural_map,
             penetration: 0.0,
             adhesion: 0.0,
             complementarity: 0.0,
@@ -124,17 +126,27 @@ mod tests {
     }
 
     #[test]
-    fn a_penalised_claim_is_graded_by_the_tier_it_reaches() {
+    fn an_approximate_claim_is_held_to_its_own_laws_and_graded_by_the_tier_it_reaches() {
         let claim = Claim::Penalised {
             normal: 1.0,
             tangential: 1.0,
         };
         let converged = outcome(Status::Converged, claim);
-        let grade = |map| Verdict::of(&converged, &found(map, 1e-14), Tier::High);
-        assert_eq!(grade(1e-4), Verdict::Penalised(Some(Tier::Low)));
-        assert_eq!(grade(1e-2), Verdict::Penalised(None));
+        let held = |map, equilibrium| Residuals {
+            claimed: 1e-10,
+            ..found(map, equilibrium)
+        };
+        let grade = |map| Verdict::of(&converged, &held(map, 1e-14), Tier::High);
+        assert_eq!(grade(1e-4), Verdict::Approximate(Some(Tier::Low)));
+        assert_eq!(grade(1e-2), Verdict::Approximate(None));
         assert_eq!(grade(1e-10), Verdict::Solved(Tier::High));
-        let unbalanced = Verdict::of(&converged, &found(1e-4, 1e-3), Tier::High);
-        assert_eq!(unbalanced, Verdict::FalseClaim);
+        for (own_law, equilibrium) in [(1e-10, 1e-3), (1e-8, 1e-14), (f64::NAN, 1e-14)] {
+            let broken = Residuals {
+                claimed: own_law,
+                ..found(1e-4, equilibrium)
+            };
+            let verdict = Verdict::of(&converged, &broken, Tier::High);
+            assert_eq!(verdict, Verdict::FalseClaim);
+        }
     }
 }

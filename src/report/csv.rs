@@ -130,7 +130,9 @@ impl Row for RunRow {
         "prepare_s",
         "solve_s",
         "equilibrium",
+        "claimed",
         "tangent_factorisations",
+        "global_factorisations",
         "local_solves",
         "schema",
     ];
@@ -158,7 +160,9 @@ impl Row for RunRow {
             prepare_s,
             solve_s,
             equilibrium,
+            claimed,
             tangent_factorisations,
+            global_factorisations,
             local_solves,
             schema,
         } = self;
@@ -179,7 +183,9 @@ impl Row for RunRow {
             time(*prepare_s),
             time(*solve_s),
             residual(*equilibrium),
+            residual(*claimed),
             tangent_factorisations.to_string(),
+            global_factorisations.to_string(),
             local_solves.to_string(),
             schema.to_string(),
         ]

@@ -109,10 +109,7 @@ pub fn friction(case: &Case, body: &Body) -> Vec<f64> {
 
 /// The load of a body nothing acts on.
 pub fn no_load(body: &Body) -> Load {
-    Load {
-        force: vec![0.0; body.elastic.unknowns()],
-        offset: vec![0.0; body.points.len() * body.mesh.dim()],
-    }
+    Load::zero(&body.elastic)
 }
 
 /// Solves the last load of a case in one increment; the method must converge to the tolerance.

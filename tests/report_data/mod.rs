@@ -75,7 +75,9 @@ fn add_run(results: &mut Results, key: RunKey) {
         prepare_s: 1.234e-5,
         solve_s: 4.567_891e-4,
         equilibrium: 3.2e-14,
+        claimed: residual(iterations),
         tangent_factorisations: 3,
+        global_factorisations: 0,
         local_solves: 33,
         schema: SCHEMA,
     });

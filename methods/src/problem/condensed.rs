@@ -79,11 +79,7 @@ impl Condensed {
             mul_add(&w, q, &mut wq);
             trace -= dot(q, &wq);
         }
-        // Σ_j B_ij² / K_jj: compliance of the contact unknowns with all others held.
-        let local: f64 = (rows.source.iter())
-            .flat_map(|&i| elastic.jump().row(i))
-            .map(|(j, b)| b * b / elastic.stiffness().diagonal(j))
-            .sum();
+        let local = elastic.local_compliance(&rows.source);
         if rows.len() > 0 && local <= 0.0 {
             return Err(MethodError::RigidContact);
         }

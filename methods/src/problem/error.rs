@@ -82,6 +82,12 @@ pub enum MethodError {
         /// Its coefficient.
         friction: f64,
     },
+    /// The stiffness is needed where only the Delassus operator is known.
+    #[error("only the Delassus operator of the body is known, not its stiffness")]
+    NoStiffness,
+    /// Laws that need the stress at the contact points were asked of a body without traction operator.
+    #[error("the body has no traction operator: the stress at its contact points is unknown")]
+    NoTraction,
     /// No contact row responds to a contact force: the scale of the natural map is undefined.
     #[error("the contact forces move no contact point: the jump operator is zero")]
     RigidContact,
@@ -134,4 +140,22 @@ pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), Met
             allowed: "finite",
         }),
     }
+}
+
+/// Refuses entries that are not positive and finite.
+pub(crate) fn check_positive(
+    what: &'static str,
+    values: impl Iterator<Item = f64>,
+) -> Result<(), MethodError> {
+    for (index, value) in values.enumerate() {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(MethodError::Range {
+                what,
+                index,
+                value,
+                allowed: "positive and finite",
+            });
+        }
+    }
+    Ok(())
 }

@@ -2,10 +2,10 @@
 
 use super::condensed::{Condensed, RowSet};
 use super::error::{MethodError, check_finite, check_len};
-use super::law::{natural_map_squared, tangential_norm};
+use super::law::{natural_map_squared, return_map, tangential_norm};
 use super::linear::dense::mul_add;
 use super::linear::factor::norm;
-use super::state::ContactState;
+use super::state::{Claim, ContactState};
 use super::system::Increment;
 
 /// Residuals of one state, all dimensionless: they change neither with units nor with the tangent frames.
@@ -15,8 +15,10 @@ use super::system::Increment;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
-    /// or large bodies is far above ε |K u|.
+    /// or large bodies is far above ε |K u|. Under [`Claim::Nitsche`] its consistency term counts as a force.
     pub equilibrium: f64,
+    /// Residual of the laws that the claim names, relative to P_ref. Under [`Claim::Exact`] the natural map.
+    pub claimed: f64,
     /// max −g / u_ref over the points.
     pub penetration: f64,
     /// max −P_n / P_ref: adhesion.
@@ -32,14 +34,28 @@ pub struct Residuals {
     pub natural_map: f64,
 }
 
-/// Judges a state. The jump is computed from `s.u`; nothing a method reports is trusted.
-///
-/// Without contact forces and penetration the law holds for any scale, so the natural map is 0 and the body is not
-/// condensed.
+/// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
 ///
 /// # Errors
-/// Arrays of the wrong length or with non-finite entries; the errors of factorisation and condensation.
+/// As [`residuals_of`].
 pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, MethodError> {
+    residuals_of(i, s, Claim::Exact)
+}
+
+/// Judges a state against the contact laws and against the laws that a method claims to have solved. The jump is
+/// computed from `s.u`; nothing a method reports is trusted.
+///
+/// Without contact forces and penetration the contact laws hold for any scale, so the natural map is 0 and the body is
+/// not condensed.
+///
+/// # Errors
+/// Arrays of the wrong length or with non-finite entries; a claim of Nitsche's laws on a body without traction
+/// operator; the errors of factorisation and condensation.
+pub fn residuals_of(
+    i: &Increment<'_>,
+    s: &ContactState,
+    claim: Claim,
+) -> Result<Residuals, MethodError> {
     i.check()?;
     check_len("displacements", s.u.len(), i.start.u.len())?;
     check_len("contact forces", s.p.len(), i.start.p.len())?;
@@ -48,11 +64,14 @@ pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, Metho
 
     let (system, dim) = (i.system, i.system.dim());
     let mut result = Residuals {
-        equilibrium: equilibrium(i, s),
+        equilibrium: equilibrium(i, s, claim)?,
         ..Default::default()
     };
     let jump = i.jump(&s.u);
-    if s.p.iter().all(|&p| p == 0.0) && jump.iter().step_by(dim).all(|&g| g >= 0.0) {
+    if claim == Claim::Exact
+        && s.p.iter().all(|&p| p == 0.0)
+        && jump.iter().step_by(dim).all(|&g| g >= 0.0)
+    {
         return Ok(result);
     }
 
@@ -103,7 +122,69 @@ pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, Metho
     let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &v)
         .hypot(forbidden.max(0.0).sqrt());
     result.natural_map = ratio(e, p_ref);
+    result.claimed = match claim {
+        Claim::Exact => result.natural_map,
+        Claim::Penalised { normal, tangential } => {
+            // Springs in series with the body: the contact laws hold with v + (P − A)/k for v.
+            let mut stretched = v;
+            for (k, &row) in rows.source.iter().enumerate() {
+                stretched[k] += if row % dim == 0 {
+                    p[k] / normal
+                } else {
+                    (p[k] - i.start.p[row]) / tangential
+                };
+            }
+            let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &stretched);
+            ratio(e, p_ref)
+        }
+        Claim::Nitsche { gamma, .. } => {
+            let stress = rows.restrict(&implied_forces(i, s)?);
+            let mut square = 0.0;
+            for point in 0..rows.points() {
+                let own = rows.of(point);
+                let stiffness = gamma * system.weight()[point];
+                let mut z: Vec<f64> = (own.clone())
+                    .map(|k| stress[k] - stiffness * v[k])
+                    .collect();
+                return_map(system.friction()[point], &mut z);
+                square += own.zip(z).map(|(k, z)| (p[k] - z).powi(2)).sum::<f64>();
+            }
+            ratio(square.sqrt(), p_ref)
+        }
+    };
     Ok(result)
+}
+
+/// S u plus the traction of prescribed displacements: the contact forces that the stress of the bulk implies.
+fn implied_forces(i: &Increment<'_>, s: &ContactState) -> Result<Vec<f64>, MethodError> {
+    let traction = i.system.elastic().traction();
+    let traction = traction.ok_or(MethodError::NoTraction)?;
+    let mut stress = vec![0.0; traction.rows()];
+    traction.mul(&s.u, &mut stress);
+    stress
+        .iter_mut()
+        .zip(&i.load.traction)
+        .for_each(|(x, t)| *x += t);
+    Ok(stress)
+}
+
+/// Backward error of equilibrium; under Nitsche's laws with the force θ Sᵀ y, y = (S u − P)/(γ w).
+fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64, MethodError> {
+    let (elastic, dim) = (i.system.elastic(), i.system.dim());
+    let mut contact = vec![0.0; s.u.len()];
+    elastic.jump().mul_transpose_add(&s.p, &mut contact);
+    let f = &i.load.force;
+    let (Claim::Nitsche { theta, gamma }, Some(traction)) = (claim, elastic.traction()) else {
+        return Ok(elastic.imbalance(&s.u, &[f, &contact]));
+    };
+    let mut y = vec![0.0; s.p.len()];
+    let stress = implied_forces(i, s)?;
+    for &row in &i.system.row_set().source {
+        y[row] = theta * (stress[row] - s.p[row]) / (gamma * i.system.weight()[row / dim]);
+    }
+    let mut consistency = vec![0.0; s.u.len()];
+    traction.mul_transpose_add(&y, &mut consistency);
+    Ok(elastic.imbalance(&s.u, &[f, &contact, &consistency]))
 }
 
 /// x / reference with 0/0 = 0.
@@ -156,18 +237,4 @@ pub(crate) fn free_jump(condensed: &Condensed, q: &[f64], balance: &[f64]) -> f6
 /// P_ref = max(ρ |q|, |P|).
 pub(crate) fn reference_force(condensed: &Condensed, p: &[f64], free_jump: f64) -> f64 {
     (condensed.rho * free_jump).max(norm(p))
-}
-
-fn equilibrium(i: &Increment<'_>, s: &ContactState) -> f64 {
-    let n = s.u.len();
-    let (mut ku, mut contact) = (vec![0.0; n], vec![0.0; n]);
-    i.system.elastic().stiffness().mul(&s.u, &mut ku);
-    i.system
-        .elastic()
-        .jump()
-        .mul_transpose_add(&s.p, &mut contact);
-    let f = &i.load.force;
-    let residual: Vec<f64> = (0..n).map(|j| ku[j] - f[j] - contact[j]).collect();
-    i.system.elastic().stiffness().mul_abs(&s.u, &mut ku);
-    ratio(norm(&residual), norm(f) + norm(&contact) + norm(&ku))
 }

@@ -150,6 +150,17 @@ impl JumpOperator {
         })
     }
 
+    /// The operator of unknowns that are the jumps themselves.
+    pub(crate) fn identity(n: usize) -> Self {
+        Self {
+            rows: n,
+            cols: n,
+            row_ptr: (0..=n).collect(),
+            col_idx: (0..n).collect(),
+            values: vec![1.0; n],
+        }
+    }
+
     /// Number of rows, `dim` per contact point.
     pub fn rows(&self) -> usize {
         self.rows

@@ -20,7 +20,7 @@ mod tier;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use error::MethodError;
-pub use judge::{Residuals, residuals};
+pub use judge::{Residuals, residuals, residuals_of};
 pub use linear::delassus::MAX_CONDENSED_ROWS;
 pub use matrix::{JumpOperator, SymmetricMatrix};
 pub use options::{OptionError, OptionSpec, Options};

@@ -64,7 +64,7 @@ impl std::fmt::Display for Status {
     }
 }
 
-/// Which equations a converged method claims to have solved.
+/// Which equations a converged method claims to have solved. [`residuals_of`](super::residuals_of) holds it to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Claim {
@@ -77,6 +77,15 @@ pub enum Claim {
         normal: f64,
         /// Tangential stiffness k_t, in N/m.
         tangential: f64,
+    },
+    /// Nitsche's laws: P is the return mapping of S u − γ w v, S u the contact force that the stress of the bulk
+    /// implies, and equilibrium has the consistency term θ Sᵀ (S u − P)/(γ w). Consistent with the contact laws of the
+    /// continuum, it differs from those of the contact points by the error of the discretisation.
+    Nitsche {
+        /// 1: symmetric, 0: incomplete, −1: skew-symmetric.
+        theta: f64,
+        /// γ in N/m³, w the weight of a point.
+        gamma: f64,
     },
 }
 
@@ -96,6 +105,8 @@ pub struct Counters {
     pub iterations: usize,
     /// Dense factorisations of condensed matrices.
     pub factorisations: usize,
+    /// Sparse factorisations of matrices over all unknowns, as monolithic variants need them.
+    pub global_factorisations: usize,
     /// Solves with the factor of K.
     pub solves: usize,
     /// Evaluations of the contact law at one point.

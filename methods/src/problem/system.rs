@@ -137,6 +137,21 @@ pub struct Load {
     pub force: Vec<f64>,
     /// Jump carried by prescribed unknowns and initial gaps, `dim` per point, in m: `[[u]] = B u + offset`.
     pub offset: Vec<f64>,
+    /// Contact force that the stress of prescribed displacements implies, `dim` per point, in N (2D: N/m), to be added
+    /// to S u; empty if the body has no traction operator.
+    pub traction: Vec<f64>,
+}
+
+impl Load {
+    /// Nothing acts.
+    pub fn zero(elastic: &Elastic) -> Self {
+        let rows = elastic.jump().rows();
+        Self {
+            force: vec![0.0; elastic.unknowns()],
+            offset: vec![0.0; rows],
+            traction: vec![0.0; elastic.traction().map_or(0, |s| s.rows())],
+        }
+    }
 }
 
 /// One increment: from a start state to equilibrium under a new load.
@@ -176,6 +191,8 @@ impl Increment<'_> {
         };
         check("load force", &self.load.force, n)?;
         check("load offset", &self.load.offset, m)?;
+        let with_traction = self.system.elastic().traction().map_or(0, |s| s.rows());
+        check("load traction", &self.load.traction, with_traction)?;
         check("start load force", &self.start_load.force, n)?;
         check("start load offset", &self.start_load.offset, m)?;
         check("start displacements", &self.start.u, n)?;

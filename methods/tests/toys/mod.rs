@@ -60,6 +60,7 @@ pub fn parts(
         order: (0..n).collect(),
         floating,
         frictionless,
+        traction: None,
     }
 }
 
@@ -85,6 +86,7 @@ pub fn force(system: &ContactSystem, f: &[f64]) -> Load {
     Load {
         force: f.to_vec(),
         offset: vec![0.0; system.dim() * system.points()],
+        traction: vec![],
     }
 }
 
@@ -97,10 +99,7 @@ pub fn run(
     tol: f64,
 ) -> Outcome {
     let start = ContactState::zero(system);
-    let rest = Load {
-        force: vec![0.0; load.force.len()],
-        offset: vec![0.0; load.offset.len()],
-    };
+    let rest = Load::zero(system.elastic());
     run_from(
         method,
         options,
@@ -142,10 +141,7 @@ pub fn build(method: &Method, options: &[(&str, f64)]) -> Box<dyn Enforcement> {
 /// Judges an outcome of an increment from the unloaded state.
 pub fn judge(system: &ContactSystem, load: &Load, state: &ContactState) -> Residuals {
     let start = ContactState::zero(system);
-    let rest = Load {
-        force: vec![0.0; load.force.len()],
-        offset: vec![0.0; load.offset.len()],
-    };
+    let rest = Load::zero(system.elastic());
     residuals(&increment(system, load, &rest, &start, 1e-9), state).unwrap()
 }
 

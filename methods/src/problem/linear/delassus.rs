@@ -12,7 +12,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, Par};
 
 use super::super::error::MethodError;
-use super::super::matrix::JumpOperator;
+use super::super::matrix::{JumpOperator, SymmetricMatrix};
 use super::factor::Factor;
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
@@ -27,12 +27,7 @@ pub(crate) fn condense(
     rows: &[usize],
 ) -> Result<Mat<f64>, MethodError> {
     let m = rows.len();
-    if m > MAX_CONDENSED_ROWS {
-        return Err(MethodError::TooManyRows {
-            rows: m,
-            limit: MAX_CONDENSED_ROWS,
-        });
-    }
+    check_rows(m)?;
     let (mut y, first, sorted) = right_hand_sides(factor, jump, rows);
     forward_solve(factor, &mut y, &first)?;
 
@@ -62,6 +57,31 @@ pub(crate) fn condense(
         let (a, b) = (position[i], position[j]);
         w[(a.max(b), a.min(b))]
     }))
+}
+
+/// W given as a sparse matrix, full.
+pub(crate) fn dense(sparse: &SymmetricMatrix) -> Result<Mat<f64>, MethodError> {
+    let m = sparse.size();
+    check_rows(m)?;
+    let mut w = Mat::<f64>::zeros(m, m);
+    for j in 0..m {
+        for k in sparse.col_ptr()[j]..sparse.col_ptr()[j + 1] {
+            let (i, value) = (sparse.row_idx()[k], sparse.values()[k]);
+            w[(i, j)] = value;
+            w[(j, i)] = value;
+        }
+    }
+    Ok(w)
+}
+
+fn check_rows(rows: usize) -> Result<(), MethodError> {
+    if rows > MAX_CONDENSED_ROWS {
+        return Err(MethodError::TooManyRows {
+            rows,
+            limit: MAX_CONDENSED_ROWS,
+        });
+    }
+    Ok(())
 }
 
 /// (D B_c)ᵀ with columns sorted by first non-zero: matrix, first non-zero of each column, original column.
@@ -197,6 +217,7 @@ mod tests {
             order: (0..n).map(order).collect(),
             floating: Vec::new(),
             frictionless: false,
+            traction: None,
         }
     }
 
@@ -236,6 +257,7 @@ mod tests {
             order: (0..n).collect(),
             floating: Vec::new(),
             frictionless: false,
+            traction: None,
         })
         .unwrap();
         let error = body.condensed().err().unwrap();
