@@ -13,17 +13,23 @@
 //! A fixed point has P = Π(P − k v), which is the contact law itself: the answer does not depend on k.
 //!
 //! # Options
-//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`.
+//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step
+//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
+//! method; the iterates are the same.
 //!
 //! # Guarantees
 //! Without friction the outer loop contracts by 1/(1 + k w_min), w_min the smallest eigenvalue of W, for any k > 0; the
 //! condensed inner problem stays well conditioned for large k, unlike K + k Bᵀ B.
+//!
+//! # Skips
+//! An open crack is one linear solve. Each inner problem starts from the last; open points leave its dense LU.
 //!
 //! # Failure modes
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
 use crate::problem::penalised::Springs;
 use crate::problem::reduced::{Begin, Limits, Reduced};
+use crate::problem::tangent::{MONOLITHIC, Tangent};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome, Status,
@@ -41,7 +47,7 @@ pub static METHOD: Method = Method {
     build: |options| Ok(Box::new(AugmentedLagrangian::new(options))),
 };
 
-static OPTIONS: [OptionSpec; 3] = [
+static OPTIONS: [OptionSpec; 4] = [
     OptionSpec {
         name: "stiffness",
         unit: "-",
@@ -69,6 +75,7 @@ static OPTIONS: [OptionSpec; 3] = [
         integer: true,
         help: "Newton steps per inner problem before giving up",
     },
+    MONOLITHIC,
 ];
 
 /// The inner problem is solved this much more accurately than the outer loop is stopped.
@@ -81,6 +88,7 @@ struct AugmentedLagrangian {
     stiffness: f64,
     max_outer: usize,
     max_inner: usize,
+    tangent: Tangent,
 }
 
 impl AugmentedLagrangian {
@@ -89,11 +97,16 @@ impl AugmentedLagrangian {
             stiffness: options.own("stiffness"),
             max_outer: options.own("max_outer") as usize,
             max_inner: options.own("max_inner") as usize,
+            tangent: Tangent::new(options),
         }
     }
 }
 
 impl Enforcement for AugmentedLagrangian {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
         system.elastic().factorise()
     }
@@ -139,6 +152,7 @@ impl Enforcement for AugmentedLagrangian {
                 start,
                 inner_stop,
                 self.max_inner,
+                &mut self.tangent,
                 |_, _, c| {
                     changes += c;
                     true

@@ -24,13 +24,17 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
-//! `max_iterations`.
+//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows,
+//! as papers usually run the method; the iterates are the same.
 //!
 //! # Guarantees
 //! Full steps are tried first; a non-monotone line search on the energy-scaled merit Σ H²/r steps in only after a rise
 //! above the last five merits. Locally quadratic at regular points; in 2D and without friction the last linear
 //! problem is the solution, so it ends after finitely many steps. No global guarantee: Coulomb friction is no
 //! minimisation.
+//!
+//! # Skips
+//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
 //!
 //! # Failure modes
 //! Cycling or stalling for large μ, outside the range where the solution is unique (on random, strongly coupled
@@ -42,17 +46,15 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
-use crate::problem::b_equations::{Piece, Row, equations, linearise, trial};
+use crate::problem::b_equations::{Piece, Row, equations, linearise};
 use crate::problem::law::tangential_norm;
-use crate::problem::line_search::LineSearch;
-use crate::problem::linear::dense::{mul_add, solve_dense};
+use crate::problem::linear::dense::mul_add;
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::stages::rescue;
+use crate::problem::semismooth::{At, Iterate, Safeguards, Scheme, newton, trial};
+use crate::problem::tangent::{MONOLITHIC, Tangent};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome, Status,
+    Options, Outcome,
 };
 
 /// Registry entry.
@@ -67,7 +69,7 @@ pub static METHOD: Method = Method {
     build: |options| Ok(Box::new(BNewton::new(options))),
 };
 
-static OPTIONS: [OptionSpec; 2] = [
+static OPTIONS: [OptionSpec; 3] = [
     OptionSpec {
         name: "r",
         unit: "-",
@@ -86,18 +88,18 @@ static OPTIONS: [OptionSpec; 2] = [
         integer: true,
         help: "Newton steps before giving up",
     },
+    MONOLITHIC,
 ];
 
 /// Steps without progress after which the iteration counts as cycling.
 const PATIENCE: usize = 60;
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;
-/// Regularisation of a singular tangent of redundant points, relative to 1/ρ.
-const RIDGE: f64 = 1e-10;
 
 struct BNewton {
     r: f64,
     max_iterations: usize,
+    tangent: Tangent,
 }
 
 impl BNewton {
@@ -105,36 +107,16 @@ impl BNewton {
         Self {
             r: options.own("r"),
             max_iterations: options.own("max_iterations") as usize,
+            tangent: Tangent::new(options),
         }
     }
-}
-
-/// Unknowns of the method.
-#[derive(Clone)]
-struct Iterate {
-    P: Vec<f64>,
-    beta: Vec<f64>,
-}
-
-impl Iterate {
-    fn moved(&self, t: f64, step: &Iterate) -> Iterate {
-        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
-        Iterate {
-            P: add(&self.P, &step.P),
-            beta: add(&self.beta, &step.beta),
-        }
-    }
-}
-
-/// Which pieces of H' meet at the iterate, so that the direction decides.
-#[derive(Debug, Clone, Copy)]
-struct Kink {
-    normal: bool,
-    bound: bool,
-    tangential: bool,
 }
 
 impl Enforcement for BNewton {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
         system.elastic().factorise()
     }
@@ -148,168 +130,119 @@ impl Enforcement for BNewton {
             Begin::Done(outcome) => return Ok(outcome),
             Begin::Contact(problem) => problem,
         };
-        let rigid_springs = vec![0.0; problem.len()];
-        let r: Vec<f64> = problem
-            .scales(&rigid_springs)
-            .iter()
-            .map(|scale| self.r * scale)
-            .collect();
-        let P = problem.start_forces();
-        let mut x = Iterate {
-            beta: problem.start_amplitudes(&P),
-            P,
-        };
+        let start = (Iterate::start(&problem), self.r);
         let limits = Limits {
             iterations: self.max_iterations,
             patience: PATIENCE,
         };
-        let mut search = LineSearch::default();
-        let mut before: Vec<Piece> = Vec::new();
-
-        let status = loop {
-            let v = problem.jump(&x.P, &x.beta);
-            let (pieces, kinks) = classify(&problem, &r, &x.P, &v);
-            let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
-            let natural_map = problem.natural_map(&x.P, &v);
-            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                match problem.confirm(status, &x.P, &x.beta)? {
-                    Some(status) => break status,
-                    None => continue,
-                }
-            }
-            before.clone_from(&pieces);
-            let stuck = problem.stagnates();
-            let step = (!stuck).then(|| direction(&mut problem, &r, &x, &v, pieces, &kinks));
-            let Some(step) = step.flatten() else {
-                if problem.rescue_left()
-                    && let Some(pair) = rescue(&mut problem)
-                {
-                    x = Iterate {
-                        P: pair.p,
-                        beta: pair.beta,
-                    };
-                    continue;
-                }
-                break if stuck {
-                    Status::Stalled
-                } else {
-                    problem.singular()
-                };
-            };
-            search.record(merit(&problem, &r, &x.P, &v));
-            let t = search.length(|t| {
-                let trial = x.moved(t, &step);
-                let v = problem.jump(&trial.P, &trial.beta);
-                merit(&problem, &r, &trial.P, &v)
-            });
-            x = x.moved(t, &step);
-            problem.rebalance(&mut x.P);
+        let safeguards = Safeguards {
+            line_search: true,
+            rescue: true,
         };
+        let how = (limits, safeguards);
+        let (status, x) = newton(
+            &BEquations,
+            &mut problem,
+            &mut self.tangent,
+            start,
+            how,
+            monitor,
+        )?;
         problem.finish(status, &x.P, &x.beta)
     }
 }
 
-/// Σ H²/r over all rows, an energy.
-fn merit(problem: &Reduced<'_>, r: &[f64], P: &[f64], v: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..problem.rows.points() {
-        let rows = problem.rows.of(i);
-        let H = equations(
-            problem.friction(i),
-            &r[rows.clone()],
-            &P[rows.clone()],
-            &v[rows.clone()],
-        );
-        sum += rows.zip(H).map(|(k, h)| h * h / r[k]).sum::<f64>();
+/// H and the pieces of H'.
+pub(crate) struct BEquations;
+
+impl Scheme for BEquations {
+    type Piece = Piece;
+
+    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+        equations(mu, r, P, v)
     }
-    sum
+
+    /// Closed and sticking on a kink.
+    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Piece {
+        let (closed, kink) = (r[0] * v[0] <= P[0], Kink::at(mu, r, P, v));
+        let (s, t) = bound_and_trial(mu, r, P, v);
+        Piece {
+            closed,
+            bound_moves: P[0] > 0.0 || (kink.bound && closed),
+            // At t = s = 0 an open point has to lose its tangential force, a closed one may stick.
+            slip: t > s || (kink.tangential && s == 0.0 && !closed),
+        }
+    }
+
+    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [Row; 3] {
+        linearise(mu, r, P, v, piece)
+    }
+
+    /// The direction that asks for the pieces it was computed with.
+    fn direction(&self, at: &mut At<'_, '_>, pieces: &[Piece]) -> Option<Iterate> {
+        let kinks: Vec<Kink> = (0..pieces.len())
+            .map(|i| {
+                let own = at.problem.rows.of(i);
+                let (r, P) = (&at.r[own.clone()], &at.x.P[own.clone()]);
+                Kink::at(at.problem.friction(i), r, P, &at.v[own])
+            })
+            .collect();
+        let mut pieces = pieces.to_vec();
+        let mut step = None;
+        for _ in 0..BRANCH_ROUNDS {
+            let solved = at.step(self, &pieces)?;
+            let contradicted = correct_pieces(at, &solved, &kinks, &mut pieces);
+            step = Some(solved);
+            if !contradicted {
+                break;
+            }
+        }
+        step
+    }
 }
 
-/// Piece of H' per point at the current iterate, closed and sticking on a kink, and where the kinks are.
-fn classify(problem: &Reduced<'_>, r: &[f64], P: &[f64], v: &[f64]) -> (Vec<Piece>, Vec<Kink>) {
-    let point = |i: usize| {
-        let rows = problem.rows.of(i);
-        let (r, P, v) = (&r[rows.clone()], &P[rows.clone()], &v[rows]);
-        let s = problem.friction(i) * P[0].max(0.0);
-        let z = trial(r, P, v);
-        let t = tangential_norm(&z[..P.len()]);
-        let closed = r[0] * v[0] <= P[0];
-        let kink = Kink {
+/// Which pieces of H' meet at the iterate, so that the direction decides.
+#[derive(Debug, Clone, Copy)]
+struct Kink {
+    normal: bool,
+    bound: bool,
+    tangential: bool,
+}
+
+impl Kink {
+    fn at(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self {
+        let (s, t) = bound_and_trial(mu, r, P, v);
+        Kink {
             normal: r[0] * v[0] == P[0],
             bound: P[0] == 0.0,
             tangential: t == s,
-        };
-        let bound_moves = P[0] > 0.0 || (kink.bound && closed);
-        // At t = s = 0 an open point has to lose its tangential force, a closed one may stick.
-        let slip = t > s || (kink.tangential && s == 0.0 && !closed);
-        (
-            Piece {
-                closed,
-                bound_moves,
-                slip,
-            },
-            kink,
-        )
-    };
-    (0..problem.rows.points()).map(point).unzip()
-}
-
-/// Newton direction H(x) + H'(x; δ) = 0; `None` if the tangent is singular.
-fn direction(
-    problem: &mut Reduced<'_>,
-    r: &[f64],
-    x: &Iterate,
-    v: &[f64],
-    mut pieces: Vec<Piece>,
-    kinks: &[Kink],
-) -> Option<Iterate> {
-    let mut step = None;
-    for _ in 0..BRANCH_ROUNDS {
-        let solved = regularised_step(problem, r, x, v, &pieces)?;
-        let contradicted = correct_pieces(problem, r, x, v, &solved, kinks, &mut pieces);
-        step = Some(solved);
-        if !contradicted {
-            break;
         }
     }
-    step
 }
 
-/// The step of the given pieces, regularised if their tangent is singular.
-fn regularised_step(
-    problem: &mut Reduced<'_>,
-    r: &[f64],
-    x: &Iterate,
-    v: &[f64],
-    pieces: &[Piece],
-) -> Option<Iterate> {
-    problem.counters.factorisations += 1;
-    linear_step(problem, r, x, v, pieces, 0.0).or_else(|| {
-        problem.counters.factorisations += 1;
-        linear_step(problem, r, x, v, pieces, RIDGE)
-    })
+/// s and |z_t|.
+fn bound_and_trial(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (f64, f64) {
+    let z = trial(r, P, v);
+    (mu * P[0].max(0.0), tangential_norm(&z[..P.len()]))
 }
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.
-fn correct_pieces(
-    problem: &Reduced<'_>,
-    r: &[f64],
-    x: &Iterate,
-    v: &[f64],
-    step: &Iterate,
-    kinks: &[Kink],
-    pieces: &mut [Piece],
-) -> bool {
+fn correct_pieces(at: &At<'_, '_>, step: &Iterate, kinks: &[Kink], pieces: &mut [Piece]) -> bool {
     if !kinks.iter().any(|k| k.normal || k.bound || k.tangential) {
         return false;
     }
+    let problem = &*at.problem;
     let mut dv = vec![0.0; problem.len()];
     mul_add(&problem.condensed.w, &step.P, &mut dv);
     problem.condensed.modes.add(&step.beta, &mut dv);
     let mut contradicted = false;
     for (i, piece) in pieces.iter_mut().enumerate() {
         let rows = problem.rows.of(i);
-        let (r, P, v) = (&r[rows.clone()], &x.P[rows.clone()], &v[rows.clone()]);
+        let (r, P, v) = (
+            &at.r[rows.clone()],
+            &at.x.P[rows.clone()],
+            &at.v[rows.clone()],
+        );
         let (dP, dv) = (&step.P[rows.clone()], &dv[rows]);
         let mu = problem.friction(i);
         let mut wanted = *piece;
@@ -347,90 +280,4 @@ fn correct_pieces(
         *piece = wanted;
     }
     contradicted
-}
-
-/// Solves the linear problem of the given pieces. `ridge`/ρ is added to the diagonal of W.
-fn linear_step(
-    problem: &Reduced<'_>,
-    r: &[f64],
-    x: &Iterate,
-    v: &[f64],
-    pieces: &[Piece],
-    ridge: f64,
-) -> Option<Iterate> {
-    let (W, rho, modes) = (
-        &problem.condensed.w,
-        problem.condensed.rho,
-        &problem.condensed.modes,
-    );
-    let mut step = Iterate {
-        P: vec![0.0; problem.len()],
-        beta: Vec::new(),
-    };
-    // Rows δP = −H are known; the others are active, kept with the first row of their point.
-    let mut active: Vec<(usize, usize, Row)> = Vec::new();
-    for (i, piece) in pieces.iter().enumerate() {
-        let rows = problem.rows.of(i);
-        let (mu, range) = (problem.friction(i), rows.clone());
-        let equations = linearise(
-            mu,
-            &r[range.clone()],
-            &x.P[range.clone()],
-            &v[range],
-            *piece,
-        );
-        for (k, row) in rows.clone().zip(equations) {
-            let local = k - rows.start;
-            let alone = (0..rows.len()).all(|l| row.c[l] == 0.0 && (l == local || row.a[l] == 0.0));
-            if alone {
-                step.P[k] = -row.h / row.a[local];
-            } else {
-                active.push((k, rows.start, row));
-            }
-        }
-    }
-    let mut known = vec![0.0; problem.len()];
-    mul_add(W, &step.P, &mut known);
-
-    let (n, size) = (active.len(), active.len() + problem.modes());
-    let mut J = Mat::<f64>::zeros(size, size);
-    let mut rhs = vec![0.0; size];
-    for (column, &(k, point, _)) in active.iter().enumerate() {
-        let w = W.col_as_slice(k);
-        for (entry, (_, start, row)) in J.col_as_slice_mut(column)[..n].iter_mut().zip(&active) {
-            for l in 0..problem.rows_at(*start) {
-                *entry += row.c[l] * w[start + l];
-            }
-            if *start == point {
-                *entry += row.a[k - point] + row.c[k - point] * ridge / rho;
-            }
-        }
-    }
-    for (a, (_, start, row)) in active.iter().enumerate() {
-        rhs[a] = -row.h;
-        for l in 0..problem.rows_at(*start) {
-            // δP is still zero on active rows.
-            rhs[a] -= row.a[l] * step.P[start + l] + row.c[l] * known[start + l];
-            for (j, q) in modes.q.iter().enumerate() {
-                J[(a, n + j)] += row.c[l] * q[start + l] / rho;
-            }
-        }
-    }
-    for (j, q) in modes.q.iter().enumerate() {
-        for (b, (k, ..)) in active.iter().enumerate() {
-            J[(n + j, b)] = q[*k];
-        }
-        rhs[n + j] = problem.balance[j]
-            - q.iter()
-                .zip(x.P.iter().zip(&step.P))
-                .map(|(q, (p, s))| q * (p + s))
-                .sum::<f64>();
-    }
-
-    let solution = solve_dense(&J, &rhs)?;
-    for (a, (k, ..)) in active.iter().enumerate() {
-        step.P[*k] = solution[a];
-    }
-    step.beta = solution[n..].iter().map(|b| b / rho).collect();
-    Some(step)
 }

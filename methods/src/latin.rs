@@ -23,6 +23,9 @@
 //! Convergence for monotone laws (no friction, or Tresca) and ω < 1. For Coulomb friction there is no proof; the
 //! iteration count hardly depends on μ in practice.
 //!
+//! # Skips
+//! An open crack is one linear solve. I + k₀ W is factored once for all increments, loads and friction values of a body.
+//!
 //! # Failure modes
 //! Slow far from the best k₀ (times ten in iterations for a factor of ten), and on ill-conditioned W.
 

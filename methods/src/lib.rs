@@ -71,6 +71,8 @@ pub mod problem;
 mod augmented_lagrangian;
 mod b_newton;
 mod latin;
+mod newton_ac;
+mod pdas;
 mod penalty;
 
 pub use problem::law;
@@ -138,6 +140,8 @@ impl Method {
 /// All methods.
 pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
+    &newton_ac::METHOD,
+    &pdas::METHOD,
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,

@@ -16,11 +16,16 @@
 //!
 //! # Options
 //! `normal`, `tangential`: k as multiples of ρ, the mean stiffness the body itself opposes to a contact force.
-//! `max_iterations`.
+//! `max_iterations`. `monolithic`: 1 solves each step
+//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
+//! method; the iterates are the same.
 //!
 //! # Guarantees
 //! Without friction the penalised energy is convex: the solution is unique, and Newton's method on a piecewise linear
 //! gradient ends after finitely many steps. With friction quadratic convergence at regular points.
+//!
+//! # Skips
+//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
 //!
 //! # Failure modes
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
@@ -28,6 +33,7 @@
 
 use crate::problem::penalised::{Springs, recorded};
 use crate::problem::reduced::{Begin, Reduced};
+use crate::problem::tangent::{MONOLITHIC, Tangent};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome,
@@ -45,7 +51,7 @@ pub static METHOD: Method = Method {
     build: |options| Ok(Box::new(Penalty::new(options))),
 };
 
-static OPTIONS: [OptionSpec; 3] = [
+static OPTIONS: [OptionSpec; 4] = [
     OptionSpec {
         name: "normal",
         unit: "-",
@@ -73,6 +79,7 @@ static OPTIONS: [OptionSpec; 3] = [
         integer: true,
         help: "Newton steps before giving up",
     },
+    MONOLITHIC,
 ];
 
 /// The penalised equations are solved this much more accurately than asked.
@@ -82,6 +89,7 @@ struct Penalty {
     normal: f64,
     tangential: f64,
     max_iterations: usize,
+    tangent: Tangent,
 }
 
 impl Penalty {
@@ -90,11 +98,16 @@ impl Penalty {
             normal: options.own("normal"),
             tangential: options.own("tangential"),
             max_iterations: options.own("max_iterations") as usize,
+            tangent: Tangent::new(options),
         }
     }
 }
 
 impl Enforcement for Penalty {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
     fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
         system.elastic().factorise()
     }
@@ -134,6 +147,7 @@ impl Enforcement for Penalty {
             start,
             stop,
             self.max_iterations,
+            &mut self.tangent,
             recorded(monitor),
         );
         problem.rebalance(&mut end.p);

@@ -7,6 +7,7 @@
 #![allow(non_snake_case)]
 
 use super::law::{ball_derivative, project_ball, tangential_norm};
+use super::semismooth::trial;
 
 /// Pieces of H' in use at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,15 +32,6 @@ pub(crate) fn equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
     H
 }
 
-/// (−, z_t) with z_t = P_t − r_t d.
-pub(crate) fn trial(r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut z = [0.0; 3];
-    for k in 1..P.len() {
-        z[k] = P[k] - r[k] * v[k];
-    }
-    z
-}
-
 /// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
 pub(crate) struct Row {
     pub a: [f64; 3],
@@ -47,13 +39,20 @@ pub(crate) struct Row {
     pub h: f64,
 }
 
+impl Row {
+    /// A row with a right-hand side and no coefficients yet.
+    pub fn reading(h: f64) -> Self {
+        Self {
+            a: [0.0; 3],
+            c: [0.0; 3],
+            h,
+        }
+    }
+}
+
 pub(crate) fn linearise(mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [Row; 3] {
     let H = equations(mu, r, P, v);
-    let mut rows = [0, 1, 2].map(|k| Row {
-        a: [0.0; 3],
-        c: [0.0; 3],
-        h: H[k],
-    });
+    let mut rows = H.map(Row::reading);
     if piece.closed {
         rows[0].c[0] = r[0];
     } else {

@@ -63,7 +63,7 @@ enum Response {
     Stiffness {
         k: SymmetricMatrix,
         order: Vec<usize>,
-        factor: OnceLock<Result<Factor, MethodError>>,
+        factor: Box<OnceLock<Result<Factor, MethodError>>>,
     },
     /// u = W f: the unknowns are the jumps themselves.
     Compliance(SymmetricMatrix),
@@ -128,7 +128,7 @@ impl Elastic {
             response: Response::Stiffness {
                 k: parts.stiffness,
                 order: parts.order,
-                factor: OnceLock::new(),
+                factor: Box::default(),
             },
             jump: parts.jump,
             weight: parts.weight,

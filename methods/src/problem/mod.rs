@@ -13,9 +13,11 @@ mod options;
 pub(crate) mod penalised;
 mod point_status;
 pub(crate) mod reduced;
+pub(crate) mod semismooth;
 pub(crate) mod stages;
 mod state;
 mod system;
+pub(crate) mod tangent;
 mod tier;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};

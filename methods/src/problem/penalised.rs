@@ -18,13 +18,16 @@
 
 use faer::Mat;
 
+use super::b_equations::Row;
 use super::judge::ratio;
 use super::law::{Branch, return_map, return_map_derivative};
 use super::line_search::LineSearch;
 use super::linear::dense::{mul_add, solve_dense};
+use super::linear::global::Global;
 use super::reduced::Reduced;
 use super::stages::rescue;
 use super::state::{Monitor, Status};
+use super::tangent::{Tangent, amplitudes, whole_body};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
@@ -85,6 +88,7 @@ impl Springs {
         mut at: Point,
         stop: f64,
         max_iterations: usize,
+        tangent: &mut Tangent,
         mut report: impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool,
     ) -> (Status, Point) {
         let (r, c) = (self.scales(problem), self.compliance(problem));
@@ -118,8 +122,13 @@ impl Springs {
             if iteration == max_iterations {
                 break;
             }
-            problem.counters.factorisations += 1;
-            let Some((dz, dbeta)) = direction(problem, &r, &c, &at, &mismatch) else {
+            let step = match tangent {
+                Tangent::Condensed => direction(problem, &r, &c, &at, &mismatch),
+                Tangent::Monolithic(global) => {
+                    whole_direction(global, problem, &r, &c, &at, &mismatch)
+                }
+            };
+            let Some((dz, dbeta)) = step else {
                 if problem.rescue_left()
                     && let Some(pair) = rescue(problem)
                 {
@@ -163,12 +172,13 @@ fn merit(problem: &Reduced<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 
 ///
 /// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + 1/k − 1/r) S y + Q δβ = −F.
 fn direction(
-    problem: &Reduced<'_>,
+    problem: &mut Reduced<'_>,
     r: &[f64],
     c: &[f64],
     at: &Point,
     mismatch: &[f64],
 ) -> Option<(Vec<f64>, Vec<f64>)> {
+    problem.counters.factorisations += 1;
     let (w, modes, rho) = (
         &problem.condensed.w,
         &problem.condensed.modes,
@@ -235,6 +245,43 @@ fn direction(
     }
     let dz = y.iter().zip(r).map(|(y, r)| y * r).collect();
     Some((dz, dbeta))
+}
+
+/// The same step from the displacement form on the whole body, as papers usually run penalty methods.
+///
+/// With T = Π'(z) and M = (I − T)/r + T/k, which never loses digits, the springs read δP = −T M⁻¹ (F + δv).
+fn whole_direction(
+    global: &mut Option<Box<Global>>,
+    problem: &mut Reduced<'_>,
+    r: &[f64],
+    c: &[f64],
+    at: &Point,
+    mismatch: &[f64],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let mut rows = Vec::with_capacity(problem.rows.points());
+    for i in 0..problem.rows.points() {
+        let own = problem.rows.of(i);
+        let t = return_map_derivative(problem.friction(i), &at.z[own.clone()], at.branches[i]);
+        let (size, first) = (own.len(), own.start);
+        let unit = |a: usize, b: usize| f64::from(u8::from(a == b));
+        // Mᵀ, since the rows of T M⁻¹ are wanted.
+        let m = Mat::from_fn(size, size, |b, a| {
+            (unit(a, b) - t[a][b]) / r[first + a] + c[first + a] * t[a][b]
+        });
+        let mut of_point = [0.0; 3].map(Row::reading);
+        for a in 0..size {
+            let slope = solve_dense(&m, &t[a][..size])?;
+            of_point[a].a[a] = 1.0;
+            of_point[a].c[..size].copy_from_slice(&slope);
+            of_point[a].h = (0..size).map(|b| slope[b] * mismatch[first + b]).sum();
+        }
+        rows.push(of_point);
+    }
+    let (dp, dv) = whole_body(global, problem, &rows, Global::explicit)?;
+    let dz = (0..dp.len())
+        .map(|k| dp[k] - r[k] * (mismatch[k] + dv[k] + c[k] * dp[k]))
+        .collect();
+    Some((dz, amplitudes(problem, &dp, dv)))
 }
 
 impl Point {

@@ -4,5 +4,6 @@ pub(crate) mod delassus;
 pub(crate) mod dense;
 pub(crate) mod factor;
 pub(crate) mod floating;
+pub(crate) mod global;
 pub(crate) mod ordering;
 pub(crate) mod spectrum;
