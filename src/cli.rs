@@ -1,5 +1,7 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod exchange;
+
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -11,6 +13,8 @@ use stickslip_methods::{METHODS, Method, OptionError, Tier};
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
+use crate::harness::export::ExportError;
+use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
@@ -61,6 +65,10 @@ enum Verb {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
         jobs: u16,
     },
+    /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
+    Export(exchange::ExportArgs),
+    /// Solve contact problems from FCLIB files (HDF5)
+    Solve(exchange::SolveArgs),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case
@@ -96,6 +104,12 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// An increment that cannot be exported.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A problem file that cannot be solved.
+    #[error(transparent)]
+    ProblemFile(#[from] ProblemFileError),
     /// A name nobody knows.
     #[error("unknown {what} `{name}`, known: {known}")]
     Unknown {
@@ -165,6 +179,8 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             };
             run_verb(&cases, &method, settings, &out)
         }
+        Verb::Export(args) => exchange::export_verb(args),
+        Verb::Solve(args) => exchange::solve_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)

@@ -3,11 +3,15 @@
 pub mod body;
 pub mod boundary;
 pub mod case;
+pub mod exchange;
 pub mod expect;
+pub mod export;
 pub mod picture;
+pub mod problem_file;
 pub mod quantities;
 pub mod record;
 pub mod refusals;
 pub mod run;
 pub mod shipped;
+pub mod step;
 pub mod verdict;

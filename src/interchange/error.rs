@@ -78,6 +78,14 @@ pub enum InterchangeError {
         /// What is allowed there.
         allowed: String,
     },
+    /// A problem in the right layout that asks for something not solved here.
+    #[error("`{}`: {what}", path.display())]
+    Unsupported {
+        /// Which file.
+        path: PathBuf,
+        /// What it asks for.
+        what: String,
+    },
     /// A line of a text file.
     #[error("`{}`, line {line}: `{found}`, expected {allowed}", path.display())]
     Line {

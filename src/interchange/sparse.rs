@@ -1,5 +1,7 @@
 //! A sparse matrix between file and solver.
 
+use stickslip_methods::{JumpOperator, MethodError, SymmetricMatrix};
+
 /// Sparse matrix in compressed columns, rows sorted within a column, no position stored twice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseMatrix {
@@ -19,10 +21,13 @@ impl SparseMatrix {
         cols: usize,
         triplets: impl IntoIterator<Item = (usize, usize, f64)>,
     ) -> Option<Self> {
-        let mut sorted: Vec<(usize, usize, f64)> = triplets.into_iter().collect();
-        if sorted.iter().any(|&(i, j, _)| i >= rows || j >= cols) {
-            return None;
-        }
+        let triplets: Vec<(usize, usize, f64)> = triplets.into_iter().collect();
+        let inside = triplets.iter().all(|&(i, j, _)| i < rows && j < cols);
+        inside.then(|| Self::sorted(rows, cols, triplets))
+    }
+
+    /// The same for positions known to lie inside.
+    fn sorted(rows: usize, cols: usize, mut sorted: Vec<(usize, usize, f64)>) -> Self {
         // Stable, so that sums have one order.
         sorted.sort_by_key(|&(i, j, _)| (j, i));
         let mut matrix = Self {
@@ -48,7 +53,79 @@ impl SparseMatrix {
         for j in 0..cols {
             matrix.col_ptr[j + 1] = matrix.col_ptr[j + 1].max(matrix.col_ptr[j]);
         }
-        Some(matrix)
+        matrix
+    }
+
+    /// Both triangles of a symmetric matrix.
+    pub fn from_symmetric(lower: &SymmetricMatrix) -> Self {
+        let mut triplets = Vec::with_capacity(2 * lower.values().len());
+        for j in 0..lower.size() {
+            for k in lower.col_ptr()[j]..lower.col_ptr()[j + 1] {
+                let (i, value) = (lower.row_idx()[k], lower.values()[k]);
+                triplets.push((i, j, value));
+                if i != j {
+                    triplets.push((j, i, value));
+                }
+            }
+        }
+        Self::sorted(lower.size(), lower.size(), triplets)
+    }
+
+    /// The jump operator B.
+    pub fn from_rows(b: &JumpOperator) -> Self {
+        let row = |i| b.row(i).map(move |(j, value)| (i, j, value));
+        Self::sorted(b.rows(), b.cols(), (0..b.rows()).flat_map(row).collect())
+    }
+
+    /// Dense columns of equal length.
+    pub fn from_dense_columns(rows: usize, columns: &[Vec<f64>]) -> Self {
+        Self::from_dense(rows, columns.len(), |i, j| columns[j][i])
+    }
+
+    /// The transpose.
+    pub fn transposed(&self) -> Self {
+        let mirrored = self.entries().map(|(i, j, value)| (j, i, value));
+        Self::sorted(self.cols, self.rows, mirrored.collect())
+    }
+
+    /// The lower triangle of (A + Aᵀ)/2, every diagonal entry stored.
+    ///
+    /// # Errors
+    /// A matrix that is not square.
+    pub fn symmetric_part(&self) -> Result<SymmetricMatrix, MethodError> {
+        let lower = self
+            .entries()
+            .map(|(i, j, value)| (i.max(j), i.min(j), 0.5 * value));
+        let mut triplets: Vec<_> = lower.collect();
+        triplets.extend((0..self.cols).map(|j| (j, j, 0.0)));
+        // Halves of an exactly symmetric matrix add up to its entries again, but a diagonal entry comes once.
+        let diagonal = self.entries().filter(|e| e.0 == e.1);
+        triplets.extend(diagonal.map(|(i, j, value)| (i, j, 0.5 * value)));
+        let lower = Self::sorted(self.rows, self.cols, triplets);
+        SymmetricMatrix::new(self.cols, lower.col_ptr, lower.row_idx, lower.values)
+    }
+
+    /// The matrix as jump operator.
+    ///
+    /// # Errors
+    /// Non-finite values.
+    pub fn as_rows(&self) -> Result<JumpOperator, MethodError> {
+        let Self {
+            col_ptr,
+            row_idx,
+            values,
+            ..
+        } = self.transposed();
+        JumpOperator::new(self.rows, self.cols, col_ptr, row_idx, values)
+    }
+
+    /// Column `j`, dense.
+    pub fn column(&self, j: usize) -> Vec<f64> {
+        let mut column = vec![0.0; self.rows];
+        for k in self.col_ptr[j]..self.col_ptr[j + 1] {
+            column[self.row_idx[k]] = self.values[k];
+        }
+        column
     }
 
     /// All entries of a dense matrix that are not zero, and its diagonal.
@@ -133,6 +210,21 @@ mod tests {
         assert_eq!((a.get(1, 2), a.get(1, 1), a.len()), (1.5, 0.0, 2));
         assert_eq!(SparseMatrix::from_triplets(2, 3, [(2, 0, 1.0)]), None);
         assert_eq!(SparseMatrix::from_triplets(2, 3, [(0, 3, 1.0)]), None);
+    }
+
+    #[test]
+    fn matrices_of_the_methods_come_back() {
+        let entries = [(0, 0, 4.0), (0, 1, 0.3), (1, 0, 0.3), (1, 1, 5.0)];
+        let a = SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let lower = a.symmetric_part().unwrap();
+        assert_eq!(lower.values(), [4.0, 0.3, 5.0]);
+        assert_eq!(SparseMatrix::from_symmetric(&lower), a);
+        let skew = SparseMatrix::from_triplets(2, 2, [(0, 1, 1.0), (1, 0, 2.0)]).unwrap();
+        assert_eq!(skew.symmetric_part().unwrap().values(), [0.0, 1.5, 0.0]);
+        let b = SparseMatrix::from_triplets(2, 3, [(1, 0, 2.0), (0, 2, -1.0)]).unwrap();
+        assert_eq!(SparseMatrix::from_rows(&b.as_rows().unwrap()), b);
+        assert_eq!(b.transposed().get(2, 0), -1.0);
+        assert_eq!(b.column(0), [0.0, 2.0]);
     }
 
     #[test]
