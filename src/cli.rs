@@ -1,5 +1,6 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod exchange;
 mod stress;
 
 use std::collections::BTreeSet;
@@ -13,6 +14,8 @@ use stickslip_methods::{METHODS, Method, OptionError, Tier};
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
+use crate::harness::export::ExportError;
+use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
@@ -66,6 +69,10 @@ enum Verb {
     },
     /// Run every method on random problems: how often each succeeds, by friction coefficient
     Stress(stress::Arguments),
+    /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
+    Export(exchange::ExportArgs),
+    /// Solve contact problems from FCLIB files (HDF5)
+    Solve(exchange::SolveArgs),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case
@@ -104,6 +111,12 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// An increment that cannot be exported.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A problem file that cannot be solved.
+    #[error(transparent)]
+    ProblemFile(#[from] ProblemFileError),
     /// A name nobody knows.
     #[error("unknown {what} `{name}`, known: {known}")]
     Unknown {
@@ -174,6 +187,8 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             run_verb(&cases, &method, settings, &out)
         }
         Verb::Stress(arguments) => stress::run(arguments),
+        Verb::Export(args) => exchange::export_verb(args),
+        Verb::Solve(args) => exchange::solve_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use common::*;
 use stickslip::harness::body::BodyError;
+use stickslip::harness::random::{Kind, Specimen, Stream};
 use stickslip::harness::record::Results;
 use stickslip::harness::run::{Fields, Quiet, RunError, Settings, run_case};
 use stickslip_methods::METHODS;
@@ -21,75 +22,10 @@ const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
 /// Friction coefficients tried; beyond 1 Coulomb's law may have several solutions.
 const FRICTION: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
 
-fn pick<const N: usize>(random: &mut Random, values: [f64; N]) -> f64 {
-    values[(random.next() * N as f64) as usize]
-}
-
-/// A plate with one crack in any position: free ends, through the plate, or between grid points.
-fn random_plate(random: &mut Random) -> String {
-    let cells = [0, 1].map(|_| 4 + (random.next() * 6.0) as usize);
-    let tip = if random.next() < 0.6 {
-        "branch"
-    } else {
-        "none"
-    };
-    let friction = pick(random, FRICTION);
-    let (p, q) = match (random.next() * 3.0) as usize {
-        0 => (
-            [random.between(-0.3, 0.9), random.between(0.1, 0.9)],
-            [random.between(0.1, 1.3), random.between(0.1, 0.9)],
-        ),
-        1 => (
-            [-0.1, random.between(0.2, 0.8)],
-            [1.1, random.between(0.2, 0.8)],
-        ),
-        _ => {
-            let mut on_grid =
-                |a: usize| (random.next() * cells[a] as f64).floor() / cells[a] as f64;
-            let p = [on_grid(0), on_grid(1)];
-            // Ends of a crack must differ.
-            (p, [on_grid(0) + 1.0, on_grid(1)])
-        }
-    };
-    let top = [random.between(-1e-3, 1e-3), random.between(-2e-3, 5e-4)];
-    let side = if random.next() < 0.5 { "left" } else { "right" };
-    let traction = [0, 1].map(|_| random.between(-1e-4, 1e-4));
-    let rest = crack(p, q, friction, tip)
-        + &support("\"bottom\"", "[0, 0]")
-        + &support("\"top\"", &format!("{top:?}"))
-        + &load(side, &format!("traction_pa = {traction:?}"));
-    plane([0.0, 0.0], [1.0, 1.0], cells, &rest) + "[path]\nincrements = 2\n"
-}
-
-/// A block parted by a plane in any position, every fifth through nodes.
-fn random_block(random: &mut Random) -> String {
-    let cells = [0, 1, 2].map(|_| 2 + (random.next() * 2.0) as usize);
-    let friction = pick(random, FRICTION);
-    let normal = if random.next() < 0.2 {
-        [0.0, 0.0, 1.0]
-    } else {
-        [random.between(-0.5, 0.5), random.between(-0.5, 0.5), 1.0]
-    };
-    let height = if random.next() < 0.2 {
-        1.0 / cells[2] as f64
-    } else {
-        random.between(0.4, 0.6)
-    };
-    let top: [f64; 3] = [
-        random.between(-1e-3, 1e-3),
-        random.between(-1e-3, 1e-3),
-        random.between(-2e-3, 5e-4),
-    ];
-    let traction = [0, 1, 2].map(|_| random.between(-1e-4, 1e-4));
-    let rest = support("\"bottom\"", "[0, 0, 0]")
-        + &support("\"top\"", &format!("{top:?}"))
-        + &load("right", &format!("traction_pa = {traction:?}"));
-    solid(
-        [1.0, 1.0, 1.0],
-        cells,
-        &[([0.5, 0.5, height], normal, friction)],
-        &rest,
-    ) + "[path]\nincrements = 2\n"
+/// A body with two loads, one after the other.
+fn random_case(kind: &Kind, stream: &mut Stream) -> String {
+    let friction = FRICTION[stream.whole(0, FRICTION.len() - 1)];
+    Specimen::draw(kind, 2, stream).case(&[0, 1], &[friction])
 }
 
 /// Reaction at the top of the runs whose last increment was solved exactly.
@@ -108,18 +44,13 @@ fn reactions(results: &Results, dim: usize) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Runs bodies until `count` were accepted; counts verdicts by method.
-fn run_random(
-    seed: u64,
-    count: usize,
-    dim: usize,
-    make: impl Fn(&mut Random) -> String,
-) -> BTreeMap<String, usize> {
-    let mut random = Random(seed);
+fn run_random(seed: u64, count: usize, kind: &Kind) -> BTreeMap<String, usize> {
+    let mut stream = Stream::new(seed);
     let mut verdicts = BTreeMap::new();
     let methods: Vec<&str> = METHODS.iter().map(|m| m.name).collect();
     let mut accepted = 0;
     while accepted < count {
-        let text = make(&mut random);
+        let text = random_case(kind, &mut stream);
         let results = match run_case(&parse(&text), &choices(&methods), SETTINGS, &Quiet) {
             Ok(results) => results,
             Err(RunError::Body(BodyError::Case(_))) => continue,
@@ -141,7 +72,7 @@ fn run_random(
                 .entry(format!("{} {}", row.key.method, row.verdict))
                 .or_default() += 1;
         }
-        let found = reactions(&results, dim);
+        let found = reactions(&results, kind.dim);
         for pair in found.windows(2) {
             let difference = pair[0].1.iter().zip(&pair[1].1).map(|(a, b)| (a - b).abs());
             let worst = difference.fold(0.0, f64::max);
@@ -168,13 +99,23 @@ fn assert_solved(verdicts: &BTreeMap<String, usize>, count: usize) {
 /// natural map 1e-9 times the forces of 1e-4 per point, a few points.
 #[test]
 fn exact_methods_agree_on_random_plates_and_nobody_claims_too_much() {
-    let verdicts = run_random(99, 150, 2, random_plate);
+    let kind = Kind {
+        dim: 2,
+        cells: 4..=9,
+        slope: 0.0,
+    };
+    let verdicts = run_random(99, 150, &kind);
     assert_solved(&verdicts, 150);
 }
 
 /// 40 blocks 1 × 1 × 1 m under a random push, pull and shear in two increments.
 #[test]
 fn exact_methods_agree_on_random_blocks_and_nobody_claims_too_much() {
-    let verdicts = run_random(7, 40, 3, random_block);
+    let kind = Kind {
+        dim: 3,
+        cells: 2..=3,
+        slope: 0.5,
+    };
+    let verdicts = run_random(7, 40, &kind);
     assert_solved(&verdicts, 40);
 }

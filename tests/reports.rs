@@ -9,6 +9,7 @@ use std::path::Path;
 use stickslip::harness::record::RunRow;
 use stickslip::report::csv::Row;
 use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
+use stickslip::report::robustness::{FailureRow, RobustnessRow};
 use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::report::tables::{Align, Column, Table};
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
@@ -30,6 +31,8 @@ fn csv_bundle() -> Bundle {
         file(PenaltyRow::FILE, csv::file::<PenaltyRow>(&[])),
         file(RefinementRow::FILE, csv::file::<RefinementRow>(&[])),
         file(LimitRow::FILE, csv::file::<LimitRow>(&[])),
+        file(RobustnessRow::FILE, csv::file::<RobustnessRow>(&[])),
+        file(FailureRow::FILE, csv::file::<FailureRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }

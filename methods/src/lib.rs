@@ -71,6 +71,7 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod hybrid;
 mod interior_point;
 mod latin;
 mod newton_ac;
@@ -153,6 +154,7 @@ pub static METHODS: &[&Method] = &[
     &admm::METHOD,
     &projection::METHOD,
     &interior_point::METHOD,
+    &hybrid::METHOD,
 ];
 
 /// The method of that name.

@@ -98,17 +98,13 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let table = robustness::table(&robustness::rows(&study, &trials))?;
     println!("{}", table.terminal());
     println!("{}\nResults: {}", summary(&trials), arguments.out.display());
-    for trial in trials.iter().filter(|t| is_wrong(&t.verdict)) {
+    for trial in trials.iter().filter(|t| t.is_wrong()) {
         eprintln!(
             "{}: {}D problem {} mu={} {}",
             trial.verdict, trial.dim, trial.problem, trial.friction, trial.method
         );
     }
-    Ok(!trials.iter().any(|t| is_wrong(&t.verdict)))
-}
-
-fn is_wrong(verdict: &Verdict) -> bool {
-    matches!(verdict, Verdict::FalseClaim | Verdict::Crashed(_))
+    Ok(stress::as_expected(&trials))
 }
 
 fn summary(trials: &[Trial]) -> String {

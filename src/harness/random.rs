@@ -5,6 +5,7 @@
 //! traction. Every load is independent of the others: increment k of the path is load k.
 
 use std::fmt::Write;
+use std::ops::RangeInclusive;
 
 /// Reproducible numbers, the same on every machine: SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
 #[derive(Debug, Clone)]
@@ -51,6 +52,18 @@ impl Stream {
     }
 }
 
+/// What kind of bodies to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kind {
+    /// 2 or 3.
+    pub dim: usize,
+    /// Fewest and most cells per axis.
+    pub cells: RangeInclusive<usize>,
+    /// Steepest slope of the plane of a block along each of x and y. The steeper, the more cell edges are crossed that
+    /// share nodes, and the closer the Delassus operator is to singular.
+    pub slope: f64,
+}
+
 /// A random body with its random loads, before discretisation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
@@ -75,13 +88,17 @@ struct Load {
 }
 
 impl Specimen {
-    /// A plate (`dim` 2) or block (3) with a number of loads.
-    pub fn draw(dim: usize, loads: usize, stream: &mut Stream) -> Self {
+    /// A plate (2D) or block (3D) with a number of loads.
+    pub fn draw(kind: &Kind, loads: usize, stream: &mut Stream) -> Self {
+        let dim = kind.dim;
         let poisson = stream.between(0.0, 0.45);
-        let (cells, crack, side) = if dim == 2 {
-            plate(stream)
+        let cells: Vec<usize> = (0..dim)
+            .map(|_| stream.whole(*kind.cells.start(), *kind.cells.end()))
+            .collect();
+        let (crack, side) = if dim == 2 {
+            plate(&cells, stream)
         } else {
-            block(stream)
+            block(&cells, kind.slope, stream)
         };
         let loads = (0..loads).map(|_| Load::draw(dim, stream)).collect();
         Self {
@@ -158,9 +175,8 @@ impl Load {
     }
 }
 
-/// Cells, crack and loaded region of a plate: the crack lies inside, ends at a side, runs through, or joins grid points.
-fn plate(stream: &mut Stream) -> (Vec<usize>, String, String) {
-    let cells: Vec<usize> = (0..2).map(|_| stream.whole(8, 20)).collect();
+/// Crack and loaded region of a plate: the crack lies inside, ends at a side, runs through, or joins grid points.
+fn plate(cells: &[usize], stream: &mut Stream) -> (String, String) {
     let (p, q) = match stream.whole(0, 3) {
         0 => {
             let (angle, half) = (
@@ -192,22 +208,21 @@ fn plate(stream: &mut Stream) -> (Vec<usize>, String, String) {
     let tip = if stream.chance(0.6) { "branch" } else { "none" };
     let crack = format!("points_m = [{p:?}, {q:?}]\ntip = \"{tip}\"\n");
     let side = if stream.chance(0.5) { "left" } else { "right" };
-    (cells, crack, region(side, "y", stream))
+    (crack, region(side, "y", stream))
 }
 
 /// The same for a block, every fifth plane along grid lines.
-fn block(stream: &mut Stream) -> (Vec<usize>, String, String) {
-    let cells: Vec<usize> = (0..3).map(|_| stream.whole(3, 5)).collect();
+fn block(cells: &[usize], steepest: f64, stream: &mut Stream) -> (String, String) {
     let (normal, height) = if stream.chance(0.2) {
         let row = stream.whole(1, cells[2] - 1);
         ([0.0, 0.0, 1.0], row as f64 / cells[2] as f64)
     } else {
-        let mut slope = || stream.between(-0.8, 0.8);
+        let mut slope = || stream.between(-steepest, steepest);
         ([slope(), slope(), 1.0], stream.between(0.35, 0.65))
     };
     let crack = format!("plane = {{ point_m = [0.5, 0.5, {height:?}], normal = {normal:?} }}\n");
     let side = ["left", "right", "front", "back"][stream.whole(0, 3)];
-    (cells, crack, region(side, "z", stream))
+    (crack, region(side, "z", stream))
 }
 
 /// A side, or its part above a height, as keys of `[[load]]`.
@@ -225,6 +240,14 @@ mod tests {
     use super::*;
     use crate::harness::case;
 
+    fn kind(dim: usize) -> Kind {
+        Kind {
+            dim,
+            cells: 2..=9,
+            slope: 0.8,
+        }
+    }
+
     /// Source: reference output of SplitMix64 for the seed 1234567 (Vigna, prng.di.unimi.it).
     #[test]
     fn the_stream_is_splitmix64() {
@@ -237,7 +260,7 @@ mod tests {
     fn streams_of_one_seed_differ_and_can_be_made_alone() {
         let draw = |seed, number| {
             let mut stream = Stream::numbered(seed, number);
-            Specimen::draw(2, 3, &mut stream)
+            Specimen::draw(&kind(2), 3, &mut stream)
         };
         assert_eq!(draw(1, 5), draw(1, 5));
         assert_ne!(draw(1, 5), draw(1, 6));
@@ -249,7 +272,7 @@ mod tests {
         for dim in [2, 3] {
             let mut stream = Stream::new(3);
             for _ in 0..50 {
-                let specimen = Specimen::draw(dim, 3, &mut stream);
+                let specimen = Specimen::draw(&kind(dim), 3, &mut stream);
                 let parse = |loads: &[usize]| {
                     let text = specimen.case(loads, &[0.0, 0.3]);
                     case::parse("random.toml", text).unwrap_or_else(|e| panic!("{e}"))

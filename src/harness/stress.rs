@@ -4,6 +4,7 @@
 //! contact points, and enough of its loads close the crack. Each is factored and condensed once for all its loads,
 //! friction coefficients and methods. Every increment starts from rest, so that one failure leaves the others alone.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -15,7 +16,7 @@ use stickslip_methods::{
 use super::attempt::{Attempt, attempt, prepare};
 use super::body::{Body, BodyError};
 use super::case;
-use super::random::{Specimen, Stream};
+use super::random::{Kind, Specimen, Stream};
 use super::run::{Choice, Progress};
 use super::verdict::Verdict;
 
@@ -28,9 +29,15 @@ const PRESSED: f64 = 0.25;
 /// Bodies drawn before giving up; about every second one will do.
 const DRAWS: usize = 1000;
 
-/// Fewest and most contact points of a body.
-fn points_wanted(dim: usize) -> std::ops::RangeInclusive<usize> {
-    if dim == 2 { 10..=40 } else { 20..=80 }
+/// The bodies of a dimension, and how many contact points they may have.
+fn wanted(dim: usize) -> (Kind, RangeInclusive<usize>) {
+    let (cells, points) = if dim == 2 {
+        (8..=20, 10..=40)
+    } else {
+        (3..=5, 20..=80)
+    };
+    let slope = 0.8;
+    (Kind { dim, cells, slope }, points)
 }
 
 /// What to run.
@@ -81,6 +88,18 @@ pub struct Trial {
     pub statuses: [usize; 3],
 }
 
+/// Whether no method claimed what does not hold and none failed with an error. Giving up is a result like any other.
+pub fn as_expected(trials: &[Trial]) -> bool {
+    !trials.iter().any(Trial::is_wrong)
+}
+
+impl Trial {
+    /// A claim that does not hold, or an error.
+    pub fn is_wrong(&self) -> bool {
+        matches!(self.verdict, Verdict::FalseClaim | Verdict::Crashed(_))
+    }
+}
+
 /// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum StressError {
@@ -125,8 +144,9 @@ impl Sample {
     /// [`StressError::Body`] and [`StressError::NoBody`].
     pub fn new(seed: u64, dim: usize, number: usize) -> Result<Self, StressError> {
         let mut stream = Stream::numbered(seed, 4 * number as u64 + dim as u64);
+        let (kind, points) = wanted(dim);
         for _ in 0..DRAWS {
-            let specimen = Specimen::draw(dim, CANDIDATES, &mut stream);
+            let specimen = Specimen::draw(&kind, CANDIDATES, &mut stream);
             let all: Vec<usize> = (0..CANDIDATES).collect();
             let text = specimen.case(&all, &[1.0]);
             let body = case::parse("random.toml", text.as_str())
@@ -138,7 +158,7 @@ impl Sample {
                 Err(BodyError::Case(_)) => continue,
                 Err(source) => return Err(StressError::Body { dim, text, source }),
             };
-            if !points_wanted(dim).contains(&body.points.len()) {
+            if !points.contains(&body.points.len()) {
                 continue;
             }
             let mut loads = Vec::new();

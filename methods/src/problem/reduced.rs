@@ -243,6 +243,11 @@ impl<'a> Reduced<'a> {
         self.idle() >= STAGNATION
     }
 
+    /// Forgets what progress was: another algorithm takes over.
+    pub fn begin_phase(&mut self) {
+        self.best = (f64::INFINITY, self.counters.iterations);
+    }
+
     /// Iterations since the natural map last fell.
     pub fn idle(&self) -> usize {
         self.counters.iterations - self.best.1

@@ -61,7 +61,11 @@ impl Saddle {
 
     /// The iterate every method starts from.
     pub fn start(&self, problem: &Reduced<'_>) -> Iterate {
-        let p = problem.start_forces();
+        self.at(problem, problem.start_forces())
+    }
+
+    /// The iterate of given forces.
+    pub fn at(&self, problem: &Reduced<'_>, p: Vec<f64>) -> Iterate {
         let beta = problem.start_amplitudes(&p);
         let v = problem.jump(&p, &beta);
         Iterate {

@@ -1,7 +1,7 @@
 //! Success rates of the robustness study against friction: one panel per dimension, one curve per method.
 
 use super::axis::Axis;
-use super::canvas::{Width, italic};
+use super::canvas::Width;
 use super::chart::{Chart, Panel, Series};
 use super::legend::Entry;
 use super::style::Style;
@@ -69,7 +69,7 @@ pub fn success_rates(rows: &[RobustnessRow]) -> Result<String, ReportError> {
         }
         Panel {
             x: Axis::classes(
-                &format!("friction coefficient {} [-]", italic("μ")),
+                "friction coefficient [-]",
                 friction.iter().map(|mu| value(*mu)),
             ),
             y: Axis::towards_hundred(&format!("solved in {dim}D [%]")),

@@ -1,0 +1,240 @@
+//! The random robustness study: the same on any number of threads, complete, and every problem can be run again alone.
+
+mod common;
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use common::*;
+use stickslip::harness::run::Quiet;
+use stickslip::harness::stress::{self, Study, Trial};
+use stickslip::harness::verdict::Verdict;
+use stickslip::report::robustness;
+use stickslip_methods::{METHODS, Status, Tier};
+
+const FRICTION: [f64; 3] = [0.0, 0.6, 5.0];
+
+fn study() -> Study {
+    Study {
+        seed: 7,
+        dims: vec![2, 3],
+        problems: 6,
+        only: None,
+        friction: FRICTION.to_vec(),
+        tier: Tier::High,
+        jobs: 2,
+    }
+}
+
+fn trials(study: &Study, methods: &[&str]) -> Vec<Trial> {
+    stress::run(study, &choices(methods), &Quiet).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn stickslip(arguments: &[&str], dir: &Path) -> Output {
+    let mut program = Command::cargo_bin("stickslip").unwrap();
+    program.args(arguments).current_dir(dir).output().unwrap()
+}
+
+/// Times are NaN, which is unequal to itself.
+fn shown(trials: &[Trial]) -> Vec<String> {
+    trials.iter().map(|t| format!("{t:?}")).collect()
+}
+
+/// Goal: no method claims what does not hold, and every run is counted once.
+#[test]
+fn every_run_of_every_method_is_counted_and_no_claim_is_false() {
+    let names: Vec<&str> = METHODS.iter().map(|m| m.name).collect();
+    let study = study();
+    let trials = trials(&study, &names);
+    assert_eq!(trials.len(), 2 * 6 * FRICTION.len() * names.len());
+    let wrong: Vec<&Trial> = trials.iter().filter(|t| t.is_wrong()).collect();
+    assert!(
+        wrong.is_empty() && stress::as_expected(&trials),
+        "{wrong:#?}"
+    );
+    let rows = robustness::rows(&study, &trials);
+    assert_eq!(rows.len(), 2 * FRICTION.len() * names.len());
+    for row in &rows {
+        let ends = row.solved + row.approximate + row.gave_up + row.refused;
+        assert_eq!((row.problems, ends), (6, 6), "{row:?}");
+        assert_eq!(row.gave_up_by.iter().sum::<usize>(), row.gave_up, "{row:?}");
+    }
+    // The problems must be worth solving: closed and open points, stick and slip.
+    let b_newton = trials
+        .iter()
+        .filter(|t| t.method == METHOD && t.friction == 0.6);
+    let mixed = b_newton.fold([0; 3], |sum: [usize; 3], t| {
+        std::array::from_fn(|k| sum[k] + t.statuses[k])
+    });
+    assert!(
+        mixed.iter().all(|&n| 20 * n > mixed.iter().sum()),
+        "{mixed:?}"
+    );
+    let failed = trials.iter().filter(|t| t.verdict.is_failure()).count();
+    assert_eq!(robustness::failures(&study, &trials).len(), failed);
+}
+
+/// Goal: a failure found in a study is found again by its number alone, and in its case file by `stickslip run`.
+#[test]
+fn a_problem_taken_alone_gives_the_same_bits() {
+    let methods = ["b-newton", "penalty"];
+    let (whole, problem) = (study(), 5);
+    let all = trials(&whole, &methods);
+    let alone = Study {
+        only: Some(problem),
+        problems: 1,
+        jobs: 2,
+        ..study()
+    };
+    let expected: Vec<Trial> = all.into_iter().filter(|t| t.problem == problem).collect();
+    assert_eq!(shown(&trials(&alone, &methods)), shown(&expected));
+    for dim in [2, 3] {
+        let text = stress::case_of(&whole, dim, problem).unwrap();
+        let results = run(&parse(&text), &methods);
+        let own: Vec<&Trial> = expected.iter().filter(|t| t.dim == dim).collect();
+        assert_eq!(results.runs.len(), own.len());
+        for trial in own {
+            let same = |key: &stickslip::harness::record::RunKey| {
+                key.method == trial.method && key.friction == trial.friction
+            };
+            let row = results.runs.iter().find(|r| same(&r.key)).unwrap();
+            assert_eq!(
+                (row.natural_map, row.iterations, &row.verdict),
+                (
+                    trial.natural_map,
+                    trial.iterations,
+                    &trial.verdict.to_string()
+                )
+            );
+        }
+    }
+}
+
+/// Goal: any number of threads writes the same bytes, apart from the times.
+#[test]
+fn the_program_writes_the_same_files_whatever_the_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let verb = |jobs: &str, out: &str| {
+        let arguments = [
+            "stress",
+            "--problems",
+            "5",
+            "--seed",
+            "3",
+            "--friction",
+            "0.3,5",
+            "--method",
+            "b-newton",
+            "--method",
+            "penalty:normal=1e3",
+            "--jobs",
+            jobs,
+            "--out",
+            out,
+        ];
+        let output = stickslip(&arguments, dir.path());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(output.stderr.is_empty());
+    };
+    verb("2", "two");
+    verb("3", "three");
+    verb("1", "one");
+    let read = |out: &str, file: &str| {
+        std::fs::read_to_string(dir.path().join(out).join(file))
+            .unwrap_or_else(|e| panic!("{out}/{file}: {e}"))
+    };
+    for file in [
+        "robustness.csv",
+        "failures.csv",
+        "robustness.md",
+        "robustness.tex",
+        "figures/robustness.svg",
+    ] {
+        assert_eq!(read("two", file), read("three", file), "{file}");
+        if file != "robustness.csv" {
+            assert_eq!(read("two", file), read("one", file), "{file}");
+        }
+    }
+    let records = |out: &str| -> Vec<csv::StringRecord> {
+        let text = read(out, "robustness.csv");
+        csv::Reader::from_reader(text.as_bytes())
+            .records()
+            .map(Result::unwrap)
+            .collect()
+    };
+    let text = read("one", "robustness.csv");
+    let header = csv::Reader::from_reader(text.as_bytes())
+        .headers()
+        .unwrap()
+        .clone();
+    let time = header.iter().position(|h| h == "solve_s_median").unwrap();
+    for (one, two) in records("one").iter().zip(records("two")) {
+        assert!(one[time].parse::<f64>().unwrap() > 0.0 && &two[time] == "NaN");
+        assert!((0..header.len()).all(|k| k == time || one[k] == two[k]));
+    }
+    assert!(text.contains("penalty[normal=1e3]"));
+    assert!(read("one", "figures/robustness.svg").contains("solved in 3D [%]"));
+}
+
+#[test]
+fn a_problem_run_alone_comes_with_its_case_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let arguments = [
+        "stress",
+        "--only",
+        "9",
+        "--dim",
+        "2",
+        "--friction",
+        "0.3",
+        "--method",
+        "b-newton",
+    ];
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let case = std::fs::read_to_string(dir.path().join("results/problem-2d-9.toml")).unwrap();
+    assert_eq!(parse(&case).sweep.friction, [0.3]);
+}
+
+#[test]
+fn bad_arguments_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for bad in [
+        ["--friction", "-1"],
+        ["--friction", "nan"],
+        ["--dim", "4"],
+        ["--problems", "0"],
+        ["--method", "nobody"],
+        ["--tier", "perfect"],
+    ] {
+        let output = stickslip(&["stress", bad[0], bad[1]], dir.path());
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+        assert!(output.stdout.is_empty() && !output.stderr.is_empty());
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+/// Goal: the exit code tells a wrong claim and an error from giving up.
+#[test]
+fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
+    let mut trial = trials(
+        &Study {
+            problems: 1,
+            dims: vec![2],
+            ..study()
+        },
+        &[METHOD],
+    )
+    .swap_remove(0);
+    for (verdict, expected) in [
+        (Verdict::Solved(Tier::High), true),
+        (Verdict::GaveUp(Status::Stalled), true),
+        (Verdict::Refused("no".into()), true),
+        (Verdict::FalseClaim, false),
+        (Verdict::Crashed("oh".into()), false),
+    ] {
+        trial.verdict = verdict;
+        assert_eq!(stress::as_expected(std::slice::from_ref(&trial)), expected);
+    }
+}
