@@ -71,12 +71,14 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod hybrid;
 mod interior_point;
 mod latin;
 mod newton_ac;
 mod nsgs;
 mod pdas;
 mod penalty;
+mod projection;
 
 pub use problem::law;
 pub use problem::*;
@@ -150,7 +152,9 @@ pub static METHODS: &[&Method] = &[
     &latin::METHOD,
     &nsgs::METHOD,
     &admm::METHOD,
+    &projection::METHOD,
     &interior_point::METHOD,
+    &hybrid::METHOD,
 ];
 
 /// The method of that name.

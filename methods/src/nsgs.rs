@@ -10,7 +10,7 @@
 //!   γ <- γ + κ (Qᵀ P − c)                                     bodies that float: method of multipliers
 //! until the natural map is small
 //! ```
-//! The local problem is solved by cases in 2D and as one scalar equation in 3D (`problem/local.rs`); the balance of floating
+//! The local problem is solved by cases in 2D and as one scalar equation in 3D (`problem/local.rs`, swept by `problem/sweeps.rs`); the balance of floating
 //! bodies is augmented (`problem/saddle.rs`).
 //!
 //! # Options
@@ -30,9 +30,9 @@
 //! is computed afresh only every now and then, and before anything is claimed.
 
 use crate::problem::law::Branch;
-use crate::problem::local::LocalOperator;
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::saddle::{Iterate, Saddle};
+use crate::problem::saddle::{REFRESH, Saddle};
+use crate::problem::sweeps::Sweeps;
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
     Options, Outcome,
@@ -77,11 +77,6 @@ const PATIENCE: usize = 5000;
 const STAGNATION: usize = 300;
 /// Halvings of the relaxation.
 const MAX_HALVINGS: usize = 4;
-/// Sweeps after which v is computed afresh.
-const REFRESH: usize = 100;
-/// Proximal term on local problems, relative to 1/ρ: regularises points that do not move at all, and no fixed point
-/// notices.
-const PROXIMAL: f64 = 1e-10;
 
 struct Nsgs {
     relaxation: f64,
@@ -116,7 +111,7 @@ impl Enforcement for Nsgs {
             patience: PATIENCE,
         };
         let saddle = Saddle::new(problem.condensed.clone());
-        let points = Points::new(&problem, &saddle);
+        let sweeps = Sweeps::new(&problem, &saddle);
         let mut x = saddle.start(&problem);
         let mut branches = vec![Branch::Open; problem.rows.points()];
         let (mut changes, mut halvings) = (0, 0);
@@ -131,68 +126,9 @@ impl Enforcement for Nsgs {
             }
             halvings = halvings.max((problem.idle() / STAGNATION).min(MAX_HALVINGS));
             let omega = self.relaxation / f64::from(1_u32 << halvings);
-            changes = points.sweep(&mut problem, &saddle, omega, &mut x, &mut branches);
+            changes = sweeps.sweep(&mut problem, &saddle, omega, &mut x, &mut branches);
         };
         let (p, beta) = saddle.balanced(&problem, &x);
         problem.finish(status, &p, &beta)
-    }
-}
-
-/// The local problems of all points.
-struct Points {
-    local: Vec<LocalOperator>,
-    /// Proximal term in m/N.
-    proximal: f64,
-}
-
-impl Points {
-    fn new(problem: &Reduced<'_>, saddle: &Saddle) -> Self {
-        let proximal = PROXIMAL / problem.condensed.rho;
-        let local = (0..problem.rows.points())
-            .map(|i| {
-                let rows = problem.rows.of(i);
-                LocalOperator::new(rows.len(), |k, l| {
-                    let own = if k == l { proximal } else { 0.0 };
-                    saddle.w()[(rows.start + k, rows.start + l)] + own
-                })
-            })
-            .collect();
-        Self { local, proximal }
-    }
-
-    /// Solves the local problem of one point after the other; returns how many changed their branch.
-    fn sweep(
-        &self,
-        problem: &mut Reduced<'_>,
-        saddle: &Saddle,
-        omega: f64,
-        x: &mut Iterate,
-        branches: &mut [Branch],
-    ) -> usize {
-        problem.counters.local_solves += self.local.len();
-        let w = saddle.w();
-        let mut changes = 0;
-        for (i, local) in self.local.iter().enumerate() {
-            let rows = problem.rows.of(i);
-            let mut q = [0.0; 3];
-            for (k, q) in rows.clone().zip(&mut q) {
-                *q = x.v[k] - self.proximal * x.p[k];
-                for l in rows.clone() {
-                    *q -= w[(k, l)] * x.p[l];
-                }
-            }
-            let (p, branch) = local.solve(problem.friction(i), &q[..rows.len()]);
-            for (k, p) in rows.zip(p) {
-                let step = omega * (p - x.p[k]);
-                if step != 0.0 {
-                    x.p[k] += step;
-                    for (v, w) in x.v.iter_mut().zip(w.col_as_slice(k)) {
-                        *v += w * step;
-                    }
-                }
-            }
-            changes += usize::from(std::mem::replace(&mut branches[i], branch) != branch);
-        }
-        changes
     }
 }

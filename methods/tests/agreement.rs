@@ -112,7 +112,7 @@ fn penalty_error_falls_like_one_over_its_stiffness() {
 #[test]
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
-    let sweeps: [(&str, &str, &[f64]); 7] = [
+    let sweeps: [(&str, &str, &[f64]); 8] = [
         ("b-newton", "r", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         (
             "augmented-lagrangian",
@@ -123,6 +123,7 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
         ("latin", "relaxation", &[0.5, 0.7, 0.9]),
         ("admm", "penalty", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         ("admm", "over_relaxation", &[0.5, 1.0, 1.9]),
+        ("projection", "variant", &[0.0, 1.0]),
         ("nsgs", "relaxation", &[0.5, 0.8, 1.2]),
     ];
     for (name, option, values) in sweeps {

@@ -29,21 +29,23 @@ pub fn tangential_norm(z: &[f64]) -> f64 {
     }
 }
 
-/// Projects `z` on Coulomb's cone K_μ, in place. Without tangential components K_μ is P_n >= 0.
-pub fn project_cone(mu: f64, z: &mut [f64]) {
+/// Projects `z` on Coulomb's cone K_μ, in place; says where it lands: at the tip, inside (where `z` lay in the cone), or on
+/// the mantle. Without tangential components K_μ is P_n >= 0.
+pub fn project_cone(mu: f64, z: &mut [f64]) -> Branch {
     let t = tangential_norm(z);
-    if z[0] >= 0.0 && t <= mu * z[0] {
-        return;
-    }
     if mu * t <= -z[0] {
         z.fill(0.0);
-        return;
+        return Branch::Open;
+    }
+    if t <= mu * z[0] {
+        return Branch::Stick;
     }
     let c = (z[0] + mu * t) / (1.0 + mu * mu);
     z[0] = c;
     for x in &mut z[1..] {
         *x *= mu * c / t;
     }
+    Branch::Slip
 }
 
 /// Projects the tangential part of `z` on the ball of the given radius, in place; says whether it lay outside.

@@ -20,6 +20,7 @@ pub(crate) mod saddle;
 pub(crate) mod semismooth;
 pub(crate) mod stages;
 mod state;
+pub(crate) mod sweeps;
 mod system;
 pub(crate) mod tangent;
 mod tier;

@@ -19,7 +19,7 @@ use super::system::Increment;
 const STOP_FRACTION: f64 = 0.5;
 
 /// Compliance below which a point counts as rigid, as a fraction of the mean 1/ρ.
-const COMPLIANCE_FLOOR: f64 = 1e-2;
+pub(crate) const COMPLIANCE_FLOOR: f64 = 1e-2;
 
 /// Rescues per increment.
 const MAX_RESCUES: usize = 6;
@@ -241,6 +241,11 @@ impl<'a> Reduced<'a> {
     /// Whether the natural map has not fallen for [`STAGNATION`] iterations.
     pub fn stagnates(&self) -> bool {
         self.idle() >= STAGNATION
+    }
+
+    /// Forgets what progress was: another algorithm takes over.
+    pub fn begin_phase(&mut self) {
+        self.best = (f64::INFINITY, self.counters.iterations);
     }
 
     /// Iterations since the natural map last fell.

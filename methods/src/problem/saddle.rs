@@ -19,8 +19,12 @@ use super::linear::floating::dot;
 use super::reduced::{Limits, Reduced};
 use super::state::{Monitor, Status};
 
-/// κ as a multiple of 1/ρ.
+/// κ as a multiple of 1/ρ. Larger values hold a rigid body faster and couple its points more: with 3, sweeps over the
+/// points of some bodies cycle.
 const AUGMENTATION: f64 = 1.0;
+
+/// Iterations after which v is computed afresh.
+pub(crate) const REFRESH: usize = 100;
 
 /// The augmented operator of a system.
 pub(crate) struct Saddle {
@@ -57,7 +61,11 @@ impl Saddle {
 
     /// The iterate every method starts from.
     pub fn start(&self, problem: &Reduced<'_>) -> Iterate {
-        let p = problem.start_forces();
+        self.at(problem, problem.start_forces())
+    }
+
+    /// The iterate of given forces.
+    pub fn at(&self, problem: &Reduced<'_>, p: Vec<f64>) -> Iterate {
         let beta = problem.start_amplitudes(&p);
         let v = problem.jump(&p, &beta);
         Iterate {

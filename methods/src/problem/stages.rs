@@ -165,10 +165,15 @@ impl GlobalStage {
 ///
 /// Not from the iterate that failed: a floating block it has pushed far down a slope slides on from there.
 pub(crate) fn rescue(problem: &mut Reduced<'_>) -> Option<Pair> {
+    alternate(problem, RESCUE_SWEEPS << problem.earlier_rescues())
+}
+
+/// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row.
+pub(crate) fn alternate(problem: &mut Reduced<'_>, sweeps: usize) -> Option<Pair> {
     let mut pair = Pair::start(problem);
     let stage = GlobalStage::new(problem.condensed.clone(), 1.0).ok()?;
     problem.counters.factorisations += 1;
-    for _ in 0..RESCUE_SWEEPS << problem.earlier_rescues() {
+    for _ in 0..sweeps {
         let (target, _) = stage.local_stage(problem, &pair);
         let new = stage.global_stage(problem, &target)?;
         pair.relax(problem, RESCUE_RELAXATION, &new);
