@@ -1,12 +1,13 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
 pub(crate) mod b_equations;
+pub(crate) mod barrier_law;
 pub(crate) mod branches;
 pub(crate) mod central_path;
 pub(crate) mod condensed;
 mod elastic;
 mod error;
-mod judge;
+pub(crate) mod judge;
 pub mod law;
 pub(crate) mod line_search;
 pub(crate) mod linear;
