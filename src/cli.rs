@@ -73,6 +73,8 @@ enum Verb {
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
     Solve(exchange::SolveArgs),
+    /// Judge reactions that other programs found for a problem from an FCLIB file
+    Judge(exchange::JudgeArgs),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case
@@ -189,6 +191,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Stress(arguments) => stress::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
+        Verb::Judge(args) => exchange::judge_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)
