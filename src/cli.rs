@@ -20,6 +20,7 @@ use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
+use crate::pages;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 
@@ -77,7 +78,7 @@ enum Verb {
     Judge(exchange::JudgeArgs),
     /// List the methods and the shipped cases
     List,
-    /// Describe a method or a case
+    /// Describe a method or a case, or all `methods`
     Show {
         /// Method or case
         name: String,
@@ -401,6 +402,9 @@ fn list_text() -> String {
 }
 
 fn show_text(name: &str) -> Result<String, CliError> {
+    if name == "methods" {
+        return Ok(pages::all());
+    }
     if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
         return Ok((*text).to_owned());
     }
@@ -417,25 +421,5 @@ fn show_text(name: &str) -> Result<String, CliError> {
             .collect::<Vec<_>>()
             .join(", "),
     })?;
-    let exact = if method.exact {
-        "solves the contact laws themselves"
-    } else {
-        "its parameter is a modelling error"
-    };
-    let mut text = format!(
-        "{} ({})\n  {}\n  {}\n  Reference: {}\n\nOptions\n",
-        method.name, method.label, method.summary, exact, method.reference
-    );
-    for option in method.options {
-        text += &format!(
-            "  {:<20} default {}, {}, unit {}\n  {:<20} {}\n",
-            option.name,
-            option.default,
-            option.allowed(),
-            option.unit,
-            "",
-            option.help
-        );
-    }
-    Ok(text)
+    Ok(pages::page(method))
 }
