@@ -1,12 +1,15 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
+pub(crate) mod anderson;
 pub(crate) mod b_equations;
 pub(crate) mod barrier_law;
 pub(crate) mod branches;
 pub(crate) mod central_path;
 pub(crate) mod condensed;
+pub(crate) mod cone_program;
 mod elastic;
 mod error;
+pub(crate) mod fixed_point;
 pub(crate) mod judge;
 pub mod law;
 pub(crate) mod line_search;
