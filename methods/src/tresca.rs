@@ -30,6 +30,8 @@
 //! | 3D, `anderson` 0  | 6     | 8     | 11      | 15      | 21, 20 fail | 11, 100 fail  |
 //!
 //! # Failure modes
+//! Where friction locks a wedge (μ above the tangent of its angle) μ P_n grows faster than the bound it came from, and the
+//! iteration runs away from below: without progress for 15 steps it starts once more from the forces of a tied crack.
 //! For μ > 1 the plain fixed point cycles between bounds; acceleration breaks most cycles. The rest is reported as
 //! `stalled`: above a natural map of 1e-3 nothing is polished. Bounds are kept above 1e-8 of the reference force per point,
 //! because an empty cone costs clarabel its last digits; polishing takes that away again.
