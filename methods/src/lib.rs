@@ -92,6 +92,11 @@ pub trait Enforcement: Send {
         None
     }
 
+    /// Whether the method works with the stress at the contact points, [`ElasticParts::traction`].
+    fn needs_traction(&self) -> bool {
+        false
+    }
+
     /// Factors what any load needs: K. `solve` does it if it was not done before. The condensation to the contact
     /// points waits for the first load that closes the contact, because an open crack does not need it;
     /// [`ContactSystem::condense`] brings it forward, [`Elastic::timings`] tells its time apart.

@@ -4,7 +4,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
 };
 
-use crate::harness::body::{Body, BodyError};
+use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
 use crate::harness::record::RunKey;
@@ -99,7 +99,11 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
     let per_crack = friction(case, request.friction)?;
     let refine = request.refine.or(case.sweep.refine.first().copied());
     // The files hold all rows, also where nothing rubs.
-    let body = Body::new(case, refine.unwrap_or(1), false)?;
+    let needs = Needs {
+        frictionless: false,
+        traction: request.choice.needs_traction(),
+    };
+    let body = Body::new(case, refine.unwrap_or(1), needs)?;
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction)?;
     let mut key = RunKey {
