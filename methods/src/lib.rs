@@ -75,6 +75,7 @@ mod hybrid;
 mod interior_point;
 mod latin;
 mod newton_ac;
+mod nitsche;
 mod nsgs;
 mod pdas;
 mod penalty;
@@ -160,6 +161,7 @@ pub static METHODS: &[&Method] = &[
     &projection::METHOD,
     &interior_point::METHOD,
     &hybrid::METHOD,
+    &nitsche::METHOD,
 ];
 
 /// The method of that name.

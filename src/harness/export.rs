@@ -4,6 +4,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
 };
 
+use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
@@ -138,7 +139,7 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         let solved = step
             .answer
             .filter(|_| step.verdict == Verdict::Solved(tier));
-        let Some((outcome, _)) = solved else {
+        let Some(Judged { outcome, .. }) = solved else {
             return Err(unsolved(key.increment, step.verdict));
         };
         if key.increment == wanted {

@@ -7,6 +7,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Tier,
 };
 
+use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
@@ -296,10 +297,17 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         let step = solver.solve(&key, &problem);
         results.runs.push(step.run);
         results.history.extend(step.history);
-        let Some((outcome, status)) = step.answer else {
+        let Some(Judged {
+            outcome,
+            status,
+            consistency,
+            ..
+        }) = step.answer
+        else {
             break;
         };
-        now = Snapshot::new(body, time, &outcome.state, status, &now);
+        let consistency = consistency.as_deref();
+        now = Snapshot::new(body, time, &outcome.state, consistency, status, &now);
         if step.verdict.is_honest() {
             results
                 .quantities
