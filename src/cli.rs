@@ -1,25 +1,26 @@
 //! The command line: verbs, arguments, what is printed.
 
 mod exchange;
+mod progress;
 mod stress;
 
 use std::collections::BTreeSet;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
+use self::progress::Bar;
 use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
 use crate::harness::export::ExportError;
 use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
-use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
+use crate::harness::run::{Choice, Fields, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
+use crate::pages;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 
@@ -73,9 +74,11 @@ enum Verb {
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
     Solve(exchange::SolveArgs),
+    /// Judge reactions that other programs found for a problem from an FCLIB file
+    Judge(exchange::JudgeArgs),
     /// List the methods and the shipped cases
     List,
-    /// Describe a method or a case
+    /// Describe a method or a case, or all `methods`
     Show {
         /// Method or case
         name: String,
@@ -189,6 +192,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Stress(arguments) => stress::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
+        Verb::Judge(args) => exchange::judge_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)
@@ -398,6 +402,9 @@ fn list_text() -> String {
 }
 
 fn show_text(name: &str) -> Result<String, CliError> {
+    if name == "methods" {
+        return Ok(pages::all());
+    }
     if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
         return Ok((*text).to_owned());
     }
@@ -414,58 +421,5 @@ fn show_text(name: &str) -> Result<String, CliError> {
             .collect::<Vec<_>>()
             .join(", "),
     })?;
-    let exact = if method.exact {
-        "solves the contact laws themselves"
-    } else {
-        "its parameter is a modelling error"
-    };
-    let mut text = format!(
-        "{} ({})\n  {}\n  {}\n  Reference: {}\n\nOptions\n",
-        method.name, method.label, method.summary, exact, method.reference
-    );
-    for option in method.options {
-        text += &format!(
-            "  {:<20} default {}, {}, unit {}\n  {:<20} {}\n",
-            option.name,
-            option.default,
-            option.allowed(),
-            option.unit,
-            "",
-            option.help
-        );
-    }
-    Ok(text)
-}
-
-/// A progress bar on a terminal, nothing in a pipe.
-struct Bar(ProgressBar);
-
-impl Bar {
-    fn new() -> Self {
-        if !std::io::stderr().is_terminal() {
-            return Bar(ProgressBar::hidden());
-        }
-        let bar = ProgressBar::new(0);
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}")
-        {
-            bar.set_style(style);
-        }
-        Bar(bar)
-    }
-
-    fn finish(&self) {
-        self.0.finish_and_clear();
-    }
-}
-
-impl Progress for Bar {
-    fn plan(&self, runs: usize) {
-        self.0.inc_length(runs as u64);
-    }
-
-    fn done(&self, label: &str) {
-        self.0.set_message(label.to_owned());
-        self.0.inc(1);
-    }
+    Ok(pages::page(method))
 }

@@ -265,6 +265,44 @@ fn exported_solutions_fulfil_the_equations_of_the_format() {
     }
 }
 
+#[test]
+fn reactions_of_other_programs_are_judged() {
+    let (dir, stem) = exported(&["plate_mesh1", "--friction", "0.8"]);
+    let file = format!("problems/{stem}.local.hdf5");
+    let reaction = vector_of_solution(&dir.path().join(&file));
+    let write = |name: &str, values: &[f64]| {
+        std::fs::write(dir.path().join(name), matrix_market::vector(values)).unwrap();
+    };
+    write("good.mtx", &reaction);
+    write("zero.mtx", &vec![0.0; reaction.len()]);
+    let rough: Vec<f64> = reaction.iter().map(|r| r * (1.0 + 1e-5)).collect();
+    write("rough.mtx", &rough);
+    write("short.mtx", &reaction[1..]);
+    for (arguments, code) in [
+        (&["good.mtx"][..], 0),
+        (&["good.mtx", "zero.mtx"], 1),
+        (&["rough.mtx"], 1),
+        (&["rough.mtx", "--tier", "low"], 0),
+        (&["short.mtx"], 2),
+        (&["nowhere.mtx"], 2),
+    ] {
+        let output = stickslip(&[&["judge", &file], arguments].concat(), dir.path());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    }
+    // The global file says the same, within its own rounding.
+    let global = format!("problems/{stem}.global.hdf5");
+    let output = stickslip(&["judge", &global, "good.mtx"], dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+
+    let (dir, stem) = exported(&["sliding_block_embedded", "--friction", "0.2"]);
+    let arguments = ["judge", &format!("problems/{stem}.local.hdf5")];
+    let reaction = format!("problems/{stem}.q.mtx");
+    let output = stickslip(&[&arguments[..], &[&reaction]].concat(), dir.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("the body floats"));
+}
+
 fn shipped_file(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     root.join("tests/data/fclib").join(name)

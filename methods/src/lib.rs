@@ -71,6 +71,7 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod barrier;
 mod hybrid;
 mod interior_point;
 mod latin;
@@ -80,6 +81,8 @@ mod nsgs;
 mod pdas;
 mod penalty;
 mod projection;
+mod socp;
+mod tresca;
 
 pub use problem::law;
 pub use problem::*;
@@ -153,6 +156,7 @@ pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
     &newton_ac::METHOD,
     &pdas::METHOD,
+    &barrier::METHOD,
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
@@ -160,6 +164,8 @@ pub static METHODS: &[&Method] = &[
     &admm::METHOD,
     &projection::METHOD,
     &interior_point::METHOD,
+    &socp::METHOD,
+    &tresca::METHOD,
     &hybrid::METHOD,
     &nitsche::METHOD,
 ];

@@ -4,7 +4,6 @@
 
 mod toys;
 
-use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use stickslip_methods::*;
 use toys::*;
@@ -110,9 +109,31 @@ fn penalty_error_falls_like_one_over_its_stiffness() {
 }
 
 #[test]
+fn barrier_error_falls_like_its_gap_and_slip_and_never_penetrates() {
+    let (s, load, reference) = specimen();
+    let barrier = method("barrier").unwrap();
+    let errors: Vec<f64> = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+        .iter()
+        .map(|&c| {
+            let outcome = run(barrier, &[("gap", c), ("slip", c)], &s, &load, 1e-12);
+            assert_eq!(outcome.status, Status::Converged, "{c:e}");
+            assert!(matches!(outcome.claim, Claim::Barrier { gap, slip, .. } if gap == slip && gap > 0.0));
+            let judged = judge(&s, &load, &outcome.state);
+            assert_eq!((judged.penetration, judged.adhesion), (0.0, 0.0));
+            assert!(judged.cone < 1e-15, "{judged:?}");
+            difference(&outcome.state.p, &reference.p)
+        })
+        .collect();
+    for pair in errors.windows(2) {
+        let slope = (pair[1] / pair[0]).log10();
+        assert!((-1.1..-0.9).contains(&slope), "{errors:?}");
+    }
+}
+
+#[test]
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
-    let sweeps: [(&str, &str, &[f64]); 8] = [
+    let sweeps: [(&str, &str, &[f64]); 11] = [
         ("b-newton", "r", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         (
             "augmented-lagrangian",
@@ -125,6 +146,9 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
         ("admm", "over_relaxation", &[0.5, 1.0, 1.9]),
         ("projection", "variant", &[0.0, 1.0]),
         ("nsgs", "relaxation", &[0.5, 0.8, 1.2]),
+        ("interior-point", "fraction", &[0.5, 0.9, 0.999]),
+        ("socp", "anderson", &[0.0, 1.0, 20.0]),
+        ("tresca", "anderson", &[0.0, 1.0, 20.0]),
     ];
     for (name, option, values) in sweeps {
         for &value in values {
@@ -241,17 +265,4 @@ fn frictionless_contact_is_the_quadratic_programme_that_clarabel_solves() {
             );
         }
     }
-}
-
-fn csc(rows: &Rows) -> CscMatrix<f64> {
-    let (m, n) = (rows.len(), rows[0].len());
-    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
-    for j in 0..n {
-        for (i, row) in rows.iter().enumerate().filter(|(_, row)| row[j] != 0.0) {
-            rowval.push(i);
-            nzval.push(row[j]);
-        }
-        colptr.push(rowval.len());
-    }
-    CscMatrix::new(m, n, colptr, rowval, nzval)
 }

@@ -181,7 +181,7 @@ fn info(case: &Case, key: &RunKey, increment: &Increment<'_>) -> Info {
     let kernel = match floating {
         0 => "M is positive definite, W positive semi-definite".to_owned(),
         n => format!(
-            "{n} rigid motions: M is singular, W belongs to a pinned body, V spans their jumps"
+            "rigid motions: {n}; M is singular, W belongs to a pinned body, V spans their jumps"
         ),
     };
     Info {

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use stickslip_methods::{ContactState, ContactSystem, Increment, Load, MethodError, Tier};
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
+};
 
 use crate::harness::exchange::{System, global_system, local_system, local_velocity};
 use crate::harness::record::{Results, RunKey};
@@ -17,8 +19,11 @@ pub struct ProblemFile {
     /// File name without `.hdf5`: the case of its runs.
     pub name: String,
     kind: &'static str,
+    path: PathBuf,
     system: ContactSystem,
     load: Load,
+    rest: Load,
+    start: ContactState,
     setup: Setup,
 }
 
@@ -88,13 +93,68 @@ impl ProblemFile {
         let factor_s = shared.analysis_s + shared.factorisation_s;
         Ok(Self {
             name: name(path),
+            path: path.into(),
             kind,
+            rest: Load::zero(system.elastic()),
+            start: ContactState::zero(&system),
             system,
             load,
             setup: Setup {
                 setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
                 assembly_s: 0.0,
             },
+        })
+    }
+
+    /// The problem as an increment from rest.
+    fn increment(&self, tolerance: f64) -> Increment<'_> {
+        Increment {
+            system: &self.system,
+            load: &self.load,
+            start_load: &self.rest,
+            start: &self.start,
+            index: 0,
+            tolerance,
+        }
+    }
+
+    /// Judges a reaction that another program found, from a MatrixMarket file with `dim` entries per point.
+    ///
+    /// # Errors
+    /// A file that is no such vector; a floating body, whose rigid motion no reaction tells.
+    pub fn judge(&self, reaction: &Path) -> Result<Residuals, ProblemFileError> {
+        let text = std::fs::read_to_string(reaction).map_err(|source| InterchangeError::Io {
+            path: reaction.into(),
+            source,
+        })?;
+        let vector = matrix_market::parse(reaction, &text)?;
+        let rows = self.load.offset.len();
+        if (vector.rows(), vector.cols()) != (rows, 1) {
+            return Err(InterchangeError::Length {
+                path: reaction.into(),
+                dataset: "the matrix".into(),
+                found: (vector.rows() * vector.cols()) as u64,
+                allowed: format!("{rows} in one column"),
+            }
+            .into());
+        }
+        let elastic = self.system.elastic();
+        if !elastic.floating().is_empty() {
+            return Err(InterchangeError::Unsupported {
+                path: self.path.clone(),
+                what: "the body floats: a reaction alone does not tell its rigid motion".into(),
+            }
+            .into());
+        }
+        let p = vector.column(0);
+        let mut u = self.load.force.clone();
+        elastic.jump().mul_transpose_add(&p, &mut u);
+        let increment = self.increment(Tier::High.tolerance());
+        let judged =
+            (elastic.solve(&mut u)).and_then(|()| residuals(&increment, &ContactState { u, p }));
+        judged.map_err(|source| ProblemFileError::System {
+            path: self.path.clone(),
+            source,
         })
     }
 
@@ -110,15 +170,7 @@ impl ProblemFile {
         solutions: &mut Bundle,
     ) -> Result<Results, ReportError> {
         let mut results = Results::default();
-        let start = ContactState::zero(&self.system);
-        let increment = Increment {
-            system: &self.system,
-            load: &self.load,
-            start_load: &Load::zero(self.system.elastic()),
-            start: &start,
-            index: 0,
-            tolerance: tier.tolerance(),
-        };
+        let increment = self.increment(tier.tolerance());
         for choice in choices {
             let key = RunKey {
                 case: self.name.clone(),

@@ -1,12 +1,16 @@
 //! The problem every method solves, and everything methods share: system, states, law, judge, linear algebra.
 
+pub(crate) mod anderson;
 pub(crate) mod b_equations;
+pub(crate) mod barrier_law;
 pub(crate) mod branches;
 pub(crate) mod central_path;
 pub(crate) mod condensed;
+pub(crate) mod cone_program;
 mod elastic;
 mod error;
-mod judge;
+pub(crate) mod fixed_point;
+pub(crate) mod judge;
 pub mod law;
 pub(crate) mod line_search;
 pub(crate) mod linear;
@@ -21,6 +25,7 @@ pub(crate) mod reduced;
 pub(crate) mod saddle;
 pub(crate) mod semismooth;
 pub(crate) mod stages;
+pub(crate) mod starts;
 mod state;
 pub(crate) mod sweeps;
 mod system;
@@ -36,6 +41,7 @@ pub use local_form::LocalForm;
 pub use matrix::{JumpOperator, SymmetricMatrix};
 pub use options::{OptionError, OptionSpec, Options};
 pub use point_status::{PointStatus, point_status};
+pub use starts::{Start, Uniqueness, from_all_starts};
 pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
 pub use system::{ContactSystem, Increment, Load};
 pub use tier::{Tier, UnknownTier};

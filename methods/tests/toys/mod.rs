@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use clarabel::algebra::CscMatrix;
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use stickslip_methods::*;
@@ -161,11 +162,15 @@ pub fn general() -> impl Iterator<Item = &'static Method> {
 /// Those methods, with options that make the inexact ones good to about 1e-6, and the accuracy to ask for.
 pub fn all() -> impl Iterator<Item = (&'static Method, Vec<(&'static str, f64)>, f64)> {
     general().map(|m| {
-        let sharp: Vec<_> = ["normal", "tangential"]
-            .into_iter()
-            .filter(|name| !m.exact && m.options.iter().any(|o| o.name == *name))
-            .map(|name| (name, 1e7))
-            .collect();
+        let sharp: Vec<_> = [
+            ("normal", 1e7),
+            ("tangential", 1e7),
+            ("gap", 1e-7),
+            ("slip", 1e-7),
+        ]
+        .into_iter()
+        .filter(|(name, _)| !m.exact && m.options.iter().any(|o| o.name == *name))
+        .collect();
         (m, sharp, if m.exact { 1e-8 } else { 1e-5 })
     })
 }
@@ -344,4 +349,18 @@ pub fn block(a: f64, h: f64, bar: f64, lateral: f64) -> Arc<Elastic> {
         modes.push(vec![1.0, 0.0, 1.0, 0.0, 1.0, 0.0]);
     }
     elastic(2, &k, &b, modes, false)
+}
+
+/// A dense matrix as clarabel takes it.
+pub fn csc(rows: &Rows) -> CscMatrix<f64> {
+    let (m, n) = (rows.len(), rows[0].len());
+    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
+    for j in 0..n {
+        for (i, row) in rows.iter().enumerate().filter(|(_, row)| row[j] != 0.0) {
+            rowval.push(i);
+            nzval.push(row[j]);
+        }
+        colptr.push(rowval.len());
+    }
+    CscMatrix::new(m, n, colptr, rowval, nzval)
 }
