@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
-use stickslip::harness::body::Body;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::shipped;
 use stickslip_methods::ContactSystem;
 
@@ -22,7 +22,9 @@ fn discretisation(criterion: &mut Criterion) {
             Some(Ok(case)) => case,
             other => panic!("{name}: {other:?}"),
         };
-        let body = || Body::new(&case, refine, false).expect("shipped cases can be discretised");
+        let body = || {
+            Body::new(&case, refine, Needs::default()).expect("shipped cases can be discretised")
+        };
         let mut group = criterion.benchmark_group(format!("discretisation/{name}"));
         group
             .sample_size(10)

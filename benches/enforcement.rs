@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
-use stickslip::harness::body::Body;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::shipped;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, METHODS, Options, Silent, Tier,
@@ -23,7 +23,11 @@ fn enforcement(criterion: &mut Criterion) {
             Some(Ok(case)) => case,
             other => panic!("{name}: {other:?}"),
         };
-        let body = Body::new(&case, 1, false).expect("shipped cases can be discretised");
+        let needs = Needs {
+            traction: true,
+            ..Needs::default()
+        };
+        let body = Body::new(&case, 1, needs).expect("shipped cases can be discretised");
         let frictions = vec![friction; body.points.len()];
         let system =
             ContactSystem::new(body.elastic.clone(), frictions).expect("friction is valid");

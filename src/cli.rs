@@ -11,7 +11,7 @@ use clap::{Parser, Subcommand};
 use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
 use self::progress::Bar;
-use crate::harness::body::Body;
+use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
 use crate::harness::export::ExportError;
@@ -284,7 +284,7 @@ fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
         choices(&case, &[])?;
         expect::check(&case)?;
         for &refine in &case.sweep.refine {
-            let body = Body::new(&case, refine, false).map_err(RunError::from)?;
+            let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
             println!(
                 "{}: {}, {} cells, {} unknowns, {} contact points ({})",
                 file.display(),

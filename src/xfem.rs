@@ -8,3 +8,4 @@ pub mod cut;
 pub mod enrichment;
 pub mod pairs;
 pub mod pieces;
+pub mod traction;

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::record::Results;
 use stickslip::harness::run::{Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
@@ -265,7 +266,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
                 .build()
                 .unwrap();
             pool.install(|| {
-                let body = stickslip::harness::body::Body::new(case, 1, false).unwrap();
+                let body = Body::new(case, 1, Needs::default()).unwrap();
                 let k = body.elastic.stiffness().unwrap().values();
                 let k: Vec<u64> = k.iter().map(|v| v.to_bits()).collect();
                 (k, bits(&run(case, methods)))

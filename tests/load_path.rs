@@ -5,7 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::harness::body::Body;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::case::Case;
 use stickslip::harness::record::Results;
 use stickslip::harness::shipped;
@@ -22,7 +22,11 @@ struct Path {
 
 impl Path {
     fn new(case: Case) -> Self {
-        let body = Body::new(&case, 1, false).unwrap();
+        let needs = Needs {
+            traction: true,
+            ..Needs::default()
+        };
+        let body = Body::new(&case, 1, needs).unwrap();
         let friction = friction(&case, &body);
         let system = ContactSystem::new(body.elastic.clone(), friction).unwrap();
         Path {

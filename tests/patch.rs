@@ -2,111 +2,12 @@
 
 mod common;
 
+use common::bodies::{bodies, motion_of, motions};
 use common::*;
 use nalgebra::{DMatrix, SymmetricEigen};
-use stickslip::harness::body::Body;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::xfem::basis::FunctionKind;
 use stickslip::xfem::pieces::pieces;
-
-/// Bodies with cracks in general and in special position; all outlines clamped, K and B are kept over all unknowns.
-///
-/// ```text
-///   straight across   oblique   through nodes   two cracks   one tip   two tips   3D planes
-/// ```
-fn bodies() -> Vec<(&'static str, Body)> {
-    let flat = |cracks: String| {
-        let rest = cracks + &clamped(2);
-        body(&plane([0.0, 0.0], [3.0, 3.0], [6, 6], &rest))
-    };
-    let block = |planes: &[([f64; 3], [f64; 3], f64)]| {
-        body(&solid([3.0, 3.0, 3.0], [3, 3, 3], planes, &clamped(3)))
-    };
-    let across = |y: f64, slope: f64| crack([-1.0, y - slope], [4.0, y + 4.0 * slope], 0.3, "none");
-    vec![
-        ("straight", flat(across(1.6, 0.0))),
-        ("oblique", flat(across(0.7, 0.4))),
-        ("through nodes", flat(across(0.0, 1.0))),
-        ("on cell edges", flat(across(1.5, 0.0))),
-        ("two cracks", flat(across(0.7, 0.03) + &across(2.3, -0.02))),
-        (
-            "one tip",
-            flat(crack([-1.0, 1.2], [1.7, 1.9], 0.3, "branch")),
-        ),
-        (
-            "two tips",
-            flat(crack([0.6, 1.2], [2.3, 1.9], 0.3, "branch")),
-        ),
-        ("no tip", flat(crack([0.6, 1.2], [2.3, 1.9], 0.3, "none"))),
-        ("plane", block(&[([0.0, 0.0, 1.7], [0.0, 0.0, 1.0], 0.3)])),
-        (
-            "oblique plane",
-            block(&[([1.4, 1.6, 1.5], [1.0, 0.3, 2.0], 0.3)]),
-        ),
-        (
-            "plane through nodes",
-            block(&[([0.0, 0.0, 0.0], [1.0, 0.0, -1.0], 0.3)]),
-        ),
-        (
-            "two planes",
-            block(&[
-                ([0.0, 0.0, 0.6], [0.05, 0.0, 1.0], 0.3),
-                ([0.0, 0.0, 2.4], [0.0, 0.05, 1.0], 0.3),
-            ]),
-        ),
-    ]
-}
-
-/// A displacement field.
-type Motion = Box<dyn Fn(&[f64; 3]) -> [f64; 3]>;
-
-/// Rigid motions about the origin: translations, then rotations.
-fn motions(dim: usize) -> Vec<Motion> {
-    let rotations: &[[usize; 2]] = if dim == 2 {
-        &[[0, 1]]
-    } else {
-        &[[0, 1], [1, 2], [2, 0]]
-    };
-    let mut all: Vec<Motion> = Vec::new();
-    for a in 0..dim {
-        all.push(Box::new(move |_| {
-            let mut r = [0.0; 3];
-            r[a] = 1.0;
-            r
-        }));
-    }
-    for &[a, b] in rotations {
-        all.push(Box::new(move |x| {
-            let mut r = [0.0; 3];
-            (r[a], r[b]) = (-x[b], x[a]);
-            r
-        }));
-    }
-    all
-}
-
-/// A rigid motion of some pieces, 0 on the others: ū_j = r on the own side, b_j = ½ H_j (r_own − r_across).
-fn motion_of(
-    body: &Body,
-    moves: impl Fn(usize) -> bool,
-    r: impl Fn(&[f64; 3]) -> [f64; 3],
-) -> Vec<f64> {
-    let dim = body.mesh.dim();
-    let (piece, _) = pieces(&body.mesh, &body.enrichment);
-    let mut u = vec![0.0; body.numbers.len()];
-    for (f, function) in body.enrichment.functions.iter().enumerate() {
-        let node = function.node as usize;
-        let on = |f: usize| f64::from(u8::from(piece[f].is_some_and(&moves)));
-        let factor = match function.kind {
-            FunctionKind::Standard => on(f),
-            FunctionKind::Heaviside { .. } => 0.5 * body.enrichment.shifts[f] * (on(node) - on(f)),
-            FunctionKind::Branch { .. } => 0.0,
-        };
-        for a in 0..dim {
-            u[f * dim + a] = factor * r(&body.mesh.nodes[node])[a];
-        }
-    }
-    u
-}
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
@@ -186,7 +87,7 @@ fn check_points(body: &Body) -> usize {
 #[test]
 fn rigid_motions_of_the_whole_and_of_every_piece_cost_no_energy() {
     let mut random = Random(11);
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Needs::default()) {
         let dim = body.mesh.dim();
         let (_, count) = pieces(&body.mesh, &body.enrichment);
         let expected = match name {
@@ -216,7 +117,7 @@ fn rigid_motions_of_the_whole_and_of_every_piece_cost_no_energy() {
 /// Tolerance: with unit diagonal, eigenvalues are either rounding (1e-13) or at least 1e-7 for these cuts.
 #[test]
 fn the_kernel_of_the_stiffness_are_the_rigid_motions_of_the_pieces() {
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Needs::default()) {
         let dim = body.mesh.dim();
         let n = body.numbers.len();
         if n > 400 {
@@ -250,7 +151,7 @@ fn the_kernel_of_the_stiffness_are_the_rigid_motions_of_the_pieces() {
 #[test]
 fn the_jump_operator_sees_relative_motion_and_nothing_else() {
     let mut random = Random(13);
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Needs::default()) {
         let dim = body.mesh.dim();
         let mut u = vec![0.0; body.numbers.len()];
         let doubled = body.space == "node-pairs";
@@ -326,7 +227,7 @@ fn upper_piece(body: &Body) -> usize {
 #[test]
 fn contact_forces_do_the_work_of_the_jump_and_balance_themselves() {
     let mut random = Random(17);
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Needs::default()) {
         let dim = body.mesh.dim();
         let p = random.vector(body.points.len() * dim);
         let u = random.vector(body.numbers.len());

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::Body;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::shipped;
 use stickslip_methods::METHODS;
 
@@ -109,7 +109,11 @@ fn a_crack_without_tips_has_no_branch_functions() {
 #[test]
 fn a_frictionless_sweep_condenses_normal_rows_only() {
     let case = shipped::find("frictionless").unwrap().unwrap();
-    let body = Body::new(&case, 1, true).unwrap();
+    let needs = Needs {
+        frictionless: true,
+        ..Needs::default()
+    };
+    let body = Body::new(&case, 1, needs).unwrap();
     assert!(body.elastic.frictionless());
     assert_eq!(body.elastic.jump().rows(), 2 * body.points.len());
 }

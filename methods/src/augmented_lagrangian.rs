@@ -127,6 +127,7 @@ impl Enforcement for AugmentedLagrangian {
             normal: k,
             tangential: k,
             anchor: p.clone(),
+            coupled: None,
         };
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;

@@ -76,6 +76,7 @@ mod hybrid;
 mod interior_point;
 mod latin;
 mod newton_ac;
+mod nitsche;
 mod nsgs;
 mod pdas;
 mod penalty;
@@ -93,6 +94,11 @@ pub trait Enforcement: Send {
     /// Why the method cannot treat this system; `None` if it can.
     fn refuses(&self, _system: &ContactSystem) -> Option<String> {
         None
+    }
+
+    /// Whether the method works with the stress at the contact points, [`ElasticParts::traction`].
+    fn needs_traction(&self) -> bool {
+        false
     }
 
     /// Factors what any load needs: K. `solve` does it if it was not done before. The condensation to the contact
@@ -161,6 +167,7 @@ pub static METHODS: &[&Method] = &[
     &socp::METHOD,
     &tresca::METHOD,
     &hybrid::METHOD,
+    &nitsche::METHOD,
 ];
 
 /// The method of that name.

@@ -135,6 +135,7 @@ impl Enforcement for Penalty {
             normal: self.normal * rho,
             tangential: self.tangential * rho,
             anchor,
+            coupled: None,
         };
 
         let p = problem.start_forces();
@@ -148,7 +149,7 @@ impl Enforcement for Penalty {
             stop,
             self.max_iterations,
             &mut self.tangent,
-            recorded(monitor),
+            recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta)),
         );
         problem.rebalance(&mut end.p);
         problem.finish(status, &end.p, &end.beta)

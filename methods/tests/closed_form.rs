@@ -171,7 +171,7 @@ fn free_floating_block_sticks_below_the_friction_limit_and_is_a_mechanism_above(
 #[test]
 fn frictionless_block_that_can_slide_away_is_reported_as_mechanism() {
     let s = system(&block(1.0, 1.0, 50.0, 0.0), 0.0);
-    for m in METHODS {
+    for m in general() {
         let outcome = run(
             m,
             &[],

@@ -12,7 +12,7 @@ fn no_load_means_no_motion_and_no_force() {
     let floating = block(1.0, 1.5, 50.0, 2.0);
     for body in [spring_pair(1.0, 1.0), floating] {
         let s = system(&body, 0.3);
-        for m in METHODS {
+        for m in general() {
             let outcome = run(m, &[], &s, &force(&s, &vec![0.0; body.unknowns()]), 1e-9);
             assert_eq!(outcome.status, Status::Converged, "{}", m.name);
             assert!(
@@ -133,7 +133,7 @@ fn open_crack_is_one_linear_solve_and_is_never_condensed() {
     let offset = (0..6)
         .map(|r| if r % 2 == 0 { jump[r].abs() + 0.1 } else { 0.0 })
         .collect();
-    for m in METHODS {
+    for m in general() {
         let body = elastic(2, &k, &b, vec![], false);
         let s = system(&body, 0.3);
         let load = Load {
@@ -182,7 +182,7 @@ fn one_factorisation_serves_all_frictions_methods_and_increments() {
     let body = elastic(2, &k, &b, vec![], false);
     for mu in [0.0, 0.2, 0.7] {
         let s = system(&body, mu);
-        for m in METHODS {
+        for m in general() {
             run(m, &[], &s, &force(&s, &rng.vector(k.len())), 1e-6);
         }
     }
@@ -244,7 +244,7 @@ fn the_same_increment_twice_gives_the_same_bits() {
         force(&s, &rng.vector(k.len())),
         force(&s, &rng.vector(k.len())),
     );
-    for m in METHODS {
+    for m in general() {
         let mut instance = build(m, &[]);
         let mut solve = |load: &Load| {
             let (start, rest) = (ContactState::zero(&s), force(&s, &vec![0.0; k.len()]));
@@ -357,7 +357,7 @@ fn a_converged_claim_passes_the_judge_at_every_tier() {
                     let (k, b) = random_body(&mut rng, dim, 8, 6, 0.05);
                     let s = system(&elastic(dim, &k, &b, vec![], false), mu);
                     let load = force(&s, &rng.vector(k.len()));
-                    for m in METHODS {
+                    for m in general() {
                         let outcome = run(m, &[], &s, &load, tier.tolerance());
                         let judged = judge(&s, &load, &outcome.state);
                         assert!(judged.equilibrium < 1e-12, "{}: {judged:?}", m.name);
@@ -399,7 +399,7 @@ fn limits_and_monitors_end_a_run_with_their_status() {
     let s = system(&elastic(2, &k, &b, vec![], false), 0.4);
     let load = force(&s, &rng.vector(k.len()));
     let (start, rest) = (ContactState::zero(&s), force(&s, &vec![0.0; k.len()]));
-    for m in METHODS {
+    for m in general() {
         let limit = m.options.iter().find(|o| o.integer).unwrap().name;
         let outcome = run(m, &[(limit, 1.0)], &s, &load, 1e-9);
         assert_eq!(
@@ -459,7 +459,7 @@ fn malformed_input_is_refused_with_typed_errors() {
     let s = system(&body, 0.3);
     let good = force(&s, &[0.0, 0.0]);
     let start = ContactState::zero(&s);
-    for m in METHODS {
+    for m in general() {
         let solve = |load: &Load, tolerance: f64| {
             build(m, &[])
                 .solve(&increment(&s, load, &good, &start, tolerance), &mut Silent)
@@ -503,4 +503,18 @@ fn systems_and_methods_can_be_shared_between_threads() {
     fn sent<T: Send + ?Sized>() {}
     shared::<ContactSystem>();
     sent::<dyn Enforcement>();
+}
+
+#[test]
+fn methods_that_need_the_stress_refuse_bodies_without_it() {
+    let s = system(&spring_pair(1.0, 1.0), 0.3);
+    let needy: Vec<_> = METHODS
+        .iter()
+        .map(|m| build(m, &[]))
+        .filter(|m| m.needs_traction())
+        .collect();
+    assert!(!needy.is_empty());
+    for method in needy {
+        assert!(method.refuses(&s).unwrap().contains("no traction operator"));
+    }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
-    Tier, point_status, residuals_of,
+    Tier, consistency, point_status, residuals_of,
 };
 
 use super::run::Choice;
@@ -28,6 +28,8 @@ pub struct Judged {
     pub found: Residuals,
     /// Open, stick or slip, by point.
     pub status: Vec<PointStatus>,
+    /// See [`consistency`].
+    pub consistency: Option<Vec<f64>>,
 }
 
 impl Attempt {
@@ -65,10 +67,12 @@ pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, tier: Ti
     let judged = solved.and_then(|outcome| {
         let found = residuals_of(increment, &outcome.state, outcome.claim)?;
         let status = point_status(increment, &outcome.state)?;
+        let consistency = consistency(increment, &outcome.state, outcome.claim)?;
         Ok(Judged {
             outcome,
             found,
             status,
+            consistency,
         })
     });
     match judged {
@@ -85,7 +89,7 @@ pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, tier: Ti
 fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
     let shared = || {
         let t = system.elastic().timings();
-        t.analysis_s + t.factorisation_s + t.condensation_s
+        t.analysis_s + t.factorisation_s + t.condensation_s + t.traction_s
     };
     let (before, clock) = (shared(), Instant::now());
     let value = call();

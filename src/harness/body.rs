@@ -23,8 +23,9 @@ use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
 use crate::xfem::crack::Crack;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
-use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs};
+use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs, jump_rows};
 use crate::xfem::pieces::free_motions;
+use crate::xfem::traction::traction_rows;
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -60,6 +61,8 @@ pub struct Body {
     pub assembly_s: f64,
     /// Jump operator over all unknowns: rows point by point, (n, a[, b]), as (unknown, coefficient).
     pub jump_rows: Vec<Vec<(usize, f64)>>,
+    /// Traction operator over all unknowns, in the same form; empty unless a run [`Needs`] it.
+    pub traction_rows: Vec<Vec<(usize, f64)>>,
     loads: Vec<(Vec<f64>, History)>,
     support_histories: Vec<History>,
     end: f64,
@@ -77,6 +80,15 @@ pub enum BodyError {
     /// The algebraic system was refused.
     #[error(transparent)]
     Method(#[from] MethodError),
+}
+
+/// What the runs on a body will ask of it: a body pays for nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Needs {
+    /// No run has friction: only normal rows are ever condensed.
+    pub frictionless: bool,
+    /// A method needs the traction operator.
+    pub traction: bool,
 }
 
 /// Cell matrices, shared among cells of one shape.
@@ -100,8 +112,8 @@ impl Cells for Matrices<'_> {
 }
 
 impl Body {
-    /// Discretises a case on its mesh refined by a factor; `frictionless` if no run on it will have friction.
-    pub fn new(case: &Case, refine: usize, frictionless: bool) -> Result<Self, BodyError> {
+    /// Discretises a case on its mesh refined by a factor.
+    pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
         let clock = Instant::now();
         let spec = case.mesh.refined(refine);
         let cells: Vec<String> = spec
@@ -167,12 +179,13 @@ impl Body {
             }
         }
         let jump = jump_rows(dim, &points);
-        let motions = free_motions(&mesh, &enrichment, &numbers, |mode| {
-            jump.iter()
-                .map(|row| row.iter().map(|&(i, v)| v * mode[i]).sum())
-                .collect()
-        })
-        .map_err(|e| motion_error(case, &e))?;
+        let traction = if needs.traction {
+            traction_rows(&integrator, &points)?
+        } else {
+            Vec::new()
+        };
+        let motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
+            .map_err(|e| motion_error(case, &e))?;
         let users = enrichment.users();
         let mut stiffness = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
         let order = elimination_order(&mesh, &enrichment, &numbers);
@@ -194,12 +207,15 @@ impl Body {
         let elastic = Elastic::new(ElasticParts {
             dim,
             stiffness: SymmetricMatrix::new(free as usize, col_ptr, row_idx, values)?,
-            jump: free_jump(&jump, &numbers, free as usize)?,
+            jump: free_rows(&jump, &numbers, free as usize)?,
             weight: points.iter().map(|p| p.weight).collect(),
             order,
             floating: motions.modes,
-            frictionless,
-            traction: None,
+            frictionless: needs.frictionless,
+            traction: needs
+                .traction
+                .then(|| free_rows(&traction, &numbers, free as usize))
+                .transpose()?,
         })?;
         let loads = case
             .loads
@@ -229,6 +245,7 @@ impl Body {
             setup_s,
             assembly_s,
             jump_rows: jump,
+            traction_rows: traction,
             loads,
             support_histories: case.supports.iter().map(|s| s.history.clone()).collect(),
             end: case.path.end,
@@ -290,7 +307,7 @@ impl Body {
                 .map(|i| external[i] - held[i])
                 .collect(),
             offset: self.jump(&prescribed),
-            traction: vec![],
+            traction: self.traction(&prescribed),
         }
     }
 
@@ -307,10 +324,13 @@ impl Body {
 
     /// Jump at the contact points in local frames (n, a[, b]) from all unknowns [m].
     pub fn jump(&self, all: &[f64]) -> Vec<f64> {
-        self.jump_rows
-            .iter()
-            .map(|row| row.iter().map(|&(i, v)| v * all[i]).sum())
-            .collect()
+        products(&self.jump_rows, all)
+    }
+
+    /// Contact forces that the stress implies, in local frames, from all unknowns [N, in 2D N/m]; empty without a
+    /// traction operator.
+    pub fn traction(&self, all: &[f64]) -> Vec<f64> {
+        products(&self.traction_rows, all)
     }
 
     /// Nodes of a region of the case.
@@ -343,28 +363,15 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
     Ok((cracks, doubled))
 }
 
-/// Rows of the jump operator over all unknowns.
-fn jump_rows(dim: usize, points: &[ContactPoint]) -> Vec<Vec<(usize, f64)>> {
-    let mut rows = Vec::with_capacity(points.len() * dim);
-    for point in points {
-        for axis in &point.frame[..dim] {
-            let mut row = Vec::with_capacity(point.terms.len() * dim);
-            for &(f, c) in &point.terms {
-                for (a, component) in axis.iter().enumerate().take(dim) {
-                    if *component != 0.0 {
-                        row.push((f as usize * dim + a, c * component));
-                    }
-                }
-            }
-            row.sort_by_key(|entry| entry.0);
-            rows.push(row);
-        }
-    }
-    rows
+/// Products of sparse rows with a vector.
+fn products(rows: &[Vec<(usize, f64)>], x: &[f64]) -> Vec<f64> {
+    rows.iter()
+        .map(|row| row.iter().map(|&(i, v)| v * x[i]).sum())
+        .collect()
 }
 
-/// The jump operator over the free unknowns.
-fn free_jump(
+/// Sparse rows over the free unknowns.
+fn free_rows(
     rows: &[Vec<(usize, f64)>],
     numbers: &[Option<u32>],
     free: usize,

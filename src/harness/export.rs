@@ -4,7 +4,8 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
 };
 
-use crate::harness::body::{Body, BodyError};
+use crate::harness::attempt::Judged;
+use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
 use crate::harness::record::RunKey;
@@ -99,7 +100,11 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
     let per_crack = friction(case, request.friction)?;
     let refine = request.refine.or(case.sweep.refine.first().copied());
     // The files hold all rows, also where nothing rubs.
-    let body = Body::new(case, refine.unwrap_or(1), false)?;
+    let needs = Needs {
+        frictionless: false,
+        traction: request.choice.needs_traction(),
+    };
+    let body = Body::new(case, refine.unwrap_or(1), needs)?;
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction)?;
     let mut key = RunKey {
@@ -134,7 +139,7 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         let solved = step
             .answer
             .filter(|_| step.verdict == Verdict::Solved(tier));
-        let Some((outcome, _)) = solved else {
+        let Some(Judged { outcome, .. }) = solved else {
             return Err(unsolved(key.increment, step.verdict));
         };
         if key.increment == wanted {

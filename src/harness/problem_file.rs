@@ -188,10 +188,10 @@ impl ProblemFile {
             progress.done(&format!("{} {}", self.name, choice.label));
             results.runs.push(step.run);
             results.history.extend(step.history);
-            if let Some((outcome, _)) = step.answer.filter(|_| step.verdict.is_honest()) {
+            if let Some(judged) = step.answer.filter(|_| step.verdict.is_honest()) {
                 let stem = standard::stem(&key);
-                let velocity = local_velocity(&increment, &outcome.state);
-                for (part, values) in [("r", &outcome.state.p), ("u", &velocity)] {
+                let velocity = local_velocity(&increment, &judged.outcome.state);
+                for (part, values) in [("r", &judged.outcome.state.p), ("u", &velocity)] {
                     let text = matrix_market::vector(values);
                     solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
                 }

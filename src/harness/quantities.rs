@@ -18,7 +18,7 @@ pub struct Snapshot {
     pub jump: Vec<f64>,
     /// Contact forces on side 1, `dim` each.
     pub p: Vec<f64>,
-    /// External forces plus reactions over all unknowns: K u − Bᵀ P.
+    /// External forces plus reactions over all unknowns: K u − Bᵀ P, less the consistency term of Nitsche's method.
     pub force: Vec<f64>,
     /// External forces over all unknowns.
     pub external: Vec<f64>,
@@ -50,11 +50,12 @@ impl Snapshot {
         }
     }
 
-    /// The state a method returned at time t, after the given one.
+    /// The state a method returned at time t, after the given one; `consistency` as its claim asks.
     pub fn new(
         body: &Body,
         time: f64,
         state: &ContactState,
+        consistency: Option<&[f64]>,
         status: Vec<PointStatus>,
         before: &Snapshot,
     ) -> Self {
@@ -63,7 +64,9 @@ impl Snapshot {
         let jump = body.jump(&u);
         let internal = body.stiffness.mul(&u);
         let mut force = internal.clone();
-        for (row, p) in body.jump_rows.iter().zip(&state.p) {
+        let contact = body.jump_rows.iter().zip(&state.p);
+        let further = body.traction_rows.iter().zip(consistency.unwrap_or(&[]));
+        for (row, p) in contact.chain(further) {
             for &(i, coefficient) in row {
                 force[i] -= coefficient * p;
             }

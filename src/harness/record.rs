@@ -57,7 +57,7 @@ pub struct RunRow {
     pub assembly_s: f64,
     /// Factorisation of K, once per mesh [s].
     pub factorisation_s: f64,
-    /// Condensation to W, once per mesh [s].
+    /// Condensation to W, once per mesh, for methods that need it with that of the traction operator [s].
     pub condensation_s: f64,
     /// Method's preparation [s].
     pub prepare_s: f64,

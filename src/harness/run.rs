@@ -7,7 +7,8 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Tier,
 };
 
-use crate::harness::body::{Body, BodyError};
+use crate::harness::attempt::Judged;
+use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
 use crate::harness::picture::field_step;
@@ -45,6 +46,12 @@ impl Choice {
             options,
             label,
         })
+    }
+
+    /// Whether the method asks for the traction operator.
+    pub fn needs_traction(&self) -> bool {
+        // A method that cannot be built is reported by its run.
+        (self.method.build)(&self.options).is_ok_and(|method| method.needs_traction())
     }
 
     /// Every registered method with its defaults.
@@ -174,7 +181,11 @@ pub fn run_case(
         let frictionless = frictions
             .iter()
             .all(|per_crack| per_crack.iter().all(|&mu| mu == 0.0));
-        let body = Body::new(case, refine, frictionless)?;
+        let needs = Needs {
+            frictionless,
+            traction: choices.iter().any(Choice::needs_traction),
+        };
+        let body = Body::new(case, refine, needs)?;
         let mut cells = Vec::new();
         for per_crack in &frictions {
             let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
@@ -286,10 +297,17 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         let step = solver.solve(&key, &problem);
         results.runs.push(step.run);
         results.history.extend(step.history);
-        let Some((outcome, status)) = step.answer else {
+        let Some(Judged {
+            outcome,
+            status,
+            consistency,
+            ..
+        }) = step.answer
+        else {
             break;
         };
-        now = Snapshot::new(body, time, &outcome.state, status, &now);
+        let consistency = consistency.as_deref();
+        now = Snapshot::new(body, time, &outcome.state, consistency, status, &now);
         if step.verdict.is_honest() {
             results
                 .quantities

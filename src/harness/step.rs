@@ -1,8 +1,6 @@
 //! One increment of one run: solved by a method, checked by the judge, written into the rows of the tables.
 
-use stickslip_methods::{
-    ContactSystem, Enforcement, Increment, Outcome, PointStatus, Residuals, Tier,
-};
+use stickslip_methods::{ContactSystem, Enforcement, Increment, Tier};
 
 use crate::harness::attempt::{Judged, attempt, prepare};
 use crate::harness::record::{HistoryRow, RunKey, RunRow, SCHEMA};
@@ -35,8 +33,8 @@ pub struct Step {
     pub history: Vec<HistoryRow>,
     /// The judgement.
     pub verdict: Verdict,
-    /// Answer of the method with the status of every point; `None` if it failed with an error.
-    pub answer: Option<(Outcome, Vec<PointStatus>)>,
+    /// Answer of the method, judged; `None` if it failed with an error.
+    pub answer: Option<Judged>,
 }
 
 impl<'a> Solver<'a> {
@@ -80,14 +78,12 @@ impl<'a> Solver<'a> {
         run.factorisations = system.elastic().counters().factorisations;
         run.factorisation_s = shared.analysis_s + shared.factorisation_s;
         run.condensation_s = shared.condensation_s;
+        if self.method.needs_traction() {
+            run.condensation_s += shared.traction_s;
+        }
         run.solve_s = tried.solve_s;
         let verdict = tried.verdict;
-        let Some(Judged {
-            outcome,
-            found,
-            status,
-        }) = tried.judged
-        else {
+        let Some(judged) = tried.judged else {
             run.verdict = verdict.to_string();
             run.forget_times();
             return Step {
@@ -97,8 +93,8 @@ impl<'a> Solver<'a> {
                 answer: None,
             };
         };
-        record(&mut run, &verdict, &outcome, &found);
-        let entries = outcome.history.iter().enumerate();
+        record(&mut run, &verdict, &judged);
+        let entries = judged.outcome.history.iter().enumerate();
         let history = entries.map(|(iteration, entry)| HistoryRow {
             key: key.clone(),
             iteration,
@@ -108,7 +104,7 @@ impl<'a> Solver<'a> {
             run,
             history: history.collect(),
             verdict,
-            answer: Some((outcome, status)),
+            answer: Some(judged),
         }
     }
 }
@@ -140,7 +136,8 @@ fn row(key: &RunKey, system: &ContactSystem, setup: Setup, tier: Tier) -> RunRow
     }
 }
 
-fn record(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Residuals) {
+fn record(run: &mut RunRow, verdict: &Verdict, judged: &Judged) {
+    let Judged { outcome, found, .. } = judged;
     run.verdict = verdict.to_string();
     run.natural_map = found.natural_map;
     run.equilibrium = found.equilibrium;

@@ -14,7 +14,7 @@ use stickslip_methods::{
 };
 
 use super::attempt::{Attempt, attempt, prepare};
-use super::body::{Body, BodyError};
+use super::body::{Body, BodyError, Needs};
 use super::case;
 use super::random::{Kind, Specimen, Stream};
 use super::run::{Choice, Progress};
@@ -142,7 +142,7 @@ impl Sample {
     ///
     /// # Errors
     /// [`StressError::Body`] and [`StressError::NoBody`].
-    pub fn new(seed: u64, dim: usize, number: usize) -> Result<Self, StressError> {
+    pub fn new(seed: u64, dim: usize, number: usize, needs: Needs) -> Result<Self, StressError> {
         let mut stream = Stream::numbered(seed, 4 * number as u64 + dim as u64);
         let (kind, points) = wanted(dim);
         for _ in 0..DRAWS {
@@ -151,7 +151,7 @@ impl Sample {
             let text = specimen.case(&all, &[1.0]);
             let body = case::parse("random.toml", text.as_str())
                 .map_err(BodyError::from)
-                .and_then(|case| Body::new(&case, 1, false));
+                .and_then(|case| Body::new(&case, 1, needs));
             let body = match body {
                 Ok(body) => body,
                 // The position asks for something the discretisation refuses, e.g. a crack that misses all edges.
@@ -205,7 +205,7 @@ fn closes(body: &Body, load: &Load) -> Result<bool, MethodError> {
 /// # Errors
 /// Those of [`Sample::new`].
 pub fn case_of(study: &Study, dim: usize, problem: usize) -> Result<String, StressError> {
-    let sample = Sample::new(study.seed, dim, problem / LOADS)?;
+    let sample = Sample::new(study.seed, dim, problem / LOADS, Needs::default())?;
     Ok(sample.case(problem % LOADS, &study.friction))
 }
 
@@ -248,7 +248,11 @@ fn run_body(
     progress: &dyn Progress,
 ) -> Result<Vec<Trial>, StressError> {
     let number = problems.first().map_or(0, |problem| problem / LOADS);
-    let sample = Sample::new(study.seed, dim, number)?;
+    let needs = Needs {
+        traction: choices.iter().any(Choice::needs_traction),
+        ..Needs::default()
+    };
+    let sample = Sample::new(study.seed, dim, number, needs)?;
     let body = &sample.body;
     let loads: Vec<(usize, Load)> = problems
         .iter()

@@ -271,6 +271,17 @@ impl CellIntegrator<'_> {
         )
     }
 
+    /// Gradients of the functions of a cell at a reference point (position x) [1/m].
+    pub fn gradients(&self, cell: usize, xi: &Point, x: &Point, side: Side) -> Vec<Point> {
+        let functions = self.enrichment.cell_basis(self.mesh, cell);
+        let corners = self.mesh.corners(cell);
+        let mut values = vec![0.0; functions.len()];
+        let mut gradients = vec![[0.0; 3]; functions.len()];
+        self.basis(cell, &corners, &functions)
+            .evaluate(xi, x, side, &mut values, &mut gradients);
+        gradients
+    }
+
     /// Displacement gradient ∂u_a/∂x_b at a reference point of a cell, from all unknowns u (function-major).
     pub fn displacement_gradient(
         &self,
@@ -280,13 +291,9 @@ impl CellIntegrator<'_> {
         u: &[f64],
     ) -> [Point; 3] {
         let dim = self.mesh.dim();
-        let functions = self.enrichment.cell_basis(self.mesh, cell);
         let corners = self.mesh.corners(cell);
-        let basis = self.basis(cell, &corners, &functions);
-        let x = self.mesh.kind.map(basis.corners, xi);
-        let mut values = vec![0.0; functions.len()];
-        let mut gradients = vec![[0.0; 3]; functions.len()];
-        basis.evaluate(xi, &x, side, &mut values, &mut gradients);
+        let x = (self.mesh.kind).map(&corners[..self.mesh.kind.nodes()], xi);
+        let gradients = self.gradients(cell, xi, &x, side);
         let mut h = [[0.0; 3]; 3];
         for (&f, g) in self.enrichment.cell(cell).iter().zip(&gradients) {
             for a in 0..dim {

@@ -390,21 +390,24 @@ pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(Point, Point)> {
 
 /// Cells whose closure contains a point, within 1e-9 of their diagonal.
 pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
-    let count = mesh.kind.nodes();
     (0..mesh.cell_count())
-        .filter(|&cell| {
-            let corners = mesh.corners(cell);
-            let corners = &corners[..count];
-            let slack = ON_EDGE * norm(&sub(&corners[0], &corners[2]));
-            let outside = (0..mesh.dim()).any(|a| {
-                corners.iter().all(|c| c[a] < x[a] - slack)
-                    || corners.iter().all(|c| c[a] > x[a] + slack)
-            });
-            !outside
-                && mesh
-                    .kind
-                    .inverse_map(corners, x)
-                    .is_some_and(|xi| xi.iter().all(|v| v.abs() <= 1.0 + 4.0 * ON_EDGE))
-        })
+        .filter(|&cell| reference_position(mesh, cell, x, ON_EDGE).is_some())
         .collect()
+}
+
+/// Reference position of a point in the closure of a cell, give or take `slack` diagonals; `None` if it lies outside.
+pub fn reference_position(mesh: &Mesh, cell: usize, x: &Point, slack: f64) -> Option<Point> {
+    let corners = mesh.corners(cell);
+    let corners = &corners[..mesh.kind.nodes()];
+    let margin = slack * norm(&sub(&corners[0], &corners[2]));
+    let outside = (0..mesh.dim()).any(|a| {
+        corners.iter().all(|c| c[a] < x[a] - margin) || corners.iter().all(|c| c[a] > x[a] + margin)
+    });
+    if outside {
+        return None;
+    }
+    let xi = mesh.kind.inverse_map(corners, x)?;
+    xi.iter()
+        .all(|v| v.abs() <= 1.0 + 4.0 * slack)
+        .then_some(xi)
 }

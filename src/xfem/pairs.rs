@@ -129,6 +129,26 @@ impl ContactSurface {
     }
 }
 
+/// Rows of the jump operator over all unknowns: point by point (n, a[, b]), as (unknown, coefficient).
+pub fn jump_rows(dim: usize, points: &[ContactPoint]) -> Vec<Vec<(usize, f64)>> {
+    let mut rows = Vec::with_capacity(points.len() * dim);
+    for point in points {
+        for axis in &point.frame[..dim] {
+            let mut row = Vec::with_capacity(point.terms.len() * dim);
+            for &(f, c) in &point.terms {
+                for (a, component) in axis.iter().enumerate().take(dim) {
+                    if *component != 0.0 {
+                        row.push((f as usize * dim + a, c * component));
+                    }
+                }
+            }
+            row.sort_by_key(|entry| entry.0);
+            rows.push(row);
+        }
+    }
+    rows
+}
+
 /// Contact surface of a crack through cells: the `index`-th of the enrichment.
 pub fn edge_pairs(
     mesh: &Mesh,

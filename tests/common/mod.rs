@@ -3,9 +3,11 @@
 // Every test binary uses its own part.
 #![allow(dead_code)]
 
+pub mod bodies;
+
 use std::sync::Arc;
 
-use stickslip::harness::body::{Body, BodyError};
+use stickslip::harness::body::{Body, BodyError, Needs};
 use stickslip::harness::case::{self, Case};
 use stickslip::harness::record::Results;
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
@@ -31,7 +33,7 @@ pub fn body(text: &str) -> Body {
 
 /// A body, or why not.
 pub fn try_body(text: &str) -> Result<Body, BodyError> {
-    Body::new(&parse(text), 1, false)
+    Body::new(&parse(text), 1, Needs::default())
 }
 
 /// One increment solved by hand.
@@ -115,7 +117,7 @@ pub fn no_load(body: &Body) -> Load {
 /// Solves the last load of a case in one increment; the method must converge to the tolerance.
 pub fn solve_with(text: &str, name: &str, tolerance: f64) -> Solved {
     let case = parse(text);
-    let body = Body::new(&case, 1, false).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let friction = friction(&case, &body);
     let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).unwrap());
     let registered = method(name).expect("registered");

@@ -54,6 +54,15 @@ impl RowSet {
         self.start.len() - 1
     }
 
+    /// Row by row of B; 0 for those not in use.
+    pub fn positions(&self, all: usize) -> Vec<usize> {
+        let mut position = vec![0; all];
+        for (k, &i) in self.source.iter().enumerate() {
+            position[i] = k;
+        }
+        position
+    }
+
     /// Entries of a vector with all `dim` rows per point.
     pub fn restrict(&self, all: &[f64]) -> Vec<f64> {
         self.source.iter().map(|&i| all[i]).collect()
@@ -100,10 +109,7 @@ impl Condensed {
         from: &RowSet,
         rows: &RowSet,
     ) -> Result<Self, MethodError> {
-        let mut position = vec![0; elastic.jump().rows()];
-        for (k, &i) in from.source.iter().enumerate() {
-            position[i] = k;
-        }
+        let position = from.positions(elastic.jump().rows());
         let at = |k: usize| position[rows.source[k]];
         let w = Mat::from_fn(rows.len(), rows.len(), |i, j| self.w[(at(i), at(j))]);
         Self::new(elastic, w, rows)

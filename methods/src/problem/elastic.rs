@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use faer::Mat;
+
 use super::condensed::{Condensed, RowSet};
 use super::error::{MethodError, check_finite, check_len, check_positive};
 use super::judge::ratio;
@@ -11,6 +13,7 @@ use super::linear::factor::{Factor, norm};
 use super::linear::floating::{ModeJumps, pins};
 use super::linear::{delassus, ordering};
 use super::matrix::{JumpOperator, SymmetricMatrix};
+use super::nitsche_condensed::Tractions;
 
 /// What a discretisation hands over.
 #[derive(Debug, Clone)]
@@ -55,6 +58,8 @@ pub struct ElasticTimings {
     pub factorisation_s: f64,
     /// Delassus operator.
     pub condensation_s: f64,
+    /// Condensation of the traction operator, for the methods that need it.
+    pub traction_s: f64,
 }
 
 /// How displacements follow from forces.
@@ -80,6 +85,7 @@ pub struct Elastic {
     frictionless: bool,
     traction: Option<JumpOperator>,
     condensed: OnceLock<Result<(Arc<Condensed>, f64), MethodError>>,
+    tractions: OnceLock<Result<(Arc<Tractions>, f64), MethodError>>,
     solves: AtomicUsize,
 }
 
@@ -136,6 +142,7 @@ impl Elastic {
             frictionless: parts.frictionless,
             traction: parts.traction,
             condensed: OnceLock::new(),
+            tractions: OnceLock::new(),
             solves: AtomicUsize::new(0),
         })
     }
@@ -173,6 +180,7 @@ impl Elastic {
             frictionless: false,
             traction: None,
             condensed: OnceLock::new(),
+            tractions: OnceLock::new(),
             solves: AtomicUsize::new(0),
         })
     }
@@ -267,10 +275,12 @@ impl Elastic {
         let factor = self.factor_cell().and_then(OnceLock::get);
         let factor = factor.and_then(|f| f.as_ref().ok());
         let condensed = self.condensed.get().and_then(|c| c.as_ref().ok());
+        let tractions = self.tractions.get().and_then(|t| t.as_ref().ok());
         ElasticTimings {
             analysis_s: factor.map_or(0.0, |f| f.analysis_s),
             factorisation_s: factor.map_or(0.0, |f| f.factorisation_s),
             condensation_s: condensed.map_or(0.0, |c| c.1),
+            traction_s: tractions.map_or(0.0, |t| t.1),
         }
     }
 
@@ -290,6 +300,13 @@ impl Elastic {
             }
         }?;
         self.solves.fetch_add(1, Relaxed);
+        Ok(())
+    }
+
+    /// Solves K X = F in place for all columns together, without refinement. Forces at pinned unknowns count as 0.
+    pub(crate) fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
+        self.factor()?.solve_columns(x)?;
+        self.solves.fetch_add(x.ncols(), Relaxed);
         Ok(())
     }
 
@@ -405,6 +422,21 @@ impl Elastic {
             .get_or_init(build)
             .as_ref()
             .map(|c| c.0.clone())
+            .map_err(Clone::clone)
+    }
+
+    /// The condensed traction operator on [`rows`](Self::rows), computed unless it exists.
+    pub(crate) fn tractions(&self) -> Result<Arc<Tractions>, MethodError> {
+        let build = || {
+            self.factorise()?;
+            let clock = Instant::now();
+            let tractions = Tractions::new(self)?;
+            Ok((Arc::new(tractions), clock.elapsed().as_secs_f64()))
+        };
+        self.tractions
+            .get_or_init(build)
+            .as_ref()
+            .map(|t| t.0.clone())
             .map_err(Clone::clone)
     }
 }

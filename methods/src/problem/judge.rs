@@ -156,7 +156,7 @@ pub fn residuals_of(
             ratio((0..rows.points()).map(square).sum::<f64>().sqrt(), p_ref)
         }
         Claim::Nitsche { gamma, .. } => {
-            let stress = rows.restrict(&implied_forces(i, s)?);
+            let stress = rows.restrict(&implied_forces(i, &s.u)?);
             let mut square = 0.0;
             for point in 0..rows.points() {
                 let own = rows.of(point);
@@ -174,11 +174,11 @@ pub fn residuals_of(
 }
 
 /// S u plus the traction of prescribed displacements: the contact forces that the stress of the bulk implies.
-fn implied_forces(i: &Increment<'_>, s: &ContactState) -> Result<Vec<f64>, MethodError> {
+pub(crate) fn implied_forces(i: &Increment<'_>, u: &[f64]) -> Result<Vec<f64>, MethodError> {
     let traction = i.system.elastic().traction();
     let traction = traction.ok_or(MethodError::NoTraction)?;
     let mut stress = vec![0.0; traction.rows()];
-    traction.mul(&s.u, &mut stress);
+    traction.mul(u, &mut stress);
     stress
         .iter_mut()
         .zip(&i.load.traction)
@@ -186,23 +186,37 @@ fn implied_forces(i: &Increment<'_>, s: &ContactState) -> Result<Vec<f64>, Metho
     Ok(stress)
 }
 
-/// Backward error of equilibrium; under Nitsche's laws with the force θ Sᵀ y, y = (S u − P)/(γ w).
-fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64, MethodError> {
-    let (elastic, dim) = (i.system.elastic(), i.system.dim());
-    let mut contact = vec![0.0; s.u.len()];
-    elastic.jump().mul_transpose_add(&s.p, &mut contact);
-    let f = &i.load.force;
-    let (Claim::Nitsche { theta, gamma }, Some(traction)) = (claim, elastic.traction()) else {
-        return Ok(elastic.imbalance(&s.u, &[f, &contact]));
+/// θ y by row, y = (S u − P)/(γ w): equilibrium has the force Sᵀ (θ y) under Nitsche's laws, and under no others.
+///
+/// # Errors
+/// A claim of Nitsche's laws on a body without traction operator.
+pub fn consistency(
+    i: &Increment<'_>,
+    s: &ContactState,
+    claim: Claim,
+) -> Result<Option<Vec<f64>>, MethodError> {
+    let Claim::Nitsche { theta, gamma } = claim else {
+        return Ok(None);
     };
     let mut y = vec![0.0; s.p.len()];
-    let stress = implied_forces(i, s)?;
+    let stress = implied_forces(i, &s.u)?;
     for &row in &i.system.row_set().source {
-        y[row] = theta * (stress[row] - s.p[row]) / (gamma * i.system.weight()[row / dim]);
+        let weight = i.system.weight()[row / i.system.dim()];
+        y[row] = theta * (stress[row] - s.p[row]) / (gamma * weight);
     }
-    let mut consistency = vec![0.0; s.u.len()];
-    traction.mul_transpose_add(&y, &mut consistency);
-    Ok(elastic.imbalance(&s.u, &[f, &contact, &consistency]))
+    Ok(Some(y))
+}
+
+/// Backward error of equilibrium between all forces of the claim.
+fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64, MethodError> {
+    let elastic = i.system.elastic();
+    let mut contact = vec![0.0; s.u.len()];
+    elastic.jump().mul_transpose_add(&s.p, &mut contact);
+    let mut further = vec![0.0; s.u.len()];
+    if let (Some(y), Some(traction)) = (consistency(i, s, claim)?, elastic.traction()) {
+        traction.mul_transpose_add(&y, &mut further);
+    }
+    Ok(elastic.imbalance(&s.u, &[&i.load.force, &contact, &further]))
 }
 
 /// x / reference with 0/0 = 0.

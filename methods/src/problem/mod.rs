@@ -17,6 +17,7 @@ pub(crate) mod linear;
 pub(crate) mod local;
 mod local_form;
 mod matrix;
+pub(crate) mod nitsche_condensed;
 mod options;
 pub(crate) mod penalised;
 mod point_status;
@@ -34,7 +35,7 @@ mod uniqueness;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use error::MethodError;
-pub use judge::{Residuals, residuals, residuals_of};
+pub use judge::{Residuals, consistency, residuals, residuals_of};
 pub use linear::delassus::MAX_CONDENSED_ROWS;
 pub use local_form::LocalForm;
 pub use matrix::{JumpOperator, SymmetricMatrix};

@@ -14,6 +14,9 @@
 //! textbook iteration z = A − k v. We take r = 1/(W_ii + 1/k): the solution is the same, but for k far above the
 //! stiffness of the body the textbook trial overshoots from slip one way to slip the other and cycles.
 //!
+//! A further, full compliance C and stretch c₀ may lie in series, v' = v + (P − A)/k + C P + c₀: Nitsche's method, whose
+//! springs are rigid otherwise.
+//!
 //! Points with Π'(z) = 0 (open) are eliminated. Full steps first, then the non-monotone line search.
 
 use faer::Mat;
@@ -33,11 +36,21 @@ use super::tangent::{Tangent, amplitudes, whole_body};
 const ROUNDING: f64 = 1e-12;
 
 /// Penalty stiffnesses and anchor.
-pub(crate) struct Springs {
+pub(crate) struct Springs<'a> {
     pub normal: f64,
     pub tangential: f64,
     /// A by row.
     pub anchor: Vec<f64>,
+    /// Only the condensed tangent knows them.
+    pub coupled: Option<Coupled<'a>>,
+}
+
+/// Springs between all rows.
+pub(crate) struct Coupled<'a> {
+    /// C.
+    pub compliance: &'a Mat<f64>,
+    /// c₀ by row.
+    pub stretch: Vec<f64>,
 }
 
 /// Where the Newton iteration stands.
@@ -50,7 +63,7 @@ pub(crate) struct Point {
     pub branches: Vec<Branch>,
 }
 
-impl Springs {
+impl Springs<'_> {
     /// Compliance 1/k by row.
     fn compliance(&self, problem: &Reduced<'_>) -> Vec<f64> {
         problem.by_row(1.0 / self.normal, 1.0 / self.tangential)
@@ -58,24 +71,43 @@ impl Springs {
 
     /// r by row.
     fn scales(&self, problem: &Reduced<'_>) -> Vec<f64> {
-        problem.scales(&self.compliance(problem))
+        let mut compliance = self.compliance(problem);
+        if let Some(coupled) = &self.coupled {
+            for (k, c) in compliance.iter_mut().enumerate() {
+                *c += coupled.compliance[(k, k)];
+            }
+        }
+        problem.scales(&compliance)
+    }
+
+    /// v' by row.
+    fn stretched(&self, problem: &Reduced<'_>, p: &[f64], beta: &[f64]) -> Vec<f64> {
+        let mut v = problem.jump(p, beta);
+        for (k, c) in self.compliance(problem).into_iter().enumerate() {
+            v[k] += c * (p[k] - self.anchor[k]);
+        }
+        if let Some(coupled) = &self.coupled {
+            mul_add(coupled.compliance, p, &mut v);
+            v.iter_mut()
+                .zip(&coupled.stretch)
+                .for_each(|(v, c)| *v += c);
+        }
+        v
     }
 
     /// The trial z = P − r v' for given contact forces and rigid amplitudes.
     pub fn predict(&self, problem: &Reduced<'_>, p: &[f64], beta: Vec<f64>) -> Point {
-        let (r, c) = (self.scales(problem), self.compliance(problem));
-        let v = problem.jump(p, &beta);
-        let z = (0..p.len())
-            .map(|k| p[k] - r[k] * (v[k] + c[k] * (p[k] - self.anchor[k])))
-            .collect();
+        let r = self.scales(problem);
+        let v = self.stretched(problem, p, &beta);
+        let z = (0..p.len()).map(|k| p[k] - r[k] * v[k]).collect();
         Point::new(problem, z, beta)
     }
 
     /// F by row, in m.
-    fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], c: &[f64], at: &Point) -> Vec<f64> {
-        let mut f = problem.jump(&at.p, &at.beta);
+    fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], at: &Point) -> Vec<f64> {
+        let mut f = self.stretched(problem, &at.p, &at.beta);
         for k in 0..f.len() {
-            f[k] += (at.z[k] - at.p[k]) / r[k] + c[k] * (at.p[k] - self.anchor[k]);
+            f[k] += (at.z[k] - at.p[k]) / r[k];
         }
         f
     }
@@ -96,7 +128,7 @@ impl Springs {
         let mut before = at.branches.clone();
         let mut last = f64::INFINITY;
         for iteration in 0.. {
-            let mismatch = self.mismatch(problem, &r, &c, &at);
+            let mismatch = self.mismatch(problem, &r, &at);
             let residual = residual(problem, &at, &mismatch);
             let changes = at
                 .branches
@@ -123,7 +155,10 @@ impl Springs {
                 break;
             }
             let step = match tangent {
-                Tangent::Condensed => direction(problem, &r, &c, &at, &mismatch),
+                Tangent::Condensed => {
+                    let coupled = self.coupled.as_ref();
+                    direction(problem, coupled, &r, &c, &at, &mismatch)
+                }
                 Tangent::Monolithic(global) => {
                     whole_direction(global, problem, &r, &c, &at, &mismatch)
                 }
@@ -140,7 +175,7 @@ impl Springs {
             search.record(merit(problem, &r, &at, &mismatch));
             let t = search.length(|t| {
                 let trial = at.moved(problem, t, &dz, &dbeta);
-                let mismatch = self.mismatch(problem, &r, &c, &trial);
+                let mismatch = self.mismatch(problem, &r, &trial);
                 merit(problem, &r, &trial, &mismatch)
             });
             before.clone_from(&at.branches);
@@ -170,9 +205,10 @@ fn merit(problem: &Reduced<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 
 
 /// Newton step (δz, δβ); `None` if the tangent is singular.
 ///
-/// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + 1/k − 1/r) S y + Q δβ = −F.
+/// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + C + 1/k − 1/r) S y + Q δβ = −F.
 fn direction(
     problem: &mut Reduced<'_>,
+    coupled: Option<&Coupled<'_>>,
     r: &[f64],
     c: &[f64],
     at: &Point,
@@ -207,9 +243,12 @@ fn direction(
         for l in start..start + problem.rows_at(start) {
             let s = slope[l][k - start];
             if s != 0.0 {
-                let w = w.col_as_slice(l);
-                for (entry, &(a, _)) in column[..n].iter_mut().zip(&active) {
-                    *entry += w[a] * s;
+                let compliances = [Some(w), coupled.map(|c| c.compliance)];
+                for compliance in compliances.into_iter().flatten() {
+                    let w = compliance.col_as_slice(l);
+                    for (entry, &(a, _)) in column[..n].iter_mut().zip(&active) {
+                        *entry += w[a] * s;
+                    }
                 }
                 // Rows of one point follow each other, so row l of this point is active row b − k + l.
                 column[b + l - k] += (c[l] - 1.0 / r[l]) * s;
@@ -235,9 +274,12 @@ fn direction(
         }
     }
     let dbeta = solution[n..].to_vec();
-    // Open rows follow: y = −F − W δP − Q δβ.
+    // Open rows follow: y = −F − (W + C) δP − Q δβ.
     let mut dv = vec![0.0; problem.len()];
     mul_add(w, &dp, &mut dv);
+    if let Some(coupled) = coupled {
+        mul_add(coupled.compliance, &dp, &mut dv);
+    }
     modes.add(&dbeta, &mut dv);
     let mut y: Vec<f64> = mismatch.iter().zip(&dv).map(|(f, dv)| -f - dv).collect();
     for (b, &(k, _)) in active.iter().enumerate() {
@@ -306,19 +348,20 @@ impl Point {
 
 /// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`]. What is noted is the natural map
 /// of the contact laws, as for every method: it ends at the modelling error, not at zero.
+///
+/// `jump(problem, iterate)` is v, without what lies in series.
 pub(crate) fn recorded<'m>(
     monitor: &'m mut dyn Monitor,
+    jump: impl Fn(&Reduced<'_>, &Point) -> Vec<f64> + 'm,
 ) -> impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool + 'm {
-    let mut iteration = 0;
     move |problem, at, changes| {
-        let v = problem.jump(&at.p, &at.beta);
+        let v = jump(problem, at);
         let natural_map = problem.natural_map(&at.p, &v);
+        problem.counters.iterations = problem.history.len();
         problem.history.push(super::state::Iteration {
             natural_map,
             changes,
         });
-        problem.counters.iterations = iteration;
-        iteration += 1;
-        monitor.step(iteration - 1, natural_map)
+        monitor.step(problem.counters.iterations, natural_map)
     }
 }

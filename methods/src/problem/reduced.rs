@@ -59,6 +59,12 @@ pub(crate) struct Reduced<'a> {
     pub rows: &'a RowSet,
     /// Rows (g, d) for P = 0, β = 0.
     pub q: Vec<f64>,
+    /// Displacements for P = 0, pinned unknowns at 0.
+    pub free: Vec<f64>,
+    /// Forces on the body beside f + Bᵀ P: none, or Nitsche's consistency term.
+    pub further: Vec<f64>,
+    /// What `Converged` stands for.
+    pub claim: Claim,
     /// c in Qᵀ P = c.
     pub balance: Vec<f64>,
     /// Natural map at which methods stop.
@@ -70,11 +76,9 @@ pub(crate) struct Reduced<'a> {
     rescues: usize,
     /// Smallest natural map so far and its iteration.
     best: (f64, usize),
-    /// What `Converged` will stand for.
-    pub claim: Claim,
     corrections: usize,
     /// Displacements of the iterate confirmed last.
-    confirmed: Option<Vec<f64>>,
+    pub confirmed: Option<Vec<f64>>,
 }
 
 impl<'a> Reduced<'a> {
@@ -137,6 +141,8 @@ impl<'a> Reduced<'a> {
             best: (f64::INFINITY, 0),
             balance,
             counters,
+            free: u,
+            further: Vec::new(),
             claim: claim(condensed.rho),
             corrections: 0,
             confirmed: None,
@@ -366,7 +372,7 @@ impl<'a> Reduced<'a> {
     }
 
     /// Contact forces with all `dim` rows per point.
-    fn all_forces(&self, p: &[f64]) -> Vec<f64> {
+    pub fn all_forces(&self, p: &[f64]) -> Vec<f64> {
         let system = self.increment.system;
         let mut all = vec![0.0; system.dim() * system.points()];
         for (&row, &force) in self.rows.source.iter().zip(p) {
@@ -376,12 +382,13 @@ impl<'a> Reduced<'a> {
     }
 
     /// u = K⁻¹ (f + Bᵀ P) + R α with one solve; `None` if the forces left the finite range.
-    fn recover(&mut self, p: &[f64], beta: &[f64]) -> Result<Option<Vec<f64>>, MethodError> {
+    pub fn recover(&mut self, p: &[f64], beta: &[f64]) -> Result<Option<Vec<f64>>, MethodError> {
         let elastic = self.increment.system.elastic();
         let mut u = self.increment.load.force.clone();
         elastic
             .jump()
             .mul_transpose_add(&self.all_forces(p), &mut u);
+        u.iter_mut().zip(&self.further).for_each(|(u, f)| *u += f);
         if !u.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }

@@ -151,9 +151,17 @@ pub fn exact() -> impl Iterator<Item = &'static Method> {
     METHODS.iter().copied().filter(|m| m.exact)
 }
 
-/// Every method, with options that make the inexact ones good to about 1e-6, and the accuracy to ask for.
+/// Methods that need nothing but K and B: a toy has no stress that a traction operator could stand for.
+pub fn general() -> impl Iterator<Item = &'static Method> {
+    METHODS
+        .iter()
+        .copied()
+        .filter(|m| !build(m, &[]).needs_traction())
+}
+
+/// Those methods, with options that make the inexact ones good to about 1e-6, and the accuracy to ask for.
 pub fn all() -> impl Iterator<Item = (&'static Method, Vec<(&'static str, f64)>, f64)> {
-    METHODS.iter().map(|m| {
+    general().map(|m| {
         let sharp: Vec<_> = [
             ("normal", 1e7),
             ("tangential", 1e7),
@@ -163,7 +171,7 @@ pub fn all() -> impl Iterator<Item = (&'static Method, Vec<(&'static str, f64)>,
         .into_iter()
         .filter(|(name, _)| !m.exact && m.options.iter().any(|o| o.name == *name))
         .collect();
-        (*m, sharp, if m.exact { 1e-8 } else { 1e-5 })
+        (m, sharp, if m.exact { 1e-8 } else { 1e-5 })
     })
 }
 

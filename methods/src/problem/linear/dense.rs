@@ -3,6 +3,8 @@
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatMut};
 
+use super::floating::dot;
+
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
 
@@ -40,6 +42,13 @@ pub(crate) fn solve_dense(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
         return Some(Vec::new());
     }
     DenseLu::new(a)?.solve(b)
+}
+
+/// y += Aᵀ x for a full matrix.
+pub(crate) fn mul_transpose_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
+    for (j, y) in y.iter_mut().enumerate() {
+        *y += dot(a.col_as_slice(j), x);
+    }
 }
 
 /// y += A x for a full matrix.

@@ -15,7 +15,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use faer::{Conj, Mat, MatMut, Par, Side};
 
 use super::super::error::MethodError;
 use super::super::matrix::SymmetricMatrix;
@@ -128,7 +128,7 @@ impl Factor {
             f[pin] = 0.0;
         }
         x.copy_from_slice(&f);
-        self.solve_scaled(x, &mut memory);
+        self.solve_scaled(column(x), &mut memory);
 
         let (mut residual, mut kx) = (vec![0.0; n], vec![0.0; n]);
         let mut best = f64::INFINITY;
@@ -151,7 +151,7 @@ impl Factor {
                 break;
             }
             best = relative;
-            self.solve_scaled(&mut residual, &mut memory);
+            self.solve_scaled(column(&mut residual), &mut memory);
             for j in 0..n {
                 x[j] += residual[j];
             }
@@ -159,22 +159,33 @@ impl Factor {
         Ok(())
     }
 
-    fn solve_scaled(&self, x: &mut [f64], memory: &mut MemBuffer) {
-        let n = x.len();
-        for (x, d) in x.iter_mut().zip(&self.scale) {
-            *x *= d;
-        }
+    /// Solves K X = F in place for all columns together, without refinement; pinned rows of F must be 0.
+    pub fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
+        let req = (self.symbolic).solve_in_place_scratch::<f64>(x.ncols(), Par::Seq);
+        let mut memory = MemBuffer::try_new(req)
+            .map_err(|_| kernel("sparse solve", "out of memory".to_string()))?;
+        self.solve_scaled(x.as_mut(), &mut memory);
+        Ok(())
+    }
+
+    fn solve_scaled(&self, mut x: MatMut<'_, f64>, memory: &mut MemBuffer) {
+        let scale = |x: &mut MatMut<'_, f64>| {
+            for j in 0..x.ncols() {
+                for (i, d) in self.scale.iter().enumerate() {
+                    x[(i, j)] *= d;
+                }
+            }
+        };
+        scale(&mut x);
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, 1),
+            x.as_mut(),
             Par::Seq,
             MemStack::new(memory),
         );
-        for (x, d) in x.iter_mut().zip(&self.scale) {
-            *x *= d;
-        }
+        scale(&mut x);
         for &pin in &self.pins {
-            x[pin] = 0.0;
+            x.as_mut().row_mut(pin).fill(0.0);
         }
     }
 
@@ -220,6 +231,11 @@ fn scaled_values(k: &SymmetricMatrix, scale: &[f64], pins: &[usize]) -> Vec<f64>
         }
     }
     values
+}
+
+fn column(x: &mut [f64]) -> MatMut<'_, f64> {
+    let n = x.len();
+    MatMut::from_column_major_slice_mut(x, n, 1)
 }
 
 /// Euclidean norm.

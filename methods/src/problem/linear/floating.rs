@@ -111,7 +111,6 @@ impl ModeJumps {
     }
 
     /// No rigid motions.
-    #[cfg(test)]
     pub fn empty() -> Self {
         Self {
             q: Vec::new(),

@@ -1,0 +1,155 @@
+//! Traction operator S: the contact force that the stress in the cells implies at each contact point.
+//!
+//! ```text
+//!   S u = τ = −w {σ(u)} n      force on side 1 in the local frame (n, a[, b]), τ_n > 0 in compression
+//!
+//!            Σ V_c^s σ_c^s(x)
+//!   {σ}  =  ——————————————————     over the parts (cell c, side s) of the body whose closure contains x
+//!              Σ V_c^s
+//! ```
+//!
+//! Weights by volume V between the sides of a cut cell: Annavarapu, Hautefeuille & Dolbow, Comput. Meth. Appl. Mech. Engng
+//! 225-228 (2012) 44. A sliver has a large stress for a small energy; with its volume as weight it cannot spoil the trace
+//! inequality |{σ} n|² w <= C u·K u on which Nitsche's method rests. The same rule averages the cells along the crack.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
+use crate::fem::quadrature::gauss_cell;
+use crate::fem::{Point, dot};
+
+use super::cell_matrix::{CellError, CellIntegrator};
+use super::crack::ON_CRACK;
+use super::cut::{Side, SubCells};
+use super::enrichment::reference_position;
+use super::pairs::ContactPoint;
+
+/// A cell touches a point within this, in units of its diagonal: above rounding, below the shortest distance of a crossed
+/// edge's point from a node that the crack does not run through.
+const TOUCHES: f64 = 0.1 * ON_CRACK;
+
+/// A part of the body at a contact point: a whole cell, or one side of a cut cell.
+struct Part {
+    cell: usize,
+    /// Reference position of the point in the cell.
+    xi: Point,
+    side: Side,
+    /// Volume [m³] or area [m²].
+    measure: f64,
+}
+
+/// Rows of S over all unknowns, point by point (n, a[, b]), as (unknown, coefficient): N/m, in 2D N/m².
+pub fn traction_rows(
+    integrator: &CellIntegrator<'_>,
+    points: &[ContactPoint],
+) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
+    let users = integrator.enrichment.users();
+    let rows: Vec<Vec<Vec<(usize, f64)>>> = points
+        .par_iter()
+        .map(|point| point_rows(integrator, point, &parts(integrator, &users, point)?))
+        .collect::<Result<_, _>>()?;
+    Ok(rows.concat())
+}
+
+/// The parts at a point. All of them touch the nodes of the functions that jump there.
+fn parts(
+    integrator: &CellIntegrator<'_>,
+    users: &[Vec<u32>],
+    point: &ContactPoint,
+) -> Result<Vec<Part>, CellError> {
+    let CellIntegrator {
+        mesh,
+        cracks,
+        enrichment,
+        ..
+    } = integrator;
+    let nodes = point.terms.iter().map(|&(f, _)| {
+        let function = enrichment.functions[f as usize];
+        function.node as usize
+    });
+    let cells: BTreeSet<u32> = nodes.flat_map(|n| users[n].iter().copied()).collect();
+    let mut parts = Vec::new();
+    for cell in cells.into_iter().map(|c| c as usize) {
+        let Some(xi) = reference_position(mesh, cell, &point.x, TOUCHES) else {
+            continue;
+        };
+        let crack = enrichment.split[cell].map(|k| &cracks[k as usize]);
+        let sides: &[Side] = match crack {
+            Some(crack) if crack.number == point.crack => &[1.0, -1.0],
+            // Another crack passes by: the point lies on one of its sides.
+            Some(crack) if crack.distance(&point.x) < 0.0 => &[-1.0],
+            _ => &[1.0],
+        };
+        for &side in sides {
+            parts.push(Part {
+                cell,
+                xi,
+                side,
+                measure: measure(integrator, cell, side),
+            });
+        }
+    }
+    if parts.is_empty() {
+        return Err(CellError {
+            at: point.x,
+            reason: "a contact point lies in no cell".into(),
+        });
+    }
+    Ok(parts)
+}
+
+/// Measure of a whole cell, or of one side of a cut one.
+fn measure(integrator: &CellIntegrator<'_>, cell: usize, side: Side) -> f64 {
+    let kind = integrator.mesh.kind;
+    let corners = integrator.mesh.corners(cell);
+    let corners = &corners[..kind.nodes()];
+    match integrator.enrichment.split[cell] {
+        Some(k) => {
+            let phi = integrator.cracks[k as usize].cell_phi(integrator.mesh, cell);
+            let points = SubCells::of(kind, corners, &phi, side).points();
+            points.iter().map(|p| p.weight).sum()
+        }
+        None => gauss_cell(kind.dim(), 2)
+            .iter()
+            .map(|(xi, w)| w * kind.gradients(corners, xi).1)
+            .sum(),
+    }
+}
+
+/// Rows (n, a[, b]) of one point.
+///
+/// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
+/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e).
+fn point_rows(
+    integrator: &CellIntegrator<'_>,
+    point: &ContactPoint,
+    parts: &[Part],
+) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
+    let dim = integrator.mesh.dim();
+    let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
+    let n = &point.frame[0];
+    let total: f64 = parts.iter().map(|p| p.measure).sum();
+    let mut rows = vec![BTreeMap::<usize, f64>::new(); dim];
+    for part in parts.iter().filter(|p| p.measure > 0.0) {
+        let factor = -point.weight * part.measure / total;
+        let functions = integrator.enrichment.cell(part.cell);
+        let gradients = integrator.gradients(part.cell, &part.xi, &point.x, part.side);
+        for (&f, g) in functions.iter().zip(&gradients) {
+            for (row, e) in rows.iter_mut().zip(&point.frame) {
+                let (normal, tangential) = (dot(g, n), dot(g, e));
+                for a in 0..dim {
+                    let value =
+                        lambda * dot(e, n) * g[a] + mu * (e[a] * normal + n[a] * tangential);
+                    if value != 0.0 {
+                        *row.entry(f as usize * dim + a).or_default() += factor * value;
+                    }
+                }
+            }
+        }
+    }
+    Ok(rows
+        .into_iter()
+        .map(|row| row.into_iter().collect())
+        .collect())
+}
