@@ -151,22 +151,23 @@ impl Method {
     }
 }
 
-/// All methods.
+/// All methods: Newton methods, the interior point, multiplier and splitting methods, sweeps, fixed points, and those that
+/// solve laws of their own.
 pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
     &newton_ac::METHOD,
     &pdas::METHOD,
-    &barrier::METHOD,
-    &penalty::METHOD,
+    &hybrid::METHOD,
+    &interior_point::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,
-    &nsgs::METHOD,
     &admm::METHOD,
+    &nsgs::METHOD,
     &projection::METHOD,
-    &interior_point::METHOD,
     &socp::METHOD,
     &tresca::METHOD,
-    &hybrid::METHOD,
+    &penalty::METHOD,
+    &barrier::METHOD,
     &nitsche::METHOD,
 ];
 
