@@ -111,6 +111,15 @@ fn files_give_what_the_case_gives(name: &str, friction: f64, increment: usize) {
                 );
                 continue;
             }
+            // The export starts where an exact method has led; an approximate one has led elsewhere.
+            if increment > 1 && !method.exact {
+                assert!(
+                    verdict.starts_with("approximate"),
+                    "{}: {verdict}",
+                    method.name
+                );
+                continue;
+            }
             let run = format!(
                 "solutions/{problem}.{kind}.fclib.{}.mu-{mu}.r.mtx",
                 method.name
@@ -319,6 +328,31 @@ fn files_of_other_writers_are_solved() {
     for name in ["local_csr", "local_gzip"] {
         assert_eq!(verdict(dir.path(), name, METHOD), "solved");
     }
+}
+
+#[test]
+fn what_needs_the_stiffness_refuses_local_files() {
+    let (dir, stem) = exported(&["plate_mesh1", "--friction", "0.8"]);
+    let files = ["local", "global"].map(|kind| format!("problems/{stem}.{kind}.hdf5"));
+    let arguments = [
+        "solve",
+        &files[0],
+        &files[1],
+        "-m",
+        "newton-ac:monolithic=1",
+    ];
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let found = |kind: &str| {
+        let case = format!("{stem}.{kind}");
+        verdict(dir.path(), &case, "newton-ac[monolithic=1e0]")
+    };
+    assert!(
+        found("local").starts_with("refused: "),
+        "{}",
+        found("local")
+    );
+    assert_eq!(found("global"), "solved");
 }
 
 #[test]
