@@ -238,19 +238,9 @@ impl Enforcement for Barrier {
             let pairs = at.branches.iter().zip(&before);
             let changes = pairs.filter(|(a, b)| a != b).count();
             before.clone_from(&at.branches);
-            let goal = if width > 1.0 {
-                f64::NEG_INFINITY
-            } else {
-                CLAIM_FRACTION * problem.stop
-            };
-            let ended = self.ends(
-                &mut problem,
-                &at,
-                &x.beta,
-                [residual, goal],
-                changes,
-                monitor,
-            );
+            let solved = width == 1.0 && residual <= CLAIM_FRACTION * problem.stop;
+            let found = (residual, solved);
+            let ended = self.ends(&mut problem, &at, &x.beta, found, changes, monitor);
             if let Some(status) = ended {
                 break (status, at.P);
             }
@@ -308,7 +298,7 @@ impl Barrier {
         problem: &mut Reduced<'_>,
         at: &Balance,
         beta: &[f64],
-        [residual, goal]: [f64; 2],
+        (residual, solved): (f64, bool),
         changes: usize,
         monitor: &mut dyn Monitor,
     ) -> Option<Status> {
@@ -323,7 +313,7 @@ impl Barrier {
             return Some(Status::Diverged);
         }
         let go_on = monitor.step(iteration, natural_map);
-        if residual <= goal {
+        if solved {
             Some(Status::Converged)
         } else if !go_on {
             Some(Status::Stopped)
