@@ -1,5 +1,6 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod exchange;
 mod progress;
 mod stress;
 
@@ -13,10 +14,13 @@ use self::progress::Bar;
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
+use crate::harness::export::ExportError;
+use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
 use crate::harness::run::{Choice, Fields, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
+use crate::pages;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 
@@ -66,9 +70,15 @@ enum Verb {
     },
     /// Run every method on random problems: how often each succeeds, by friction coefficient
     Stress(stress::Arguments),
+    /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
+    Export(exchange::ExportArgs),
+    /// Solve contact problems from FCLIB files (HDF5)
+    Solve(exchange::SolveArgs),
+    /// Judge reactions that other programs found for a problem from an FCLIB file
+    Judge(exchange::JudgeArgs),
     /// List the methods and the shipped cases
     List,
-    /// Describe a method or a case
+    /// Describe a method or a case, or all `methods`
     Show {
         /// Method or case
         name: String,
@@ -104,6 +114,12 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// An increment that cannot be exported.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A problem file that cannot be solved.
+    #[error(transparent)]
+    ProblemFile(#[from] ProblemFileError),
     /// A name nobody knows.
     #[error("unknown {what} `{name}`, known: {known}")]
     Unknown {
@@ -174,6 +190,9 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             run_verb(&cases, &method, settings, &out)
         }
         Verb::Stress(arguments) => stress::run(arguments),
+        Verb::Export(args) => exchange::export_verb(args),
+        Verb::Solve(args) => exchange::solve_verb(args),
+        Verb::Judge(args) => exchange::judge_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)
@@ -383,6 +402,9 @@ fn list_text() -> String {
 }
 
 fn show_text(name: &str) -> Result<String, CliError> {
+    if name == "methods" {
+        return Ok(pages::all());
+    }
     if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
         return Ok((*text).to_owned());
     }
@@ -399,25 +421,5 @@ fn show_text(name: &str) -> Result<String, CliError> {
             .collect::<Vec<_>>()
             .join(", "),
     })?;
-    let exact = if method.exact {
-        "solves the contact laws themselves"
-    } else {
-        "its parameter is a modelling error"
-    };
-    let mut text = format!(
-        "{} ({})\n  {}\n  {}\n  Reference: {}\n\nOptions\n",
-        method.name, method.label, method.summary, exact, method.reference
-    );
-    for option in method.options {
-        text += &format!(
-            "  {:<20} default {}, {}, unit {}\n  {:<20} {}\n",
-            option.name,
-            option.default,
-            option.allowed(),
-            option.unit,
-            "",
-            option.help
-        );
-    }
-    Ok(text)
+    Ok(pages::page(method))
 }

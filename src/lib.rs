@@ -10,6 +10,8 @@
 pub mod cli;
 pub mod fem;
 pub mod harness;
+pub mod interchange;
+pub mod pages;
 pub mod paper;
 pub mod report;
 pub mod xfem;

@@ -2,7 +2,8 @@
 //!
 //! Central path: Kanno, Martins & Pinto da Costa, Int. J. Numer. Meth. Engng 65 (2006) 62, for the laws as complementarity
 //! of second-order cones; predictor and corrector: Mehrotra, SIAM J. Optim. 2 (1992) 575. Related: Acary, Armand, Nguyen
-//! & Shpakovych, J. Optim. Theory Appl. (2024), with De Saxcé's cone in place of the pair (g, λ).
+//! & Shpakovych, Second-order cone programming for frictional contact mechanics using interior point algorithm (2023), with
+//! De Saxcé's cone in place of the pair (g, λ).
 //!
 //! ```text
 //! v = (g, d) = q + W P + Q β,  Qᵀ P = c          condensed equilibrium; v is an unknown of its own
@@ -29,8 +30,8 @@
 //! forces of the increment's start, moved inside by the fraction of the reference force that they are wrong by.
 //!
 //! # Failure modes
-//! Coulomb friction is no minimisation: the path may end at a boundary where the problem is not unique (2 in 1000 of
-//! those systems at μ = 2, 2 in 100 at μ = 5). Steps below 2 % start it again from the iterate, moved inside deeper
+//! Coulomb friction is no minimisation: the path may end at a boundary where the problem is not unique (of 1000 of those
+//! systems 2 at μ = 2 and 27 at μ = 5). Steps below 2 % start it again from the iterate, moved inside deeper
 //! every time; then it reports a stall. A body that nothing holds ends as stall or mechanism.
 //!
 //! # Skips

@@ -80,6 +80,8 @@ mod nsgs;
 mod pdas;
 mod penalty;
 mod projection;
+mod socp;
+mod tresca;
 
 pub use problem::law;
 pub use problem::*;
@@ -156,6 +158,8 @@ pub static METHODS: &[&Method] = &[
     &admm::METHOD,
     &projection::METHOD,
     &interior_point::METHOD,
+    &socp::METHOD,
+    &tresca::METHOD,
     &hybrid::METHOD,
 ];
 

@@ -4,7 +4,6 @@
 
 mod toys;
 
-use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use stickslip_methods::*;
 use toys::*;
@@ -134,7 +133,7 @@ fn barrier_error_falls_like_its_gap_and_slip_and_never_penetrates() {
 #[test]
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
-    let sweeps: [(&str, &str, &[f64]); 8] = [
+    let sweeps: [(&str, &str, &[f64]); 11] = [
         ("b-newton", "r", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         (
             "augmented-lagrangian",
@@ -147,6 +146,9 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
         ("admm", "over_relaxation", &[0.5, 1.0, 1.9]),
         ("projection", "variant", &[0.0, 1.0]),
         ("nsgs", "relaxation", &[0.5, 0.8, 1.2]),
+        ("interior-point", "fraction", &[0.5, 0.9, 0.999]),
+        ("socp", "anderson", &[0.0, 1.0, 20.0]),
+        ("tresca", "anderson", &[0.0, 1.0, 20.0]),
     ];
     for (name, option, values) in sweeps {
         for &value in values {
@@ -263,17 +265,4 @@ fn frictionless_contact_is_the_quadratic_programme_that_clarabel_solves() {
             );
         }
     }
-}
-
-fn csc(rows: &Rows) -> CscMatrix<f64> {
-    let (m, n) = (rows.len(), rows[0].len());
-    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
-    for j in 0..n {
-        for (i, row) in rows.iter().enumerate().filter(|(_, row)| row[j] != 0.0) {
-            rowval.push(i);
-            nzval.push(row[j]);
-        }
-        colptr.push(rowval.len());
-    }
-    CscMatrix::new(m, n, colptr, rowval, nzval)
 }

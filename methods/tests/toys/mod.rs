@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use clarabel::algebra::CscMatrix;
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use stickslip_methods::*;
@@ -340,4 +341,18 @@ pub fn block(a: f64, h: f64, bar: f64, lateral: f64) -> Arc<Elastic> {
         modes.push(vec![1.0, 0.0, 1.0, 0.0, 1.0, 0.0]);
     }
     elastic(2, &k, &b, modes, false)
+}
+
+/// A dense matrix as clarabel takes it.
+pub fn csc(rows: &Rows) -> CscMatrix<f64> {
+    let (m, n) = (rows.len(), rows[0].len());
+    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
+    for j in 0..n {
+        for (i, row) in rows.iter().enumerate().filter(|(_, row)| row[j] != 0.0) {
+            rowval.push(i);
+            nzval.push(row[j]);
+        }
+        colptr.push(rowval.len());
+    }
+    CscMatrix::new(m, n, colptr, rowval, nzval)
 }

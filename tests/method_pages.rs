@@ -1,0 +1,39 @@
+//! Every method has a complete page, and `docs/methods.md` is what the code says.
+
+use stickslip::pages;
+use stickslip_methods::METHODS;
+
+#[test]
+fn every_page_says_what_a_user_has_to_know() {
+    for method in METHODS {
+        let page = pages::page(method);
+        for section in [
+            "### Options",
+            "### Guarantees",
+            "### Failure modes",
+            "### Skips",
+        ] {
+            assert!(page.contains(section), "{}: no {section}", method.name);
+        }
+        assert!(page.contains("```text"), "{}: no equations", method.name);
+        for option in method.options {
+            let mentions = page.matches(&format!("`{}`", option.name)).count();
+            assert!(
+                mentions >= 2,
+                "{}: {} is not explained",
+                method.name,
+                option.name
+            );
+        }
+    }
+}
+
+#[test]
+fn the_manual_is_that_of_this_source() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/methods.md");
+    let committed = std::fs::read_to_string(path).expect("docs/methods.md");
+    assert!(
+        committed == pages::all(),
+        "docs/methods.md is stale: write it with `stickslip show methods`"
+    );
+}
