@@ -10,7 +10,7 @@ use common::*;
 use stickslip::harness::run::Quiet;
 use stickslip::harness::stress::{self, Study, Trial};
 use stickslip::harness::verdict::Verdict;
-use stickslip::report::robustness;
+use stickslip::report::{Provenance, robustness};
 use stickslip_methods::{METHODS, Status, Tier};
 
 const FRICTION: [f64; 3] = [0.0, 0.6, 5.0];
@@ -237,4 +237,26 @@ fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
         trial.verdict = verdict;
         assert_eq!(stress::as_expected(std::slice::from_ref(&trial)), expected);
     }
+}
+
+/// Goal: problems that a method declines are neither successes nor failures, and a study of refusals only is still written.
+#[test]
+fn refused_problems_have_no_rate() {
+    let study = Study {
+        problems: 1,
+        dims: vec![2],
+        friction: vec![0.3],
+        ..study()
+    };
+    let mut trials = trials(&study, &[METHOD]);
+    trials[0].verdict = Verdict::Refused("no".into());
+    let rows = robustness::rows(&study, &trials);
+    assert_eq!((rows.len(), rows[0].refused), (1, 1));
+    assert!(rows[0].success.iter().all(|rate| rate.is_nan()));
+    assert!(robustness::failures(&study, &trials).is_empty());
+    let table = robustness::table(&rows).unwrap();
+    assert_eq!(table.rows()[0][2], "refused");
+    let bundle = robustness::bundle(&study, &trials, &Provenance::collect(1)).unwrap();
+    assert!(bundle.get("robustness.csv").is_some());
+    assert!(bundle.get("figures/robustness.svg").is_none());
 }

@@ -352,7 +352,10 @@ pub fn bundle(
     bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
     bundle.add(FailureRow::FILE, csv::file(&failures(study, trials))?)?;
     paper::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
-    bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
+    // Where every method declines every problem there is nothing to draw.
+    if rows.iter().any(|row| row.success[0].is_finite()) {
+        bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
+    }
     provenance.add_to(&mut bundle)?;
     Ok(bundle)
 }
