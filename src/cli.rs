@@ -1,20 +1,23 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod exchange;
+mod progress;
 mod stress;
 
 use std::collections::BTreeSet;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
+use self::progress::Bar;
 use crate::harness::body::Body;
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
+use crate::harness::export::ExportError;
+use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
-use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, choices, run_case};
+use crate::harness::run::{Choice, Fields, RunError, Settings, choices, run_case};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
 use crate::paper::{self, PaperError};
@@ -66,6 +69,12 @@ enum Verb {
     },
     /// Run every method on random problems: how often each succeeds, by friction coefficient
     Stress(stress::Arguments),
+    /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
+    Export(exchange::ExportArgs),
+    /// Solve contact problems from FCLIB files (HDF5)
+    Solve(exchange::SolveArgs),
+    /// Judge reactions that other programs found for a problem from an FCLIB file
+    Judge(exchange::JudgeArgs),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case
@@ -104,6 +113,12 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// An increment that cannot be exported.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A problem file that cannot be solved.
+    #[error(transparent)]
+    ProblemFile(#[from] ProblemFileError),
     /// A name nobody knows.
     #[error("unknown {what} `{name}`, known: {known}")]
     Unknown {
@@ -174,6 +189,9 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             run_verb(&cases, &method, settings, &out)
         }
         Verb::Stress(arguments) => stress::run(arguments),
+        Verb::Export(args) => exchange::export_verb(args),
+        Verb::Solve(args) => exchange::solve_verb(args),
+        Verb::Judge(args) => exchange::judge_verb(args),
         Verb::List => {
             print!("{}", list_text());
             Ok(true)
@@ -420,37 +438,4 @@ fn show_text(name: &str) -> Result<String, CliError> {
         );
     }
     Ok(text)
-}
-
-/// A progress bar on a terminal, nothing in a pipe.
-struct Bar(ProgressBar);
-
-impl Bar {
-    fn new() -> Self {
-        if !std::io::stderr().is_terminal() {
-            return Bar(ProgressBar::hidden());
-        }
-        let bar = ProgressBar::new(0);
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}")
-        {
-            bar.set_style(style);
-        }
-        Bar(bar)
-    }
-
-    fn finish(&self) {
-        self.0.finish_and_clear();
-    }
-}
-
-impl Progress for Bar {
-    fn plan(&self, runs: usize) {
-        self.0.inc_length(runs as u64);
-    }
-
-    fn done(&self, label: &str) {
-        self.0.set_message(label.to_owned());
-        self.0.inc(1);
-    }
 }

@@ -10,6 +10,7 @@
 pub mod cli;
 pub mod fem;
 pub mod harness;
+pub mod interchange;
 pub mod paper;
 pub mod report;
 pub mod xfem;

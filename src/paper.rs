@@ -3,6 +3,8 @@
 //! Also the penalty error against its parameter, both plate meshes under refinement, and every other shipped case
 //! against its expected numbers.
 
+mod variants;
+
 use std::path::Path;
 
 use stickslip_methods::METHODS;
@@ -11,11 +13,14 @@ use crate::harness::case::{Case, CaseError};
 use crate::harness::record::{Results, RunKey};
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, run_case};
 use crate::harness::shipped;
+use crate::report::comparison::{VariantRow, variant_table};
 use crate::report::paper::{Digits, Table1Row, Table2Row, table1, table2};
 use crate::report::study::{
     LimitRow, PenaltyRow, RefinementRow, limit_table, penalty_table, refinement_table,
 };
-use crate::report::{Bundle, Provenance, ReportError, paper as tables, standard, study};
+use crate::report::{
+    Bundle, Provenance, ReportError, comparison, paper as tables, standard, study,
+};
 
 /// Printed numbers.
 const TABLE1: &str = include_str!("../cases/reference/plate_table1.csv");
@@ -35,6 +40,8 @@ const REFINEMENTS: [(&str, &str, &[usize]); 2] = [
     ("plate_mesh1", "I", &[1, 2, 4, 8]),
     ("plate_mesh2", "II", &[1, 3, 5, 7]),
 ];
+/// Methods of Tables 1 and 2: the founding paper's own field. All others stand in `variants.csv`.
+const PAPER_METHODS: [&str; 4] = ["b-newton", "penalty", "augmented-lagrangian", "latin"];
 /// Method of the refinement study.
 const REFERENCE_METHOD: &str = "b-newton";
 
@@ -53,6 +60,8 @@ pub struct Paper {
     pub refinement: Vec<RefinementRow>,
     /// Their limits.
     pub limits: Vec<LimitRow>,
+    /// Plate and beam by every method and variant.
+    pub variants: Vec<VariantRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
 }
@@ -97,6 +106,7 @@ pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperEr
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
     paper.refinement = refinement_rows(numbers_only, progress)?;
     paper.limits = limit_rows(&paper.refinement);
+    paper.variants = variants::rows(&paper.results, numbers_only, progress)?;
     Ok(paper)
 }
 
@@ -108,6 +118,7 @@ impl Paper {
         tables::add_table2(&mut bundle, &self.table2)?;
         study::add_penalty(&mut bundle, &self.penalty)?;
         study::add_refinement(&mut bundle, &self.refinement, &self.limits)?;
+        comparison::add(&mut bundle, &self.results.runs, &self.variants)?;
         Ok(bundle)
     }
 
@@ -125,6 +136,7 @@ impl Paper {
             penalty_table(&self.penalty)?,
             refinement_table(&self.refinement)?,
             limit_table(&self.limits)?,
+            variant_table(&self.variants)?,
             standard::expectation_summary(&self.results.expectations)?,
         ] {
             text.push_str(&table.terminal());
@@ -219,17 +231,16 @@ fn plate_rows(results: &Results) -> Result<Vec<Table1Row>, PaperError> {
     for record in csv::Reader::from_reader(TABLE1.as_bytes()).deserialize() {
         let (mesh, friction, printed): (String, f64, f64) = record?;
         for (name, _) in PLATES.iter().filter(|(_, own)| *own == mesh) {
-            for method in METHODS {
-                let key = |k: &RunKey| {
-                    k.case == *name && k.friction == friction && k.method == method.name
-                };
+            for method in PAPER_METHODS {
+                let key =
+                    |k: &RunKey| k.case == *name && k.friction == friction && k.method == method;
                 // The support pushes down on the body; the paper prints the magnitude.
                 let reaction = value(results, key, "reaction", "top", "y").map(|r| -r / 1e6);
                 let verdict = verdict(results, key);
                 rows.push(Table1Row::new(
                     &mesh,
                     friction,
-                    method.name,
+                    method,
                     reaction,
                     Some(printed),
                     verdict,
@@ -247,14 +258,14 @@ fn beam_rows(results: &Results) -> Result<Vec<Table2Row>, PaperError> {
         for (variant, friction) in VARIANTS {
             let reference = Table2Row::printed(&model, variant, &component, printed);
             for (name, _) in BEAMS.iter().filter(|(_, own)| *own == model) {
-                for method in METHODS {
+                for method in PAPER_METHODS {
                     let key = |k: &RunKey| {
-                        k.case == *name && k.friction == friction && k.method == method.name
+                        k.case == *name && k.friction == friction && k.method == method
                     };
                     let row = probe_row(results, key, &component);
                     rows.push(Table2Row::computed(
                         &reference,
-                        method.name,
+                        method,
                         row,
                         verdict(results, key),
                     ));

@@ -5,6 +5,7 @@
 //! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
 
 pub mod bundle;
+pub mod comparison;
 pub mod csv;
 mod error;
 pub mod number;

@@ -217,9 +217,14 @@ fn quotes_and_commas_survive_the_csv() {
 fn negative_zero_and_round_off_residuals_print_as_zero() {
     let bundle = csv_bundle();
     assert!(text(&bundle, "quantities.csv").contains(",reaction,top,x,0,N/m\n"));
-    let runs = text(&bundle, "runs.csv");
+    let mut reader = ::csv::Reader::from_reader(bundle.get("runs.csv").expect("a file"));
+    let header = reader.headers().expect("a header").clone();
+    let column = header.iter().position(|name| name == "equilibrium");
+    let column = column.expect("documented");
+    let rows: Vec<_> = reader.records().map(|row| row.expect("a row")).collect();
+    assert!(!rows.is_empty());
     assert!(
-        runs.lines().skip(1).all(|line| line.ends_with(",0,3,33,1")),
+        rows.iter().all(|row| &row[column] == "0"),
         "equilibrium 3.2e-14 is 0"
     );
 }

@@ -34,16 +34,14 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
 use crate::b_newton::BEquations;
 use crate::newton_ac::AlartCurnier;
 use crate::problem::law::{Branch, return_map};
-use crate::problem::linear::dense::solve_dense;
 use crate::problem::reduced::{Begin, Limits, Reduced};
 use crate::problem::saddle::{self, Saddle};
 use crate::problem::semismooth::{Iterate, Safeguards, Scheme, newton};
 use crate::problem::stages::alternate;
+use crate::problem::starts::tied_forces;
 use crate::problem::sweeps::Sweeps;
 use crate::problem::tangent::Tangent;
 use crate::{
@@ -312,25 +310,4 @@ impl Rounds {
         let (P, beta) = self.saddle.balanced(problem, &self.x);
         Iterate { P, beta }
     }
-}
-
-/// P of W P + Q β = −q, Qᵀ P = c; `None` if points are redundant.
-fn tied_forces(problem: &Reduced<'_>) -> Option<Vec<f64>> {
-    let (m, modes, rho) = (
-        problem.len(),
-        &problem.condensed.modes.q,
-        problem.condensed.rho,
-    );
-    let size = m + modes.len();
-    let bordered = Mat::from_fn(size, size, |i, j| match (i < m, j < m) {
-        (true, true) => rho * problem.condensed.w[(i, j)],
-        (true, false) => modes[j - m][i],
-        (false, true) => modes[i - m][j],
-        (false, false) => 0.0,
-    });
-    let mut rhs: Vec<f64> = problem.q.iter().map(|q| -rho * q).collect();
-    rhs.extend(&problem.balance);
-    let mut solution = solve_dense(&bordered, &rhs)?;
-    solution.truncate(m);
-    Some(solution)
 }

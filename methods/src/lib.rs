@@ -71,6 +71,7 @@ pub mod problem;
 mod admm;
 mod augmented_lagrangian;
 mod b_newton;
+mod barrier;
 mod hybrid;
 mod interior_point;
 mod latin;
@@ -149,6 +150,7 @@ pub static METHODS: &[&Method] = &[
     &b_newton::METHOD,
     &newton_ac::METHOD,
     &pdas::METHOD,
+    &barrier::METHOD,
     &penalty::METHOD,
     &augmented_lagrangian::METHOD,
     &latin::METHOD,

@@ -109,6 +109,28 @@ fn penalty_error_falls_like_one_over_its_stiffness() {
 }
 
 #[test]
+fn barrier_error_falls_like_its_gap_and_slip_and_never_penetrates() {
+    let (s, load, reference) = specimen();
+    let barrier = method("barrier").unwrap();
+    let errors: Vec<f64> = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+        .iter()
+        .map(|&c| {
+            let outcome = run(barrier, &[("gap", c), ("slip", c)], &s, &load, 1e-12);
+            assert_eq!(outcome.status, Status::Converged, "{c:e}");
+            assert!(matches!(outcome.claim, Claim::Barrier { gap, slip, .. } if gap == slip && gap > 0.0));
+            let judged = judge(&s, &load, &outcome.state);
+            assert_eq!((judged.penetration, judged.adhesion), (0.0, 0.0));
+            assert!(judged.cone < 1e-15, "{judged:?}");
+            difference(&outcome.state.p, &reference.p)
+        })
+        .collect();
+    for pair in errors.windows(2) {
+        let slope = (pair[1] / pair[0]).log10();
+        assert!((-1.1..-0.9).contains(&slope), "{errors:?}");
+    }
+}
+
+#[test]
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
     let sweeps: [(&str, &str, &[f64]); 11] = [

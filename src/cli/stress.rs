@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use stickslip_methods::{METHODS, Tier};
 
-use super::{Bar, CliError, parse_choice, refuse_twins};
+use super::progress::Bar;
+use super::{CliError, parse_choice, refuse_twins};
 use crate::harness::stress::{self, Study, Trial};
 use crate::harness::verdict::Verdict;
 use crate::report::{Provenance, prepare_output, robustness};

@@ -18,6 +18,7 @@ use crate::harness::case::{Case, CaseError, History, Quadrature};
 use crate::harness::refusals::{
     check_probes, check_supports, crack_error, load_error, motion_error,
 };
+use crate::harness::step::Setup;
 use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
 use crate::xfem::crack::Crack;
@@ -235,6 +236,14 @@ impl Body {
             cracks,
             enrichment,
         })
+    }
+
+    /// Times shared by all runs on the body.
+    pub fn setup(&self) -> Setup {
+        Setup {
+            setup_s: self.setup_s,
+            assembly_s: self.assembly_s,
+        }
     }
 
     /// Integrator over the cells.

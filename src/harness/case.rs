@@ -305,6 +305,13 @@ pub struct PathSpec {
     pub end: f64,
 }
 
+impl PathSpec {
+    /// Time at the end of an increment, counted from 1.
+    pub fn time(&self, increment: usize) -> f64 {
+        self.end * increment as f64 / self.increments as f64
+    }
+}
+
 /// Parameter sweep; no value occurs twice.
 #[derive(Debug, Clone)]
 pub struct Sweep {

@@ -4,18 +4,16 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Outcome, Residuals,
-    Tier,
+    ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Tier,
 };
 
-use crate::harness::attempt::{Judged, attempt, prepare};
 use crate::harness::body::{Body, BodyError};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
-use crate::harness::record::{HistoryRow, Results, RunFields, RunKey, RunRow, SCHEMA};
-use crate::harness::verdict::Verdict;
+use crate::harness::record::{Results, RunFields, RunKey, RunRow};
+use crate::harness::step::Solver;
 
 /// A method with its options.
 #[derive(Debug, Clone)]
@@ -47,6 +45,12 @@ impl Choice {
             options,
             label,
         })
+    }
+
+    /// Every registered method with its defaults.
+    pub fn all() -> Result<Vec<Self>, OptionError> {
+        let all = stickslip_methods::METHODS.iter();
+        all.map(|method| Choice::new(method, &[])).collect()
     }
 }
 
@@ -111,14 +115,10 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
         return Ok(given.to_vec());
     }
     if case.methods.is_empty() {
-        let all = stickslip_methods::METHODS.iter();
-        let default = |&method: &&'static Method| {
-            Choice::new(method, &[]).map_err(|e| {
-                let message = "a method refuses its own defaults";
-                case.error(&case.mesh.span, method.name, e, message)
-            })
-        };
-        return all.map(default).collect();
+        return Choice::all().map_err(|e| {
+            let message = "a method refuses its own defaults";
+            case.error(&case.mesh.span, "methods", e, message)
+        });
     }
     case.methods
         .iter()
@@ -221,8 +221,17 @@ pub fn run_case(
     Ok(results)
 }
 
+/// Natural map asked of a run: a tier of the command line replaces the case's own tolerance.
+pub(crate) fn tolerance(case: &Case, tier: Tier) -> f64 {
+    if tier == case.tier {
+        case.tolerance
+    } else {
+        tier.tolerance()
+    }
+}
+
 /// Friction coefficients per run and crack.
-fn friction_values(case: &Case) -> Vec<Vec<f64>> {
+pub(crate) fn friction_values(case: &Case) -> Vec<Vec<f64>> {
     if case.sweep.friction.is_empty() {
         return vec![case.cracks.iter().map(|c| c.friction).collect()];
     }
@@ -250,12 +259,10 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         friction: cell.friction,
         increment: 1,
     };
-    let (mut method, prepare_s) = match prepare(choice, system) {
-        Ok(prepared) => prepared,
-        Err(verdict) => {
-            let mut refused = row(&key, cell, tier, f64::NAN);
-            refused.verdict = verdict.to_string();
-            results.runs.push(refused);
+    let mut solver = match Solver::prepare(choice, system, body.setup(), tier, &key) {
+        Ok(solver) => solver,
+        Err(refused) => {
+            results.runs.push(refused.run);
             return results;
         }
     };
@@ -265,7 +272,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let mut start_load = Load::zero(&body.elastic);
     let mut steps = Vec::new();
     for increment in 1..=case.path.increments {
-        let time = case.path.end * increment as f64 / case.path.increments as f64;
+        let time = case.path.time(increment);
         key.increment = increment;
         let load = body.load(time);
         let problem = Increment {
@@ -274,42 +281,16 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             start_load: &start_load,
             start: &state,
             index: increment - 1,
-            // A tier asked for on the command line replaces the case's own tolerance.
-            tolerance: if tier == case.tier {
-                case.tolerance
-            } else {
-                tier.tolerance()
-            },
+            tolerance: tolerance(case, tier),
         };
-        let tried = attempt(method.as_mut(), &problem, tier);
-        let mut run = row(
-            &key,
-            cell,
-            tier,
-            if increment == 1 { prepare_s } else { 0.0 },
-        );
-        let shared = system.elastic().timings();
-        run.factorisations = system.elastic().counters().factorisations;
-        run.factorisation_s = shared.analysis_s + shared.factorisation_s;
-        run.condensation_s = shared.condensation_s;
-        run.solve_s = tried.solve_s;
-        let verdict = tried.verdict;
-        let Some(Judged {
-            outcome,
-            found,
-            status,
-        }) = tried.judged
-        else {
-            run.verdict = verdict.to_string();
-            run.forget_times();
-            results.runs.push(run);
+        let step = solver.solve(&key, &problem);
+        results.runs.push(step.run);
+        results.history.extend(step.history);
+        let Some((outcome, status)) = step.answer else {
             break;
         };
-        record_run(&mut run, &verdict, &outcome, &found);
-        results.runs.push(run);
-        record_history(&mut results, &key, &outcome);
         now = Snapshot::new(body, time, &outcome.state, status, &now);
-        if verdict.is_honest() {
+        if step.verdict.is_honest() {
             results
                 .quantities
                 .extend(quantity_rows(case, body, &key, &now));
@@ -329,56 +310,4 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         results.fields.push(RunFields { key, steps });
     }
     results
-}
-
-fn row(key: &RunKey, cell: &Cell<'_>, tier: Tier, prepare_s: f64) -> RunRow {
-    RunRow {
-        key: key.clone(),
-        tier: tier.to_string(),
-        verdict: String::new(),
-        natural_map: f64::NAN,
-        iterations: 0,
-        factorisations: 0,
-        solves: 0,
-        unknowns: cell.system.rows(),
-        points: cell.system.points(),
-        dofs: cell.body.elastic.unknowns(),
-        setup_s: cell.body.setup_s,
-        assembly_s: cell.body.assembly_s,
-        factorisation_s: f64::NAN,
-        condensation_s: f64::NAN,
-        prepare_s,
-        solve_s: f64::NAN,
-        equilibrium: f64::NAN,
-        claimed: f64::NAN,
-        tangent_factorisations: 0,
-        global_factorisations: 0,
-        local_solves: 0,
-        schema: SCHEMA,
-    }
-}
-
-fn record_run(run: &mut RunRow, verdict: &Verdict, outcome: &Outcome, found: &Residuals) {
-    run.verdict = verdict.to_string();
-    run.natural_map = found.natural_map;
-    run.equilibrium = found.equilibrium;
-    run.claimed = found.claimed;
-    run.iterations = outcome.counters.iterations;
-    run.solves = outcome.counters.solves;
-    run.tangent_factorisations = outcome.counters.factorisations;
-    run.global_factorisations = outcome.counters.global_factorisations;
-    run.local_solves = outcome.counters.local_solves;
-    if !verdict.is_honest() {
-        run.forget_times();
-    }
-}
-
-fn record_history(results: &mut Results, key: &RunKey, outcome: &Outcome) {
-    for (iteration, entry) in outcome.history.iter().enumerate() {
-        results.history.push(HistoryRow {
-            key: key.clone(),
-            iteration,
-            natural_map: entry.natural_map,
-        });
-    }
 }

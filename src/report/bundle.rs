@@ -47,6 +47,15 @@ impl Bundle {
         Ok(())
     }
 
+    /// Adds the files of another bundle.
+    ///
+    /// # Errors
+    /// Those of [`Bundle::add`].
+    pub fn append(&mut self, other: Bundle) -> Result<(), ReportError> {
+        let mut files = other.files.into_iter();
+        files.try_for_each(|(path, contents)| self.add(path, contents))
+    }
+
     /// Names of the files, sorted.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         self.files.keys().map(String::as_str)

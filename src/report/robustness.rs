@@ -93,6 +93,9 @@ pub struct FailureRow {
 
 /// Rate of `hits` among `count` and Wilson's 95 % interval (J. Am. Stat. Assoc. 22 (1927) 209); NaN if nothing was tried.
 pub fn wilson(hits: usize, count: usize) -> [f64; 3] {
+    if count == 0 {
+        return [f64::NAN; 3];
+    }
     let (n, p) = (count as f64, hits as f64 / count as f64);
     let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
     let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();

@@ -240,7 +240,7 @@ fn add_residuals(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErr
         .filter(|row| is_last(&last, &row.key))
     {
         figures
-            .entry(problem(&row.key))
+            .entry(problem_name(&row.key))
             .or_default()
             .push(row.clone());
     }
@@ -282,7 +282,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
             } = &row.key;
             let sweep = file_name(&[case, mesh, space, method]);
             problems
-                .entry((problem(&row.key), row.crack))
+                .entry((problem_name(&row.key), row.crack))
                 .or_default()
                 .push(row.clone());
             sweeps
@@ -312,7 +312,8 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     Ok(())
 }
 
-fn problem(key: &RunKey) -> String {
+/// File name part for the problem of a run, without its method: `case.mesh.space.mu-0.1`.
+pub fn problem_name(key: &RunKey) -> String {
     let friction = format!("mu-{}", value(key.friction));
     file_name(&[&key.case, &key.mesh, &key.space, &friction])
 }

@@ -88,6 +88,9 @@ pub enum MethodError {
     /// Laws that need the stress at the contact points were asked of a body without traction operator.
     #[error("the body has no traction operator: the stress at its contact points is unknown")]
     NoTraction,
+    /// The tangential rows of a body set up for frictionless contact were asked for.
+    #[error("the elastic body was set up for frictionless contact only: it has no tangential rows")]
+    NoTangentialRows,
     /// No contact row responds to a contact force: the scale of the natural map is undefined.
     #[error("the contact forces move no contact point: the jump operator is zero")]
     RigidContact,

@@ -1,5 +1,6 @@
 //! The judge: how well a state fulfils equilibrium and contact law, whatever method produced it.
 
+use super::barrier_law::BarrierLaw;
 use super::condensed::{Condensed, RowSet};
 use super::error::{MethodError, check_finite, check_len};
 use super::law::{natural_map_squared, return_map, tangential_norm};
@@ -136,6 +137,23 @@ pub fn residuals_of(
             }
             let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &stretched);
             ratio(e, p_ref)
+        }
+        Claim::Barrier {
+            gap,
+            slip,
+            stiffness,
+        } => {
+            let law = BarrierLaw {
+                gap,
+                slip,
+                stiffness,
+            };
+            let square = |i: usize| {
+                let own = rows.of(i);
+                let mu = system.friction()[i];
+                law.mismatch_squared(mu, condensed.rho, &p[own.clone()], &v[own])
+            };
+            ratio((0..rows.points()).map(square).sum::<f64>().sqrt(), p_ref)
         }
         Claim::Nitsche { gamma, .. } => {
             let stress = rows.restrict(&implied_forces(i, s)?);

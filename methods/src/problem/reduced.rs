@@ -10,6 +10,7 @@ use super::condensed::{Condensed, RowSet};
 use super::error::MethodError;
 use super::judge::{free_jump, natural_map_norm, ratio, reference_force, slip_from};
 use super::linear::dense::mul_add;
+use super::linear::factor::norm;
 use super::linear::floating::dot;
 use super::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use super::system::Increment;
@@ -69,7 +70,8 @@ pub(crate) struct Reduced<'a> {
     rescues: usize,
     /// Smallest natural map so far and its iteration.
     best: (f64, usize),
-    claim: Claim,
+    /// What `Converged` will stand for.
+    pub claim: Claim,
     corrections: usize,
     /// Displacements of the iterate confirmed last.
     confirmed: Option<Vec<f64>>,
@@ -273,6 +275,12 @@ impl<'a> Reduced<'a> {
         mul_add(&self.condensed.w, p, &mut v);
         self.condensed.modes.add(beta, &mut v);
         v
+    }
+
+    /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
+    pub fn mean_jump(&self) -> f64 {
+        let least = norm(&self.balance) / self.condensed.rho;
+        self.free_jump.max(least) / (self.rows.points() as f64).sqrt()
     }
 
     /// P_ref, the force the natural map is relative to.

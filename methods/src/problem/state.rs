@@ -78,6 +78,16 @@ pub enum Claim {
         /// Tangential stiffness k_t, in N/m.
         tangential: f64,
     },
+    /// Barrier and smoothed friction: P_n = −B'(g) with B = −κ (g − ĝ)² ln(g/ĝ) for 0 < g < ĝ and 0 beyond, and
+    /// P_t = −μ P_n f(|d|/ε) d/|d| with f(y) = 2 y − y² for y < 1 and 1 beyond.
+    Barrier {
+        /// ĝ in m.
+        gap: f64,
+        /// ε in m.
+        slip: f64,
+        /// κ in N/m.
+        stiffness: f64,
+    },
     /// Nitsche's laws: P is the return mapping of S u − γ w v, S u the contact force that the stress of the bulk
     /// implies, and equilibrium has the consistency term θ Sᵀ (S u − P)/(γ w). Consistent with the contact laws of the
     /// continuum, it differs from those of the contact points by the error of the discretisation.
@@ -92,7 +102,7 @@ pub enum Claim {
 /// One entry of the iteration history; the first describes the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
-    /// Natural map of the contact laws [-]; under [`Claim::Penalised`] it ends at the modelling error.
+    /// Natural map of the contact laws [-]; of an approximate method it ends at the modelling error.
     pub natural_map: f64,
     /// Points that changed between open, stick and slip since the entry before.
     pub changes: usize,

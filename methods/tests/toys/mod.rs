@@ -154,11 +154,15 @@ pub fn exact() -> impl Iterator<Item = &'static Method> {
 /// Every method, with options that make the inexact ones good to about 1e-6, and the accuracy to ask for.
 pub fn all() -> impl Iterator<Item = (&'static Method, Vec<(&'static str, f64)>, f64)> {
     METHODS.iter().map(|m| {
-        let sharp: Vec<_> = ["normal", "tangential"]
-            .into_iter()
-            .filter(|name| !m.exact && m.options.iter().any(|o| o.name == *name))
-            .map(|name| (name, 1e7))
-            .collect();
+        let sharp: Vec<_> = [
+            ("normal", 1e7),
+            ("tangential", 1e7),
+            ("gap", 1e-7),
+            ("slip", 1e-7),
+        ]
+        .into_iter()
+        .filter(|(name, _)| !m.exact && m.options.iter().any(|o| o.name == *name))
+        .collect();
         (*m, sharp, if m.exact { 1e-8 } else { 1e-5 })
     })
 }

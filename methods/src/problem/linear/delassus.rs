@@ -74,6 +74,19 @@ pub(crate) fn dense(sparse: &SymmetricMatrix) -> Result<Mat<f64>, MethodError> {
     Ok(w)
 }
 
+/// The lower triangle of a full W, every entry stored.
+pub(crate) fn lower(w: &Mat<f64>) -> Result<SymmetricMatrix, MethodError> {
+    let m = w.nrows();
+    let mut col_ptr = vec![0];
+    let (mut row_idx, mut values) = (Vec::new(), Vec::new());
+    for j in 0..m {
+        row_idx.extend(j..m);
+        values.extend((j..m).map(|i| w[(i, j)]));
+        col_ptr.push(values.len());
+    }
+    SymmetricMatrix::new(m, col_ptr, row_idx, values)
+}
+
 fn check_rows(rows: usize) -> Result<(), MethodError> {
     if rows > MAX_CONDENSED_ROWS {
         return Err(MethodError::TooManyRows {

@@ -1,0 +1,222 @@
+//! Where Coulomb friction has several solutions or none: every method from three starts, with its status.
+//!
+//! Sources: Klarbring, Ing. Arch. 60 (1990) 529; Janovský 1981. One contact with W = [[1, −1], [−1, 2]] has exactly one
+//! solution for every load if and only if μ < W_nn/|W_nt| = 1.
+
+#![allow(missing_docs)]
+
+mod toys;
+
+use std::sync::Arc;
+
+use stickslip_methods::*;
+use toys::*;
+
+const W: [[f64; 2]; 2] = [[1.0, -1.0], [-1.0, 2.0]];
+
+/// Contacts of that kind side by side, coupled by `coupling` between their equal rows.
+fn contacts(count: usize, coupling: f64) -> (Rows, Arc<Elastic>) {
+    let m = 2 * count;
+    let entry = |i: usize, j: usize| match i / 2 == j / 2 {
+        true => W[i % 2][j % 2],
+        false if i % 2 == j % 2 => coupling,
+        false => 0.0,
+    };
+    let w: Rows = (0..m)
+        .map(|i| (0..m).map(|j| entry(i, j)).collect())
+        .collect();
+    let row_idx = (0..m).flat_map(|j| j..m).collect();
+    let values = (0..m)
+        .flat_map(|j| (j..m).map(move |i| (i, j)))
+        .map(|(i, j)| entry(i, j))
+        .collect();
+    let mut col_ptr = vec![0];
+    (0..m).for_each(|j| col_ptr.push(col_ptr[j] + m - j));
+    let sparse = SymmetricMatrix::new(m, col_ptr, row_idx, values).unwrap();
+    (w, Elastic::from_delassus(2, sparse, vec![]).unwrap())
+}
+
+fn free_jump(q: &[f64]) -> Load {
+    Load {
+        force: vec![0.0; q.len()],
+        offset: q.to_vec(),
+        traction: vec![],
+    }
+}
+
+/// Runs a method from all starts; whatever it claims must be one of the solutions found by trying all states.
+fn study(m: &Method, body: &Arc<Elastic>, w: &Rows, mu: f64, q: &[f64]) -> (Uniqueness, usize) {
+    let s = system(body, mu);
+    let (load, rest, start) = (free_jump(q), Load::zero(body), ContactState::zero(&s));
+    let i = increment(&s, &load, &rest, &start, 1e-9);
+    let (verdict, states) = from_all_starts(build(m, &[]).as_mut(), &i).unwrap();
+    let known = enumerate(w, q, mu);
+    if !matches!(verdict, Uniqueness::Failed(_)) {
+        for state in &states {
+            let size = q.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let is = |k: &Vec<f64>| {
+                k.iter()
+                    .zip(&state.p)
+                    .all(|(k, p)| (k - p).abs() < 1e-7 * size)
+            };
+            assert!(
+                known.iter().any(is),
+                "{} μ {mu} q {q:?}: {:?} is none of {known:?}",
+                m.name,
+                state.p
+            );
+            assert!(
+                residuals(&i, state).unwrap().natural_map <= 1e-9,
+                "{}",
+                m.name
+            );
+        }
+    }
+    (verdict, known.len())
+}
+
+#[test]
+fn below_the_critical_friction_every_start_of_every_method_leads_to_the_one_solution() {
+    let (w, body) = contacts(1, 0.0);
+    for m in exact() {
+        for mu in [0.3, 0.9] {
+            for k in 0..24 {
+                let angle = f64::from(k) * std::f64::consts::TAU / 24.0;
+                let (verdict, solutions) = study(m, &body, &w, mu, &[angle.cos(), angle.sin()]);
+                assert_eq!(solutions, 1, "μ {mu} angle {angle}");
+                assert_eq!(
+                    verdict,
+                    Uniqueness::Solved,
+                    "{} μ {mu} angle {angle}",
+                    m.name
+                );
+            }
+        }
+    }
+}
+
+/// q = (0.1, −0.4) at μ = 2: open; stick P = (0.2, 0.3); slip P = (0.1, 0.2). Nothing closes without forces, so that
+/// every method answers open after one solve.
+#[test]
+fn an_open_solution_is_found_before_any_other() {
+    let (w, body) = contacts(1, 0.0);
+    let mut known = enumerate(&w, &[0.1, -0.4], 2.0);
+    known.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    for (found, expected) in known.iter().zip([[0.0, 0.0], [0.1, 0.2], [0.2, 0.3]]) {
+        assert!(
+            (0..2).all(|k| (found[k] - expected[k]).abs() < 1e-12),
+            "{known:?}"
+        );
+    }
+    for m in exact() {
+        let (verdict, solutions) = study(m, &body, &w, 2.0, &[0.1, -0.4]);
+        assert_eq!((verdict, solutions), (Uniqueness::Solved, 3), "{}", m.name);
+    }
+}
+
+/// Two such contacts, one of them pressed so that the contact problem has to be solved: of nine solutions methods find
+/// different ones from different starts, and say no more than they know.
+#[test]
+fn above_the_critical_friction_different_starts_may_lead_to_different_solutions() {
+    let (w, body) = contacts(2, 1e-3);
+    let q = [0.1, -0.4, -1.0, 0.3];
+    let mut verdicts = std::collections::BTreeMap::new();
+    for m in exact() {
+        let (verdict, solutions) = study(m, &body, &w, 2.0, &q);
+        assert!(solutions >= 3, "{solutions}");
+        verdicts.insert(m.name, verdict.as_str());
+    }
+    println!("{verdicts:#?}");
+    let differ = verdicts
+        .values()
+        .filter(|v| **v == "solved-nonunique-suspected")
+        .count();
+    assert!(
+        differ > 0,
+        "the study must be able to see several solutions: {verdicts:?}"
+    );
+    let allowed = [
+        "solved",
+        "solved-nonunique-suspected",
+        "stalled",
+        "max-iterations",
+        "singular-tangent",
+    ];
+    assert!(
+        verdicts.values().all(|v| allowed.contains(v)),
+        "{verdicts:?}"
+    );
+}
+
+/// Semi-coercive: a block that nothing holds sideways, pushed beyond its friction. No equilibrium exists.
+#[test]
+fn without_a_solution_no_start_of_any_method_ends_in_a_claim() {
+    let body = block(1.0, 0.8, 50.0, 0.0);
+    let s = system(&body, 0.3);
+    let load = force(&s, &[0.0, 0.0, 0.0, 0.0, 4.0, -10.0]);
+    let (rest, start) = (Load::zero(&body), ContactState::zero(&s));
+    let i = increment(&s, &load, &rest, &start, 1e-9);
+    for m in exact() {
+        let limit = m
+            .options
+            .iter()
+            .find(|o| o.name.starts_with("max_"))
+            .unwrap();
+        let mut method = build(m, &[(limit.name, limit.default.min(200.0))]);
+        let (verdict, _) = from_all_starts(method.as_mut(), &i).unwrap();
+        println!("{:<22} {}", m.name, verdict.as_str());
+        let Uniqueness::Failed(status) = verdict else {
+            panic!("{}: {verdict:?}", m.name)
+        };
+        let honest = [
+            Status::Mechanism,
+            Status::MaxIterations,
+            Status::Stalled,
+            Status::SingularTangent,
+            Status::Diverged,
+        ];
+        assert!(honest.contains(&status), "{}: {status}", m.name);
+    }
+}
+
+/// The rate problem: on a path of loads at μ = 2 the sticking solution ends at a fold and the answer jumps. Each increment
+/// still has a solution, and every method must find one or say that it did not.
+#[test]
+fn a_path_through_a_fold_jumps_but_every_claim_holds() {
+    let (w, body) = contacts(1, 0.0);
+    let s = system(&body, 2.0);
+    for m in exact() {
+        let mut method = build(m, &[]);
+        let (mut state, mut before) = (ContactState::zero(&s), Load::zero(&body));
+        let mut jumps = 0;
+        for k in 1..=20 {
+            let t = f64::from(k) / 20.0;
+            let load = free_jump(&[-0.2 + 0.4 * t, -0.6 * t]);
+            let i = increment(&s, &load, &before, &state, 1e-9);
+            let outcome = method.solve(&i, &mut Silent).unwrap();
+            if outcome.status != Status::Converged {
+                break;
+            }
+            assert!(
+                residuals(&i, &outcome.state).unwrap().natural_map <= 1e-9,
+                "{}",
+                m.name
+            );
+            // The jump of one increment's slip: q less the start's tangential jump.
+            let start = i.start_jump();
+            let q = [load.offset[0], load.offset[1] - start[1]];
+            let known = enumerate(&w, &q, 2.0);
+            let near = |k: &Vec<f64>| (0..2).all(|a| (k[a] - outcome.state.p[a]).abs() < 1e-7);
+            assert!(
+                known.iter().any(near),
+                "{} step {k}: {:?}",
+                m.name,
+                outcome.state.p
+            );
+            let moved = (outcome.state.p[0] - state.p[0]).abs();
+            jumps += usize::from(k > 1 && moved > 0.15);
+            (state, before) = (outcome.state, load);
+        }
+        assert!(jumps <= 1, "{}", m.name);
+    }
+}

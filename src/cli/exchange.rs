@@ -1,0 +1,163 @@
+//! The verbs that exchange contact problems with other programs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use stickslip_methods::{METHODS, Tier};
+
+use super::{Bar, CliError, find_case, parse_choice, provenance, refuse_twins};
+use crate::harness::export::{Request, export};
+use crate::harness::problem_file::ProblemFile;
+use crate::harness::record::Results;
+use crate::harness::run::{Fields, Progress, Settings};
+use crate::paper;
+use crate::report::number::residual;
+use crate::report::tables::{Align, Column, Table};
+use crate::report::{Bundle, prepare_output, standard};
+
+/// Arguments of `export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Case file or name of a shipped case
+    case: String,
+    /// Increment, from 1; the last by default
+    #[arg(long)]
+    increment: Option<usize>,
+    /// Friction coefficient of all cracks; the case's own by default
+    #[arg(long)]
+    friction: Option<f64>,
+    /// Mesh refinement; the first of the case by default
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    refine: Option<u16>,
+    /// Method that solves the increments, NAME or NAME:key=value,key=value
+    #[arg(long, short, default_value = "hybrid")]
+    method: String,
+    /// Folder for the files
+    #[arg(long, default_value = "problems")]
+    out: PathBuf,
+}
+
+/// Arguments of `solve`.
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// FCLIB files (HDF5), local or global
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all by default
+    #[arg(long, short)]
+    method: Vec<String>,
+    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    #[arg(long, default_value = "high")]
+    tier: Tier,
+    /// Folder for the results
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+}
+
+/// Arguments of `judge`.
+#[derive(Debug, Args)]
+pub struct JudgeArgs {
+    /// FCLIB file (HDF5), local or global
+    problem: PathBuf,
+    /// Reactions as MatrixMarket vectors, components normal first, compression positive
+    #[arg(required = true)]
+    reactions: Vec<PathBuf>,
+    /// Accuracy asked for: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    #[arg(long, default_value = "high")]
+    tier: Tier,
+}
+
+pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
+    let case = find_case(&args.case)?;
+    let request = Request {
+        increment: args.increment,
+        friction: args.friction,
+        refine: args.refine.map(usize::from),
+        choice: parse_choice(&args.method)?,
+    };
+    prepare_output(&args.out)?;
+    let (name, bundle) = export(&case, &request)?;
+    bundle.commit(&args.out)?;
+    println!("{}", args.out.join(name).display());
+    for path in bundle.paths() {
+        println!("  {path}");
+    }
+    Ok(true)
+}
+
+pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
+    let given: Vec<String> = if args.method.is_empty() {
+        METHODS.iter().map(|m| m.name.to_owned()).collect()
+    } else {
+        args.method
+    };
+    let chosen = given
+        .iter()
+        .map(|m| parse_choice(m))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+    let problems = (args.files.iter())
+        .map(|file| ProblemFile::read(file))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins(
+        "problem",
+        problems.iter().map(|problem| problem.name.as_str()),
+    )?;
+    prepare_output(&args.out)?;
+    let bar = Bar::new();
+    bar.plan(problems.len() * chosen.len());
+    let settings = Settings {
+        tier: Some(args.tier),
+        jobs: 1,
+        fields: Fields::None,
+    };
+    let mut results = Results::default();
+    let mut solutions = Bundle::new();
+    for problem in &problems {
+        results.append(problem.run(&chosen, args.tier, &bar, &mut solutions)?);
+    }
+    bar.finish();
+    let mut bundle = standard::bundle(&results, &provenance(settings))?;
+    bundle.append(solutions)?;
+    bundle.commit(&args.out)?;
+    println!("{}", standard::runs_table(&results.runs)?.terminal());
+    println!(
+        "{}\nResults: {}",
+        paper::summary(&results),
+        args.out.display()
+    );
+    Ok(paper::as_expected(&results))
+}
+
+pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
+    let problem = ProblemFile::read(&args.problem)?;
+    let mut columns = vec![Column::new("reaction", "", Align::Left)];
+    let residuals = [
+        "natural map",
+        "penetration",
+        "adhesion",
+        "complementarity",
+        "cone",
+        "slip direction",
+    ];
+    columns.extend(residuals.map(|name| Column::new(name, "", Align::Right)));
+    let mut table = Table::new(format!("Residuals of {}", problem.name), columns);
+    let mut all_hold = true;
+    for reaction in &args.reactions {
+        let found = problem.judge(reaction)?;
+        all_hold &= found.natural_map <= args.tier.tolerance();
+        let numbers = [
+            found.natural_map,
+            found.penetration,
+            found.adhesion,
+            found.complementarity,
+            found.cone,
+            found.slip_direction,
+        ];
+        let mut cells = vec![reaction.display().to_string()];
+        cells.extend(numbers.map(residual));
+        table.push(cells)?;
+    }
+    println!("{}", table.terminal());
+    Ok(all_hold)
+}

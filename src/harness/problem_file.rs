@@ -1,0 +1,236 @@
+//! Runs of methods on problems from interchange files.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
+};
+
+use crate::harness::exchange::{System, global_system, local_system, local_velocity};
+use crate::harness::record::{Results, RunKey};
+use crate::harness::run::{Choice, Progress};
+use crate::harness::step::{Setup, Solver};
+use crate::interchange::{InterchangeError, Problem, fclib, matrix_market};
+use crate::report::{Bundle, ReportError, standard};
+
+/// A problem read and turned into a system.
+pub struct ProblemFile {
+    /// File name without `.hdf5`: the case of its runs.
+    pub name: String,
+    kind: &'static str,
+    path: PathBuf,
+    system: ContactSystem,
+    load: Load,
+    rest: Load,
+    start: ContactState,
+    setup: Setup,
+}
+
+/// Why a file cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum ProblemFileError {
+    /// Reading.
+    #[error(transparent)]
+    Interchange(#[from] InterchangeError),
+    /// A singular M: its kernel is not in the file.
+    #[error(
+        "`{}`: M is singular at unknown {unknown} of {size}: a global file cannot tell rigid motions, solve the \
+         local problem instead",
+        path.display()
+    )]
+    Singular {
+        /// Which file.
+        path: PathBuf,
+        /// Unknown whose pivot is not positive.
+        unknown: usize,
+        /// Number of unknowns.
+        size: usize,
+    },
+    /// The numbers make no system.
+    #[error("`{}`: {source}", path.display())]
+    System {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong.
+        source: MethodError,
+    },
+}
+
+impl ProblemFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ProblemFileError`], naming the file.
+    pub fn read(path: &Path) -> Result<Self, ProblemFileError> {
+        let clock = Instant::now();
+        let problem = fclib::read(path)?;
+        refuse_unsupported(path, &problem)?;
+        let failed = |source| match source {
+            MethodError::NotPositiveDefinite { unknown, size } => ProblemFileError::Singular {
+                path: path.into(),
+                unknown,
+                size,
+            },
+            source => ProblemFileError::System {
+                path: path.into(),
+                source,
+            },
+        };
+        let (kind, system) = match &problem {
+            Problem::Local(problem) => ("local", local_system(problem)),
+            Problem::Global(problem) => ("global", global_system(problem)),
+        };
+        let System {
+            elastic,
+            friction,
+            load,
+        } = system.map_err(failed)?;
+        // A singular M is bad input for every method; what the factor costs is counted as such all the same.
+        elastic.factorise().map_err(failed)?;
+        let system = ContactSystem::new(elastic, friction).map_err(failed)?;
+        let shared = system.elastic().timings();
+        let factor_s = shared.analysis_s + shared.factorisation_s;
+        Ok(Self {
+            name: name(path),
+            path: path.into(),
+            kind,
+            rest: Load::zero(system.elastic()),
+            start: ContactState::zero(&system),
+            system,
+            load,
+            setup: Setup {
+                setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
+                assembly_s: 0.0,
+            },
+        })
+    }
+
+    /// The problem as an increment from rest.
+    fn increment(&self, tolerance: f64) -> Increment<'_> {
+        Increment {
+            system: &self.system,
+            load: &self.load,
+            start_load: &self.rest,
+            start: &self.start,
+            index: 0,
+            tolerance,
+        }
+    }
+
+    /// Judges a reaction that another program found, from a MatrixMarket file with `dim` entries per point.
+    ///
+    /// # Errors
+    /// A file that is no such vector; a floating body, whose rigid motion no reaction tells.
+    pub fn judge(&self, reaction: &Path) -> Result<Residuals, ProblemFileError> {
+        let text = std::fs::read_to_string(reaction).map_err(|source| InterchangeError::Io {
+            path: reaction.into(),
+            source,
+        })?;
+        let vector = matrix_market::parse(reaction, &text)?;
+        let rows = self.load.offset.len();
+        if (vector.rows(), vector.cols()) != (rows, 1) {
+            return Err(InterchangeError::Length {
+                path: reaction.into(),
+                dataset: "the matrix".into(),
+                found: (vector.rows() * vector.cols()) as u64,
+                allowed: format!("{rows} in one column"),
+            }
+            .into());
+        }
+        let elastic = self.system.elastic();
+        if !elastic.floating().is_empty() {
+            return Err(InterchangeError::Unsupported {
+                path: self.path.clone(),
+                what: "the body floats: a reaction alone does not tell its rigid motion".into(),
+            }
+            .into());
+        }
+        let p = vector.column(0);
+        let mut u = self.load.force.clone();
+        elastic.jump().mul_transpose_add(&p, &mut u);
+        let increment = self.increment(Tier::High.tolerance());
+        let judged =
+            (elastic.solve(&mut u)).and_then(|()| residuals(&increment, &ContactState { u, p }));
+        judged.map_err(|source| ProblemFileError::System {
+            path: self.path.clone(),
+            source,
+        })
+    }
+
+    /// Runs methods on the problem, from rest; solved ones leave their reaction r and local velocity u in `solutions/`.
+    ///
+    /// # Errors
+    /// Two methods of one name.
+    pub fn run(
+        &self,
+        choices: &[Choice],
+        tier: Tier,
+        progress: &dyn Progress,
+        solutions: &mut Bundle,
+    ) -> Result<Results, ReportError> {
+        let mut results = Results::default();
+        let increment = self.increment(tier.tolerance());
+        for choice in choices {
+            let key = RunKey {
+                case: self.name.clone(),
+                mesh: self.kind.into(),
+                space: "fclib".into(),
+                method: choice.label.clone(),
+                friction: self.system.friction().first().copied().unwrap_or(0.0),
+                increment: 1,
+            };
+            let prepared = Solver::prepare(choice, &self.system, self.setup, tier, &key);
+            let step = match prepared {
+                Ok(mut solver) => solver.solve(&key, &increment),
+                Err(refused) => *refused,
+            };
+            progress.done(&format!("{} {}", self.name, choice.label));
+            results.runs.push(step.run);
+            results.history.extend(step.history);
+            if let Some((outcome, _)) = step.answer.filter(|_| step.verdict.is_honest()) {
+                let stem = standard::stem(&key);
+                let velocity = local_velocity(&increment, &outcome.state);
+                for (part, values) in [("r", &outcome.state.p), ("u", &velocity)] {
+                    let text = matrix_market::vector(values);
+                    solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
+                }
+            }
+        }
+        Ok(results)
+    }
+}
+
+/// File name without the extensions HDF5 files have.
+fn name(path: &Path) -> String {
+    let name = path
+        .file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy();
+    let stem = [".hdf5", ".h5"]
+        .iter()
+        .find_map(|end| name.strip_suffix(end));
+    stem.unwrap_or(&name).to_owned()
+}
+
+fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeError> {
+    let unsupported = |what: &str| InterchangeError::Unsupported {
+        path: path.into(),
+        what: what.into(),
+    };
+    match problem {
+        Problem::Local(problem) => {
+            let loose = |r: &crate::interchange::SparseMatrix| r.entries().all(|e| e.2 == 0.0);
+            match &problem.equality {
+                Some(equality) if !loose(&equality.r) => Err(unsupported(
+                    "R is not zero: only rigid motions (Vᵀ r + s = 0) are solved, not other unknowns",
+                )),
+                _ => Ok(()),
+            }
+        }
+        Problem::Global(problem) if problem.equality.is_some() => Err(unsupported(
+            "G is present: eliminate the equality constraints Gᵀ v + b = 0 first",
+        )),
+        Problem::Global(_) => Ok(()),
+    }
+}

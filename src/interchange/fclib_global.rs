@@ -1,0 +1,145 @@
+//! The global problem of FCLIB: with all displacement unknowns.
+//!
+//! ```text
+//! /fclib_global/spacedim, M, H, G, vectors/{f, w, mu, b}, info/{title, description, math_info}
+//! ```
+//! G and b stand together or not at all.
+
+use super::error::InterchangeError;
+use super::fclib::{
+    Info, Lengths, Solution, check_size, check_solutions, points, put_info, put_solutions,
+    read_dim, read_friction, read_info, read_solutions, unwritable,
+};
+use super::fclib_matrix::{check_matrix, put_matrix, read_matrix, read_symmetric};
+use super::hdf5::{Tree, Writer, put_integers, put_reals, subgroup};
+use super::sparse::SparseMatrix;
+
+const GROUP: &str = "fclib_global";
+
+/// `M v = H r + G λ + f`, `Gᵀ v + b = 0`, `u = Hᵀ v + w`, and the contact laws between u and r.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlobalProblem {
+    /// Components per contact point, 2 or 3.
+    pub dim: usize,
+    /// M, n × n, symmetric; here the stiffness K.
+    pub m: SparseMatrix,
+    /// H, n × m with m = `dim` · points; here Bᵀ.
+    pub h: SparseMatrix,
+    /// f, n entries.
+    pub f: Vec<f64>,
+    /// w, m entries.
+    pub w: Vec<f64>,
+    /// Friction coefficient μ per point.
+    pub mu: Vec<f64>,
+    /// Constraints on v.
+    pub equality: Option<GlobalEquality>,
+    /// What the author says.
+    pub info: Info,
+    /// Solution.
+    pub solution: Option<Solution>,
+    /// Guesses.
+    pub guesses: Vec<Solution>,
+}
+
+/// `Gᵀ v + b = 0`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlobalEquality {
+    /// G, n × p.
+    pub g: SparseMatrix,
+    /// b, p entries.
+    pub b: Vec<f64>,
+}
+
+impl GlobalProblem {
+    /// Number of contact points.
+    pub fn points(&self) -> usize {
+        self.mu.len()
+    }
+
+    fn lengths(&self) -> Lengths {
+        Lengths {
+            v: self.f.len(),
+            r: self.w.len(),
+            l: self.equality.as_ref().map_or(0, |e| e.b.len()),
+        }
+    }
+
+    /// Sizes come from the vectors, which the file must really hold; the matrices must agree with them.
+    pub(super) fn read(tree: &Tree) -> Result<Self, InterchangeError> {
+        let dim = read_dim(tree, GROUP)?;
+        let f = tree.all_reals(&format!("{GROUP}/vectors/f"))?;
+        let w_name = format!("{GROUP}/vectors/w");
+        let w = tree.all_reals(&w_name)?;
+        let mu = read_friction(tree, GROUP, points(tree, &w_name, w.len(), dim)?)?;
+        let g_name = format!("{GROUP}/G");
+        let equality = match tree.has_group(&g_name)? {
+            false => None,
+            true => {
+                let b = tree.all_reals(&format!("{GROUP}/vectors/b"))?;
+                let g = read_matrix(tree, &g_name, f.len(), b.len())?;
+                Some(GlobalEquality { g, b })
+            }
+        };
+        let mut problem = Self {
+            dim,
+            m: read_symmetric(tree, &format!("{GROUP}/M"), f.len())?,
+            h: read_matrix(tree, &format!("{GROUP}/H"), f.len(), w.len())?,
+            f,
+            w,
+            mu,
+            equality,
+            info: read_info(tree, GROUP)?,
+            solution: None,
+            guesses: Vec::new(),
+        };
+        (problem.solution, problem.guesses) = read_solutions(tree, problem.lengths())?;
+        Ok(problem)
+    }
+
+    fn check(&self) -> Result<(), InterchangeError> {
+        let (unknowns, rows) = (self.f.len(), self.dim * self.points());
+        if !(self.dim == 2 || self.dim == 3) || rows == 0 || unknowns == 0 {
+            let points = self.points();
+            let what = format!(
+                "{unknowns} unknowns, {points} points of {} components",
+                self.dim
+            );
+            return Err(unwritable(what));
+        }
+        check_size("w", self.w.len(), rows)?;
+        check_matrix("M", &self.m, unknowns, unknowns)?;
+        check_matrix("H", &self.h, unknowns, rows)?;
+        if let Some(equality) = &self.equality {
+            check_matrix("G", &equality.g, unknowns, equality.b.len())?;
+        }
+        check_solutions(self.solution.iter().chain(&self.guesses), self.lengths())
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// [`InterchangeError::Unwritable`] if the parts do not fit or exceed 32-bit integers.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, InterchangeError> {
+        self.check()?;
+        let mut file = Writer::new();
+        file.group(GROUP, |group| {
+            put_integers(group, "spacedim", &[self.dim as i32]);
+            put_matrix(group, "M", &self.m);
+            put_matrix(group, "H", &self.h);
+            if let Some(equality) = &self.equality {
+                put_matrix(group, "G", &equality.g);
+            }
+            subgroup(group, "vectors", |group| {
+                put_reals(group, "f", &self.f);
+                put_reals(group, "w", &self.w);
+                put_reals(group, "mu", &self.mu);
+                if let Some(equality) = &self.equality {
+                    put_reals(group, "b", &equality.b);
+                }
+            });
+            put_info(group, &self.info);
+        });
+        put_solutions(&mut file, self.solution.as_ref(), &self.guesses);
+        file.finish()
+    }
+}

@@ -1,0 +1,264 @@
+//! A matrix in an FCLIB file: `m`, `n`, `nzmax`, `nz`, `p`, `i`, `x`.
+//!
+//! A matrix is stored as compressed columns (nz = −1), compressed rows (nz = −2) or nz >= 0 triplets. Of a triplet, `i`
+//! holds the row and `p` the column in what Siconos and every other user of CSparse writes; FCLIB's header says the
+//! opposite. Files of either kind are read: rows are in `i` if that fits the matrix, otherwise in `p`. For the square
+//! symmetric M and W both are the same matrix.
+//!
+//! Written are triplets with rows in `i`: Siconos writes them itself, refuses compressed rows of M and H, and copies
+//! `nz` = −1 indices of compressed columns (its `fclib_interface.c` of 2024).
+
+use hdf5_pure::GroupBuilder;
+
+use super::error::InterchangeError;
+use super::fclib::{check_size, unwritable};
+use super::hdf5::{Tree, put_integers, put_reals, subgroup};
+use super::sparse::SparseMatrix;
+
+/// Largest |a_ij − a_ji| of M and W, in units of the largest entry. Files come from single-precision codes too.
+const ASYMMETRY: f64 = 1e-7;
+
+/// Reads a matrix of known size.
+pub(super) fn read_matrix(
+    tree: &Tree,
+    name: &str,
+    rows: usize,
+    cols: usize,
+) -> Result<SparseMatrix, InterchangeError> {
+    for (size, expected) in [("m", rows), ("n", cols)] {
+        let (dataset, value) = (
+            format!("{name}/{size}"),
+            tree.integer(&format!("{name}/{size}"))?,
+        );
+        if usize::try_from(value) != Ok(expected) {
+            let allowed = format!("{expected}, as the vectors say");
+            return Err(InterchangeError::value(
+                tree.path(),
+                dataset,
+                0,
+                value,
+                allowed,
+            ));
+        }
+    }
+    let nz_name = format!("{name}/nz");
+    let nz = tree.integer(&nz_name)?;
+    let p = tree.integers(&format!("{name}/p"))?;
+    let i = tree.integers(&format!("{name}/i"))?;
+    let x = tree.all_reals(&format!("{name}/x"))?;
+    let stored = Stored {
+        tree,
+        name,
+        p: &p,
+        i: &i,
+        x: &x,
+    };
+    let triplets = match nz {
+        -1 => stored
+            .compressed(cols, rows)?
+            .map(|(j, i, v)| (i, j, v))
+            .collect(),
+        -2 => stored.compressed(rows, cols)?.collect(),
+        0.. => stored.triplets(nz, rows, cols)?,
+        _ => {
+            let allowed = "-1 (compressed columns), -2 (compressed rows), 0 and above (triplets)";
+            return Err(InterchangeError::value(
+                tree.path(),
+                nz_name,
+                0,
+                nz,
+                allowed,
+            ));
+        }
+    };
+    let matrix = SparseMatrix::from_triplets(rows, cols, triplets);
+    let matrix = matrix.ok_or_else(|| stored.outside("i", 0, 0, rows))?;
+    let overflow = matrix.entries().find(|e| !e.2.is_finite());
+    if let Some((i, j, value)) = overflow {
+        let allowed = format!("finite sums; entry ({i}, {j}) is stored more than once");
+        let dataset = format!("{name}/x");
+        return Err(InterchangeError::value(
+            tree.path(),
+            dataset,
+            0,
+            value,
+            allowed,
+        ));
+    }
+    Ok(matrix)
+}
+
+/// Reads a square matrix that must be symmetric.
+pub(super) fn read_symmetric(
+    tree: &Tree,
+    name: &str,
+    size: usize,
+) -> Result<SparseMatrix, InterchangeError> {
+    let matrix = read_matrix(tree, name, size, size)?;
+    let Some((i, j, difference)) = matrix.asymmetry(ASYMMETRY) else {
+        return Ok(matrix);
+    };
+    let value = format!("{:e} in row {i}, column {j}", matrix.get(i, j));
+    let allowed = format!(
+        "a symmetric matrix; the mirror entry is {:e}, they differ by {difference:e}",
+        matrix.get(j, i)
+    );
+    let index = matrix.entries().position(|e| (e.0, e.1) == (i, j));
+    let dataset = format!("{name}/x");
+    Err(InterchangeError::value(
+        tree.path(),
+        dataset,
+        index.unwrap_or(0),
+        value,
+        allowed,
+    ))
+}
+
+/// The arrays of a matrix as they lie in the file.
+struct Stored<'a> {
+    tree: &'a Tree,
+    name: &'a str,
+    p: &'a [i64],
+    i: &'a [i64],
+    x: &'a [f64],
+}
+
+impl Stored<'_> {
+    /// (outer, inner, value) of compressed storage with pointers `p` over `outer` lines of length `inner`.
+    fn compressed(
+        &self,
+        outer: usize,
+        inner: usize,
+    ) -> Result<impl Iterator<Item = (usize, usize, f64)> + '_, InterchangeError> {
+        let (tree, name) = (self.tree, self.name);
+        self.check_len("p", self.p.len(), outer + 1, outer + 1)?;
+        let room = self.i.len().min(self.x.len()) as i64;
+        let mut before = 0;
+        for (index, &pointer) in self.p.iter().enumerate() {
+            let fits = if index == 0 {
+                pointer == 0
+            } else {
+                (before..=room).contains(&pointer)
+            };
+            if !fits {
+                let allowed = match index {
+                    0 => "0".to_owned(),
+                    _ => format!("{before} to {room}, pointers that never fall"),
+                };
+                let dataset = format!("{name}/p");
+                return Err(InterchangeError::value(
+                    tree.path(),
+                    dataset,
+                    index,
+                    pointer,
+                    allowed,
+                ));
+            }
+            before = pointer;
+        }
+        let used = before as usize;
+        if let Some(index) = (self.i[..used].iter()).position(|&i| !(0..inner as i64).contains(&i))
+        {
+            return Err(self.outside("i", index, self.i[index], inner));
+        }
+        let line = |k: usize| self.p[k] as usize..self.p[k + 1] as usize;
+        Ok((0..outer).flat_map(move |o| line(o).map(move |k| (o, self.i[k] as usize, self.x[k]))))
+    }
+
+    /// (row, column, value) of `nz` triplets.
+    fn triplets(
+        &self,
+        nz: i64,
+        rows: usize,
+        cols: usize,
+    ) -> Result<Vec<(usize, usize, f64)>, InterchangeError> {
+        let longest = self.i.len().max(self.p.len()).max(self.x.len());
+        let nz = usize::try_from(nz).unwrap_or(usize::MAX);
+        for (array, len) in [
+            ("p", self.p.len()),
+            ("i", self.i.len()),
+            ("x", self.x.len()),
+        ] {
+            // Some writers pad the arrays to nzmax.
+            self.check_len(array, len, nz, longest.max(nz))?;
+        }
+        let (p, i, x) = (&self.p[..nz], &self.i[..nz], &self.x[..nz]);
+        let stray = |indices: &[i64], size: usize| {
+            indices.iter().position(|&k| !(0..size as i64).contains(&k))
+        };
+        let (row, col) = match (stray(i, rows), stray(p, cols)) {
+            (None, None) => (i, p),
+            _ if stray(p, rows).is_none() && stray(i, cols).is_none() => (p, i),
+            (Some(index), _) => return Err(self.outside("i", index, i[index], rows)),
+            (None, Some(index)) => return Err(self.outside("p", index, p[index], cols)),
+        };
+        let triplet = |k: usize| (row[k] as usize, col[k] as usize, x[k]);
+        Ok((0..nz).map(triplet).collect())
+    }
+
+    fn check_len(
+        &self,
+        array: &str,
+        found: usize,
+        least: usize,
+        most: usize,
+    ) -> Result<(), InterchangeError> {
+        if (least..=most).contains(&found) {
+            return Ok(());
+        }
+        Err(InterchangeError::Length {
+            path: self.tree.path().into(),
+            dataset: format!("{}/{array}", self.name),
+            found: found as u64,
+            allowed: if least == most {
+                least.to_string()
+            } else {
+                format!("at least {least}")
+            },
+        })
+    }
+
+    fn outside(&self, array: &str, index: usize, value: i64, size: usize) -> InterchangeError {
+        let dataset = format!("{}/{array}", self.name);
+        let allowed = format!("0 to {}", size as i64 - 1);
+        InterchangeError::value(self.tree.path(), dataset, index, value, allowed)
+    }
+}
+
+pub(super) fn check_matrix(
+    what: &str,
+    matrix: &SparseMatrix,
+    rows: usize,
+    cols: usize,
+) -> Result<(), InterchangeError> {
+    check_size(&format!("{what} (rows)"), matrix.rows(), rows)?;
+    check_size(&format!("{what} (columns)"), matrix.cols(), cols)?;
+    // FCLIB counts in C's int.
+    match [matrix.rows(), matrix.cols(), matrix.len()]
+        .iter()
+        .all(|&n| i32::try_from(n).is_ok())
+    {
+        true => Ok(()),
+        false => Err(unwritable(format!("{what}: more than 2147483647 entries"))),
+    }
+}
+
+/// Writes a checked matrix as triplets.
+pub(super) fn put_matrix(group: &mut GroupBuilder, name: &str, matrix: &SparseMatrix) {
+    let index = |k: usize| k as i32;
+    let (mut p, mut i, mut x) = (Vec::new(), Vec::new(), Vec::new());
+    for (row, col, value) in matrix.entries() {
+        i.push(index(row));
+        p.push(index(col));
+        x.push(value);
+    }
+    subgroup(group, name, |group| {
+        put_integers(group, "m", &[index(matrix.rows())]);
+        put_integers(group, "n", &[index(matrix.cols())]);
+        put_integers(group, "nzmax", &[index(matrix.len())]);
+        put_integers(group, "nz", &[index(matrix.len())]);
+        put_integers(group, "p", &p);
+        put_integers(group, "i", &i);
+        put_reals(group, "x", &x);
+    });
+}

@@ -1,0 +1,258 @@
+//! The HDF5 tree of a problem file: named datasets of integers, reals and text.
+//!
+//! Nothing is allocated for a dataset before its extent was compared with the size of the file, so a few wrong bytes
+//! cannot ask for all memory.
+
+use std::path::{Path, PathBuf};
+
+use hdf5_pure::{
+    CharacterSet, DType, Dataset, Datatype, Error, File, FileBuilder, FormatError, GroupBuilder,
+    LibVer, StringPadding,
+};
+
+use super::error::InterchangeError;
+
+/// Bytes that one byte of a deflate stream can stand for, rounded up.
+const DEFLATE_RATIO: u64 = 1100;
+
+/// A file being read.
+pub(super) struct Tree {
+    file: File,
+    path: PathBuf,
+    size: u64,
+}
+
+impl Tree {
+    /// Opens the bytes of a file; `path` is only for messages.
+    pub fn open(path: &Path, bytes: Vec<u8>) -> Result<Self, InterchangeError> {
+        let size = bytes.len() as u64;
+        let file = File::from_bytes(bytes).map_err(|e| unreadable(path, "", &e))?;
+        Ok(Self {
+            file,
+            path: path.into(),
+            size,
+        })
+    }
+
+    /// The file, for messages.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether a group is there.
+    pub fn has_group(&self, name: &str) -> Result<bool, InterchangeError> {
+        match self.file.group(name) {
+            Ok(_) => Ok(true),
+            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(false),
+            Err(error) => Err(unreadable(&self.path, name, &error)),
+        }
+    }
+
+    fn dataset(&self, name: &str) -> Result<Option<Dataset>, InterchangeError> {
+        match self.file.dataset(name) {
+            Ok(dataset) => Ok(Some(dataset)),
+            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(None),
+            Err(error) => Err(unreadable(&self.path, name, &error)),
+        }
+    }
+
+    fn required(&self, name: &str) -> Result<Dataset, InterchangeError> {
+        self.dataset(name)?
+            .ok_or_else(|| InterchangeError::Missing {
+                path: self.path.clone(),
+                dataset: name.into(),
+            })
+    }
+
+    /// Number of elements, refused if the file is too small to hold them.
+    fn extent(&self, name: &str, dataset: &Dataset) -> Result<u64, InterchangeError> {
+        let unreadable = |e: Error| unreadable(&self.path, name, &e);
+        let shape = dataset.shape().map_err(unreadable)?;
+        let element = dataset.element_size().map_err(unreadable)?.max(1);
+        let ratio = if dataset.is_chunked() {
+            DEFLATE_RATIO
+        } else {
+            1
+        };
+        let largest = self.size.saturating_mul(ratio) / element;
+        let extent = (shape.iter()).try_fold(1u64, |n, &extent| n.checked_mul(extent));
+        match extent {
+            Some(extent) if extent <= largest => Ok(extent),
+            _ => Err(InterchangeError::Length {
+                path: self.path.clone(),
+                dataset: name.into(),
+                found: extent.unwrap_or(u64::MAX),
+                allowed: format!("at most {largest}, which is what the file can hold"),
+            }),
+        }
+    }
+
+    /// One integer.
+    pub fn integer(&self, name: &str) -> Result<i64, InterchangeError> {
+        let values = self.integers(name)?;
+        match values[..] {
+            [value] => Ok(value),
+            _ => Err(self.length(name, values.len() as u64, "1")),
+        }
+    }
+
+    /// Integers of any width.
+    pub fn integers(&self, name: &str) -> Result<Vec<i64>, InterchangeError> {
+        use DType::{I8, I16, I32, I64, U8, U16, U32, U64};
+        let dataset = self.typed(name, "integers", |t| {
+            matches!(t, I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64)
+        })?;
+        (dataset.read_i64()).map_err(|e| unreadable(&self.path, name, &e))
+    }
+
+    /// `len` finite reals.
+    pub fn reals(&self, name: &str, len: usize) -> Result<Vec<f64>, InterchangeError> {
+        let values = self.all_reals(name)?;
+        if values.len() != len {
+            return Err(self.length(name, values.len() as u64, len.to_string()));
+        }
+        Ok(values)
+    }
+
+    /// Finite reals, as many as there are.
+    pub fn all_reals(&self, name: &str) -> Result<Vec<f64>, InterchangeError> {
+        let dataset = self.typed(name, "reals", |t| matches!(t, DType::F32 | DType::F64))?;
+        let values = (dataset.read_f64()).map_err(|e| unreadable(&self.path, name, &e))?;
+        match values.iter().position(|v| !v.is_finite()) {
+            None => Ok(values),
+            Some(index) => Err(InterchangeError::value(
+                &self.path,
+                name,
+                index,
+                values[index],
+                "finite numbers",
+            )),
+        }
+    }
+
+    fn typed(
+        &self,
+        name: &str,
+        allowed: &'static str,
+        fits: impl Fn(&DType) -> bool,
+    ) -> Result<Dataset, InterchangeError> {
+        let dataset = self.required(name)?;
+        self.extent(name, &dataset)?;
+        let found = (dataset.dtype()).map_err(|e| unreadable(&self.path, name, &e))?;
+        if fits(&found) {
+            return Ok(dataset);
+        }
+        Err(InterchangeError::Type {
+            path: self.path.clone(),
+            dataset: name.into(),
+            found: found.to_string(),
+            allowed,
+        })
+    }
+
+    /// Text, if it is there.
+    pub fn text(&self, name: &str) -> Result<Option<String>, InterchangeError> {
+        if self.dataset(name)?.is_none() {
+            return Ok(None);
+        }
+        let dataset = self.typed(name, "text", |t| {
+            matches!(t, DType::String | DType::VariableLengthString)
+        })?;
+        let texts = (dataset.read_string()).map_err(|e| unreadable(&self.path, name, &e))?;
+        Ok(texts.into_iter().next())
+    }
+
+    fn length(&self, name: &str, found: u64, allowed: impl Into<String>) -> InterchangeError {
+        InterchangeError::Length {
+            path: self.path.clone(),
+            dataset: name.into(),
+            found,
+            allowed: allowed.into(),
+        }
+    }
+}
+
+fn unreadable(path: &Path, dataset: &str, error: &Error) -> InterchangeError {
+    let mut reason = error.to_string();
+    let newer = matches!(
+        error,
+        Error::Format(
+            FormatError::InvalidLayoutVersion(_)
+                | FormatError::UnsupportedVersion(_)
+                | FormatError::InvalidDatatypeVersion { .. }
+                | FormatError::InvalidObjectHeaderVersion(_)
+        )
+    );
+    if newer {
+        reason += "; files in the newest HDF5 format can be rewritten by `h5repack --high=2 in out` \
+                   or by h5py with libver=('earliest', 'v110')";
+    }
+    InterchangeError::Hdf5 {
+        path: path.into(),
+        dataset: dataset.into(),
+        reason,
+    }
+}
+
+/// A file being written: HDF5 1.8 format, datasets of rank 1 in the native types of FCLIB.
+pub(super) struct Writer(FileBuilder);
+
+impl Writer {
+    pub fn new() -> Self {
+        let mut file = FileBuilder::new();
+        file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
+        Self(file)
+    }
+
+    /// Adds a group of the root.
+    pub fn group(&mut self, name: &str, fill: impl FnOnce(&mut GroupBuilder)) {
+        let mut group = self.0.create_group(name);
+        fill(&mut group);
+        self.0.add_group(group.finish());
+    }
+
+    /// The bytes of the file.
+    pub fn finish(self) -> Result<Vec<u8>, InterchangeError> {
+        self.0.finish().map_err(|e| InterchangeError::Unwritable {
+            what: e.to_string(),
+        })
+    }
+}
+
+/// Adds a group inside a group.
+pub(super) fn subgroup(
+    parent: &mut GroupBuilder,
+    name: &str,
+    fill: impl FnOnce(&mut GroupBuilder),
+) {
+    let mut group = parent.create_group(name);
+    fill(&mut group);
+    parent.add_group(group.finish());
+}
+
+/// Adds a dataset of 32-bit integers.
+pub(super) fn put_integers(group: &mut GroupBuilder, name: &str, values: &[i32]) {
+    group.create_dataset(name).with_i32_data(values);
+}
+
+/// Adds a dataset of reals.
+pub(super) fn put_reals(group: &mut GroupBuilder, name: &str, values: &[f64]) {
+    group.create_dataset(name).with_f64_data(values);
+}
+
+/// Adds text as C expects it: one string that ends with a zero byte.
+pub(super) fn put_text(group: &mut GroupBuilder, name: &str, text: &str) {
+    let mut bytes: Vec<u8> = text.bytes().filter(|&b| b != 0).collect();
+    bytes.push(0);
+    let datatype = Datatype::String {
+        size: bytes.len() as u32,
+        padding: StringPadding::NullTerminate,
+        charset: if text.is_ascii() {
+            CharacterSet::Ascii
+        } else {
+            CharacterSet::Utf8
+        },
+    };
+    let dataset = group.create_dataset(name);
+    dataset.with_shape(&[]).with_raw_data(datatype, bytes, 1);
+}

@@ -1,0 +1,292 @@
+//! Method against method: every case times every method, and the paper's two problems by every method and variant.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use super::csv::{self, Row};
+use super::number::{residual, significant, time, value};
+use super::tables::{Align, Column, Table};
+use super::{Bundle, ReportError, paper, standard};
+use crate::harness::record::RunRow;
+
+/// One method on one case: all meshes, friction coefficients and increments together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparisonRow {
+    /// Case.
+    pub case: String,
+    /// Method.
+    pub method: String,
+    /// Increments run.
+    pub increments: usize,
+    /// The verdict farthest from `solved` among them.
+    pub verdict: String,
+    /// Largest natural map found by the judge [-].
+    pub natural_map: f64,
+    /// Iterations in all.
+    pub iterations: usize,
+    /// Dense factorisations of condensed matrices in all.
+    pub tangent_factorisations: usize,
+    /// Evaluations of the contact law at one point in all.
+    pub local_solves: usize,
+    /// Solve times in all [s]; NaN unless every increment was solved.
+    pub solve_s: f64,
+}
+
+/// How far a verdict is from `solved`.
+fn distance(verdict: &str) -> usize {
+    const FROM_BEST: [&str; 6] = [
+        "solved",
+        "approximate",
+        "refused",
+        "gave-up",
+        "crashed",
+        "false-claim",
+    ];
+    let known = FROM_BEST.iter().position(|p| verdict.starts_with(p));
+    known.unwrap_or(FROM_BEST.len())
+}
+
+/// Sums the runs up by case and method.
+pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
+    let mut groups: BTreeMap<(&str, &str), Vec<&RunRow>> = BTreeMap::new();
+    for run in runs {
+        let key = (run.key.case.as_str(), run.key.method.as_str());
+        groups.entry(key).or_default().push(run);
+    }
+    let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
+        let worst = group.iter().map(|r| r.verdict.as_str());
+        // Of equally far verdicts the first by name, so that the order of the runs does not matter.
+        let worst = worst.max_by(|a, b| distance(a).cmp(&distance(b)).then_with(|| b.cmp(a)));
+        let all_solved = group.iter().all(|r| standard::solved(&r.verdict));
+        ComparisonRow {
+            case: case.into(),
+            method: method.into(),
+            increments: group.len(),
+            verdict: worst.unwrap_or_default().into(),
+            natural_map: group.iter().map(|r| r.natural_map).fold(0.0, worse),
+            iterations: group.iter().map(|r| r.iterations).sum(),
+            tangent_factorisations: group.iter().map(|r| r.tangent_factorisations).sum(),
+            local_solves: group.iter().map(|r| r.local_solves).sum(),
+            solve_s: if all_solved {
+                group.iter().map(|r| r.solve_s).sum()
+            } else {
+                f64::NAN
+            },
+        }
+    };
+    groups.into_iter().map(row).collect()
+}
+
+/// The larger residual; NaN, nothing judged, is worse than any.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}
+
+impl Row for ComparisonRow {
+    const FILE: &'static str = "comparison.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "case",
+        "method",
+        "increments",
+        "verdict",
+        "natural_map",
+        "iterations",
+        "tangent_factorisations",
+        "local_solves",
+        "solve_s",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.case.clone(),
+            self.method.clone(),
+            self.increments.to_string(),
+            self.verdict.clone(),
+            residual(self.natural_map),
+            self.iterations.to_string(),
+            self.tangent_factorisations.to_string(),
+            self.local_solves.to_string(),
+            time(self.solve_s),
+        ]
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let case = self.case.cmp(&other.case);
+        case.then_with(|| self.method.cmp(&other.method))
+    }
+}
+
+/// The comparison for reading.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn comparison_table(rows: &[ComparisonRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Every case by every method: all meshes, friction coefficients and increments",
+        vec![
+            Column::new("case", "", Align::Left),
+            Column::new("method", "", Align::Left),
+            Column::new("increments", "", Align::Right),
+            Column::new("verdict, worst", "", Align::Left),
+            Column::new("natural map, largest", "", Align::Right),
+            Column::new("iterations", "", Align::Right),
+            Column::new("dense factorisations", "", Align::Right),
+            Column::new("solve", "s", Align::Right),
+        ],
+    );
+    for row in rows {
+        table.push(vec![
+            row.case.clone(),
+            row.method.clone(),
+            row.increments.to_string(),
+            row.verdict.clone(),
+            residual(row.natural_map),
+            row.iterations.to_string(),
+            row.tangent_factorisations.to_string(),
+            shown_time(row.solve_s),
+        ])?;
+    }
+    Ok(table)
+}
+
+fn shown_time(seconds: f64) -> String {
+    if seconds.is_nan() {
+        "–".into()
+    } else {
+        time(seconds)
+    }
+}
+
+/// One of the paper's problems by one method or variant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VariantRow {
+    /// Case.
+    pub case: String,
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Method, options other than the default in brackets.
+    pub method: String,
+    /// Claim × check.
+    pub verdict: String,
+    /// What is compared: `reaction top y` of the plate [N/m], `displacement P4 z` of the beam [m].
+    pub quantity: String,
+    /// Its value; NaN where the run has no answer.
+    pub value: f64,
+    /// Deviation from the reference method on the same mesh, relative [-].
+    pub deviation: f64,
+    /// Natural map found by the judge [-].
+    pub natural_map: f64,
+    /// Iterations.
+    pub iterations: usize,
+    /// Dense factorisations of condensed matrices.
+    pub tangent_factorisations: usize,
+    /// Sparse factorisations over all unknowns.
+    pub global_factorisations: usize,
+    /// Solve time [s].
+    pub solve_s: f64,
+}
+
+impl Row for VariantRow {
+    const FILE: &'static str = "variants.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "case",
+        "friction",
+        "method",
+        "verdict",
+        "quantity",
+        "value",
+        "deviation",
+        "natural_map",
+        "iterations",
+        "tangent_factorisations",
+        "global_factorisations",
+        "solve_s",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.case.clone(),
+            value(self.friction),
+            self.method.clone(),
+            self.verdict.clone(),
+            self.quantity.clone(),
+            value(self.value),
+            residual(self.deviation),
+            residual(self.natural_map),
+            self.iterations.to_string(),
+            self.tangent_factorisations.to_string(),
+            self.global_factorisations.to_string(),
+            time(self.solve_s),
+        ]
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let case = self.case.cmp(&other.case);
+        case.then(self.friction.total_cmp(&other.friction))
+            .then_with(|| self.method.cmp(&other.method))
+    }
+}
+
+/// The variants for reading.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Plate and beam by every method and variant",
+        vec![
+            Column::new("case", "", Align::Left),
+            Column::new("μ", "", Align::Decimal),
+            Column::new("method", "", Align::Left),
+            Column::new("verdict", "", Align::Left),
+            Column::new("quantity", "", Align::Left),
+            Column::new("value", "SI", Align::Right),
+            Column::new("deviation", "", Align::Right),
+            Column::new("natural map", "", Align::Right),
+            Column::new("iterations", "", Align::Right),
+            Column::new("dense", "", Align::Right),
+            Column::new("sparse", "", Align::Right),
+            Column::new("solve", "s", Align::Right),
+        ],
+    );
+    for row in rows {
+        let honest = standard::solved(&row.verdict) || row.verdict.starts_with("approximate");
+        table.push(vec![
+            row.case.clone(),
+            value(row.friction),
+            row.method.clone(),
+            row.verdict.clone(),
+            row.quantity.clone(),
+            significant(row.value, 8),
+            residual(row.deviation),
+            residual(row.natural_map),
+            row.iterations.to_string(),
+            row.tangent_factorisations.to_string(),
+            row.global_factorisations.to_string(),
+            shown_time(if honest { row.solve_s } else { f64::NAN }),
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Adds both tables to a report.
+///
+/// # Errors
+/// Those of the parts.
+pub fn add(
+    bundle: &mut Bundle,
+    runs: &[RunRow],
+    variants: &[VariantRow],
+) -> Result<(), ReportError> {
+    let rows = comparison(runs);
+    bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
+    paper::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
+    bundle.add(VariantRow::FILE, csv::file(variants)?)?;
+    paper::add_readable(bundle, "variants", &variant_table(variants)?)
+}

@@ -1,0 +1,383 @@
+//! FCLIB files: those of other writers are read, ours come back to the bit, and no bytes bring the reader down.
+
+mod any;
+mod raw;
+
+use std::path::{Path, PathBuf};
+
+use hdf5_pure::FileBuilder;
+use proptest::prelude::*;
+use raw::Raw;
+use stickslip::interchange::{
+    GlobalEquality, GlobalProblem, Info, LocalProblem, Problem, Solution, SparseMatrix, fclib,
+};
+
+const W: [(usize, usize, f64); 10] = [
+    (0, 0, 4.0),
+    (1, 0, 1.0),
+    (2, 0, 0.5),
+    (0, 1, 1.0),
+    (1, 1, 3.0),
+    (0, 2, 0.5),
+    (2, 2, 5.0),
+    (3, 2, -1.0),
+    (2, 3, -1.0),
+    (3, 3, 2.0),
+];
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/fclib")
+        .join(name)
+}
+
+fn local(problem: Problem) -> LocalProblem {
+    match problem {
+        Problem::Local(problem) => problem,
+        Problem::Global(_) => panic!("a global problem"),
+    }
+}
+
+fn read_bytes(bytes: Vec<u8>) -> Result<Problem, String> {
+    fclib::from_bytes(Path::new("p.hdf5"), bytes).map_err(|e| e.to_string())
+}
+
+fn two_points() -> LocalProblem {
+    LocalProblem {
+        dim: 2,
+        w: SparseMatrix::from_triplets(4, 4, W).unwrap(),
+        q: vec![-1.0, 0.25, 0.1, -0.3],
+        mu: vec![0.5, 0.0],
+        equality: None,
+        info: Info::default(),
+        solution: None,
+        guesses: Vec::new(),
+    }
+}
+
+#[test]
+fn a_file_of_the_c_library_is_read() {
+    let read = local(fclib::read(&shipped("local_csr.hdf5")).unwrap());
+    let text = |text: &str| Some(text.to_owned());
+    let (u, r) = (vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0, 7.0, 8.0]);
+    let solution = |u: &[f64], r: &[f64]| Solution {
+        u: u.into(),
+        r: r.into(),
+        ..Solution::default()
+    };
+    let expected = LocalProblem {
+        info: Info {
+            title: text("two points"),
+            description: text("compressed rows"),
+            math_info: text("W is positive definite"),
+        },
+        solution: Some(solution(&u, &r)),
+        guesses: vec![solution(&r, &u)],
+        ..two_points()
+    };
+    assert_eq!(read, expected);
+}
+
+#[test]
+fn compressed_datasets_and_wide_integers_are_read() {
+    assert_eq!(
+        local(fclib::read(&shipped("local_gzip.hdf5")).unwrap()),
+        two_points()
+    );
+}
+
+#[test]
+fn a_global_file_of_the_c_library_is_read() {
+    let Problem::Global(read) = fclib::read(&shipped("global.hdf5")).unwrap() else {
+        panic!("a local problem");
+    };
+    let m = [
+        (0, 0, 2.0),
+        (1, 0, -1.0),
+        (0, 1, -1.0),
+        (1, 1, 2.0),
+        (2, 2, 3.0),
+        (3, 3, 4.0),
+    ];
+    let h = [(3, 0, 1.0), (1, 1, -1.0), (2, 2, 0.5)];
+    let expected = GlobalProblem {
+        dim: 3,
+        m: SparseMatrix::from_triplets(4, 4, m).unwrap(),
+        h: SparseMatrix::from_triplets(4, 3, h).unwrap(),
+        f: vec![1.0, 2.0, 3.0, 4.0],
+        w: vec![0.1, 0.2, 0.3],
+        mu: vec![0.7],
+        equality: Some(GlobalEquality {
+            g: SparseMatrix::from_triplets(4, 1, [(0, 0, 1.0)]).unwrap(),
+            b: vec![-2.0],
+        }),
+        info: Info::default(),
+        solution: None,
+        guesses: Vec::new(),
+    };
+    assert_eq!(read, expected);
+}
+
+#[test]
+fn the_newest_format_is_read_or_refused_with_the_way_out() {
+    let plain = fclib::read(&shipped("local_latest.hdf5")).unwrap();
+    assert_eq!(local(plain), two_points());
+    let chunked = fclib::read(&shipped("local_latest_chunked.hdf5"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        chunked.contains("local_latest_chunked.hdf5`, fclib_local/W/"),
+        "{chunked}"
+    );
+    assert!(chunked.contains("h5repack"), "{chunked}");
+}
+
+#[test]
+fn all_storages_give_the_same_matrix() {
+    for raw in [Raw::triplets(), Raw::columns()] {
+        assert_eq!(local(raw.read().unwrap()), two_points());
+    }
+    // Rows in p, as FCLIB's header has it: V is 4 × 2, so (row 3, column 1) fits only one way.
+    let v = |p: &[i32], i: &[i32]| {
+        let raw = Raw::triplets().integers("spacedim", &[2]);
+        let mut file = FileBuilder::new();
+        let mut root = file.create_group("fclib_local");
+        let matrix = |name: &str, m: i32, n: i32, p: &[i32], i: &[i32], x: &[f64]| {
+            let mut group = FileBuilder::new().create_group(name);
+            for (name, value) in [("m", m), ("n", n), ("nz", x.len() as i32), ("nzmax", 0)] {
+                group.create_dataset(name).with_i32_data(&[value]);
+            }
+            group.create_dataset("p").with_i32_data(p);
+            group.create_dataset("i").with_i32_data(i);
+            group.create_dataset("x").with_f64_data(x);
+            group.finish()
+        };
+        let stored = |name: &str| &raw.integers.iter().find(|e| e.0 == name).unwrap().1;
+        root.add_group(matrix(
+            "W",
+            4,
+            4,
+            stored("W/p"),
+            stored("W/i"),
+            &raw.reals[0].1,
+        ));
+        root.add_group(matrix("V", 4, 2, p, i, &[1.0, -2.0]));
+        root.add_group(matrix("R", 2, 2, &[0], &[0], &[0.0]));
+        root.create_dataset("spacedim").with_i32_data(&[2]);
+        let mut vectors = root.create_group("vectors");
+        vectors.create_dataset("q").with_f64_data(&[0.0; 4]);
+        vectors.create_dataset("mu").with_f64_data(&[0.0; 2]);
+        vectors.create_dataset("s").with_f64_data(&[0.0; 2]);
+        root.add_group(vectors.finish());
+        file.add_group(root.finish());
+        local(read_bytes(file.finish().unwrap()).unwrap())
+            .equality
+            .unwrap()
+            .v
+    };
+    let expected = SparseMatrix::from_triplets(4, 2, [(3, 1, 1.0), (0, 1, -2.0)]);
+    assert_eq!(Some(v(&[1, 1], &[3, 0])), expected);
+    assert_eq!(Some(v(&[3, 0], &[1, 1])), expected);
+}
+
+#[test]
+fn every_defect_is_named() {
+    let nan = f64::NAN;
+    let triplets = Raw::triplets;
+    let columns = Raw::columns;
+    for (raw, parts) in [
+        (
+            triplets().integers("spacedim", &[4]),
+            ["fclib_local/spacedim[0] = 4", "2 or 3"],
+        ),
+        (
+            triplets().integers("spacedim", &[3]),
+            ["vectors/q has 4 entries", "multiple of spacedim = 3"],
+        ),
+        (
+            triplets().integers("spacedim", &[2, 2]),
+            ["spacedim has 2 entries", "expected 1"],
+        ),
+        (
+            triplets().without("spacedim"),
+            ["fclib_local/spacedim is missing", ""],
+        ),
+        (
+            triplets().reals("vectors/mu", &[0.5, -0.1]),
+            ["vectors/mu[1] = -0.1", "0 and above"],
+        ),
+        (
+            triplets().reals("vectors/mu", &[0.5]),
+            ["vectors/mu has 1 entries", "expected 2"],
+        ),
+        (
+            triplets().reals("vectors/q", &[0.0, nan, 0.0, 0.0]),
+            ["vectors/q[1] = NaN", "finite"],
+        ),
+        (
+            triplets().reals("vectors/q", &[0.0, f64::INFINITY, 0.0, 0.0]),
+            ["vectors/q[1] = inf", "finite"],
+        ),
+        (
+            triplets().without("vectors/q"),
+            ["fclib_local/vectors/q is missing", ""],
+        ),
+        (
+            triplets()
+                .without("vectors/q")
+                .integers("vectors/q", &[0; 4]),
+            ["vectors/q holds i32", "expected reals"],
+        ),
+        (
+            triplets().without("W/p").reals("W/p", &[0.0; 10]),
+            ["W/p holds f64", "expected integers"],
+        ),
+        (
+            triplets().integers("W/m", &[6]),
+            ["W/m[0] = 6", "4, as the vectors say"],
+        ),
+        (triplets().integers("W/n", &[-4]), ["W/n[0] = -4", "4"]),
+        (
+            triplets().integers("W/nz", &[-3]),
+            ["W/nz[0] = -3", "compressed rows"],
+        ),
+        (
+            triplets().integers("W/nz", &[11]),
+            ["W/p has 10 entries", "expected 11"],
+        ),
+        (
+            triplets().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, 4]),
+            ["W/i[9] = 4", "0 to 3"],
+        ),
+        (
+            triplets().integers("W/p", &[-1, 0, 0, 1, 1, 2, 2, 2, 3, 3]),
+            ["W/p[0] = -1", "0 to 3"],
+        ),
+        (
+            columns().integers("W/p", &[0, 3, 5, 8]),
+            ["W/p has 4 entries", "expected 5"],
+        ),
+        (
+            columns().integers("W/p", &[1, 3, 5, 8, 10]),
+            ["W/p[0] = 1", "allowed: 0"],
+        ),
+        (
+            columns().integers("W/p", &[0, 5, 3, 8, 10]),
+            ["W/p[2] = 3", "5 to 10"],
+        ),
+        (
+            columns().integers("W/p", &[0, 3, 5, 8, 12]),
+            ["W/p[4] = 12", "8 to 10"],
+        ),
+        (
+            columns().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, -3]),
+            ["W/i[9] = -3", "0 to 3"],
+        ),
+        (
+            columns().reals("W/x", &[4.0, 1.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, nan]),
+            ["W/x[9] = NaN", "finite"],
+        ),
+        (
+            columns().reals("W/x", &[4.0, 9.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, 2.0]),
+            ["row 0, column 1", "symmetric"],
+        ),
+    ] {
+        let error = raw.read().unwrap_err();
+        assert!(
+            parts.iter().all(|part| error.contains(part)),
+            "{parts:?}: {error}"
+        );
+        assert!(error.contains("`p.hdf5`"), "{error}");
+    }
+    for (bytes, part) in [
+        (Vec::new(), "not readable as HDF5"),
+        (
+            b"%%MatrixMarket matrix array real general\n1 1\n1\n".to_vec(),
+            "not readable as HDF5",
+        ),
+        (FileBuilder::new().finish().unwrap(), "it holds no problem"),
+    ] {
+        let error = read_bytes(bytes).unwrap_err();
+        assert!(error.contains(part), "{error}");
+    }
+    let missing = fclib::read(Path::new("nowhere.hdf5"))
+        .unwrap_err()
+        .to_string();
+    assert!(missing.contains("cannot read `nowhere.hdf5`"), "{missing}");
+}
+
+#[test]
+fn parts_that_do_not_fit_are_not_written() {
+    let refused = |problem: &LocalProblem| problem.to_bytes().unwrap_err().to_string();
+    let mut problem = two_points();
+    problem.q.pop();
+    assert!(refused(&problem).contains("q: 3 entries, expected 4"));
+    let mut problem = two_points();
+    problem.dim = 1;
+    assert!(refused(&problem).contains("2 points of 1 components"));
+    let mut problem = two_points();
+    problem.solution = Some(Solution::default());
+    assert!(refused(&problem).contains("solution u: 0 entries, expected 4"));
+}
+
+/// Debug text tells −0 from 0 and every other pair of numbers apart.
+fn bits(problem: &Problem) -> String {
+    format!("{problem:?}")
+}
+
+proptest! {
+    #[test]
+    fn local_problems_come_back_to_the_bit(problem in any::any_local()) {
+        let problem = Problem::Local(problem);
+        let back = read_bytes(problem.to_bytes().unwrap()).unwrap();
+        prop_assert_eq!(bits(&back), bits(&problem));
+    }
+
+    #[test]
+    fn global_problems_come_back_to_the_bit(problem in any::any_global()) {
+        let problem = Problem::Global(problem);
+        let back = read_bytes(problem.to_bytes().unwrap()).unwrap();
+        // A triplet list whose rows and columns fit both ways is read with rows in i, as it is written.
+        prop_assert_eq!(bits(&back), bits(&problem));
+    }
+}
+
+/// Files to spoil: one of ours and three of other writers.
+fn victims() -> Vec<Vec<u8>> {
+    let mut ours = two_points();
+    ours.info.title = Some("title".into());
+    let mut all = vec![ours.to_bytes().unwrap()];
+    for name in ["local_csr.hdf5", "local_gzip.hdf5", "global.hdf5"] {
+        all.push(std::fs::read(shipped(name)).unwrap());
+    }
+    all
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn spoilt_bytes_are_refused_or_read(
+        victim in 0..4usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..9),
+        keep in prop_oneof![3 => Just(1.0), 1 => 0.0..1.0_f64],
+    ) {
+        let mut bytes = victims().swap_remove(victim);
+        for (index, byte) in changes {
+            let at = index.index(bytes.len());
+            bytes[at] = byte;
+        }
+        bytes.truncate((bytes.len() as f64 * keep) as usize);
+        // Whatever it says, it must say it.
+        if let Ok(Problem::Local(problem)) = read_bytes(bytes) {
+            prop_assert!(problem.q.iter().chain(&problem.mu).all(|x| x.is_finite()));
+        }
+    }
+
+    #[test]
+    fn garbage_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..4000), signed in any::<bool>()) {
+        let mut all = if signed { b"\x89HDF\r\n\x1a\n".to_vec() } else { Vec::new() };
+        all.extend(bytes);
+        prop_assert!(read_bytes(all).is_err());
+    }
+}
