@@ -2,7 +2,8 @@
 //! ```text
 //! f = G(a) − a,   γ = argmin |f − ΔF γ|,   a <- max(G(a) − ΔG γ, 0)
 //! ```
-//! The columns of ΔF and ΔG are the last differences of f and G(a).
+//! The columns of ΔF and ΔG are the last differences of f and G(a). Along a difference with Δf·Δa >= 0 the map expands and
+//! the secant would lead back to where the iteration flees from: then all differences are dropped and the plain step is taken.
 
 use faer::Mat;
 
@@ -60,12 +61,13 @@ impl Anderson {
         let Some((f_before, image_before)) = &self.last else {
             return;
         };
-        if norm(f) > GROWTH * norm(f_before) {
+        let (df, dg) = (minus(f, f_before), minus(image, image_before));
+        let expands = dot(&df, &minus(&dg, &df)) >= 0.0;
+        if expands || norm(f) > GROWTH * norm(f_before) {
             self.differences.clear();
             return;
         }
-        let new = (minus(f, f_before), minus(image, image_before));
-        self.differences.push(new);
+        self.differences.push((df, dg));
         if self.differences.len() > self.depth {
             self.differences.remove(0);
         }
@@ -113,6 +115,17 @@ mod tests {
     fn a_linear_fixed_point_is_found_after_as_many_steps_as_it_has_unknowns() {
         assert!(error_after(5, 5) < 1e-6, "{:e}", error_after(5, 5));
         assert!(error_after(0, 5) > 1e-2, "{:e}", error_after(0, 5));
+    }
+
+    /// G(a) = min(1.3 a + 1, 10): from 0 the iteration climbs faster and faster up to 10, away from −10/3.
+    #[test]
+    fn an_expanding_map_is_followed_and_not_fled() {
+        let mut anderson = Anderson::new(5);
+        let mut a = anderson.next(vec![0.0]);
+        for _ in 0..12 {
+            a = anderson.next(vec![(1.3 * a[0] + 1.0).min(10.0)]);
+        }
+        assert!((a[0] - 10.0).abs() < 1e-12, "{a:?}");
     }
 
     #[test]
