@@ -24,15 +24,18 @@
 //!
 //! | μ                 | 0.1   | 0.3   | 0.6     | 1       | 2           | 5             |
 //! |-------------------|-------|-------|---------|---------|-------------|---------------|
-//! | 2D, `anderson` 5  | 6     | 7     | 9       | 9       | 10, 1 fails | 10            |
-//! | 2D, `anderson` 0  | 6     | 8     | 11      | 13      | 16, 15 fail | 6, 65 fail    |
-//! | 3D, `anderson` 5  | 6     | 8     | 9       | 11      | 12          | 14, 2 fail    |
-//! | 3D, `anderson` 0  | 6     | 8     | 11      | 15      | 21, 20 fail | 11, 100 fail  |
+//! | 2D, `anderson` 5  | 6     | 7     | 9       | 9       | 10, 1 fails | 10           |
+//! | 2D, `anderson` 0  | 6     | 8     | 11      | 13      | 16, 15 fail | 6, 64 fail   |
+//! | 3D, `anderson` 5  | 6     | 8     | 9       | 11      | 12          | 14, 1 fails  |
+//! | 3D, `anderson` 0  | 6     | 8     | 11      | 15      | 21, 20 fail | 13, 95 fail  |
 //!
 //! # Failure modes
-//! For μ > 1 the plain fixed point cycles between bounds; acceleration breaks nearly all cycles. The rest is reported as
-//! `stalled`: above a natural map of 1e-3 nothing is polished. Bounds are kept above 1e-8 of the reference force per point,
-//! because an empty cone costs clarabel its last digits; polishing takes that away again.
+//! Where friction locks a wedge (μ above the tangent of its angle) μ P_n exceeds the bound it came from until all sticks: the
+//! acceleration drops differences along which the iteration expands, their secant would lead back. Without progress for 15
+//! steps the iteration starts once more from the forces of a tied crack. For μ > 1 the plain fixed point cycles between bounds;
+//! acceleration breaks nearly all cycles. The rest is reported as `stalled`: above a natural map of 1e-3 nothing is polished.
+//! Bounds are kept above 1e-8 of the reference force per point, because an empty cone costs clarabel its last digits;
+//! polishing takes that away again.
 //!
 //! # Skips
 //! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.

@@ -2,6 +2,7 @@
 //! ```text
 //! (P, β) <- cone program with parameter a          to a tolerance that follows the natural map
 //! a <- parameter of (P, v), accelerated by Anderson's method
+//! stuck:  once more from the forces of a tied crack
 //! polish: Newton's method of Alart and Curnier once the natural map is below 1e-6, or the programs have reached their floor
 //! ```
 
@@ -13,6 +14,7 @@ use super::cone_program::{ConeProgram, Law, TIGHTEST};
 use super::error::MethodError;
 use super::reduced::{Begin, Limits, Reduced};
 use super::semismooth::{Iterate, Safeguards, newton};
+use super::starts::tied_forces;
 use super::state::{Claim, Monitor, Outcome, Status};
 use super::system::Increment;
 use super::tangent::Tangent;
@@ -104,6 +106,7 @@ impl FixedPoint {
         let mut anderson = Anderson::new(self.anderson);
         let mut branches = Branches::default();
         let mut accuracy = Accuracy::new(&problem);
+        let mut restarted = false;
 
         let status = loop {
             let v = problem.jump(&x.P, &x.beta);
@@ -112,6 +115,16 @@ impl FixedPoint {
                 let (status, polished) = polish(&mut problem, x, limits, monitor)?;
                 x = polished;
                 break status;
+            }
+            if stuck(&problem, natural_map) && !restarted {
+                restarted = true;
+                problem.begin_phase();
+                anderson = Anderson::new(self.anderson);
+                if let Some(tied) = tied_forces(&problem) {
+                    let beta = problem.start_amplitudes(&tied);
+                    x = Iterate { P: tied, beta };
+                    continue;
+                }
             }
             let changes = branches.changes(&problem, &x.P, &v);
             if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
@@ -149,8 +162,13 @@ impl FixedPoint {
 
 /// Whether Newton's method should take over: not before the fixed point has done its work, and not if that is enough.
 fn at_floor(problem: &Reduced<'_>, natural_map: f64) -> bool {
-    let stuck = problem.stagnates() && natural_map <= CYCLING;
-    natural_map > problem.stop && (natural_map <= POLISH || stuck)
+    let at_floor = problem.stagnates() && natural_map <= CYCLING;
+    natural_map > problem.stop && (natural_map <= POLISH || at_floor)
+}
+
+/// Whether the fixed point cycles or runs away, as where a wedge locks: μ P_n then grows faster than the bound it came from.
+fn stuck(problem: &Reduced<'_>, natural_map: f64) -> bool {
+    problem.stagnates() && natural_map > CYCLING
 }
 
 /// A few Newton steps.
