@@ -9,7 +9,8 @@ use stickslip::harness::record::{Results, RunKey};
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
 use stickslip_methods::{
-    Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
+    Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
+    method,
 };
 
 const SETTINGS: Settings = Settings {
