@@ -5,6 +5,7 @@ mod report_data;
 use report_data::{beam, key, plate, points, results, results_of_all_methods};
 use stickslip::harness::record::{HistoryRow, Picture, PictureCell, PointRow};
 use stickslip::report::ReportError;
+use stickslip::report::comparison::comparison;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification, Tier};
 use stickslip::report::robustness::RobustnessRow;
 use stickslip_methods::{METHODS, Tier as Accuracy};
@@ -67,6 +68,16 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
             "slip of all methods",
             plot::contact_slip(&all.points, 1).expect("slip"),
             vec!["12 exact methods", "barrier, off by less than 1e-12"],
+        ),
+        (
+            "cost",
+            plot::method_cost(&comparison(&all.runs)).expect("cost"),
+            vec![
+                "plate_mesh1",
+                "iterations [-]",
+                "solve time [s]",
+                ">nitsche<",
+            ],
         ),
         (
             "rates",
@@ -308,7 +319,7 @@ fn figures_show_their_labels_as_text() {
 #[test]
 fn figures_have_print_sizes_in_millimetres() {
     for (name, svg, _) in figures() {
-        let width = if ["contours", "rates"].contains(&name) {
+        let width = if ["contours", "cost", "rates"].contains(&name) {
             "170.00mm"
         } else {
             "85.00mm"

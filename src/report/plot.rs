@@ -15,6 +15,7 @@ mod canvas;
 mod chart;
 mod colour;
 mod contour;
+mod cost;
 mod curves;
 mod legend;
 mod marks;
@@ -29,6 +30,7 @@ mod surface;
 
 pub use canvas::{Width, italic, subscript};
 pub use contour::{Magnification, displacement_contours};
+pub use cost::method_cost;
 pub use curves::{Curve, CurvePlot, Tier, error_plot, line_plot, residual_history};
 pub use methods::rank as method_rank;
 pub use profile::{contact_slip, contact_traction};

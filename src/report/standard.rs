@@ -199,7 +199,7 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
 }
 
 /// Whether a verdict is that of a run that did what it claims.
-fn honest(verdict: &str) -> bool {
+pub fn honest(verdict: &str) -> bool {
     solved(verdict) || verdict.starts_with("approximate")
 }
 

@@ -16,8 +16,8 @@ use std::collections::BTreeSet;
 /// Jumps below this fraction of the crack's length are what the tolerance of a method leaves.
 const ROUND_OFF: f64 = 1e-10;
 
-/// Difference up to which a curve runs along another one, as a fraction of the range: about two line widths.
-const LIES_ON: f64 = 0.03;
+/// Largest difference of a curve that still runs along another one for the most part, as a fraction of the range.
+const LIES_ON: f64 = 0.06;
 
 /// What differences in the legend mean.
 const SCALE_NOTE: &str = "differences as fractions of the largest value";
