@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{residual, significant, time, value};
+use super::plot::method_cost;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper, standard};
 use crate::harness::record::RunRow;
@@ -256,7 +257,7 @@ pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
         ],
     );
     for row in rows {
-        let honest = standard::solved(&row.verdict) || row.verdict.starts_with("approximate");
+        let honest = standard::honest(&row.verdict);
         table.push(vec![
             row.case.clone(),
             value(row.friction),
@@ -275,7 +276,7 @@ pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// Adds both tables to a report.
+/// Adds both tables and the figure `cost` to a report.
 ///
 /// # Errors
 /// Those of the parts.
@@ -287,6 +288,10 @@ pub fn add(
     let rows = comparison(runs);
     bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
     paper::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
+    // Where nothing did what it claims there is nothing to draw.
+    if rows.iter().any(|row| standard::honest(&row.verdict)) {
+        bundle.add("figures/cost.svg", method_cost(&rows)?)?;
+    }
     bundle.add(VariantRow::FILE, csv::file(variants)?)?;
     paper::add_readable(bundle, "variants", &variant_table(variants)?)
 }

@@ -23,6 +23,15 @@ pub fn key(method: &str, friction: f64) -> RunKey {
     }
 }
 
+/// Rows of all methods of the registry for one friction coefficient.
+pub fn results_of_all_methods() -> Results {
+    let mut results = Results::default();
+    for method in stickslip_methods::METHODS.iter().rev() {
+        add_run(&mut results, key(method.name, 0.1));
+    }
+    results
+}
+
 /// All rows, in an order that is not the sorted one.
 pub fn results() -> Results {
     let mut results = Results::default();
