@@ -1,6 +1,7 @@
 //! The command line: verbs, arguments, what is printed.
 
 mod exchange;
+mod output;
 mod progress;
 mod stress;
 
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 use clap::{Parser, Subcommand};
 use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
+use self::output::say;
 use self::progress::Bar;
 use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
@@ -194,11 +196,11 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),
         Verb::List => {
-            print!("{}", list_text());
+            say(format_args!("{}", list_text().trim_end()));
             Ok(true)
         }
         Verb::Show { name } => {
-            print!("{}", show_text(&name)?);
+            say(format_args!("{}", show_text(&name)?.trim_end()));
             Ok(true)
         }
         Verb::Check { files } => check_verb(&files),
@@ -216,8 +218,8 @@ fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     let paper = paper::run(settings, &bar)?;
     bar.finish();
     paper.write(out, &provenance(settings))?;
-    println!("{}", paper.text()?);
-    println!("Report: {}", out.display());
+    say(format_args!("{}", paper.text()?));
+    say(format_args!("Report: {}", out.display()));
     print_missed(&paper.results);
     Ok(paper::as_expected(&paper.results))
 }
@@ -250,14 +252,21 @@ fn run_verb(
     }
     bar.finish();
     standard::write(out, &results, &provenance(settings))?;
-    println!("{}", standard::runs_table(&results.runs)?.terminal());
+    say(format_args!(
+        "{}",
+        standard::runs_table(&results.runs)?.terminal()
+    ));
     if !results.expectations.is_empty() {
-        println!(
+        say(format_args!(
             "{}",
             standard::expectations_table(&results.expectations)?.terminal()
-        );
+        ));
     }
-    println!("{}\nResults: {}", paper::summary(&results), out.display());
+    say(format_args!(
+        "{}\nResults: {}",
+        paper::summary(&results),
+        out.display()
+    ));
     Ok(paper::as_expected(&results))
 }
 
@@ -285,7 +294,7 @@ fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
         expect::check(&case)?;
         for &refine in &case.sweep.refine {
             let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
-            println!(
+            say(format_args!(
                 "{}: {}, {} cells, {} unknowns, {} contact points ({})",
                 file.display(),
                 body.label,
@@ -293,7 +302,7 @@ fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
                 body.elastic.unknowns(),
                 body.points.len(),
                 body.space
-            );
+            ));
         }
     }
     Ok(true)

@@ -262,7 +262,7 @@ impl Enforcement for Barrier {
             let step = (!stuck).then(|| direction(&mut problem, &law, &x, &at));
             let Some(step) = step.flatten() else {
                 if problem.rescue_left()
-                    && let Some(pair) = rescue(&mut problem)
+                    && let Some(pair) = rescue(&mut problem)?
                 {
                     x = inside(&problem, &law, pair);
                     (search, best) = (LineSearch::default(), (f64::INFINITY, iteration));

@@ -150,7 +150,7 @@ impl Enforcement for Penalty {
             self.max_iterations,
             &mut self.tangent,
             recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta)),
-        );
+        )?;
         problem.rebalance(&mut end.p);
         problem.finish(status, &end.p, &end.beta)
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use stickslip_methods::{METHODS, Tier};
 
+use super::output::say;
 use super::{Bar, CliError, find_case, parse_choice, provenance, refuse_twins};
 use crate::harness::export::{Request, export};
 use crate::harness::problem_file::ProblemFile;
@@ -78,9 +79,9 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
     prepare_output(&args.out)?;
     let (name, bundle) = export(&case, &request)?;
     bundle.commit(&args.out)?;
-    println!("{}", args.out.join(name).display());
+    say(format_args!("{}", args.out.join(name).display()));
     for path in bundle.paths() {
-        println!("  {path}");
+        say(format_args!("  {path}"));
     }
     Ok(true)
 }
@@ -120,12 +121,15 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     let mut bundle = standard::bundle(&results, &provenance(settings))?;
     bundle.append(solutions)?;
     bundle.commit(&args.out)?;
-    println!("{}", standard::runs_table(&results.runs)?.terminal());
-    println!(
+    say(format_args!(
+        "{}",
+        standard::runs_table(&results.runs)?.terminal()
+    ));
+    say(format_args!(
         "{}\nResults: {}",
         paper::summary(&results),
         args.out.display()
-    );
+    ));
     Ok(paper::as_expected(&results))
 }
 
@@ -158,6 +162,6 @@ pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
         cells.extend(numbers.map(residual));
         table.push(cells)?;
     }
-    println!("{}", table.terminal());
+    say(format_args!("{}", table.terminal()));
     Ok(all_hold)
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_methods::{METHODS, Tier};
 
+use super::output::say;
 use super::progress::Bar;
 use super::{CliError, parse_choice, refuse_twins};
 use crate::harness::stress::{self, Study, Trial};
@@ -97,8 +98,12 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     }
     bundle.commit(&arguments.out)?;
     let table = robustness::table(&robustness::rows(&study, &trials))?;
-    println!("{}", table.terminal());
-    println!("{}\nResults: {}", summary(&trials), arguments.out.display());
+    say(format_args!("{}", table.terminal()));
+    say(format_args!(
+        "{}\nResults: {}",
+        summary(&trials),
+        arguments.out.display()
+    ));
     for trial in trials.iter().filter(|t| t.is_wrong()) {
         eprintln!(
             "{}: {}D problem {} mu={} {}",

@@ -65,6 +65,8 @@ pub struct RunRow {
     pub solve_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
+    /// The same with the consistency term that the method claims; `equilibrium` where it claims none [-].
+    pub claimed_equilibrium: f64,
     /// Residual of the laws the method claims to have solved, found by the judge [-].
     pub claimed: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.

@@ -134,6 +134,7 @@ fn row(key: &RunKey, system: &ContactSystem, setup: Setup, tier: Tier) -> RunRow
         prepare_s: 0.0,
         solve_s: f64::NAN,
         equilibrium: f64::NAN,
+        claimed_equilibrium: f64::NAN,
         claimed: f64::NAN,
         tangent_factorisations: 0,
         global_factorisations: 0,
@@ -147,6 +148,7 @@ fn record(run: &mut RunRow, verdict: &Verdict, judged: &Judged) {
     run.verdict = verdict.to_string();
     run.natural_map = found.natural_map;
     run.equilibrium = found.equilibrium;
+    run.claimed_equilibrium = found.claimed_equilibrium;
     run.claimed = found.claimed;
     run.iterations = outcome.counters.iterations;
     run.solves = outcome.counters.solves;

@@ -37,7 +37,7 @@ use super::linear::floating::ModeJumps;
 use super::linear::spectrum::extremes;
 use super::penalised::{Coupled, Springs};
 use super::reduced::Reduced;
-use super::state::{Claim, ContactState, Status};
+use super::state::{Claim, Status};
 use super::system::ContactSystem;
 
 /// Columns of Sᵀ solved for together.
@@ -237,17 +237,13 @@ impl Stabilisation {
     ) -> Result<Option<Status>, MethodError> {
         let increment = problem.increment;
         problem.further = self.consistency(problem, s, p)?;
-        let Some(u) = problem.recover(p, beta)? else {
+        let Some(state) = problem.recover(p, beta)? else {
             return Ok(Some(Status::Diverged));
         };
-        let state = ContactState {
-            p: problem.all_forces(p),
-            u,
-        };
         let found = residuals_of(increment, &state, self.claim())?;
-        let kept = found.claimed <= increment.tolerance && found.equilibrium <= EQUILIBRIUM;
+        let kept = found.claimed <= increment.tolerance && found.claimed_equilibrium <= EQUILIBRIUM;
         if kept || corrections == MAX_CORRECTIONS {
-            problem.confirmed = Some(state.u);
+            problem.confirmed = Some(state);
             return Ok(Some(if kept {
                 Status::Converged
             } else {
