@@ -2,13 +2,12 @@
 
 mod report_data;
 
-use report_data::{beam, key, plate, points, results, results_of_all_methods};
+use report_data::{beam, key, plate, points, rates, results, results_of_all_methods};
 use stickslip::harness::record::{HistoryRow, Picture, PictureCell, PointRow};
 use stickslip::report::ReportError;
 use stickslip::report::comparison::comparison;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification, Tier};
-use stickslip::report::robustness::RobustnessRow;
-use stickslip_methods::{METHODS, Tier as Accuracy};
+use stickslip_methods::METHODS;
 
 /// Every kind of figure, with the texts that it must show.
 fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
@@ -143,45 +142,6 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
     ]
 }
 
-/// Rates of all methods in both dimensions, some below 100 %, one method declining everything in 2D.
-fn rates() -> Vec<RobustnessRow> {
-    let mut rows = Vec::new();
-    for dimension in [2, 3] {
-        for (index, method) in METHODS.iter().enumerate() {
-            for (class, friction) in [0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0].into_iter().enumerate() {
-                let rate = match (index + class) % 8 {
-                    _ if dimension == 2 && method.name == "latin" => f64::NAN,
-                    6 => 0.875,
-                    7 => 0.9996,
-                    _ => 1.0,
-                };
-                rows.push(RobustnessRow {
-                    dimension,
-                    friction,
-                    method: method.name.into(),
-                    tier: Accuracy::High,
-                    problems: 8,
-                    solved: 7,
-                    approximate: 0,
-                    gave_up: 1,
-                    gave_up_by: [1, 0, 0, 0, 0],
-                    false_claims: 0,
-                    crashed: 0,
-                    refused: 0,
-                    success: [rate, rate - 0.2, (rate + 0.001).min(1.0)],
-                    iterations: [5.0, 8.0, 9.0],
-                    factorisations: 5.0,
-                    solve_s: 1e-3,
-                    natural_map: 1e-10,
-                    unique_share: 1.0,
-                    shares: [0.2, 0.3, 0.5],
-                });
-            }
-        }
-    }
-    rows
-}
-
 /// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.
 fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
     let element = |rest: &str| {
@@ -228,66 +188,6 @@ fn texts_do_not_overlap() {
             }
         }
     }
-}
-
-#[test]
-fn methods_stand_in_the_order_of_the_registry_in_lines_of_equal_width() {
-    let all = results_of_all_methods();
-    let svg = plot::residual_history(&all.history, None).expect("a figure");
-    let places: Vec<usize> = METHODS
-        .iter()
-        .map(|method| svg.find(&format!(">{}<", method.name)).expect("a label"))
-        .collect();
-    assert!(
-        places.windows(2).all(|pair| pair[0] < pair[1]),
-        "{places:?}"
-    );
-    // Of 0.05 mm each: nothing is wider than 1.4 pt.
-    let widths = svg
-        .split("stroke-width=\"")
-        .skip(1)
-        .filter_map(|rest| rest.split('"').next());
-    let widest = widths.filter_map(|w| w.parse::<u32>().ok()).max();
-    assert_eq!(widest, Some(9));
-}
-
-#[test]
-fn methods_that_agree_share_a_curve_and_others_have_their_own() {
-    let mut points: Vec<PointRow> = Vec::new();
-    for method in METHODS {
-        let mut own = report_data::points(&key("b-newton", 0.1));
-        own.iter_mut()
-            .for_each(|row| row.key.method = method.name.into());
-        points.extend(own);
-    }
-    let together = plot::contact_traction(&points, 1).expect("a figure");
-    assert!(together.contains("12 exact methods, apart by less than 1e-12"));
-    for method in METHODS {
-        assert!(together.contains(method.name), "{} is named", method.name);
-        assert!(
-            !together.contains(&format!(">{}<", method.name)),
-            "{}",
-            method.name
-        );
-    }
-    for row in points.iter_mut().filter(|row| row.key.method == "latin") {
-        row.p_n *= 1.02;
-    }
-    for row in points.iter_mut().filter(|row| row.key.method == "nsgs") {
-        row.p_n *= 1.0 - 4e-4;
-    }
-    let svg = plot::contact_traction(&points, 1).expect("a figure");
-    assert!(svg.contains(">latin<"), "one that differs stands alone");
-    assert!(svg.contains("11 exact methods, apart by at most 0.0004"));
-    // The same laws with another status at a point are another answer, whatever the forces.
-    for row in points
-        .iter_mut()
-        .filter(|row| row.key.method == "tresca" && row.point == 5)
-    {
-        row.status = "stick".into();
-    }
-    let svg = plot::contact_traction(&points, 1).expect("a figure");
-    assert!(svg.contains("10 exact methods") && svg.contains(">tresca<"));
 }
 
 #[test]

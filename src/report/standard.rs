@@ -275,8 +275,8 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
         .collect();
     let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
     // By case, mesh, space and crack, then by method in the order of the registry.
-    let mut sweeps: BTreeMap<(String, usize), BTreeMap<(usize, &str), Vec<PointRow>>> =
-        BTreeMap::new();
+    type ByMethod<'a> = BTreeMap<(usize, &'a str), Vec<PointRow>>;
+    let mut sweeps: BTreeMap<(String, usize), ByMethod<'_>> = BTreeMap::new();
     for row in &results.points {
         let plane = row.force_unit == "N/m";
         let wanted = plane && is_last(&last, &row.key);
