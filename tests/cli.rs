@@ -103,15 +103,16 @@ fn an_error_that_nobody_reads_keeps_its_exit_code() {
         (&["run", "nothing"][..], 2),
         (&["run", "off.toml", "--method", METHOD], 1),
     ] {
-        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"))
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let status = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"))
             .args(arguments)
             .current_dir(dir.path())
             .stdout(std::process::Stdio::null())
-            .stderr(std::process::Stdio::piped())
-            .spawn()
+            .stderr(writer)
+            .status()
             .unwrap();
-        drop(child.stderr.take());
-        assert_eq!(child.wait().unwrap().code(), Some(code), "{arguments:?}");
+        assert_eq!(status.code(), Some(code), "{arguments:?}");
     }
 }
 
