@@ -35,9 +35,8 @@
 //! at μ = 5; with α = 1.6 to the end 55 and 9.
 //!
 //! # Skips
-//! W + I/k is factored once per system and power of 2, and kept between increments.
+//! W + I/k is factored once per move of k; the three factors used last are kept, also between increments.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::problem::law::{Branch, project_cone, tangential_norm};
@@ -100,12 +99,15 @@ const FIRST_BALANCE: usize = 10;
 /// Largest power of 2 in one move of k.
 const MAX_MOVE: f64 = 4.0;
 
+/// Factors kept: each is as large as W. The first k, the one before a move and the one after.
+const KEPT: usize = 3;
+
 struct Admm {
     penalty: f64,
     over_relaxation: f64,
     max_iterations: usize,
-    /// The linear step by power of 2; kept for as long as the system stays the same.
-    stages: BTreeMap<i32, Arc<GlobalStage>>,
+    /// The linear step with its power of 2, the last one used at the end.
+    stages: Vec<(i32, Arc<GlobalStage>)>,
 }
 
 impl Admm {
@@ -114,7 +116,7 @@ impl Admm {
             penalty: options.own("penalty"),
             over_relaxation: options.own("over_relaxation"),
             max_iterations: options.own("max_iterations") as usize,
-            stages: BTreeMap::new(),
+            stages: Vec::new(),
         }
     }
 
@@ -125,14 +127,19 @@ impl Admm {
         power: i32,
     ) -> Result<Arc<GlobalStage>, MethodError> {
         self.stages
-            .retain(|_, stage| stage.belongs_to(&problem.condensed));
-        if let Some(stage) = self.stages.get(&power) {
-            return Ok(stage.clone());
+            .retain(|(_, stage)| stage.belongs_to(&problem.condensed));
+        let kept = self.stages.iter().position(|(kept, _)| *kept == power);
+        let stage = if let Some(place) = kept {
+            self.stages.remove(place).1
+        } else {
+            let k = self.penalty * problem.condensed.rho * 2.0_f64.powi(power);
+            problem.counters.factorisations += 1;
+            Arc::new(GlobalStage::along(problem.condensed.clone(), k)?)
+        };
+        self.stages.push((power, stage.clone()));
+        if self.stages.len() > KEPT {
+            self.stages.remove(0);
         }
-        let k = self.penalty * problem.condensed.rho * 2.0_f64.powi(power);
-        let stage = Arc::new(GlobalStage::along(problem.condensed.clone(), k)?);
-        problem.counters.factorisations += 1;
-        self.stages.insert(power, stage.clone());
         Ok(stage)
     }
 }
@@ -294,5 +301,46 @@ impl Cone {
             target[rows.start] -= problem.friction(i) * d;
         }
         target
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ContactState, Elastic, Load, SymmetricMatrix};
+
+    #[test]
+    fn only_the_last_factors_are_kept() {
+        let w = SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
+        let body = Elastic::from_delassus(2, w, vec![]).unwrap();
+        let system = ContactSystem::new(body.clone(), vec![0.3]).unwrap();
+        let load = Load {
+            force: vec![-1.0, 0.0],
+            offset: vec![0.0; 2],
+            traction: vec![],
+        };
+        let increment = Increment {
+            system: &system,
+            load: &load,
+            start_load: &Load::zero(&body),
+            start: &ContactState::zero(&system),
+            index: 0,
+            tolerance: 1e-9,
+        };
+        let Begin::Contact(mut problem) = Reduced::begin(&increment, |_| Claim::Exact).unwrap()
+        else {
+            panic!("the point closes");
+        };
+        let mut admm = Admm::new(&Options::new(&OPTIONS, &[]).unwrap());
+        let counted = |admm: &mut Admm, problem: &mut Reduced<'_>, power: i32| {
+            let k0 = admm.stage(problem, power).unwrap().k0();
+            assert_eq!(k0, problem.condensed.rho * 2.0_f64.powi(power));
+            assert!(admm.stages.len() <= KEPT);
+            problem.counters.factorisations
+        };
+        for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)] {
+            let found = counted(&mut admm, &mut problem, power);
+            assert_eq!(found, factorisations, "power {power}");
+        }
     }
 }

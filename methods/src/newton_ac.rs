@@ -40,9 +40,11 @@
 #![allow(non_snake_case)]
 
 use crate::problem::b_equations::Row;
-use crate::problem::law::{Branch, ball_derivative, return_map};
+use crate::problem::law::{Branch, ball_derivative};
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::semismooth::{Iterate, Safeguards, Scheme, newton, trial};
+use crate::problem::semismooth::{
+    Iterate, Safeguards, Scheme, augmented_branch, augmented_equations, newton, trial,
+};
 use crate::problem::tangent::{MONOLITHIC, Tangent};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -149,17 +151,11 @@ impl Scheme for AlartCurnier {
     type Piece = Branch;
 
     fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        let mut H = trial(r, P, v);
-        return_map(mu, &mut H[..P.len()]);
-        for k in 0..P.len() {
-            H[k] = P[k] - H[k];
-        }
-        H
+        augmented_equations(mu, r, P, v)
     }
 
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        let mut z = trial(r, P, v);
-        return_map(mu, &mut z[..P.len()])
+        augmented_branch(mu, r, P, v)
     }
 
     fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Branch) -> [Row; 3] {

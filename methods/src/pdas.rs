@@ -22,9 +22,9 @@
 //! ```
 //! M is the tangent of C_t with the force scaled back into the friction bound and damped where it opposes the trial:
 //! the exact tangent, in the limit, but without its singular directions far from the solution. Sticking points drop the
-//! term (d/s) δs of the exact tangent, which vanishes with d: where points are redundant it would contradict itself. The sets are chosen anew
-//! from the signs after every step; steps are full. Where the sets stay and nothing slips in 3D, the problem solved is
-//! linear, and its solution final.
+//! term (d/s) δs of the exact tangent, which vanishes with d: where points are redundant it would contradict itself.
+//! The sets are chosen anew from the signs after every step; steps are full. Where the sets stay and nothing slips in
+//! 3D, the problem solved is linear, and its solution final.
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
@@ -32,12 +32,14 @@
 //! the iterates are the same.
 //!
 //! # Guarantees
-//! Without friction it is Newton's method on an M-matrix-like complementarity problem: finite termination, monotone from
-//! above. With friction locally superlinear; no global guarantee, and no line search that could give one.
+//! Without friction, if W⁻¹ is an M-matrix: finite termination, from any start, and monotone from the second step on
+//! (Hintermüller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865). Membranes have that, elastic bodies in general do not.
+//! Otherwise locally superlinear; no global guarantee, and no line search that could give one.
 //!
 //! # Failure modes
-//! Cycling between sets for large μ. After 15 steps without progress a few local and global stages (as in LATIN) move the
-//! iterate on, as in the other Newton methods here; a piece that gets loose again and again is reported as a mechanism.
+//! Cycling between sets for large μ, and where W⁻¹ is no M-matrix also without friction: three points are enough. After
+//! 15 steps without progress a few local and global stages (as in LATIN) move the iterate on, as in the other Newton
+//! methods here; a piece that gets loose again and again is reported as a mechanism.
 //!
 //! # Skips
 //! An open crack is one linear solve. Inactive points leave the dense LU; without friction there are no tangential rows.
@@ -45,9 +47,11 @@
 #![allow(non_snake_case)]
 
 use crate::problem::b_equations::Row;
-use crate::problem::law::{Branch, return_map, tangential_norm};
+use crate::problem::law::{Branch, tangential_norm};
 use crate::problem::reduced::{Begin, Limits, Reduced};
-use crate::problem::semismooth::{Iterate, Safeguards, Scheme, newton, trial};
+use crate::problem::semismooth::{
+    Iterate, Safeguards, Scheme, augmented_branch, augmented_equations, newton, trial,
+};
 use crate::problem::tangent::{MONOLITHIC, Tangent};
 use crate::{
     Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
@@ -148,16 +152,11 @@ impl Scheme for Sets {
 
     /// C with C_t divided by max(s, |z_t|), so that it is a force.
     fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        let mut C = trial(r, P, v);
-        return_map(mu, &mut C[..P.len()]);
-        for k in 0..P.len() {
-            C[k] = P[k] - C[k];
-        }
-        C
+        augmented_equations(mu, r, P, v)
     }
 
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        return_map(mu, &mut trial(r, P, v)[..P.len()])
+        augmented_branch(mu, r, P, v)
     }
 
     fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], set: Branch) -> [Row; 3] {

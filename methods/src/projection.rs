@@ -37,7 +37,7 @@
 //! only every now and then, and before anything is claimed.
 
 use crate::problem::law::{Branch, project_cone, tangential_norm};
-use crate::problem::linear::dense::mul_add;
+use crate::problem::linear::dense::{minus, mul_add};
 use crate::problem::reduced::{Begin, COMPLIANCE_FLOOR, Limits, Reduced};
 use crate::problem::saddle::{Iterate, REFRESH, Saddle};
 use crate::{
@@ -272,8 +272,4 @@ impl Step {
             (jumps / forces).sqrt()
         }
     }
-}
-
-fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -182,6 +182,7 @@ mod tests {
     fn the_natural_map_counts_only_in_equilibrium() {
         let found = |natural_map, equilibrium| Residuals {
             equilibrium,
+            claimed_equilibrium: equilibrium,
             claimed: natural_map,
             penetration: 0.0,
             adhesion: 0.0,

@@ -7,7 +7,7 @@
 
 use faer::Mat;
 
-use super::linear::dense::solve_dense;
+use super::linear::dense::{minus, solve_dense};
 use super::linear::factor::norm;
 use super::linear::floating::dot;
 
@@ -83,10 +83,6 @@ impl Anderson {
         let right: Vec<f64> = d.iter().map(|(df, _)| dot(df, f)).collect();
         solve_dense(&normal, &right)
     }
-}
-
-fn minus(x: &[f64], y: &[f64]) -> Vec<f64> {
-    x.iter().zip(y).map(|(x, y)| x - y).collect()
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ mod local_form;
 mod matrix;
 pub(crate) mod nitsche_condensed;
 mod options;
+pub(crate) mod own_laws;
 pub(crate) mod penalised;
 mod point_status;
 pub(crate) mod reduced;
@@ -32,6 +33,7 @@ mod system;
 pub(crate) mod tangent;
 mod tier;
 mod uniqueness;
+pub(crate) mod unloaded;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use error::MethodError;

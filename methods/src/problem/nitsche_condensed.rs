@@ -30,11 +30,12 @@ use faer::{Accum, Mat, MatMut, Par, Side};
 use super::condensed::{Condensed, RowSet};
 use super::elastic::Elastic;
 use super::error::MethodError;
-use super::judge::{implied_forces, residuals_of, slip_from};
+use super::judge::{implied_forces, slip_from};
 use super::linear::dense::{mul_add, mul_transpose_add};
 use super::linear::factor::kernel;
 use super::linear::floating::ModeJumps;
 use super::linear::spectrum::extremes;
+use super::own_laws::{Judged, judge};
 use super::penalised::{Coupled, Springs};
 use super::reduced::Reduced;
 use super::state::{Claim, Status};
@@ -42,10 +43,6 @@ use super::system::ContactSystem;
 
 /// Columns of Sᵀ solved for together.
 const PANEL: usize = 128;
-/// Backward error of equilibrium to reach, below what the judge allows.
-const EQUILIBRIUM: f64 = 1e-13;
-/// Corrections of q and s per increment; each gains the digits that the condensed operators have right.
-const MAX_CORRECTIONS: usize = 3;
 
 /// T and X on the rows of a body.
 pub(crate) struct Tractions {
@@ -237,26 +234,17 @@ impl Stabilisation {
     ) -> Result<Option<Status>, MethodError> {
         let increment = problem.increment;
         problem.further = self.consistency(problem, s, p)?;
-        let Some(state) = problem.recover(p, beta)? else {
-            return Ok(Some(Status::Diverged));
+        let u = match judge(problem, p, beta, corrections)? {
+            Judged::End(status) => return Ok(Some(status)),
+            Judged::Wrong(u) => u,
         };
-        let found = residuals_of(increment, &state, self.claim())?;
-        let kept = found.claimed <= increment.tolerance && found.claimed_equilibrium <= EQUILIBRIUM;
-        if kept || corrections == MAX_CORRECTIONS {
-            problem.confirmed = Some(state);
-            return Ok(Some(if kept {
-                Status::Converged
-            } else {
-                Status::Stalled
-            }));
-        }
         let (v, mut tau) = (self.jump(problem, s, p, beta), s.to_vec());
         mul_transpose_add(&self.x, p, &mut tau);
         mul_add(&self.t, &scaled(self.theta, &self.mismatch(s, p)), &mut tau);
-        let jump = increment.jump(&state.u);
+        let jump = increment.jump(&u);
         let dim = increment.system.dim();
         let v_found = slip_from(problem.rows, dim, &jump, &increment.start_jump());
-        let tau_found = stress(problem, &state.u)?;
+        let tau_found = stress(problem, &u)?;
         for k in 0..v.len() {
             problem.q[k] += v_found[k] - v[k];
             s[k] += tau_found[k] - tau[k];

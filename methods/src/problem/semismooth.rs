@@ -11,6 +11,7 @@
 
 use super::b_equations::Row;
 use super::error::MethodError;
+use super::law::{Branch, return_map};
 use super::line_search::LineSearch;
 use super::reduced::{Limits, Reduced};
 use super::stages::rescue;
@@ -18,7 +19,7 @@ use super::state::{Monitor, Status};
 use super::tangent::Tangent;
 
 /// Regularisation of a singular tangent of redundant points, relative to 1/ρ.
-const RIDGE: f64 = 1e-10;
+pub(crate) const RIDGE: f64 = 1e-10;
 
 /// Unknowns of the method.
 #[derive(Debug, Clone)]
@@ -218,6 +219,21 @@ fn merit<S: Scheme>(scheme: &S, problem: &Reduced<'_>, r: &[f64], P: &[f64], v: 
         sum += own.zip(H).map(|(k, h)| h * h / r[k]).sum::<f64>();
     }
     sum
+}
+
+/// P − Π(P − r v) at one point, Π the return mapping: the equations of the augmented Lagrangian.
+pub(crate) fn augmented_equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+    let mut H = trial(r, P, v);
+    return_map(mu, &mut H[..P.len()]);
+    for k in 0..P.len() {
+        H[k] = P[k] - H[k];
+    }
+    H
+}
+
+/// The branch of Π(P − r v).
+pub(crate) fn augmented_branch(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
+    return_map(mu, &mut trial(r, P, v)[..P.len()])
 }
 
 /// z = P − r v at one point, the trial force of the augmented Lagrangian.

@@ -44,6 +44,11 @@ pub(crate) fn solve_dense(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
     DenseLu::new(a)?.solve(b)
 }
 
+/// x − y.
+pub(crate) fn minus(x: &[f64], y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x - y).collect()
+}
+
 /// y += Aᵀ x for a full matrix.
 pub(crate) fn mul_transpose_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
     for (j, y) in y.iter_mut().enumerate() {
