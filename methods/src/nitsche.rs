@@ -10,10 +10,10 @@
 //! y = Γ⁻¹ (τ − P)                       on the rows in use: normal, and tangential where there is friction
 //! K u = f + Bᵀ P + θ Sᵀ y
 //! ```
-//! There is no multiplier: P follows from u. The exact solution has τ = P, so that y = 0 and P = Π(P − Γ v) is the contact
-//! law itself: nothing is modelled away, unlike with springs. What remains is an error of the discretisation, since τ is as
-//! good as the stress of the cells. `Converged` refers to the equations above, and the outcome says so by [`Claim::Nitsche`]; the
-//! natural map that fills the history ends at the distance from the laws of the contact points.
+//! There is no multiplier: P follows from u. The exact solution has τ = P, so that y = 0 and P = Π(P − Γ v) is the
+//! contact law itself: nothing is modelled away, unlike with springs. What remains is an error of the discretisation,
+//! since τ is as good as the stress of the cells. `Converged` refers to the equations above, and the outcome says so by
+//! [`Claim::Nitsche`]; the natural map that fills the history ends at the distance from the laws of the contact points.
 //!
 //! K does not change, so u is eliminated once: what is left is the exact contact law with a further compliance C ~ 1/γ
 //! between the points, on as many unknowns as a multiplier method has (`problem/nitsche_condensed.rs`). A semismooth Newton

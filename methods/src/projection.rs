@@ -21,16 +21,17 @@
 //! `problem/saddle.rs`.
 //!
 //! # Options
-//! `max_iterations`. `variant`: 0 fixed point, 1 extragradient. 0 is the default, by measurement: it converged wherever 1
-//! did, in 0.25 to 0.7 of the iterations, each at half the cost.
+//! `max_iterations`. `variant`: 0 fixed point, 1 extragradient. 0 is the default, by measurement: it solves as many
+//! random, strongly coupled systems (`tests/robustness.rs`) in 0.53 to 0.69 of the iterations, each at half the cost.
 //!
 //! # Guarantees
 //! Both converge without friction for bodies that do not float, as projected gradients of a convex programme; extragradient
 //! for any monotone law. With friction ṽ is not monotone and there is no proof.
 //!
 //! # Failure modes
-//! Slow, with plateaus of thousands of iterations: their number grows like the condition of W, and with μ. Of 40 random
-//! bodies each all converge up to μ = 2; at μ = 5 nine need more than the default limit.
+//! Slow, with plateaus of thousands of iterations: their number grows like the condition of W, and with μ. Of 200 of
+//! those systems per μ one fails at μ = 2 and none else up to μ = 5, where the median is 621 iterations in 2D, 1130 in
+//! 3D.
 //!
 //! # Skips
 //! Nothing is factored. v follows P by columns of W', without those whose force did not change; it is computed afresh

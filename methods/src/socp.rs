@@ -20,20 +20,21 @@
 //! # Guarantees
 //! Without friction one program is the solution. With friction the program has a solution for every s if the
 //! load can be balanced; for the fixed point there is a criterion of existence, not of convergence. Measured on random,
-//! strongly coupled systems of 12 points (200 per entry, tolerance 1e-9), median iterations and failures:
+//! strongly coupled systems of 12 points (100 per entry, tolerance 1e-9, `tests/robustness.rs`), median iterations and
+//! failures:
 //!
 //! | μ                 | 0.1   | 0.3   | 0.6     | 1       | 2           | 5             |
 //! |-------------------|-------|-------|---------|---------|-------------|---------------|
-//! | 2D, `anderson` 5  | 6     | 7     | 10      | 12      | 16, 2 fail  | 25, 18 fail  |
-//! | 2D, `anderson` 0  | 6     | 9     | 14      | 23      | 50          | 78, 35 fail  |
-//! | 3D, `anderson` 5  | 6     | 8     | 11      | 14      | 21          | 37, 23 fail  |
-//! | 3D, `anderson` 0  | 6     | 9     | 15      | 25      | 63, 3 fail  | 119, 64 fail |
+//! | 2D, `anderson` 5  | 6     | 7     | 10      | 13      | 17, 1 fails | 26, 10 fail   |
+//! | 2D, `anderson` 0  | 6     | 9     | 14      | 25      | 51          | 76, 14 fail   |
+//! | 3D, `anderson` 5  | 6     | 8     | 11      | 14      | 21, 1 fails | 37, 13 fail   |
+//! | 3D, `anderson` 0  | 6     | 10    | 15      | 27      | 62, 4 fail  | 112, 32 fail  |
 //!
 //! # Failure modes
-//! For μ > 1 the fixed point contracts slowly or cycles. After 15 steps without progress it starts once more from the forces
-//! of a tied crack; cycles above a natural map of 1e-3 are then reported as `stalled`, not polished. Without polishing
-//! clarabel's floor shows: in 2D mostly below 1e-9, in 3D 1e-8 to 3e-7, in 7 of 1000 3D systems with μ <= 1 up to 3e-6. Where
-//! a point is at once at its bound and without slip, the floor is the square root of clarabel's tolerance.
+//! For μ > 1 the fixed point contracts slowly or cycles. After 15 steps without progress it starts once more from the
+//! forces of a tied crack; cycles above a natural map of 1e-3 are then reported as `stalled`, not polished. Without
+//! polishing clarabel's floor shows: mostly below 1e-9 in 2D, above in 3D. Where a point is at once at its bound and
+//! without slip, the floor is the square root of clarabel's tolerance.
 //!
 //! # Skips
 //! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.

@@ -20,14 +20,14 @@
 //!
 //! # Guarantees
 //! Without friction one program is the solution. The fixed point contracts for small μ. Measured on random, strongly
-//! coupled systems of 12 points (200 per entry, tolerance 1e-9), median iterations and failures:
+//! coupled systems of 12 points (100 per entry, tolerance 1e-9, `tests/robustness.rs`), median iterations and failures:
 //!
 //! | μ                 | 0.1   | 0.3   | 0.6     | 1       | 2           | 5             |
 //! |-------------------|-------|-------|---------|---------|-------------|---------------|
-//! | 2D, `anderson` 5  | 6     | 7     | 9       | 9       | 10, 1 fails | 10           |
-//! | 2D, `anderson` 0  | 6     | 8     | 11      | 13      | 16, 15 fail | 6, 64 fail   |
-//! | 3D, `anderson` 5  | 6     | 8     | 9       | 11      | 12          | 14, 1 fails  |
-//! | 3D, `anderson` 0  | 6     | 8     | 11      | 15      | 21, 20 fail | 13, 95 fail  |
+//! | 2D, `anderson` 5  | 6     | 8     | 9       | 10      | 11          | 11, 1 fails  |
+//! | 2D, `anderson` 0  | 6     | 9     | 11      | 15      | 19, 13 fail | 6, 44 fail   |
+//! | 3D, `anderson` 5  | 6     | 8     | 9       | 11      | 12, 1 fails | 13, 3 fail   |
+//! | 3D, `anderson` 0  | 6     | 9     | 12      | 15      | 19, 15 fail | 8, 50 fail   |
 //!
 //! # Failure modes
 //! Where friction locks a wedge (μ above the tangent of its angle) μ P_n exceeds the bound it came from until all sticks: the

@@ -141,7 +141,8 @@ impl BarrierLaw {
     }
 }
 
-/// S = (I − r⁻¹ D)⁻¹ of one point, D as from [`BarrierLaw::derivative`]. The normal row of D has the normal entry only, its tangential block is symmetric.
+/// S = (I − r⁻¹ D)⁻¹ of one point, D as from [`BarrierLaw::derivative`]. The normal row of D has the normal entry only,
+/// its tangential block is symmetric.
 pub(crate) fn resolvent(D: &[[f64; 3]; 3], r: &[f64]) -> [[f64; 3]; 3] {
     let mut S = [[0.0; 3]; 3];
     S[0][0] = 1.0 / (1.0 - D[0][0] / r[0]);
