@@ -12,6 +12,7 @@ use clap::{Parser, Subcommand};
 use stickslip_methods::{METHODS, Method, OptionError, Tier};
 
 use self::output::say;
+pub use self::output::warn;
 use self::progress::Bar;
 use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
@@ -321,7 +322,7 @@ fn provenance(settings: Settings) -> Provenance {
 fn print_missed(results: &Results) {
     for e in results.expectations.iter().filter(|e| !e.as_stated()) {
         let k = &e.key;
-        eprintln!(
+        warn(format_args!(
             "{}: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
             e.verdict,
             k.case,
@@ -336,7 +337,7 @@ fn print_missed(results: &Results) {
             e.expected,
             e.allowed,
             e.unit
-        );
+        ));
     }
 }
 

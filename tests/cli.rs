@@ -94,6 +94,28 @@ fn a_reader_that_leaves_early_is_no_error() {
     assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
 }
 
+/// `stickslip run … 2>&- | head`: what nobody can read must not change the exit code.
+#[test]
+fn an_error_that_nobody_reads_keeps_its_exit_code() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("off.toml"), small(2.0)).unwrap();
+    for (arguments, code) in [
+        (&["run", "nothing"][..], 2),
+        (&["run", "off.toml", "--method", METHOD], 1),
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let status = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"))
+            .args(arguments)
+            .current_dir(dir.path())
+            .stdout(std::process::Stdio::null())
+            .stderr(writer)
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(code), "{arguments:?}");
+    }
+}
+
 #[test]
 fn list_and_show_name_every_method_and_case() {
     let dir = tempfile::tempdir().unwrap();

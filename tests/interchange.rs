@@ -10,7 +10,9 @@ use common::*;
 use stickslip::harness::case::Case;
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
-use stickslip::interchange::{Problem, fclib, matrix_market};
+use stickslip::interchange::{
+    Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib, matrix_market,
+};
 use stickslip_methods::{METHODS, Tier};
 use tempfile::TempDir;
 
@@ -287,22 +289,31 @@ fn reactions_of_other_programs_are_judged() {
     let rough: Vec<f64> = reaction.iter().map(|r| r * (1.0 + 1e-5)).collect();
     write("rough.mtx", &rough);
     write("short.mtx", &reaction[1..]);
+    // More entries than a number can count.
+    let huge = "%%MatrixMarket matrix coordinate real general\n18446744073709551615 2 0\n";
+    std::fs::write(dir.path().join("huge.mtx"), huge).unwrap();
     for (arguments, code) in [
         (&["good.mtx"][..], 0),
         (&["good.mtx", "zero.mtx"], 1),
         (&["rough.mtx"], 1),
         (&["rough.mtx", "--tier", "low"], 0),
         (&["short.mtx"], 2),
+        (&["huge.mtx"], 2),
         (&["nowhere.mtx"], 2),
     ] {
         let output = stickslip(&[&["judge", &file], arguments].concat(), dir.path());
         let error = text(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
     }
+    let output = stickslip(&["judge", &file, "huge.mtx"], dir.path());
+    let error = text(&output.stderr);
+    let shape = format!("18446744073709551615 × 2, expected {} × 1", reaction.len());
+    assert!(error.contains(&shape), "{error}");
     // The global file says the same, within its own rounding.
     let global = format!("problems/{stem}.global.hdf5");
     let output = stickslip(&["judge", &global, "good.mtx"], dir.path());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("equilibrium"));
 
     let (dir, stem) = exported(&["sliding_block_embedded", "--friction", "0.2"]);
     let arguments = ["judge", &format!("problems/{stem}.local.hdf5")];
@@ -383,6 +394,40 @@ fn bad_files_give_exit_code_2_and_leave_nothing() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(part), "{arguments:?}: {error}");
         assert!(!dir.path().join("results").exists(), "{arguments:?}");
+    }
+}
+
+/// V is dense in memory: its columns are counted before that.
+#[test]
+fn more_rigid_motions_than_bodies_have_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for (points, motions, part) in [
+        (2000, 6000, "V has 6000 columns: with 6000 rows at most 60"),
+        (1, 4, "V has 4 columns: with 3 rows at most 3"),
+    ] {
+        let rows = 3 * points;
+        let unit = (0..rows).map(|i| (i, i, 1.0));
+        let empty = |rows| SparseMatrix::from_triplets(rows, motions, []).unwrap();
+        let problem = LocalProblem {
+            dim: 3,
+            w: SparseMatrix::from_triplets(rows, rows, unit).unwrap(),
+            q: vec![0.0; rows],
+            mu: vec![0.3; points],
+            equality: Some(LocalEquality {
+                v: empty(rows),
+                r: empty(motions),
+                s: vec![0.0; motions],
+            }),
+            info: Info::default(),
+            solution: None,
+            guesses: Vec::new(),
+        };
+        std::fs::write(dir.path().join("many.hdf5"), problem.to_bytes().unwrap()).unwrap();
+        let output = stickslip(&["solve", "many.hdf5"], dir.path());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(part), "{error}");
+        assert!(!dir.path().join("results").exists());
     }
 }
 

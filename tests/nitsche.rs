@@ -9,7 +9,8 @@ use stickslip::harness::record::{Results, RunKey};
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
 use stickslip_methods::{
-    Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
+    Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
+    method,
 };
 
 const SETTINGS: Settings = Settings {
@@ -386,4 +387,28 @@ fn too_little_stabilisation_is_refused_with_the_bound() {
         assert!(reason.contains(&format!("gamma > {least}")), "{reason}");
     }
     assert_eq!(refusal(-1.0, 0.01), None);
+}
+
+/// Nitsche's consistency term is no contact force: equilibrium with the contact forces alone does not hold to rounding,
+/// so that the answer is graded and never called solved, however coarse the tier.
+#[test]
+fn a_consistency_term_is_never_taken_for_equilibrium() {
+    let case = shipped::find("plate_mesh1").unwrap().unwrap();
+    let nitsche = Choice::new(method("nitsche").unwrap(), &[]).unwrap();
+    let settings = Settings {
+        tier: Some(Tier::Low),
+        jobs: 1,
+        fields: Fields::None,
+    };
+    let results = run_case(&case, &[nitsche], settings, &Quiet).unwrap();
+    assert!(!results.runs.is_empty());
+    for run in &results.runs {
+        assert_eq!(run.verdict, "approximate: low", "μ = {}", run.key.friction);
+        assert!(
+            run.claimed_equilibrium <= 1e-12,
+            "{:e}",
+            run.claimed_equilibrium
+        );
+        assert!(run.equilibrium > 1e-9, "{:e}", run.equilibrium);
+    }
 }

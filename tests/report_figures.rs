@@ -2,10 +2,12 @@
 
 mod report_data;
 
-use report_data::{beam, key, plate, points, results};
+use report_data::{beam, key, plate, points, rates, results, results_of_all_methods};
 use stickslip::harness::record::{HistoryRow, Picture, PictureCell, PointRow};
 use stickslip::report::ReportError;
+use stickslip::report::comparison::comparison;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification, Tier};
+use stickslip_methods::METHODS;
 
 /// Every kind of figure, with the texts that it must show.
 fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
@@ -46,7 +48,48 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         }],
     };
     let tier = Tier::named("high");
+    let all = results_of_all_methods();
     vec![
+        (
+            "residual of all methods",
+            plot::residual_history(&all.history, tier.as_ref()).expect("residual"),
+            METHODS.iter().map(|method| method.name).collect(),
+        ),
+        (
+            "traction of all methods",
+            plot::contact_traction(&all.points, 1).expect("traction"),
+            vec![
+                "12 exact methods, apart by at most 0.002",
+                "penalty, off by at most 0.002",
+            ],
+        ),
+        (
+            "slip of all methods",
+            plot::contact_slip(&all.points, 1).expect("slip"),
+            vec!["12 exact methods", "barrier, off by less than 1e-12"],
+        ),
+        (
+            "cost",
+            plot::method_cost(&comparison(&all.runs)).expect("cost"),
+            vec![
+                "plate_mesh1",
+                "iterations [-]",
+                "solve time [s]",
+                ">nitsche<",
+            ],
+        ),
+        (
+            "rates",
+            plot::success_rates(&rates()).expect("rates"),
+            vec![
+                "solved in 2D [%]",
+                "solved in 3D [%]",
+                ">99.9<",
+                ">87.5<",
+                ">–<",
+                ">nitsche<",
+            ],
+        ),
         (
             "residual",
             plot::residual_history(&history, tier.as_ref()).expect("residual"),
@@ -99,6 +142,54 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
     ]
 }
 
+/// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.
+fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
+    let element = |rest: &str| {
+        let (head, tail) = rest.split_once('>')?;
+        let text = tail.split("</text>").next()?;
+        let attribute = |name: &str| {
+            let value = head.split_once(&format!(" {name}=\""))?.1;
+            value.split('"').next().map(str::to_owned)
+        };
+        let number = |name: &str| attribute(name)?.parse::<f64>().ok();
+        // Without the elements inside, each of which takes no room of its own.
+        let letters = text
+            .split('<')
+            .map(|p| p.rsplit('>').next().unwrap_or(p).chars().count());
+        // Slightly narrow: an estimate must not see what is not there.
+        let (size, x, y) = (number("font-size")?, number("x")?, number("y")?);
+        let width = 0.4 * size * letters.sum::<usize>() as f64;
+        let start = match attribute("text-anchor").as_deref() {
+            Some("middle") => x - 0.5 * width,
+            Some("end") => x - width,
+            _ => x,
+        };
+        let upwards = attribute("transform").is_some();
+        let half = 0.25 * size;
+        (!upwards).then(|| {
+            (
+                text.trim().to_owned(),
+                [start, start + width, y - half, y + half],
+            )
+        })
+    };
+    svg.split("<text").skip(1).filter_map(element).collect()
+}
+
+#[test]
+fn texts_do_not_overlap() {
+    for (name, svg, _) in figures() {
+        let boxes = boxes(&svg);
+        assert!(boxes.len() >= 6, "{name}: {}", boxes.len());
+        for (index, (text, a)) in boxes.iter().enumerate() {
+            for (other, b) in &boxes[..index] {
+                let apart = a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2];
+                assert!(apart, "{name}: {text} {a:?} and {other} {b:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn figures_show_their_labels_as_text() {
     for (name, svg, texts) in figures() {
@@ -128,7 +219,7 @@ fn figures_show_their_labels_as_text() {
 #[test]
 fn figures_have_print_sizes_in_millimetres() {
     for (name, svg, _) in figures() {
-        let width = if name == "contours" {
+        let width = if ["contours", "cost", "rates"].contains(&name) {
             "170.00mm"
         } else {
             "85.00mm"

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use stickslip::harness::record::RunRow;
+use stickslip::report::comparison::{ComparisonRow, VariantRow};
 use stickslip::report::csv::Row;
 use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
 use stickslip::report::robustness::{FailureRow, RobustnessRow};
@@ -33,6 +34,8 @@ fn csv_bundle() -> Bundle {
         file(LimitRow::FILE, csv::file::<LimitRow>(&[])),
         file(RobustnessRow::FILE, csv::file::<RobustnessRow>(&[])),
         file(FailureRow::FILE, csv::file::<FailureRow>(&[])),
+        file(ComparisonRow::FILE, csv::file::<ComparisonRow>(&[])),
+        file(VariantRow::FILE, csv::file::<VariantRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }

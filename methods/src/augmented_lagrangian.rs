@@ -158,7 +158,7 @@ impl Enforcement for AugmentedLagrangian {
                     changes += c;
                     true
                 },
-            );
+            )?;
             (p, beta) = (end.p, end.beta);
             problem.rebalance(&mut p);
             // Stalled: solved to rounding, which the outer loop can still use.

@@ -180,7 +180,11 @@ impl Scheme for BEquations {
     }
 
     /// The direction that asks for the pieces it was computed with.
-    fn direction(&self, at: &mut At<'_, '_>, pieces: &[Piece]) -> Option<Iterate> {
+    fn direction(
+        &self,
+        at: &mut At<'_, '_>,
+        pieces: &[Piece],
+    ) -> Result<Option<Iterate>, MethodError> {
         let kinks: Vec<Kink> = (0..pieces.len())
             .map(|i| {
                 let own = at.problem.rows.of(i);
@@ -191,14 +195,16 @@ impl Scheme for BEquations {
         let mut pieces = pieces.to_vec();
         let mut step = None;
         for _ in 0..BRANCH_ROUNDS {
-            let solved = at.step(self, &pieces)?;
+            let Some(solved) = at.step(self, &pieces)? else {
+                return Ok(None);
+            };
             let contradicted = correct_pieces(at, &solved, &kinks, &mut pieces);
             step = Some(solved);
             if !contradicted {
                 break;
             }
         }
-        step
+        Ok(step)
     }
 }
 

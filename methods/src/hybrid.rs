@@ -145,7 +145,7 @@ impl Enforcement for Hybrid {
             if let Some(end) = rounds.newton(&BEquations, &mut problem, monitor)? {
                 break end;
             }
-            if !rounds.next(&mut problem) {
+            if !rounds.next(&mut problem)? {
                 break (Status::Stalled, rounds.best.clone());
             }
         };
@@ -249,19 +249,19 @@ impl Rounds {
     }
 
     /// Prepares the next round; false if nothing is left to try.
-    fn next(&mut self, problem: &mut Reduced<'_>) -> bool {
+    fn next(&mut self, problem: &mut Reduced<'_>) -> Result<bool, MethodError> {
         self.count = (2 * self.count).min(MAX_SWEEPS);
         let progress = self.reached.0 < PROGRESS * self.reached.1;
         self.reached.1 = self.reached.1.min(self.reached.0);
         if progress {
-            return true;
+            return Ok(true);
         }
         if self.count == MAX_SWEEPS && self.relaxation > LEAST_RELAXATION {
             self.relaxation *= 0.5;
-            return true;
+            return Ok(true);
         }
         if self.count < MAX_SWEEPS {
-            return true;
+            return Ok(true);
         }
         self.restarts += 1;
         self.relaxation = 1.0;
@@ -270,40 +270,39 @@ impl Rounds {
         match self.restarts {
             1 => self.restart_tied(problem),
             2 => self.restart_without_friction(problem),
-            3..=MAX_RESTARTS => self.restart_alternating(problem),
-            _ => false,
+            3..=MAX_RESTARTS => self.restart_alternating(problem)?,
+            _ => return Ok(false),
         }
+        Ok(true)
     }
 
     /// As if all points were tied: W P + Q β = −q, with tension cut off.
-    fn restart_tied(&mut self, problem: &mut Reduced<'_>) -> bool {
+    fn restart_tied(&mut self, problem: &mut Reduced<'_>) {
         problem.counters.factorisations += 1;
         let Some(mut p) = tied_forces(problem) else {
-            return true;
+            return;
         };
         for i in 0..problem.rows.points() {
             return_map(problem.friction(i), &mut p[problem.rows.of(i)]);
         }
         self.x = self.saddle.at(problem, p);
-        true
     }
 
     /// With the normal forces reached so far and no friction force.
-    fn restart_without_friction(&mut self, problem: &Reduced<'_>) -> bool {
+    fn restart_without_friction(&mut self, problem: &Reduced<'_>) {
         let mut p = self.best.P.clone();
         for i in 0..problem.rows.points() {
             p[problem.rows.of(i)][1..].fill(0.0);
         }
         self.x = self.saddle.at(problem, p);
-        true
     }
 
     /// From ever more sweeps of an alternating method.
-    fn restart_alternating(&mut self, problem: &mut Reduced<'_>) -> bool {
-        if let Some(pair) = alternate(problem, RESTART_SWEEPS << self.restarts) {
+    fn restart_alternating(&mut self, problem: &mut Reduced<'_>) -> Result<(), MethodError> {
+        if let Some(pair) = alternate(problem, RESTART_SWEEPS << self.restarts)? {
             self.x = self.saddle.at(problem, pair.p);
         }
-        true
+        Ok(())
     }
 
     fn iterate(&self, problem: &Reduced<'_>) -> Iterate {

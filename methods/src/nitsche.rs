@@ -201,7 +201,7 @@ impl Enforcement for Nitsche {
                 terms.jump(problem, &s, &at.p, &at.beta)
             });
             let (round, tangent) = (left.min(ROUND), &mut Tangent::Condensed);
-            let (status, end) = springs.solve(&mut problem, start, stop, round, tangent, report);
+            let (status, end) = springs.solve(&mut problem, start, stop, round, tangent, report)?;
             (p, beta) = (end.p, end.beta);
             match status {
                 // Stalled: solved to rounding, which may be enough.
@@ -212,7 +212,7 @@ impl Enforcement for Nitsche {
                     }
                 }
                 Status::MaxIterations if left > ROUND && problem.rescue_left() => {
-                    let Some(pair) = rescue(&mut problem) else {
+                    let Some(pair) = rescue(&mut problem)? else {
                         break problem.singular();
                     };
                     (p, beta) = (pair.p, pair.beta);

@@ -150,7 +150,8 @@ impl Enforcement for Penalty {
             let left = (self.max_iterations).saturating_sub(problem.history.len());
             let report = recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta));
             let tangent = &mut self.tangent;
-            let (status, mut end) = springs.solve(&mut problem, start, stop, left, tangent, report);
+            let (status, mut end) =
+                springs.solve(&mut problem, start, stop, left, tangent, report)?;
             problem.rebalance(&mut end.p);
             // Stalled: solved to rounding, which may be enough.
             if status != Status::Converged && status != Status::Stalled {

@@ -37,7 +37,7 @@ fn problems() -> Vec<(Arc<Elastic>, f64, Vec<f64>, f64)> {
 }
 
 #[test]
-fn four_methods_have_a_monolithic_variant_with_the_same_iterates() {
+fn every_monolithic_variant_has_the_same_iterates() {
     let names: Vec<&str> = variants().map(|m| m.name).collect();
     for name in ["b-newton", "newton-ac", "penalty", "augmented-lagrangian"] {
         assert!(names.contains(&name), "{name}");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stickslip_methods::{METHODS, Tier};
+use stickslip_methods::{METHODS, Residuals, Tier};
 
 use super::output::say;
 use super::{Bar, CliError, find_case, parse_choice, provenance, refuse_twins};
@@ -11,6 +11,7 @@ use crate::harness::export::{Request, export};
 use crate::harness::problem_file::ProblemFile;
 use crate::harness::record::Results;
 use crate::harness::run::{Fields, Progress, Settings};
+use crate::harness::verdict::EQUILIBRIUM;
 use crate::paper;
 use crate::report::number::residual;
 use crate::report::tables::{Align, Column, Table};
@@ -138,6 +139,7 @@ pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
     let mut columns = vec![Column::new("reaction", "", Align::Left)];
     let residuals = [
         "natural map",
+        "equilibrium",
         "penetration",
         "adhesion",
         "complementarity",
@@ -149,9 +151,10 @@ pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
     let mut all_hold = true;
     for reaction in &args.reactions {
         let found = problem.judge(reaction)?;
-        all_hold &= found.natural_map <= args.tier.tolerance();
+        all_hold &= holds(&found, args.tier);
         let numbers = [
             found.natural_map,
+            found.equilibrium,
             found.penetration,
             found.adhesion,
             found.complementarity,
@@ -164,4 +167,38 @@ pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
     }
     say(format_args!("{}", table.terminal()));
     Ok(all_hold)
+}
+
+/// Whether the contact laws hold, in the same sense as in a verdict. NaN passes no comparison.
+fn holds(found: &Residuals, tier: Tier) -> bool {
+    found.natural_map <= tier.tolerance() && found.equilibrium <= EQUILIBRIUM
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_natural_map_counts_only_in_equilibrium() {
+        let found = |natural_map, equilibrium| Residuals {
+            equilibrium,
+            claimed: natural_map,
+            penetration: 0.0,
+            adhesion: 0.0,
+            complementarity: 0.0,
+            cone: 0.0,
+            slip_direction: 0.0,
+            natural_map,
+        };
+        for (natural_map, equilibrium, expected) in [
+            (1e-10, 1e-14, true),
+            (1e-10, 10.0 * EQUILIBRIUM, false),
+            (1e-8, 1e-14, false),
+            (1e-10, f64::NAN, false),
+            (f64::NAN, 1e-14, false),
+        ] {
+            let held = holds(&found(natural_map, equilibrium), Tier::High);
+            assert_eq!(held, expected, "{natural_map:e} {equilibrium:e}");
+        }
+    }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_methods::{METHODS, Tier};
 
-use super::output::say;
+use super::output::{say, warn};
 use super::progress::Bar;
 use super::{CliError, parse_choice, refuse_twins};
 use crate::harness::stress::{self, Study, Trial};
@@ -93,7 +93,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if let Some(problem) = study.only {
         for &dim in &study.dims {
             let name = format!("problem-{dim}d-{problem}.toml");
-            bundle.add(name, stress::case_of(&study, dim, problem)?)?;
+            bundle.add(name, stress::case_of(&study, &choices, dim, problem)?)?;
         }
     }
     bundle.commit(&arguments.out)?;
@@ -105,10 +105,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         arguments.out.display()
     ));
     for trial in trials.iter().filter(|t| t.is_wrong()) {
-        eprintln!(
+        warn(format_args!(
             "{}: {}D problem {} mu={} {}",
             trial.verdict, trial.dim, trial.problem, trial.friction, trial.method
-        );
+        ));
     }
     Ok(stress::as_expected(&trials))
 }

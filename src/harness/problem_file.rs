@@ -14,6 +14,10 @@ use crate::harness::step::{Setup, Solver};
 use crate::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::report::{Bundle, ReportError, standard};
 
+/// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
+/// bound an empty V would take memory that grows with the square of the file.
+const MOST_MOTIONS: usize = 60;
+
 /// A problem read and turned into a system.
 pub struct ProblemFile {
     /// File name without `.hdf5`: the case of its runs.
@@ -130,11 +134,11 @@ impl ProblemFile {
         let vector = matrix_market::parse(reaction, &text)?;
         let rows = self.load.offset.len();
         if (vector.rows(), vector.cols()) != (rows, 1) {
-            return Err(InterchangeError::Length {
+            return Err(InterchangeError::Shape {
                 path: reaction.into(),
-                dataset: "the matrix".into(),
-                found: (vector.rows() * vector.cols()) as u64,
-                allowed: format!("{rows} in one column"),
+                rows: vector.rows(),
+                cols: vector.cols(),
+                allowed: format!("{rows} × 1"),
             }
             .into());
         }
@@ -220,13 +224,22 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
     };
     match problem {
         Problem::Local(problem) => {
-            let loose = |r: &crate::interchange::SparseMatrix| r.entries().all(|e| e.2 == 0.0);
-            match &problem.equality {
-                Some(equality) if !loose(&equality.r) => Err(unsupported(
-                    "R is not zero: only rigid motions (Vᵀ r + s = 0) are solved, not other unknowns",
-                )),
-                _ => Ok(()),
+            let Some(equality) = &problem.equality else {
+                return Ok(());
+            };
+            let (motions, rows) = (equality.v.cols(), problem.q.len());
+            if motions > MOST_MOTIONS.min(rows) {
+                return Err(unsupported(&format!(
+                    "V has {motions} columns: with {rows} rows at most {} rigid motions are solved",
+                    MOST_MOTIONS.min(rows)
+                )));
             }
+            if equality.r.entries().any(|e| e.2 != 0.0) {
+                return Err(unsupported(
+                    "R is not zero: only rigid motions (Vᵀ r + s = 0) are solved, not other unknowns",
+                ));
+            }
+            Ok(())
         }
         Problem::Global(problem) if problem.equality.is_some() => Err(unsupported(
             "G is present: eliminate the equality constraints Gᵀ v + b = 0 first",

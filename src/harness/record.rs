@@ -65,6 +65,8 @@ pub struct RunRow {
     pub solve_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
+    /// The same with the consistency term that the method claims; `equilibrium` where it claims none [-].
+    pub claimed_equilibrium: f64,
     /// Residual of the laws the method claims to have solved, found by the judge [-].
     pub claimed: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
@@ -112,7 +114,27 @@ pub struct QuantityRow {
     pub unit: String,
 }
 
-/// One row of `history.csv`: one iteration of one increment.
+/// Iterations up to this one are all recorded.
+const RECORDED_TO: usize = 100;
+
+/// Which iterations of a history are recorded: all up to 100, then about 50 per decade, always the last. First-order
+/// methods take thousands, of which no reader and no figure needs each. In whole numbers: the same on every machine.
+pub fn recorded_iterations(last: usize) -> Vec<usize> {
+    let mut recorded: Vec<usize> = (0..=last.min(RECORDED_TO)).collect();
+    // 10^(1/50) = 1.0471285.
+    let next = |iteration: usize| iteration + (iteration * 471_285 + 5_000_000) / 10_000_000;
+    let mut iteration = next(RECORDED_TO);
+    while iteration < last {
+        recorded.push(iteration);
+        iteration = next(iteration);
+    }
+    if last > RECORDED_TO {
+        recorded.push(last);
+    }
+    recorded
+}
+
+/// One row of `history.csv`: one iteration of one increment; see [`recorded_iterations`].
 #[derive(Debug, Clone, Serialize)]
 pub struct HistoryRow {
     /// Which run.
@@ -288,5 +310,36 @@ impl ExpectRow {
     /// True if the number came out as the case says it would.
     pub fn as_stated(&self) -> bool {
         [expect::MET, expect::MISSED_AS_DOCUMENTED].contains(&self.verdict.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: no short history loses an entry, every history keeps its first and last one, and a long one has about 50 per
+    /// decade.
+    #[test]
+    fn long_histories_are_thinned_evenly() {
+        for last in [0, 1, 57, 100] {
+            assert_eq!(recorded_iterations(last), (0..=last).collect::<Vec<_>>());
+        }
+        for last in [101, 104, 105, 106, 999, 4232, 123_456] {
+            let recorded = recorded_iterations(last);
+            assert_eq!(recorded[..=100], (0..=100).collect::<Vec<_>>());
+            assert_eq!(recorded.last(), Some(&last));
+            assert!(recorded.windows(2).all(|pair| pair[0] < pair[1]), "{last}");
+            // Gaps of 5 % of the number, in whole numbers.
+            let gap = |pair: &[usize]| pair[1] - pair[0] <= pair[0] / 20 + 1;
+            assert!(recorded.windows(2).all(gap), "{last}");
+        }
+        let recorded = recorded_iterations(100_000);
+        for decade in [100, 1000, 10_000] {
+            let within = recorded
+                .iter()
+                .filter(|i| (decade..10 * decade).contains(*i));
+            let count = within.count();
+            assert!((48..=52).contains(&count), "{count} from {decade}");
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! One increment of one run: solved by a method, checked by the judge, written into the rows of the tables.
 
-use stickslip_methods::{ContactSystem, Enforcement, Increment, Tier};
+use stickslip_methods::{ContactSystem, Enforcement, Increment, Iteration, Tier};
 
 use crate::harness::attempt::{Judged, attempt, prepare};
-use crate::harness::record::{HistoryRow, RunKey, RunRow, SCHEMA};
+use crate::harness::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
 use crate::harness::run::Choice;
 use crate::harness::verdict::Verdict;
 
@@ -29,7 +29,7 @@ pub struct Solver<'a> {
 pub struct Step {
     /// Row of `runs.csv`.
     pub run: RunRow,
-    /// Rows of `history.csv`.
+    /// Rows of `history.csv`, a long history thinned.
     pub history: Vec<HistoryRow>,
     /// The judgement.
     pub verdict: Verdict,
@@ -94,19 +94,25 @@ impl<'a> Solver<'a> {
             };
         };
         record(&mut run, &verdict, &judged);
-        let entries = judged.outcome.history.iter().enumerate();
-        let history = entries.map(|(iteration, entry)| HistoryRow {
-            key: key.clone(),
-            iteration,
-            natural_map: entry.natural_map,
-        });
         Step {
             run,
-            history: history.collect(),
+            history: history_rows(key, &judged.outcome.history),
             verdict,
             answer: Some(judged),
         }
     }
+}
+
+fn history_rows(key: &RunKey, history: &[Iteration]) -> Vec<HistoryRow> {
+    let Some(last) = history.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    let row = |iteration: usize| HistoryRow {
+        key: key.clone(),
+        iteration,
+        natural_map: history[iteration].natural_map,
+    };
+    recorded_iterations(last).into_iter().map(row).collect()
 }
 
 fn row(key: &RunKey, system: &ContactSystem, setup: Setup, tier: Tier) -> RunRow {
@@ -128,6 +134,7 @@ fn row(key: &RunKey, system: &ContactSystem, setup: Setup, tier: Tier) -> RunRow
         prepare_s: 0.0,
         solve_s: f64::NAN,
         equilibrium: f64::NAN,
+        claimed_equilibrium: f64::NAN,
         claimed: f64::NAN,
         tangent_factorisations: 0,
         global_factorisations: 0,
@@ -141,6 +148,7 @@ fn record(run: &mut RunRow, verdict: &Verdict, judged: &Judged) {
     run.verdict = verdict.to_string();
     run.natural_map = found.natural_map;
     run.equilibrium = found.equilibrium;
+    run.claimed_equilibrium = found.claimed_equilibrium;
     run.claimed = found.claimed;
     run.iterations = outcome.counters.iterations;
     run.solves = outcome.counters.solves;

@@ -70,6 +70,8 @@ pub struct Trial {
     pub friction: f64,
     /// Method label.
     pub method: String,
+    /// Whether the method's limit are the contact laws.
+    pub exact: bool,
     /// Claim × check.
     pub verdict: Verdict,
     /// Natural map found by the judge; NaN if there was nothing to judge.
@@ -94,6 +96,15 @@ pub fn as_expected(trials: &[Trial]) -> bool {
 }
 
 impl Trial {
+    /// Whether the run gave what its method is for: an exact one the contact laws, another one the laws it claims.
+    pub fn succeeded(&self) -> bool {
+        match self.verdict {
+            Verdict::Solved(_) => true,
+            Verdict::Approximate(_) => !self.exact,
+            _ => false,
+        }
+    }
+
     /// A claim that does not hold, or an error.
     pub fn is_wrong(&self) -> bool {
         matches!(self.verdict, Verdict::FalseClaim | Verdict::Crashed(_))
@@ -200,12 +211,25 @@ fn closes(body: &Body, load: &Load) -> Result<bool, MethodError> {
     Ok(closed as f64 >= PRESSED * body.points.len() as f64)
 }
 
+/// What the bodies of a study must have. A draw that is refused is drawn again, so the same needs make the same bodies.
+fn needs(choices: &[Choice]) -> Needs {
+    Needs {
+        traction: choices.iter().any(Choice::needs_traction),
+        ..Needs::default()
+    }
+}
+
 /// The case file of a problem: what failed in a study can be looked at with `stickslip run`.
 ///
 /// # Errors
 /// Those of [`Sample::new`].
-pub fn case_of(study: &Study, dim: usize, problem: usize) -> Result<String, StressError> {
-    let sample = Sample::new(study.seed, dim, problem / LOADS, Needs::default())?;
+pub fn case_of(
+    study: &Study,
+    choices: &[Choice],
+    dim: usize,
+    problem: usize,
+) -> Result<String, StressError> {
+    let sample = Sample::new(study.seed, dim, problem / LOADS, needs(choices))?;
     Ok(sample.case(problem % LOADS, &study.friction))
 }
 
@@ -248,11 +272,7 @@ fn run_body(
     progress: &dyn Progress,
 ) -> Result<Vec<Trial>, StressError> {
     let number = problems.first().map_or(0, |problem| problem / LOADS);
-    let needs = Needs {
-        traction: choices.iter().any(Choice::needs_traction),
-        ..Needs::default()
-    };
-    let sample = Sample::new(study.seed, dim, number, needs)?;
+    let sample = Sample::new(study.seed, dim, number, needs(choices))?;
     let body = &sample.body;
     let loads: Vec<(usize, Load)> = problems
         .iter()
@@ -292,6 +312,7 @@ fn run_body(
                     problem: *problem,
                     friction,
                     method: choice.label.clone(),
+                    exact: choice.method.exact,
                     natural_map: (tried.judged.as_ref()).map_or(f64::NAN, |j| j.found.natural_map),
                     iterations: outcome.map_or(0, |c| c.iterations),
                     factorisations: outcome

@@ -28,14 +28,19 @@ impl Verdict {
     /// Judges an outcome against the tier asked for.
     pub fn of(outcome: &Outcome, found: &Residuals, tier: Tier) -> Self {
         // NaN passes no comparison.
-        let balanced = found.equilibrium <= EQUILIBRIUM;
-        let holds = |tier: Tier| balanced && found.natural_map <= tier.tolerance();
-        let as_claimed = balanced && found.claimed <= tier.tolerance();
+        let as_claimed =
+            found.claimed_equilibrium <= EQUILIBRIUM && found.claimed <= tier.tolerance();
+        let solved = found.equilibrium <= EQUILIBRIUM && found.natural_map <= tier.tolerance();
+        // Own laws may leave a residual in equilibrium too; it counts like that of the contact laws.
+        let holds = |tier: &Tier| {
+            let tolerance = tier.tolerance();
+            found.equilibrium <= tolerance && found.natural_map <= tolerance
+        };
         match (outcome.status, outcome.claim) {
-            (Status::Converged, _) if as_claimed && holds(tier) => Verdict::Solved(tier),
+            (Status::Converged, _) if as_claimed && solved => Verdict::Solved(tier),
             (Status::Converged, Claim::Exact) => Verdict::FalseClaim,
             (Status::Converged, _) if as_claimed => {
-                Verdict::Approximate(Tier::ALL.into_iter().rev().find(|&t| holds(t)))
+                Verdict::Approximate(Tier::ALL.into_iter().rev().find(holds))
             }
             (Status::Converged, _) => Verdict::FalseClaim,
             (status, _) => Verdict::GaveUp(status),
@@ -91,6 +96,7 @@ mod tests {
     fn found(natural_map: f64, equilibrium: f64) -> Residuals {
         Residuals {
             equilibrium,
+            claimed_equilibrium: equilibrium,
             claimed: natural_map,
             penetration: 0.0,
             adhesion: 0.0,
@@ -134,15 +140,24 @@ mod tests {
         let converged = outcome(Status::Converged, claim);
         let held = |map, equilibrium| Residuals {
             claimed: 1e-10,
+            claimed_equilibrium: 1e-14,
             ..found(map, equilibrium)
         };
         let grade = |map| Verdict::of(&converged, &held(map, 1e-14), Tier::High);
+        // A consistency term that equilibrium does not know is graded like a violated law, and never solved.
+        let of = |map, equilibrium, tier| Verdict::of(&converged, &held(map, equilibrium), tier);
+        assert_eq!(
+            of(1e-10, 1e-5, Tier::Low),
+            Verdict::Approximate(Some(Tier::Low))
+        );
+        assert_eq!(of(1e-5, 1e-2, Tier::Low), Verdict::Approximate(None));
         assert_eq!(grade(1e-4), Verdict::Approximate(Some(Tier::Low)));
         assert_eq!(grade(1e-2), Verdict::Approximate(None));
         assert_eq!(grade(1e-10), Verdict::Solved(Tier::High));
         for (own_law, equilibrium) in [(1e-10, 1e-3), (1e-8, 1e-14), (f64::NAN, 1e-14)] {
             let broken = Residuals {
                 claimed: own_law,
+                claimed_equilibrium: equilibrium,
                 ..found(1e-4, equilibrium)
             };
             let verdict = Verdict::of(&converged, &broken, Tier::High);

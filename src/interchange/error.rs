@@ -64,6 +64,18 @@ pub enum InterchangeError {
         /// Length expected, in words where it is a range.
         allowed: String,
     },
+    /// A matrix of another shape.
+    #[error("`{}`: a matrix of {rows} × {cols}, expected {allowed}", path.display())]
+    Shape {
+        /// Which file.
+        path: PathBuf,
+        /// Rows found.
+        rows: usize,
+        /// Columns found.
+        cols: usize,
+        /// Shape expected.
+        allowed: String,
+    },
     /// A number out of range.
     #[error("`{}`: {dataset}[{index}] = {value}, allowed: {allowed}", path.display())]
     Value {

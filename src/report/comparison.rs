@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{residual, significant, time, value};
+use super::plot::method_cost;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper, standard};
 use crate::harness::record::RunRow;
@@ -34,9 +35,12 @@ pub struct ComparisonRow {
 
 /// How far a verdict is from `solved`.
 fn distance(verdict: &str) -> usize {
-    const FROM_BEST: [&str; 6] = [
+    const FROM_BEST: [&str; 9] = [
         "solved",
-        "approximate",
+        "approximate: high",
+        "approximate: mid",
+        "approximate: low",
+        "approximate: none",
         "refused",
         "gave-up",
         "crashed",
@@ -44,6 +48,13 @@ fn distance(verdict: &str) -> usize {
     ];
     let known = FROM_BEST.iter().position(|p| verdict.starts_with(p));
     known.unwrap_or(FROM_BEST.len())
+}
+
+/// The verdict farthest from `solved`; of equally far ones the first by name, so that the order of the runs does not
+/// matter.
+fn worst<'a>(verdicts: impl Iterator<Item = &'a str>) -> &'a str {
+    let farther = |a: &&str, b: &&str| distance(a).cmp(&distance(b)).then_with(|| b.cmp(a));
+    verdicts.max_by(farther).unwrap_or_default()
 }
 
 /// Sums the runs up by case and method.
@@ -54,15 +65,12 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
         groups.entry(key).or_default().push(run);
     }
     let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
-        let worst = group.iter().map(|r| r.verdict.as_str());
-        // Of equally far verdicts the first by name, so that the order of the runs does not matter.
-        let worst = worst.max_by(|a, b| distance(a).cmp(&distance(b)).then_with(|| b.cmp(a)));
         let all_solved = group.iter().all(|r| standard::solved(&r.verdict));
         ComparisonRow {
             case: case.into(),
             method: method.into(),
             increments: group.len(),
-            verdict: worst.unwrap_or_default().into(),
+            verdict: worst(group.iter().map(|r| r.verdict.as_str())).into(),
             natural_map: group.iter().map(|r| r.natural_map).fold(0.0, worse),
             iterations: group.iter().map(|r| r.iterations).sum(),
             tangent_factorisations: group.iter().map(|r| r.tangent_factorisations).sum(),
@@ -256,7 +264,7 @@ pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
         ],
     );
     for row in rows {
-        let honest = standard::solved(&row.verdict) || row.verdict.starts_with("approximate");
+        let honest = standard::honest(&row.verdict);
         table.push(vec![
             row.case.clone(),
             value(row.friction),
@@ -275,7 +283,7 @@ pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// Adds both tables to a report.
+/// Adds both tables and the figure `cost` to a report.
 ///
 /// # Errors
 /// Those of the parts.
@@ -287,6 +295,36 @@ pub fn add(
     let rows = comparison(runs);
     bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
     paper::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
+    // Where nothing did what it claims there is nothing to draw.
+    if rows.iter().any(|row| standard::honest(&row.verdict)) {
+        bundle.add("figures/cost.svg", method_cost(&rows)?)?;
+    }
     bundle.add(VariantRow::FILE, csv::file(variants)?)?;
     paper::add_readable(bundle, "variants", &variant_table(variants)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_verdict_of_a_case_is_the_worst_of_its_runs() {
+        let from_best = [
+            "solved",
+            "approximate: high",
+            "approximate: mid",
+            "approximate: low",
+            "approximate: none",
+            "refused: no",
+            "gave-up: stalled",
+            "crashed: oh",
+            "false-claim",
+            "unheard of",
+        ];
+        for pair in from_best.windows(2) {
+            for order in [[pair[0], pair[1]], [pair[1], pair[0]]] {
+                assert_eq!(worst(order.into_iter()), pair[1]);
+            }
+        }
+    }
 }

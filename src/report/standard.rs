@@ -1,7 +1,7 @@
 //! The files that every command writes: CSV, summary tables, figures, fields, provenance.
 //!
-//! Figures and profiles show solved runs of the last increment only, a wrong answer never stands beside right ones;
-//! residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
+//! Profiles show the last increment of runs that did what they claim: solved the contact laws or, named as such, their own
+//! approximate ones. A wrong answer never stands beside right ones; residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
 
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
@@ -198,6 +198,11 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
+/// Whether a verdict is that of a run that did what it claims.
+pub fn honest(verdict: &str) -> bool {
+    solved(verdict) || verdict.starts_with("approximate")
+}
+
 /// Whether a verdict is that of a right answer.
 pub fn solved(verdict: &str) -> bool {
     verdict.starts_with("solved")
@@ -258,17 +263,20 @@ fn add_residuals(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErr
     Ok(())
 }
 
-/// `figures/….crack-<n>.traction.svg` and `….slip.svg`: per problem all methods, and per method all friction values.
+/// `figures/….crack-<n>.traction.svg` and `….slip.svg`: per problem all methods, and all friction values by the first
+/// method that has several, which is an exact one where there is any: the others would show the same.
 fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
     let last = last_increments(results.points.iter().map(|row| &row.key));
     let right: BTreeSet<(RunName, usize)> = results
         .runs
         .iter()
-        .filter(|row| solved(&row.verdict))
+        .filter(|row| honest(&row.verdict))
         .map(|row| (run_name(&row.key), row.key.increment))
         .collect();
     let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
-    let mut sweeps: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
+    // By case, mesh, space and crack, then by method in the order of the registry.
+    type ByMethod<'a> = BTreeMap<(usize, &'a str), Vec<PointRow>>;
+    let mut sweeps: BTreeMap<(String, usize), ByMethod<'_>> = BTreeMap::new();
     for row in &results.points {
         let plane = row.force_unit == "N/m";
         let wanted = plane && is_last(&last, &row.key);
@@ -280,24 +288,24 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
                 method,
                 ..
             } = &row.key;
-            let sweep = file_name(&[case, mesh, space, method]);
             problems
                 .entry((problem_name(&row.key), row.crack))
                 .or_default()
                 .push(row.clone());
-            sweeps
-                .entry((sweep, row.crack))
-                .or_default()
-                .push(row.clone());
+            let body = file_name(&[case, mesh, space]);
+            let methods = sweeps.entry((body, row.crack)).or_default();
+            let own = methods.entry((plot::method_rank(method), method));
+            own.or_default().push(row.clone());
         }
     }
-    let frictions = |rows: &[PointRow]| -> usize {
-        rows.iter()
-            .map(|row| value(row.key.friction))
-            .collect::<BTreeSet<_>>()
-            .len()
+    let several = |rows: &Vec<PointRow>| {
+        let frictions: BTreeSet<String> = rows.iter().map(|row| value(row.key.friction)).collect();
+        frictions.len() > 1
     };
-    sweeps.retain(|_, rows| frictions(rows) > 1);
+    let sweeps = sweeps.into_iter().filter_map(|((body, crack), methods)| {
+        let ((_, method), rows) = methods.into_iter().find(|(_, rows)| several(rows))?;
+        Some(((format!("{body}.{}", file_name(&[method])), crack), rows))
+    });
     for ((name, crack), rows) in problems.into_iter().chain(sweeps) {
         let name = format!("figures/{name}.crack-{crack}");
         bundle.add(

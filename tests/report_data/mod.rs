@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 use stickslip::harness::record::*;
+use stickslip::report::robustness::RobustnessRow;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];
@@ -21,6 +22,15 @@ pub fn key(method: &str, friction: f64) -> RunKey {
         friction,
         increment: 1,
     }
+}
+
+/// Rows of all methods of the registry for one friction coefficient.
+pub fn results_of_all_methods() -> Results {
+    let mut results = Results::default();
+    for method in stickslip_methods::METHODS.iter().rev() {
+        add_run(&mut results, key(method.name, 0.1));
+    }
+    results
 }
 
 /// All rows, in an order that is not the sorted one.
@@ -75,6 +85,7 @@ fn add_run(results: &mut Results, key: RunKey) {
         prepare_s: 1.234e-5,
         solve_s: 4.567_891e-4,
         equilibrium: 3.2e-14,
+        claimed_equilibrium: 3.2e-14,
         claimed: residual(iterations),
         tangent_factorisations: 3,
         global_factorisations: 0,
@@ -113,6 +124,45 @@ fn add_run(results: &mut Results, key: RunKey) {
         source: "Table 1, \"Mesh I\"; printed 50 % too, small".into(),
         verdict: "met".into(),
     });
+}
+
+/// Rates of all methods in both dimensions, some below 100 %, one method declining everything in 2D.
+pub fn rates() -> Vec<RobustnessRow> {
+    let mut rows = Vec::new();
+    for dimension in [2, 3] {
+        for (index, method) in stickslip_methods::METHODS.iter().enumerate() {
+            for (class, friction) in [0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0].into_iter().enumerate() {
+                let rate = match (index + class) % 8 {
+                    _ if dimension == 2 && method.name == "latin" => f64::NAN,
+                    6 => 0.875,
+                    7 => 0.9996,
+                    _ => 1.0,
+                };
+                rows.push(RobustnessRow {
+                    dimension,
+                    friction,
+                    method: method.name.into(),
+                    tier: stickslip_methods::Tier::High,
+                    problems: 8,
+                    solved: 7,
+                    approximate: 0,
+                    gave_up: 1,
+                    gave_up_by: [1, 0, 0, 0, 0],
+                    false_claims: 0,
+                    crashed: 0,
+                    refused: 0,
+                    success: [rate, rate - 0.2, (rate + 0.001).min(1.0)],
+                    iterations: [5.0, 8.0, 9.0],
+                    factorisations: 5.0,
+                    solve_s: 1e-3,
+                    natural_map: 1e-10,
+                    unique_share: 1.0,
+                    shares: [0.2, 0.3, 0.5],
+                });
+            }
+        }
+    }
+    rows
 }
 
 /// 11 points along the crack: the left end open, the middle slipping, the right end sticking.

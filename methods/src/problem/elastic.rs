@@ -312,7 +312,7 @@ impl Elastic {
 
     /// Backward error of equilibrium between displacements and the sum of some forces:
     /// |K u − Σ f| / (Σ |f| + ||K| |u||). With the Delassus operator alone: |u − W Σ f| / (|u| + ||W| |Σ f||), up to
-    /// rigid motions.
+    /// rigid motions, or |Qᵀ Σ f| / Σ |f| if that is larger, Q an orthonormal basis of the rigid motions.
     pub(crate) fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
         let n = u.len();
         let sum = |j: usize| forces.iter().map(|f| f[j]).sum::<f64>();
@@ -330,9 +330,13 @@ impl Elastic {
                 w.mul(&total, &mut work);
                 let mut residual: Vec<f64> = u.iter().zip(&work).map(|(u, w)| u - w).collect();
                 let all: Vec<usize> = (0..n).collect();
-                ModeJumps::new(&self.jump, &all, &self.floating).project_out(&mut residual);
+                let modes = ModeJumps::new(&self.jump, &all, &self.floating);
+                modes.project_out(&mut residual);
                 w.mul_abs(&total, &mut work);
-                (residual, norm(u) + norm(&work))
+                let deformation = ratio(norm(&residual), norm(u) + norm(&work));
+                // W knows nothing of the rigid motions: that no force is left to drive them is a condition of its own.
+                let size: f64 = forces.iter().map(|f| norm(f)).sum();
+                return deformation.max(ratio(norm(&modes.components(&total)), size));
             }
         };
         ratio(norm(&residual), scale)

@@ -16,8 +16,10 @@ use super::system::Increment;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
-    /// or large bodies is far above ε |K u|. Under [`Claim::Nitsche`] its consistency term counts as a force.
+    /// or large bodies is far above ε |K u|.
     pub equilibrium: f64,
+    /// The same under the claim: Nitsche's laws have a consistency term, which counts as a force.
+    pub claimed_equilibrium: f64,
     /// Residual of the laws that the claim names, relative to P_ref. Under [`Claim::Exact`] the natural map.
     pub claimed: f64,
     /// max −g / u_ref over the points.
@@ -58,6 +60,7 @@ pub fn residuals_of(
     claim: Claim,
 ) -> Result<Residuals, MethodError> {
     i.check()?;
+    claim.check()?;
     check_len("displacements", s.u.len(), i.start.u.len())?;
     check_len("contact forces", s.p.len(), i.start.p.len())?;
     check_finite("displacements", &s.u)?;
@@ -65,7 +68,8 @@ pub fn residuals_of(
 
     let (system, dim) = (i.system, i.system.dim());
     let mut result = Residuals {
-        equilibrium: equilibrium(i, s, claim)?,
+        equilibrium: equilibrium(i, s, Claim::Exact)?,
+        claimed_equilibrium: equilibrium(i, s, claim)?,
         ..Default::default()
     };
     let jump = i.jump(&s.u);
@@ -84,11 +88,8 @@ pub fn residuals_of(
     let mut wp = vec![0.0; q.len()];
     mul_add(&condensed.w, &p, &mut wp);
     q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
-    let p_ref = reference_force(
-        &condensed,
-        &p,
-        free_jump(&condensed, &q, &condensed.modes.components(&p)),
-    );
+    let free = free_jump(i, &condensed, &q, &condensed.modes.components(&p));
+    let p_ref = reference_force(&condensed, &p, free);
     let u_ref = p_ref / condensed.rho;
 
     for point in 0..rows.points() {
@@ -254,7 +255,18 @@ pub(crate) fn natural_map_norm(
 
 /// |q| without what rigid motions and pins contribute: |(I − Q Qᵀ)(q + W Q c)|, where Q c are the contact forces of
 /// least norm that balance the load.
-pub(crate) fn free_jump(condensed: &Condensed, q: &[f64], balance: &[f64]) -> f64 {
+///
+/// Where nothing acts there is no such jump, and residuals would be relative to nothing: the size of what the increment
+/// starts from takes its place, the larger of |P|/ρ and the jump.
+pub(crate) fn free_jump(
+    i: &Increment<'_>,
+    condensed: &Condensed,
+    q: &[f64],
+    balance: &[f64],
+) -> f64 {
+    if i.unloaded() {
+        return (norm(&i.start.p) / condensed.rho).max(norm(&i.start_jump()));
+    }
     if balance.is_empty() {
         return norm(q);
     }

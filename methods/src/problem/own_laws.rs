@@ -6,7 +6,7 @@
 use super::error::MethodError;
 use super::judge::{residuals_of, slip_from};
 use super::reduced::Reduced;
-use super::state::{ContactState, Status};
+use super::state::Status;
 
 /// Backward error of equilibrium to reach, below what verdicts allow.
 const EQUILIBRIUM: f64 = 1e-13;
@@ -28,19 +28,16 @@ pub(crate) fn judge(
     beta: &[f64],
     corrections: usize,
 ) -> Result<Judged, MethodError> {
-    let Some(u) = problem.recover(p, beta)? else {
+    let Some(state) = problem.recover(p, beta)? else {
         return Ok(Judged::End(Status::Diverged));
     };
-    let state = ContactState {
-        p: problem.all_forces(p),
-        u,
-    };
     let found = residuals_of(problem.increment, &state, problem.claim)?;
-    let kept = found.claimed <= problem.increment.tolerance && found.equilibrium <= EQUILIBRIUM;
+    let kept =
+        found.claimed <= problem.increment.tolerance && found.claimed_equilibrium <= EQUILIBRIUM;
     if !kept && corrections < MAX_CORRECTIONS {
         return Ok(Judged::Wrong(state.u));
     }
-    problem.confirmed = Some(state.u);
+    problem.confirmed = Some(state);
     Ok(Judged::End(if kept {
         Status::Converged
     } else {

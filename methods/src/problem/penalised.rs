@@ -22,11 +22,12 @@
 use faer::Mat;
 
 use super::b_equations::Row;
+use super::error::MethodError;
 use super::judge::ratio;
 use super::law::{Branch, return_map, return_map_derivative};
 use super::line_search::LineSearch;
 use super::linear::dense::{mul_add, solve_dense};
-use super::linear::global::Global;
+use super::linear::global::{Global, TwoVectors};
 use super::reduced::Reduced;
 use super::stages::rescue;
 use super::state::{Monitor, Status};
@@ -122,7 +123,7 @@ impl Springs<'_> {
         max_iterations: usize,
         tangent: &mut Tangent,
         mut report: impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool,
-    ) -> (Status, Point) {
+    ) -> Result<(Status, Point), MethodError> {
         let (r, c) = (self.scales(problem), self.compliance(problem));
         let mut search = LineSearch::default();
         let mut before = at.branches.clone();
@@ -138,17 +139,17 @@ impl Springs<'_> {
                 .count();
             problem.counters.local_solves += problem.rows.points();
             if !residual.is_finite() {
-                return (Status::Diverged, at);
+                return Ok((Status::Diverged, at));
             }
             let go_on = report(problem, &at, changes);
             if residual <= stop {
-                return (Status::Converged, at);
+                return Ok((Status::Converged, at));
             }
             if !go_on {
-                return (Status::Stopped, at);
+                return Ok((Status::Stopped, at));
             }
             if residual <= ROUNDING && residual > 0.5 * last {
-                return (Status::Stalled, at);
+                return Ok((Status::Stalled, at));
             }
             last = residual;
             if iteration == max_iterations {
@@ -160,17 +161,17 @@ impl Springs<'_> {
                     direction(problem, coupled, &r, &c, &at, &mismatch)
                 }
                 Tangent::Monolithic(global) => {
-                    whole_direction(global, problem, &r, &c, &at, &mismatch)
+                    whole_direction(global, problem, &r, &c, &at, &mismatch)?
                 }
             };
             let Some((dz, dbeta)) = step else {
                 if problem.rescue_left()
-                    && let Some(pair) = rescue(problem)
+                    && let Some(pair) = rescue(problem)?
                 {
                     at = self.predict(problem, &pair.p, pair.beta);
                     continue;
                 }
-                return (problem.singular(), at);
+                return Ok((problem.singular(), at));
             };
             search.record(merit(problem, &r, &at, &mismatch));
             let t = search.length(|t| {
@@ -181,7 +182,7 @@ impl Springs<'_> {
             before.clone_from(&at.branches);
             at = at.moved(problem, t, &dz, &dbeta);
         }
-        (Status::MaxIterations, at)
+        Ok((Status::MaxIterations, at))
     }
 }
 
@@ -299,7 +300,7 @@ fn whole_direction(
     c: &[f64],
     at: &Point,
     mismatch: &[f64],
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Result<Option<TwoVectors>, MethodError> {
     let mut rows = Vec::with_capacity(problem.rows.points());
     for i in 0..problem.rows.points() {
         let own = problem.rows.of(i);
@@ -312,18 +313,22 @@ fn whole_direction(
         });
         let mut of_point = [0.0; 3].map(Row::reading);
         for a in 0..size {
-            let slope = solve_dense(&m, &t[a][..size])?;
+            let Some(slope) = solve_dense(&m, &t[a][..size]) else {
+                return Ok(None);
+            };
             of_point[a].a[a] = 1.0;
             of_point[a].c[..size].copy_from_slice(&slope);
             of_point[a].h = (0..size).map(|b| slope[b] * mismatch[first + b]).sum();
         }
         rows.push(of_point);
     }
-    let (dp, dv) = whole_body(global, problem, &at.p, &mut rows, Global::explicit)?;
+    let Some((dp, dv)) = whole_body(global, problem, &at.p, &mut rows, Global::explicit)? else {
+        return Ok(None);
+    };
     let dz = (0..dp.len())
         .map(|k| dp[k] - r[k] * (mismatch[k] + dv[k] + c[k] * dp[k]))
         .collect();
-    Some((dz, amplitudes(problem, &dp, dv)))
+    Ok(Some((dz, amplitudes(problem, &dp, dv))))
 }
 
 impl Point {

@@ -77,8 +77,8 @@ pub(crate) struct Reduced<'a> {
     /// Smallest natural map so far and its iteration.
     best: (f64, usize),
     corrections: usize,
-    /// Displacements of the iterate confirmed last.
-    pub confirmed: Option<Vec<f64>>,
+    /// The iterate confirmed last, with its displacements.
+    pub confirmed: Option<ContactState>,
 }
 
 impl<'a> Reduced<'a> {
@@ -131,7 +131,7 @@ impl<'a> Reduced<'a> {
             .collect();
         let balance = condensed.modes.balance(&resultant);
         Ok(Begin::Contact(Reduced {
-            free_jump: free_jump(&condensed, &rows.restrict(&jump), &balance),
+            free_jump: free_jump(increment, &condensed, &rows.restrict(&jump), &balance),
             q: slip_from(rows, dim, &jump, &increment.start_jump()),
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::new(),
@@ -324,7 +324,7 @@ impl<'a> Reduced<'a> {
             Some(Status::Diverged)
         } else if !monitor.step(iteration, natural_map) {
             Some(Status::Stopped)
-        } else if iteration == limits.iterations {
+        } else if iteration >= limits.iterations {
             Some(Status::MaxIterations)
         } else if iteration >= self.best.1 + limits.patience {
             Some(Status::Stalled)
@@ -347,15 +347,20 @@ impl<'a> Reduced<'a> {
         if status != Status::Converged {
             return Ok(Some(status));
         }
-        let Some(u) = self.recover(p, beta)? else {
+        let Some(state) = self.recover(p, beta)? else {
             return Ok(Some(Status::Diverged));
         };
         let increment = self.increment;
         let dim = increment.system.dim();
-        let found = slip_from(self.rows, dim, &increment.jump(&u), &increment.start_jump());
-        let natural_map = self.natural_map(p, &found);
+        let found = slip_from(
+            self.rows,
+            dim,
+            &increment.jump(&state.u),
+            &increment.start_jump(),
+        );
+        let natural_map = self.natural_map(&self.rows.restrict(&state.p), &found);
         if natural_map <= increment.tolerance {
-            self.confirmed = Some(u);
+            self.confirmed = Some(state);
             return Ok(Some(status));
         }
         if self.corrections == MAX_CORRECTIONS {
@@ -381,13 +386,19 @@ impl<'a> Reduced<'a> {
         all
     }
 
-    /// u = K⁻¹ (f + Bᵀ P) + R α with one solve; `None` if the forces left the finite range.
-    pub fn recover(&mut self, p: &[f64], beta: &[f64]) -> Result<Option<Vec<f64>>, MethodError> {
+    /// The state with u = K⁻¹ (f + Bᵀ P) + R α, one solve; `None` if the forces left the finite range. What rounding took
+    /// from the balance of P is put back, so that it is small beside P itself however small that has become.
+    pub fn recover(
+        &mut self,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Option<ContactState>, MethodError> {
+        let mut p = p.to_vec();
+        self.rebalance(&mut p);
+        let p = self.all_forces(&p);
         let elastic = self.increment.system.elastic();
         let mut u = self.increment.load.force.clone();
-        elastic
-            .jump()
-            .mul_transpose_add(&self.all_forces(p), &mut u);
+        elastic.jump().mul_transpose_add(&p, &mut u);
         u.iter_mut().zip(&self.further).for_each(|(u, f)| *u += f);
         if !u.iter().all(|x| x.is_finite()) {
             return Ok(None);
@@ -398,7 +409,7 @@ impl<'a> Reduced<'a> {
         for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
         }
-        Ok(Some(u))
+        Ok(Some(ContactState { u, p }))
     }
 
     /// Closes the outcome with the displacements of the last iterate.
@@ -408,17 +419,11 @@ impl<'a> Reduced<'a> {
         p: &[f64],
         beta: &[f64],
     ) -> Result<Outcome, MethodError> {
-        let u = match self.confirmed.take() {
-            Some(u) => Some(u),
+        let state = match self.confirmed.take() {
+            Some(state) => Some(state),
             None => self.recover(p, beta)?,
         };
-        let state = match u {
-            Some(u) => ContactState {
-                u,
-                p: self.all_forces(p),
-            },
-            None => self.increment.start.clone(),
-        };
+        let state = state.unwrap_or_else(|| self.increment.start.clone());
         Ok(Outcome {
             status,
             claim: self.claim,

@@ -60,7 +60,11 @@ pub(crate) trait Scheme {
     fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Self::Piece) -> [Row; 3];
 
     /// The Newton direction; `None` if the tangent is singular. `pieces` are those at x.
-    fn direction(&self, at: &mut At<'_, '_>, pieces: &[Self::Piece]) -> Option<Iterate> {
+    fn direction(
+        &self,
+        at: &mut At<'_, '_>,
+        pieces: &[Self::Piece],
+    ) -> Result<Option<Iterate>, MethodError> {
         at.step(self, pieces)
     }
 }
@@ -77,20 +81,23 @@ pub(crate) struct At<'p, 'i> {
 
 impl At<'_, '_> {
     /// The step of the given pieces, regularised if their tangent is singular.
-    pub fn step<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) -> Option<Iterate> {
+    pub fn step<S: Scheme + ?Sized>(
+        &mut self,
+        scheme: &S,
+        pieces: &[S::Piece],
+    ) -> Result<Option<Iterate>, MethodError> {
         let mut rows = self.rows(scheme, pieces);
-        self.tangent
-            .solve(self.problem, self.x, &mut rows)
-            .or_else(|| {
-                let mut rows = self.rows(scheme, pieces);
-                let ridge = RIDGE / self.problem.condensed.rho;
-                for row in rows.iter_mut().flatten() {
-                    for l in 0..3 {
-                        row.a[l] += ridge * row.c[l];
-                    }
-                }
-                self.tangent.solve(self.problem, self.x, &mut rows)
-            })
+        if let Some(step) = self.tangent.solve(self.problem, self.x, &mut rows)? {
+            return Ok(Some(step));
+        }
+        let mut rows = self.rows(scheme, pieces);
+        let ridge = RIDGE / self.problem.condensed.rho;
+        for row in rows.iter_mut().flatten() {
+            for l in 0..3 {
+                row.a[l] += ridge * row.c[l];
+            }
+        }
+        self.tangent.solve(self.problem, self.x, &mut rows)
     }
 
     fn rows<S: Scheme + ?Sized>(&self, scheme: &S, pieces: &[S::Piece]) -> Vec<[Row; 3]> {
@@ -149,13 +156,13 @@ pub(crate) fn newton<S: Scheme>(
         let step = if stuck {
             None
         } else {
-            scheme.direction(&mut at, &pieces)
+            scheme.direction(&mut at, &pieces)?
         };
         before = pieces;
         let Some(step) = step else {
             if safeguards.rescue
                 && problem.rescue_left()
-                && let Some(pair) = rescue(problem)
+                && let Some(pair) = rescue(problem)?
             {
                 x = Iterate {
                     P: pair.p,

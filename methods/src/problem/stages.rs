@@ -164,21 +164,26 @@ impl GlobalStage {
 /// A pair out of the reach of a singular tangent or a cycle: sweeps of both stages from the start of the increment.
 ///
 /// Not from the iterate that failed: a floating block it has pushed far down a slope slides on from there.
-pub(crate) fn rescue(problem: &mut Reduced<'_>) -> Option<Pair> {
+pub(crate) fn rescue(problem: &mut Reduced<'_>) -> Result<Option<Pair>, MethodError> {
     alternate(problem, RESCUE_SWEEPS << problem.earlier_rescues())
 }
 
 /// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row.
-pub(crate) fn alternate(problem: &mut Reduced<'_>, sweeps: usize) -> Option<Pair> {
+pub(crate) fn alternate(
+    problem: &mut Reduced<'_>,
+    sweeps: usize,
+) -> Result<Option<Pair>, MethodError> {
     let mut pair = Pair::start(problem);
-    let stage = GlobalStage::new(problem.condensed.clone(), 1.0).ok()?;
+    let stage = GlobalStage::new(problem.condensed.clone(), 1.0)?;
     problem.counters.factorisations += 1;
     for _ in 0..sweeps {
         let (target, _) = stage.local_stage(problem, &pair);
-        let new = stage.global_stage(problem, &target)?;
+        let Some(new) = stage.global_stage(problem, &target) else {
+            return Ok(None);
+        };
         pair.relax(problem, RESCUE_RELAXATION, &new);
     }
-    Some(pair)
+    Ok(Some(pair))
 }
 
 fn apply(factor: &Llt<f64>, mut x: Vec<f64>) -> Vec<f64> {

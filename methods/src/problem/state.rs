@@ -1,5 +1,6 @@
 //! What a method returns: a state, a status, a history and counters.
 
+use super::error::{MethodError, check_finite, check_positive};
 use super::system::ContactSystem;
 
 /// Displacements and contact forces at the end of an increment. They are the whole history: slip is measured from
@@ -97,6 +98,31 @@ pub enum Claim {
         /// γ in N/m³, w the weight of a point.
         gamma: f64,
     },
+}
+
+impl Claim {
+    /// Refuses parameters with which the laws would say nothing: a spring of no stiffness fulfils any law.
+    pub(crate) fn check(&self) -> Result<(), MethodError> {
+        match *self {
+            Claim::Exact => Ok(()),
+            Claim::Penalised { normal, tangential } => check_positive(
+                "penalty stiffness of the claim",
+                [normal, tangential].into_iter(),
+            ),
+            Claim::Barrier {
+                gap,
+                slip,
+                stiffness,
+            } => check_positive(
+                "barrier parameter of the claim",
+                [gap, slip, stiffness].into_iter(),
+            ),
+            Claim::Nitsche { theta, gamma } => {
+                check_finite("theta of the claim", &[theta])?;
+                check_positive("gamma of the claim", [gamma].into_iter())
+            }
+        }
+    }
 }
 
 /// One entry of the iteration history; the first describes the start.

@@ -181,6 +181,12 @@ impl Increment<'_> {
         jump(self.system, self.start_load, &self.start.u)
     }
 
+    /// Whether nothing acts at the end of the increment.
+    pub(crate) fn unloaded(&self) -> bool {
+        let zero = |x: &[f64]| x.iter().all(|&x| x == 0.0);
+        zero(&self.load.force) && zero(&self.load.offset)
+    }
+
     /// Refuses arrays of the wrong length and non-finite numbers.
     pub(crate) fn check(&self) -> Result<(), MethodError> {
         let n = self.system.elastic().unknowns();

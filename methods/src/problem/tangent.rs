@@ -11,10 +11,10 @@ use faer::Mat;
 
 use super::b_equations::Row;
 use super::linear::dense::{mul_add, solve_dense};
-use super::linear::global::Global;
+use super::linear::global::{Global, TwoVectors};
 use super::reduced::Reduced;
 use super::semismooth::Iterate;
-use crate::{ContactSystem, OptionSpec, Options};
+use crate::{ContactSystem, MethodError, OptionSpec, Options};
 
 /// Where the linear problems of a method are solved.
 pub(crate) enum Tangent {
@@ -58,29 +58,32 @@ impl Tangent {
         problem: &mut Reduced<'_>,
         x: &Iterate,
         rows: &mut [[Row; 3]],
-    ) -> Option<Iterate> {
+    ) -> Result<Option<Iterate>, MethodError> {
         match self {
             Tangent::Condensed => {
                 problem.counters.factorisations += 1;
-                condensed_step(problem, x, rows)
+                Ok(condensed_step(problem, x, rows))
             }
             Tangent::Monolithic(global) => {
-                let (P, dv) = whole_body(global, problem, &x.P, rows, Global::saddle)?;
-                let beta = amplitudes(problem, &P, dv);
-                Some(Iterate { P, beta })
+                let step = whole_body(global, problem, &x.P, rows, Global::saddle)?;
+                Ok(step.map(|(P, dv)| {
+                    let beta = amplitudes(problem, &P, dv);
+                    Iterate { P, beta }
+                }))
             }
         }
     }
 }
 
-/// (δP, δv) from the matrix of the whole body, analysed by `new` where that was not done for the system.
+/// (δP, δv) from the matrix of the whole body, analysed by `new` where that was not done for the system; `None` if it is
+/// singular.
 pub(crate) fn whole_body(
     global: &mut Option<Box<Global>>,
     problem: &mut Reduced<'_>,
     P: &[f64],
     rows: &mut [[Row; 3]],
-    new: fn(&ContactSystem) -> Option<Global>,
-) -> Option<(Vec<f64>, Vec<f64>)> {
+    new: fn(&ContactSystem) -> Result<Global, MethodError>,
+) -> Result<Option<TwoVectors>, MethodError> {
     problem.counters.global_factorisations += 1;
     // Without balance there is no equilibrium to linearise: step from the nearest balanced forces P + Q (c − Qᵀ P).
     let (mut lack, mut response) = (vec![0.0; P.len()], vec![0.0; P.len()]);
@@ -101,10 +104,12 @@ pub(crate) fn whole_body(
         Some(global) if global.belongs_to(system) => global,
         stale => stale.insert(Box::new(new(system)?)),
     };
-    let (mut dP, mut dv) = global.solve(rows)?;
+    let Some((mut dP, mut dv)) = global.solve(rows)? else {
+        return Ok(None);
+    };
     dP.iter_mut().zip(&lack).for_each(|(x, l)| *x += l);
     dv.iter_mut().zip(&response).for_each(|(x, l)| *x += l);
-    Some((dP, dv))
+    Ok(Some((dP, dv)))
 }
 
 /// δβ = Qᵀ (δv − W δP).

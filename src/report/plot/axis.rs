@@ -168,20 +168,6 @@ impl Axis {
         }
     }
 
-    /// An axis of classes at 0, 1, 2, ..., each with its label.
-    pub fn classes(label: &str, labels: impl IntoIterator<Item = String>) -> Self {
-        let ticks = labels.into_iter().enumerate().map(|(k, l)| (k as f64, l));
-        let major: Vec<(f64, String)> = ticks.collect();
-        Self {
-            label: label.to_owned(),
-            low: -0.5,
-            high: major.len() as f64 - 0.5,
-            scale: Scale::Linear,
-            major,
-            minor: Vec::new(),
-        }
-    }
-
     /// An axis of percentages that shows those close to 100 apart.
     pub fn towards_hundred(label: &str) -> Self {
         let ticks = [0.0, 50.0, 80.0, 90.0, 95.0, 98.0, 99.0, 100.0];

@@ -129,7 +129,8 @@ impl Canvas {
         }
     }
 
-    /// A line of dashes: `pattern` holds lengths drawn and left out in turn [mm]; empty for a solid line.
+    /// A line of dashes: `pattern` holds lengths drawn and left out in turn [mm]; empty for a solid line, 0 first for one
+    /// that begins with a gap.
     pub fn dashed(&mut self, points: &[[f64; 2]], colour: Rgb, width: f64, pattern: &[f64]) {
         if pattern.is_empty() {
             self.line(points, colour, width);
@@ -150,7 +151,7 @@ impl Canvas {
                     from[1] + t * (to[1] - from[1]),
                 ];
                 dash.push(at);
-                if piece % 2 == 0 {
+                if piece % 2 == 0 && pattern[piece] > 0.0 {
                     self.line(&dash, colour, width);
                 }
                 dash = vec![at];
@@ -411,8 +412,15 @@ pub fn caption_height(lines: &[String]) -> f64 {
     2.0 + CAPTION_MM * lines.len() as f64
 }
 
-/// The text broken after commas into lines of at most `width` [mm].
+/// The text broken at line ends and after commas into lines of at most `width` [mm].
 pub fn wrapped(text: &str, size_pt: f64, width: f64) -> Vec<String> {
+    let paragraphs = text.split('\n');
+    paragraphs
+        .flat_map(|paragraph| wrapped_paragraph(paragraph, size_pt, width))
+        .collect()
+}
+
+fn wrapped_paragraph(text: &str, size_pt: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in text.split(", ").filter(|part| !part.is_empty()) {
         match lines.last_mut() {

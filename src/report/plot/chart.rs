@@ -6,6 +6,7 @@ use super::canvas::{
 };
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
+use super::marks;
 use super::style::{Marker, Style, draw_marker};
 use crate::report::ReportError;
 
@@ -25,8 +26,8 @@ const MARKER_GAP_MM: f64 = 2.6;
 pub struct Series {
     pub points: Vec<[f64; 2]>,
     pub style: Style,
-    /// Marker and filling per point where they differ from the style's.
-    pub markers: Vec<(Marker, bool)>,
+    /// Marker and filling per point, or none; empty where all are the style's.
+    pub markers: Vec<Option<(Marker, bool)>>,
 }
 
 /// A right-angled triangle that shows the slope of a power law y ~ x^slope, both axes logarithmic.
@@ -55,6 +56,8 @@ pub struct Panel {
     /// Horizontal lines in [`Style::level`].
     pub levels: Vec<f64>,
     pub slope: Option<SlopeTriangle>,
+    /// Whether curves get few markers, away from those of the others.
+    pub spread: bool,
 }
 
 /// A whole figure.
@@ -149,10 +152,28 @@ fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
     if let Some(slope) = &panel.slope {
         draw_slope(canvas, panel, frame, slope);
     }
-    for series in &panel.series {
-        draw_series(canvas, panel, frame, series);
+    // All lines first: none runs over a marker.
+    let places: Vec<Places> = panel
+        .series
+        .iter()
+        .map(|series| draw_line(canvas, panel, frame, series))
+        .collect();
+    if panel.spread {
+        for (series, chosen) in panel.series.iter().zip(marks::spread(&places)) {
+            let style = &series.style;
+            for (at, marker) in chosen.into_iter().zip(style.marker.iter().cycle()) {
+                draw_marker(canvas, at, *marker, style.filled, style.colour);
+            }
+        }
+    } else {
+        for (series, places) in panel.series.iter().zip(&places) {
+            draw_markers(canvas, series, places);
+        }
     }
 }
+
+/// Points of a curve on paper; none where the axes have no place for one.
+type Places = Vec<Option<[f64; 2]>>;
 
 fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
     let Frame {
@@ -211,8 +232,8 @@ fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
     canvas.text_upwards(&label, middle, size, BLACK);
 }
 
-fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Series) {
-    let places: Vec<Option<[f64; 2]>> = series
+fn draw_line(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Series) -> Places {
+    let places: Places = series
         .points
         .iter()
         .map(|point| Some(frame.at(panel, *point)).filter(|p| p.iter().all(|c| c.is_finite())))
@@ -226,6 +247,10 @@ fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Serie
             series.style.dashes,
         );
     }
+    places
+}
+
+fn draw_markers(canvas: &mut Canvas, series: &Series, places: &Places) {
     let Some(own) = series.style.marker else {
         return;
     };
@@ -233,7 +258,9 @@ fn draw_series(canvas: &mut Canvas, panel: &Panel, frame: &Frame, series: &Serie
     for (index, place) in places.iter().enumerate() {
         let Some(place) = place else { continue };
         let own = (own, series.style.filled);
-        let look = series.markers.get(index).copied().unwrap_or(own);
+        let Some(look) = series.markers.get(index).copied().unwrap_or(Some(own)) else {
+            continue;
+        };
         // Dense curves get few markers, but a change of marker is always shown.
         let crowded = last.is_some_and(|(at, before)| {
             before == look && (place[0] - at[0]).hypot(place[1] - at[1]) < MARKER_GAP_MM

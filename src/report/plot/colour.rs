@@ -15,11 +15,14 @@ const CURVES: [Rgb; 7] = [
     [0, 114, 178],
     [213, 94, 0],
     [0, 158, 115],
-    [0, 0, 0],
     [204, 121, 167],
     [230, 159, 0],
     [86, 180, 233],
+    BLACK,
 ];
+
+/// How many colours methods take turns with: black belongs to what several of them share.
+pub const METHOD_COLOURS: usize = CURVES.len() - 1;
 
 /// Colour of the n-th curve.
 pub fn curve(index: usize) -> Rgb {

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Width, plain};
 use super::chart::{Chart, Panel, Series, SlopeTriangle};
 use super::legend::Entry;
+use super::methods;
 use super::names::{Names, by_run};
 use super::style::Style;
 use crate::harness::record::{HistoryRow, RunKey};
@@ -93,9 +94,19 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
         series: Vec::new(),
         levels,
         slope: None,
+        spread: true,
     };
-    let title = format!("Residual against iteration: {}", names.common);
-    draw(title, names.common, panel, names.labels, curves, marks)
+    let methods: Vec<&str> = keys.iter().map(|key| key.method.as_str()).collect();
+    let figure = Figure {
+        title: format!("Residual against iteration: {}", names.common),
+        caption: names.common,
+        // Room for the curves of many methods.
+        height: if runs.len() > 6 { 62.0 } else { 46.0 },
+        styles: methods::styles(&methods),
+        labels: names.labels,
+        marks,
+    };
+    draw(figure, panel, curves)
 }
 
 /// A curve of [`error_plot`] and [`line_plot`].
@@ -186,51 +197,54 @@ fn generic(
         series: Vec::new(),
         levels: Vec::new(),
         slope,
+        spread: false,
     };
     let labels = plot
         .curves
         .iter()
         .map(|curve| curve.label.clone())
         .collect();
-    let title = format!("{} against {}", plot.y_label, plot.x_label);
-    draw(
-        title,
-        plain(&plot.caption),
-        panel,
+    let places = |curve: &Vec<[f64; 2]>| -> Vec<f64> {
+        let at = |p: &[f64; 2]| [panel.x.place(p[0]), panel.y.place(p[1])];
+        curve.iter().flat_map(at).collect()
+    };
+    let figure = Figure {
+        title: format!("{} against {}", plot.y_label, plot.x_label),
+        caption: plain(&plot.caption),
+        height: 46.0,
+        styles: Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>()),
         labels,
-        curves,
-        Vec::new(),
-    )
+        marks: Vec::new(),
+    };
+    draw(figure, panel, curves)
 }
 
-/// One panel with its curves; the legend tells curves, then `marks`.
-fn draw(
+/// What surrounds a panel: one style and one label per curve, and what the legend tells besides.
+struct Figure {
     title: String,
     caption: String,
-    mut panel: Panel,
+    height: f64,
+    styles: Vec<Style>,
     labels: Vec<String>,
-    curves: Vec<Vec<[f64; 2]>>,
     marks: Vec<Entry>,
+}
+
+/// One panel with its curves.
+fn draw(
+    figure: Figure,
+    mut panel: Panel,
+    curves: Vec<Vec<[f64; 2]>>,
 ) -> Result<String, ReportError> {
-    let places = |curve: &Vec<[f64; 2]>| -> Vec<f64> {
-        curve
-            .iter()
-            .flat_map(|p| [panel.x.place(p[0]), panel.y.place(p[1])])
-            .collect()
+    let entry = |(label, style): (String, &Style)| Entry {
+        label,
+        style: style.clone(),
+        line: true,
     };
-    let styles = Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>());
-    let legend = labels
-        .into_iter()
-        .zip(&styles)
-        .map(|(label, style)| Entry {
-            label,
-            style: style.clone(),
-            line: true,
-        })
-        .collect();
+    let legend = figure.labels.into_iter().zip(&figure.styles).map(entry);
+    let legend = vec![legend.collect(), figure.marks];
     panel.series = curves
         .into_iter()
-        .zip(styles)
+        .zip(figure.styles)
         .map(|(points, style)| Series {
             points,
             style,
@@ -238,12 +252,12 @@ fn draw(
         })
         .collect();
     let chart = Chart {
-        title,
-        caption,
+        title: figure.title,
+        caption: figure.caption,
         width: Width::Column,
-        height: 46.0,
+        height: figure.height,
         panels: vec![panel],
-        legend: vec![legend, marks],
+        legend,
     };
     chart.svg()
 }

@@ -1,7 +1,7 @@
 //! Legends: samples and labels in rows below a chart.
 
 use super::canvas::{Anchor, Canvas, fitted, text_width};
-use super::chart::TICK_PT;
+use super::chart::{SMALL_PT, TICK_PT};
 use super::colour::BLACK;
 use super::style::{Style, draw_marker};
 
@@ -9,6 +9,8 @@ use super::style::{Style, draw_marker};
 pub const ROW_MM: f64 = 3.7;
 /// Room for the sample before a label [mm].
 const SAMPLE_MM: f64 = 8.5;
+/// Least room between columns [mm].
+const GAP_MM: f64 = 2.0;
 
 /// A line of the legend.
 #[derive(Debug, Clone)]
@@ -19,34 +21,45 @@ pub struct Entry {
     pub line: bool,
 }
 
-/// Legend entries in rows, columns as wide as they need to be.
+/// Legend entries one below the other, columns as wide as they need to be.
 pub struct LegendGrid<'a> {
     entries: &'a [Entry],
-    columns: usize,
+    rows: usize,
     /// Where each column starts [mm].
     starts: Vec<f64>,
+    size_pt: f64,
     available: f64,
 }
 
 impl<'a> LegendGrid<'a> {
+    /// Small text where that saves rows.
     pub fn new(entries: &'a [Entry], available: f64) -> Self {
-        let width = |entry: &Entry| SAMPLE_MM + text_width(&entry.label, TICK_PT) + 2.0;
-        let widths = |columns: usize| -> Vec<f64> {
-            let column = |c: usize| entries.iter().skip(c).step_by(columns);
-            (0..columns)
-                .map(|c| column(c).map(width).fold(0.0, f64::max))
+        let [large, small] =
+            [TICK_PT, SMALL_PT].map(|size| Self::of_size(entries, available, size));
+        if small.rows < large.rows {
+            small
+        } else {
+            large
+        }
+    }
+
+    fn of_size(entries: &'a [Entry], available: f64, size_pt: f64) -> Self {
+        let width = |entry: &Entry| SAMPLE_MM + text_width(&entry.label, size_pt) + GAP_MM;
+        let widths = |rows: usize| -> Vec<f64> {
+            let columns = entries.chunks(rows);
+            columns
+                .map(|column| column.iter().map(width).fold(0.0, f64::max))
                 .collect()
         };
-        // As few rows as fit, then no more columns than these rows need; one column in any case, its labels are cut.
-        let fitting = (2..=entries.len())
-            .rev()
-            .find(|columns| widths(*columns).iter().sum::<f64>() <= available)
-            .unwrap_or(1);
-        let rows = entries.len().div_ceil(fitting).max(1);
-        let columns = entries.len().div_ceil(rows).max(1);
-        let widths = widths(columns);
+        // As few rows as fit; one column in any case, its labels are cut.
+        let most = entries.len().max(1);
+        let rows = (1..most)
+            .find(|rows| widths(*rows).iter().sum::<f64>() - GAP_MM <= available)
+            .unwrap_or(most);
+        let widths = widths(rows);
         // A single column starts at the left, several are spread over the width.
-        let spare = (available - widths.iter().sum::<f64>()).max(0.0) / columns as f64;
+        let spare =
+            (available + GAP_MM - widths.iter().sum::<f64>()).max(0.0) / widths.len() as f64;
         let mut end = 0.0;
         let starts = widths.iter().map(|width| {
             let start = end;
@@ -55,23 +68,24 @@ impl<'a> LegendGrid<'a> {
         });
         Self {
             entries,
-            columns,
+            rows,
             starts: starts.collect(),
+            size_pt,
             available,
         }
     }
 
     /// How many rows it has.
     pub fn rows(&self) -> usize {
-        self.entries.len().div_ceil(self.columns)
+        self.rows
     }
 
     /// Draws it with the middle of its first row at `origin` [mm].
     pub fn draw(&self, canvas: &mut Canvas, origin: [f64; 2]) {
         for (index, entry) in self.entries.iter().enumerate() {
-            let start = self.starts[index % self.columns];
+            let start = self.starts[index / self.rows];
             let x = origin[0] + start;
-            let y = origin[1] + (index / self.columns) as f64 * ROW_MM;
+            let y = origin[1] + (index % self.rows) as f64 * ROW_MM;
             let style = &entry.style;
             let (from, to) = (x + 0.5, x + SAMPLE_MM - 1.5);
             if entry.line {
@@ -87,8 +101,9 @@ impl<'a> LegendGrid<'a> {
                 draw_marker(canvas, middle, marker, style.filled, style.colour);
             }
             let room = self.available - start - SAMPLE_MM;
-            let label = fitted(&entry.label, TICK_PT, room);
-            canvas.text(&label, [x + SAMPLE_MM, y], TICK_PT, Anchor::Start, BLACK);
+            let label = fitted(&entry.label, self.size_pt, room);
+            let at = [x + SAMPLE_MM, y];
+            canvas.text(&label, at, self.size_pt, Anchor::Start, BLACK);
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Runs as curves: grouping of rows, and labels that say what tells the runs of a figure apart.
 
 use super::canvas::{italic, plain};
+use super::methods;
 use crate::harness::record::RunKey;
 use crate::report::csv::compare_keys;
 use crate::report::number::value;
 
-/// Rows grouped by run, runs in the order of the tables, rows by `order`.
+/// Rows grouped by run, runs in the order of the registry of methods, then of the tables, rows by `order`.
 pub fn by_run<R>(
     rows: &[R],
     key: impl Fn(&R) -> &RunKey,
@@ -13,10 +14,12 @@ pub fn by_run<R>(
 ) -> Vec<Vec<&R>> {
     let mut sorted: Vec<&R> = rows.iter().collect();
     sorted.sort_by(|a, b| compare_keys(key(a), key(b)).then_with(|| order(a, b)));
-    sorted
+    let mut runs: Vec<Vec<&R>> = sorted
         .chunk_by(|a, b| key(a) == key(b))
         .map(<[&R]>::to_vec)
-        .collect()
+        .collect();
+    runs.sort_by_key(|run| methods::rank(&key(run[0]).method));
+    runs
 }
 
 /// What the runs of a figure have in common, and what tells them apart.

@@ -1,88 +1,131 @@
 //! Profiles along a 2D crack: traction and slip, with the contact status at every point.
 
+use super::agreement::{at_most, difference, groups};
 use super::axis::{Axis, prefixed};
-use super::canvas::{Width, italic, subscript};
+use super::canvas::{Width, italic, plain, subscript};
 use super::chart::{Chart, Panel, Series};
-use super::colour::BLACK;
+use super::colour::{BLACK, GREY, Rgb};
 use super::legend::Entry;
+use super::methods;
 use super::names::{Names, by_run};
 use super::style::{Marker, Style};
 use crate::harness::record::{PointRow, RunKey};
 use crate::report::ReportError;
+use std::collections::BTreeSet;
 
-/// Jumps below this fraction of the crack's length are round-off.
-const ROUND_OFF: f64 = 1e-13;
+/// Jumps below this fraction of the crack's length are what the tolerance of a method leaves.
+const ROUND_OFF: f64 = 1e-10;
 
-/// Contact traction p_n and |p_t| (force per tributary length) along one 2D crack, one curve per run in `rows`;
-/// markers tell stick, slip and open, dotted lines the slip limit μ p_n.
+/// Largest difference of a curve that still runs along another one for the most part, as a fraction of the range.
+const LIES_ON: f64 = 0.06;
+
+/// What differences in the legend mean.
+const SCALE_NOTE: &str = "differences as fractions of the largest value";
+
+/// Tractions below this fraction of the largest are nothing to compare.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// Difference that can be seen, as a fraction of the range.
+const VISIBLE: f64 = 0.01;
+
+/// Contact traction p_n and |p_t| (force per tributary length) along one 2D crack; markers tell stick, slip and open,
+/// dots the slip limit μ p_n. Runs with one friction coefficient by exact methods whose curves cannot be told apart are
+/// drawn once, all others get curves of their own.
 ///
 /// # Errors
 /// [`ReportError::Figure`] when `rows` has no point of a 2D crack with this number.
 pub fn contact_traction(rows: &[PointRow], crack: usize) -> Result<String, ReportError> {
-    let profile = Profile::new("contact traction", rows, crack)?;
     let normal = |row: &PointRow| row.p_n / row.weight;
     let tangential = |row: &PointRow| row.p_a.hypot(row.p_b) / row.weight;
     let limit = |row: &PointRow| row.key.friction * normal(row).max(0.0);
+    let figure = "contact traction";
+    let profile = Profile::new(figure, rows, crack, "Pa", &[&normal, &tangential])?;
 
     let symbol = italic("p");
-    let mut upper = profile.panel(&format!("{symbol}{}", subscript("n")), "Pa", &[&normal]);
+    let mut upper = profile.panel(&format!("{symbol}{}", subscript("n")), &[&normal]);
     let label = format!("|{symbol}{}|", subscript("t"));
-    let mut lower = profile.panel(&label, "Pa", &[&tangential, &limit]);
-    let styles = profile.styles(&[&normal, &tangential]);
-    for (run, style) in profile.runs.iter().zip(&styles) {
-        upper.curve(run, style, &normal);
-        lower.reference(run, style, &limit);
-        lower.curve(run, style, &tangential);
+    let mut lower = profile.panel(&label, &[&tangential, &limit]);
+    let largest = profile.largest(&limit).max(f64::MIN_POSITIVE);
+    let limits = |curve: &ProfileCurve<'_>| -> Vec<f64> {
+        let values = curve.points.iter().map(|row| limit(row) / largest);
+        values.collect()
+    };
+    let shared = profile.by_method.then(|| limits(&profile.curves[0]));
+    for (index, curve) in profile.curves.iter().enumerate() {
+        upper.curve(&profile, index, &normal);
+        // One limit for all methods that agree on it.
+        let own = |shared: &Vec<f64>| difference(shared, &limits(curve)) > VISIBLE;
+        match &shared {
+            Some(_) if index == 0 => lower.reference(curve, GREY, &limit),
+            Some(shared) if !own(shared) => {}
+            _ => lower.reference(curve, curve.style.colour, &limit),
+        }
+        lower.curve(&profile, index, &tangential);
     }
     let limit = Entry {
         label: format!("slip limit {} {symbol}{}", italic("μ"), subscript("n")),
-        style: Style::reference(BLACK),
+        style: Style::limit(if profile.by_method { GREY } else { BLACK }),
         line: true,
     };
     profile.chart(
         "Contact traction",
         vec![upper.panel, lower.panel],
-        &styles,
         vec![limit],
     )
 }
 
-/// Tangential jump, and the normal gap where the crack opens, along one 2D crack, one curve per run in `rows`.
+/// Tangential jump, and the normal gap where the crack opens, along one 2D crack, with curves as in
+/// [`contact_traction`].
 ///
 /// # Errors
 /// Those of [`contact_traction`].
 pub fn contact_slip(rows: &[PointRow], crack: usize) -> Result<String, ReportError> {
-    let profile = Profile::new("contact slip", rows, crack)?;
     let slip = |row: &PointRow| row.slip_a_m;
     let gap = |row: &PointRow| row.gap_m;
+    let profile = Profile::new("contact slip", rows, crack, "m", &[&slip, &gap])?;
     // Gaps of closed points are round-off; a panel of round-off says nothing.
-    let opens = profile
-        .runs
-        .iter()
-        .flatten()
-        .any(|row| row.status == "open")
+    let opens = profile.rows().any(|row| row.status == "open")
         || profile.largest(&gap) > 1e-6 * profile.largest(&slip);
 
-    let mut panels = vec![profile.panel("slip", "m", &[&slip])];
+    let mut panels = vec![profile.panel("slip", &[&slip])];
     if opens {
-        panels.push(profile.panel("normal gap", "m", &[&gap]));
+        panels.push(profile.panel("normal gap", &[&gap]));
     }
-    let styles = profile.styles(&[&slip]);
-    for (run, style) in profile.runs.iter().zip(&styles) {
-        panels[0].curve(run, style, &slip);
+    for index in 0..profile.curves.len() {
+        panels[0].curve(&profile, index, &slip);
         if let Some(panel) = panels.get_mut(1) {
-            panel.curve(run, style, &gap);
+            panel.curve(&profile, index, &gap);
         }
     }
     let panels = panels.into_iter().map(|panel| panel.panel).collect();
-    profile.chart("Slip", panels, &styles, Vec::new())
+    profile.chart("Slip", panels, Vec::new())
 }
 
-/// Points of one crack, by run.
+/// A function of a contact point.
+type Of<'f> = &'f dyn Fn(&PointRow) -> f64;
+
+/// One curve: points of the run that is drawn.
+struct ProfileCurve<'a> {
+    points: Vec<&'a PointRow>,
+    style: Style,
+    /// Look of its line in the legend.
+    sample: Style,
+    label: String,
+}
+
+/// Points of one crack, by curve.
 struct Profile<'a> {
+    /// All runs, also those that another one stands for.
     runs: Vec<Vec<&'a PointRow>>,
-    names: Names,
+    curves: Vec<ProfileCurve<'a>>,
+    /// Whether methods are compared; otherwise each run is a curve.
+    by_method: bool,
+    /// What all runs share.
+    common: String,
+    /// Methods that a curve stands for.
+    notes: Vec<String>,
     crack: usize,
+    unit: &'static str,
 }
 
 /// A panel with the factor that its unit needs.
@@ -92,7 +135,14 @@ struct ProfilePanel {
 }
 
 impl<'a> Profile<'a> {
-    fn new(figure: &'static str, rows: &'a [PointRow], crack: usize) -> Result<Self, ReportError> {
+    /// `of` are the functions that will be drawn, all in one unit.
+    fn new(
+        figure: &'static str,
+        rows: &'a [PointRow],
+        crack: usize,
+        unit: &'static str,
+        of: &[Of<'_>],
+    ) -> Result<Self, ReportError> {
         let mut runs = by_run(rows, |row| &row.key, |a, b| a.s_m.total_cmp(&b.s_m));
         for run in &mut runs {
             run.retain(|row| row.crack == crack);
@@ -110,48 +160,137 @@ impl<'a> Profile<'a> {
         }
         let keys: Vec<&RunKey> = runs.iter().map(|run| &run[0].key).collect();
         let names = Names::of(&keys);
-        Ok(Self { runs, names, crack })
+        let methods: BTreeSet<&str> = keys.iter().map(|key| key.method.as_str()).collect();
+        let mut profile = Self {
+            curves: Vec::new(),
+            // One run per method: nothing else tells the runs apart.
+            by_method: methods.len() == runs.len(),
+            common: names.common,
+            notes: Vec::new(),
+            crack,
+            unit,
+            runs,
+        };
+        let scaled = profile.scaled(of);
+        if profile.by_method {
+            profile.add_groups(&scaled);
+        } else {
+            let styles = Style::of_curves(&scaled);
+            let curves = profile.runs.iter().zip(styles).zip(names.labels);
+            let curve =
+                |((points, style), label): ((&Vec<&'a PointRow>, Style), String)| ProfileCurve {
+                    points: points.clone(),
+                    sample: style.clone(),
+                    style,
+                    label,
+                };
+            profile.curves = curves.map(curve).collect();
+        }
+        Ok(profile)
+    }
+
+    /// One curve per group of methods that agree.
+    fn add_groups(&mut self, scaled: &[Vec<f64>]) {
+        let methods: Vec<&str> = (self.runs.iter())
+            .map(|run| run[0].key.method.as_str())
+            .collect();
+        let statuses = |run: usize| self.runs[run].iter().map(|row| &row.status);
+        let groups = groups(
+            scaled,
+            |run| methods::is_exact(methods[run]),
+            |a, b| statuses(a).eq(statuses(b)),
+        );
+        let styles = methods::styles(&methods);
+        let shared = groups[0].members.len() > 1;
+        let mut turns = 0;
+        for (index, group) in groups.iter().enumerate() {
+            let first = group.members[0];
+            let several = group.members.len() > 1;
+            let sample = match index {
+                0 if several => Style::shared(),
+                _ => styles[first].clone(),
+            };
+            let off = difference(&scaled[0], &scaled[first]);
+            // Curves that lie on the shared one take turns; others need no help.
+            let style = if shared && index > 0 && off <= LIES_ON {
+                turns += 1;
+                sample.clone().on_shared(turns - 1)
+            } else {
+                sample.clone()
+            };
+            let count = format!("{} exact methods", group.members.len());
+            let label = if several {
+                let names: Vec<String> = group.members.iter().map(|m| plain(methods[*m])).collect();
+                let names = names.join(", ");
+                self.notes.push(format!("{count}: {names}, {SCALE_NOTE}"));
+                format!("{count}, apart by {}", at_most(group.apart))
+            } else if shared && !methods::is_exact(methods[first]) {
+                format!("{}, off by {}", plain(methods[first]), at_most(off))
+            } else {
+                plain(methods[first])
+            };
+            self.curves.push(ProfileCurve {
+                points: self.runs[first].clone(),
+                style,
+                sample,
+                label,
+            });
+        }
+    }
+
+    /// All points of all runs.
+    fn rows(&self) -> impl Iterator<Item = &'a PointRow> {
+        self.runs.iter().flatten().copied()
+    }
+
+    /// Length of the crack as far as it has points [m].
+    fn length(&self) -> f64 {
+        self.rows().map(|row| row.s_m.abs()).fold(0.0, f64::max)
+    }
+
+    /// Values of the functions along each run, divided by the largest or by what counts as round-off.
+    fn scaled(&self, of: &[Of<'_>]) -> Vec<Vec<f64>> {
+        let largest = of.iter().map(|f| self.largest(f));
+        let floor = match self.unit {
+            "m" => ROUND_OFF * self.length(),
+            _ => NEGLIGIBLE * largest.clone().fold(0.0, f64::max),
+        };
+        let scale = largest.map(|largest| largest.max(floor).max(f64::MIN_POSITIVE));
+        let scale: Vec<f64> = scale.collect();
+        let scaled = |run: &Vec<&PointRow>| {
+            let parts = of.iter().zip(&scale);
+            let values = parts.flat_map(|(f, scale)| run.iter().map(move |row| f(row) / scale));
+            values.collect()
+        };
+        self.runs.iter().map(scaled).collect()
     }
 
     /// Largest |f| over all points.
-    fn largest(&self, of: &dyn Fn(&PointRow) -> f64) -> f64 {
-        let values = self.runs.iter().flatten().map(|row| of(row).abs());
+    fn largest(&self, of: Of<'_>) -> f64 {
+        let values = self.rows().map(|row| of(row).abs());
         values.filter(|v| v.is_finite()).fold(0.0, f64::max)
     }
 
-    /// Looks of the curves: nested where runs agree in all the functions `of`, so that none hides another.
-    fn styles(&self, of: &[&dyn Fn(&PointRow) -> f64]) -> Vec<Style> {
-        let scaled = |run: &Vec<&PointRow>| -> Vec<f64> {
-            let parts = of.iter().flat_map(|f| {
-                let largest = self.largest(f).max(f64::MIN_POSITIVE);
-                run.iter().map(move |row| f(row) / largest)
-            });
-            parts.collect()
-        };
-        let curves: Vec<Vec<f64>> = self.runs.iter().map(scaled).collect();
-        Style::of_curves(&curves)
-    }
-
     /// An empty panel whose y axis covers the functions `of` and zero.
-    fn panel(&self, name: &str, unit: &str, of: &[&dyn Fn(&PointRow) -> f64]) -> ProfilePanel {
-        let rows = || self.runs.iter().flatten();
+    fn panel(&self, name: &str, of: &[Of<'_>]) -> ProfilePanel {
         let largest = of.iter().map(|f| self.largest(f)).fold(0.0, f64::max);
         // Jumps of sticking points are round-off: they are drawn as zero, not on an axis of attometres.
-        let length = rows().map(|row| row.s_m.abs()).fold(0.0, f64::max);
-        let round_off = unit == "m" && largest < ROUND_OFF * length;
+        let round_off = self.unit == "m" && largest < ROUND_OFF * self.length();
         let (factor, unit) = if round_off {
-            (0.0, unit.to_owned())
+            (0.0, self.unit.to_owned())
         } else {
-            prefixed(largest, unit)
+            prefixed(largest, self.unit)
         };
-        let values = rows().flat_map(|row| of.iter().map(|f| f(row) * factor));
+        let values = (self.rows()).flat_map(|row| of.iter().map(|f| f(row) * factor));
         let shown = values.chain([0.0]);
+        let along = self.rows().map(|row| row.s_m);
         let panel = Panel {
-            x: Axis::linear("distance along the crack [m]", rows().map(|row| row.s_m), 6),
+            x: Axis::linear("distance along the crack [m]", along, 6),
             y: Axis::linear(&format!("{name} [{unit}]"), shown, 4),
             series: Vec::new(),
             levels: Vec::new(),
             slope: None,
+            spread: false,
         };
         ProfilePanel { panel, factor }
     }
@@ -160,20 +299,22 @@ impl<'a> Profile<'a> {
         &self,
         title: &str,
         panels: Vec<Panel>,
-        styles: &[Style],
         mut marks: Vec<Entry>,
     ) -> Result<String, ReportError> {
-        let curve = |(label, style): (&String, &Style)| Entry {
-            label: label.clone(),
+        let entry = |curve: &ProfileCurve<'_>| Entry {
+            label: curve.label.clone(),
             style: Style {
                 marker: None,
-                ..style.clone()
+                ..curve.sample.clone()
             },
             line: true,
         };
-        let curves = self.names.labels.iter().zip(styles).map(curve).collect();
+        let mut entries = self.curves.iter().map(entry);
+        // What stands for many methods has a long label: a row of its own.
+        let shared = self.notes.len().min(1);
+        let shared: Vec<Entry> = entries.by_ref().take(shared).collect();
         for status in ["stick", "slip", "open"] {
-            if self.runs.iter().flatten().any(|row| row.status == status) {
+            if self.rows().any(|row| row.status == status) {
                 let (marker, filled) = status_marker(status);
                 let mut style = Style::reference(BLACK);
                 style.marker = Some(marker);
@@ -185,38 +326,47 @@ impl<'a> Profile<'a> {
                 });
             }
         }
-        let caption = format!("{}, crack {}", self.names.common, self.crack);
+        let run = format!("{}, crack {}", self.common, self.crack);
+        let notes = self.notes.iter().map(|note| format!("\n{note}"));
         let chart = Chart {
-            title: format!("{title} along the crack: {caption}"),
-            caption,
+            title: format!("{title} along the crack: {run}"),
+            caption: run + &notes.collect::<String>(),
             width: Width::Column,
             height: if panels.len() > 1 { 32.0 } else { 42.0 },
             panels,
-            legend: vec![curves, marks],
+            legend: vec![shared, entries.collect(), marks],
         };
         chart.svg()
     }
 }
 
 impl ProfilePanel {
-    fn points(&self, run: &[&PointRow], of: &dyn Fn(&PointRow) -> f64) -> Vec<[f64; 2]> {
-        run.iter()
-            .map(|row| [row.s_m, of(row) * self.factor])
-            .collect()
+    fn points(&self, curve: &ProfileCurve<'_>, of: Of<'_>) -> Vec<[f64; 2]> {
+        let point = |row: &&PointRow| [row.s_m, of(row) * self.factor];
+        curve.points.iter().map(point).collect()
     }
 
-    fn curve(&mut self, run: &[&PointRow], style: &Style, of: &dyn Fn(&PointRow) -> f64) {
+    fn curve(&mut self, profile: &Profile<'_>, index: usize, of: Of<'_>) {
+        let curve = &profile.curves[index];
+        // Marks that would lie on those of the first curve are left out, so that both can be seen.
+        let seen = VISIBLE * profile.largest(of);
+        let first = &profile.curves[0].points;
+        let hidden = |(n, row): (usize, &&PointRow)| {
+            let below = first.get(n).filter(|_| index > 0 && profile.by_method);
+            below.is_some_and(|b| b.status == row.status && (of(b) - of(row)).abs() < seen)
+        };
+        let look = |(n, row)| (!hidden((n, row))).then(|| status_marker(&row.status));
         self.panel.series.push(Series {
-            points: self.points(run, of),
-            style: style.clone(),
-            markers: run.iter().map(|row| status_marker(&row.status)).collect(),
+            points: self.points(curve, of),
+            style: curve.style.clone(),
+            markers: curve.points.iter().enumerate().map(look).collect(),
         });
     }
 
-    fn reference(&mut self, run: &[&PointRow], style: &Style, of: &dyn Fn(&PointRow) -> f64) {
+    fn reference(&mut self, curve: &ProfileCurve<'_>, colour: Rgb, of: Of<'_>) {
         self.panel.series.push(Series {
-            points: self.points(run, of),
-            style: Style::reference(style.colour),
+            points: self.points(curve, of),
+            style: Style::limit(colour),
             markers: Vec::new(),
         });
     }

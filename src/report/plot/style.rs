@@ -1,9 +1,11 @@
 //! How curves look: colours, dashes, widths, markers.
 
 use super::canvas::Canvas;
-use super::colour::{self, Rgb, WHITE};
+use super::colour::{self, METHOD_COLOURS, Rgb, WHITE};
 
 const CURVE_MM: f64 = 0.3;
+/// 1.3 pt: equal for all methods.
+const METHOD_MM: f64 = 0.45;
 const MARKER_MM: f64 = 0.85;
 
 /// Difference that can be seen, as a fraction of the range.
@@ -19,9 +21,10 @@ pub enum Marker {
     Cross,
     TriangleDown,
     Plus,
+    Star,
 }
 
-const MARKERS: [Marker; 7] = [
+const MARKERS: [Marker; 8] = [
     Marker::Disc,
     Marker::Square,
     Marker::Triangle,
@@ -29,7 +32,24 @@ const MARKERS: [Marker; 7] = [
     Marker::TriangleDown,
     Marker::Cross,
     Marker::Plus,
+    Marker::Star,
 ];
+
+/// Markers that are told from their filled twins, in an order in which they do not meet a twin of their own colour.
+const HOLLOW: [Marker; 5] = [
+    Marker::Diamond,
+    Marker::Disc,
+    Marker::Square,
+    Marker::Triangle,
+    Marker::TriangleDown,
+];
+
+/// Dashes of exact methods by their round through the colours, and of approximate methods [mm].
+const ROUNDS: [&[f64]; 3] = [&[], &[3.0, 0.7, 0.7, 0.7], &[3.0, 0.7, 0.7, 0.7, 0.7, 0.7]];
+const APPROXIMATE: &[f64] = &[1.5, 0.9];
+
+/// Dashes of curves that lie on each other and take turns [mm]: the drawn parts of one fill gaps of the others.
+const TURNS: [&[f64]; 3] = [&[1.7, 3.4], &[0.0, 1.7, 1.7, 1.7], &[0.0, 3.4, 1.7, 0.0]];
 
 /// Dash patterns: drawn and left out in turn [mm].
 const DASHES: [&[f64]; 7] = [
@@ -77,30 +97,51 @@ impl Style {
             colour: colour::curve(index),
             dashes: DASHES[index % DASHES.len()],
             width: (CURVE_MM + 0.25 - 0.08 * index as f64).max(CURVE_MM - 0.05),
-            marker: Some(MARKERS[index % MARKERS.len()]),
+            marker: Some(MARKERS[index % 7]),
             filled: index.is_multiple_of(2),
             stagger: Stagger::EVERY_POINT,
         }
     }
 
-    /// Look of the n-th of many curves whose points stand beside each other: thin dashed lines, the markers tell.
-    pub fn beside_others(index: usize) -> Self {
+    /// Look of the n-th exact method: after the colours come the dashes, the filled markers have a period of their own, so
+    /// neither colour and marker nor marker and dashes come twice.
+    pub fn of_exact(index: usize) -> Self {
         Self {
-            width: 0.15,
-            // Every second time round the palette the markers are not those of the first.
-            marker: Some(MARKERS[(index + index / MARKERS.len()) % MARKERS.len()]),
-            filled: (index / MARKERS.len()).is_multiple_of(2),
-            ..Self::of_curve(index)
+            colour: colour::curve(index % METHOD_COLOURS),
+            dashes: ROUNDS[index / METHOD_COLOURS % ROUNDS.len()],
+            width: METHOD_MM,
+            marker: Some(MARKERS[index % MARKERS.len()]),
+            filled: true,
+            stagger: Stagger::EVERY_POINT,
         }
     }
 
-    /// A line of the same colour without markers.
-    pub fn bar(&self) -> Self {
+    /// Look of the n-th approximate method: short dashes and hollow markers.
+    pub fn of_approximate(index: usize) -> Self {
         Self {
-            dashes: &[],
-            width: 0.2,
-            marker: None,
-            ..self.clone()
+            colour: colour::curve((index + 1) % METHOD_COLOURS),
+            dashes: APPROXIMATE,
+            marker: Some(HOLLOW[index % HOLLOW.len()]),
+            filled: false,
+            ..Self::of_exact(0)
+        }
+    }
+
+    /// A curve that stands for several methods.
+    pub fn shared() -> Self {
+        Self {
+            colour: colour::BLACK,
+            width: 1.6 * METHOD_MM,
+            ..Self::of_exact(0)
+        }
+    }
+
+    /// The n-th of the curves drawn on a [`shared`](Self::shared) one: narrower, the dashes taking turns.
+    pub fn on_shared(self, index: usize) -> Self {
+        Self {
+            dashes: TURNS[index % TURNS.len()],
+            width: 0.8 * METHOD_MM,
+            ..self
         }
     }
 
@@ -140,6 +181,15 @@ impl Style {
         Self {
             dashes: &[1.5, 1.0],
             ..Self::reference(colour::GREY)
+        }
+    }
+
+    /// A bound that curves may reach: dots, no markers.
+    pub fn limit(colour: Rgb) -> Self {
+        Self {
+            dashes: &[0.35, 0.65],
+            width: 0.35,
+            ..Self::reference(colour)
         }
     }
 
@@ -183,6 +233,15 @@ pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bo
             canvas.line(&around(&[[0.0, -1.1], [0.0, 1.1]]), colour, CURVE_MM);
             return;
         }
+        Marker::Star => (0..10)
+            .map(|k| {
+                let (angle, r) = (
+                    std::f64::consts::PI * f64::from(k) / 5.0,
+                    if k % 2 == 0 { 1.45 * r } else { 0.6 * r },
+                );
+                [at[0] + r * angle.sin(), at[1] - r * angle.cos()]
+            })
+            .collect(),
         Marker::Square => around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         Marker::Triangle => around(&[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]]),
         Marker::TriangleDown => around(&[[0.0, 1.2], [1.1, -0.8], [-1.1, -0.8]]),

@@ -12,13 +12,18 @@ use std::sync::Arc;
 
 use faer::MatMut;
 use faer::linalg::solvers::Solve;
+use faer::sparse::FaerError;
+use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 
 use super::super::b_equations::Row;
 use super::super::condensed::Condensed;
-use super::factor::norm;
-use crate::ContactSystem;
+use super::factor::{kernel, norm};
+use crate::{ContactSystem, MethodError};
+
+/// (δP, δv) or another pair of vectors by row.
+pub(crate) type TwoVectors = (Vec<f64>, Vec<f64>);
 
 /// Largest |A x − b|/|b| of a solve that counts: a singular matrix leaves more.
 const SOLVED: f64 = 1e-6;
@@ -53,20 +58,20 @@ pub(crate) struct Global {
 }
 
 impl Global {
-    /// The saddle-point form, for rows of any kind; `None` if it cannot be analysed.
-    pub fn saddle(system: &ContactSystem) -> Option<Self> {
+    /// The saddle-point form, for rows of any kind.
+    pub fn saddle(system: &ContactSystem) -> Result<Self, MethodError> {
         Self::new(system, false)
     }
 
-    /// The displacement form, for rows that give δP explicitly (A = I); `None` if it cannot be analysed.
-    pub fn explicit(system: &ContactSystem) -> Option<Self> {
+    /// The displacement form, for rows that give δP explicitly (A = I).
+    pub fn explicit(system: &ContactSystem) -> Result<Self, MethodError> {
         Self::new(system, true)
     }
 
-    fn new(system: &ContactSystem, explicit: bool) -> Option<Self> {
-        let condensed = system.condensed().ok()?;
+    fn new(system: &ContactSystem, explicit: bool) -> Result<Self, MethodError> {
+        let condensed = system.condensed()?;
         let (elastic, set) = (system.elastic(), system.row_set());
-        let K = elastic.stiffness()?;
+        let K = elastic.stiffness().ok_or(MethodError::NoStiffness)?;
         let (n, m) = (K.size(), set.len());
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / K.diagonal(j).sqrt()).collect();
         let sigma = condensed.rho.sqrt();
@@ -118,10 +123,11 @@ impl Global {
             b.push(columns);
         }
         let size = if explicit { n } else { n + m };
-        let (pattern, argsort) =
-            SymbolicSparseColMat::try_new_from_indices(size, size, &at).ok()?;
-        let symbolic = SymbolicLu::try_new(pattern.as_ref()).ok()?;
-        Some(Self {
+        let (pattern, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &at)
+            .map_err(|e| kernel("pattern of the monolithic matrix", format!("{e:?}")))?;
+        let symbolic = SymbolicLu::try_new(pattern.as_ref())
+            .map_err(|e| kernel("symbolic LU of the monolithic matrix", format!("{e:?}")))?;
+        Ok(Self {
             condensed,
             explicit,
             entries,
@@ -144,7 +150,8 @@ impl Global {
     }
 
     /// (δP, δv) by row; `None` if the matrix is singular.
-    pub fn solve(&self, rows: &[[Row; 3]]) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub fn solve(&self, rows: &[[Row; 3]]) -> Result<Option<TwoVectors>, MethodError> {
+        let failed = |e: FaerError| kernel("sparse LU of the monolithic matrix", format!("{e:?}"));
         // In scaled unknowns C becomes C/ρ: B carries √ρ, and so does P.
         let rho = self.sigma * self.sigma;
         let c = |point: usize, k: usize, l: usize| rows[point][k].c[l] / rho;
@@ -158,8 +165,8 @@ impl Global {
                     .sum(),
             })
             .collect();
-        let matrix =
-            SparseColMat::new_from_argsort(self.pattern.clone(), &self.argsort, &values).ok()?;
+        let matrix = SparseColMat::new_from_argsort(self.pattern.clone(), &self.argsort, &values)
+            .map_err(failed)?;
         let size = matrix.ncols();
         let mut rhs = vec![0.0; size];
         for (point, &(start, len)) in self.rows.iter().enumerate() {
@@ -172,7 +179,11 @@ impl Global {
                 }
             }
         }
-        let lu = Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref()).ok()?;
+        let lu = match Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref()) {
+            Ok(lu) => lu,
+            Err(LuError::SymbolicSingular { .. }) => return Ok(None),
+            Err(LuError::Generic(e)) => return Err(failed(e)),
+        };
         let mut x = rhs.clone();
         lu.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, size, 1));
         let mut left = rhs.clone();
@@ -183,7 +194,7 @@ impl Global {
             }
         }
         let solved = norm(&left) <= SOLVED * norm(&rhs) && x.iter().all(|x| x.is_finite());
-        solved.then(|| self.unscaled(rows, &x))
+        Ok(solved.then(|| self.unscaled(rows, &x)))
     }
 
     fn unscaled(&self, rows: &[[Row; 3]], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
