@@ -42,6 +42,7 @@
 //! displacements is a visible part of the gap.
 //!
 //! # Skips
+//! A floating body without load keeps no forces; rigid motions alone take it out of what it would penetrate, or it stalls.
 //! Points beyond ĝ have D = 0: their columns are unit vectors. No multipliers and no active sets.
 
 #![allow(non_snake_case)]
@@ -222,15 +223,11 @@ impl Enforcement for Barrier {
             Begin::Contact(problem) => problem,
         };
         let (rho, unit) = (problem.condensed.rho, problem.mean_jump());
-        if unit == 0.0 {
+        if unit == 0.0 || increment.unloaded() {
             return unloaded(problem);
         }
         let narrowest = self.law(rho, unit);
-        problem.claim = Claim::Barrier {
-            gap: narrowest.gap,
-            slip: narrowest.slip,
-            stiffness: narrowest.stiffness,
-        };
+        problem.claim = narrowest.claim();
         // How many times the narrowest law the present one is wide.
         let mut width = (WIDEST / self.gap.max(self.slip)).max(1.0);
         let mut law = narrowest.widened(width);

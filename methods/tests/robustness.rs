@@ -67,7 +67,7 @@ fn tally(
         let i = increment(&s, &load, &rest, &start, TOLERANCE);
         let judged = residuals_of(&i, &outcome.state, outcome.claim).unwrap();
         assert!(
-            judged.claimed <= TOLERANCE && judged.equilibrium <= 1e-12,
+            judged.claimed <= TOLERANCE && judged.claimed_equilibrium <= 1e-12,
             "{} μ {mu}: {judged:?}",
             m.name
         );

@@ -8,6 +8,7 @@
 #![allow(non_snake_case)]
 
 use super::law::tangential_norm;
+use super::state::Claim;
 
 /// Steps of the scalar solve of [`BarrierLaw::mismatch`]: bisection alone would need fewer.
 const SCALAR_STEPS: usize = 200;
@@ -34,6 +35,15 @@ fn barrier(y: f64) -> (f64, f64) {
 }
 
 impl BarrierLaw {
+    /// That these laws hold.
+    pub fn claim(&self) -> Claim {
+        Claim::Barrier {
+            gap: self.gap,
+            slip: self.slip,
+            stiffness: self.stiffness,
+        }
+    }
+
     /// The same laws with ĝ and ε multiplied and the forces kept: P(factor · v) is P(v) of before.
     pub fn widened(&self, factor: f64) -> Self {
         Self {
