@@ -10,9 +10,7 @@ use common::*;
 use stickslip::harness::case::Case;
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip::harness::shipped;
-use stickslip::interchange::{
-    Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib, matrix_market,
-};
+use stickslip::interchange::{Problem, fclib, matrix_market};
 use stickslip_methods::{METHODS, Tier};
 use tempfile::TempDir;
 
@@ -394,40 +392,6 @@ fn bad_files_give_exit_code_2_and_leave_nothing() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(part), "{arguments:?}: {error}");
         assert!(!dir.path().join("results").exists(), "{arguments:?}");
-    }
-}
-
-/// V is dense in memory: its columns are counted before that.
-#[test]
-fn more_rigid_motions_than_bodies_have_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    for (points, motions, part) in [
-        (2000, 6000, "V has 6000 columns: with 6000 rows at most 60"),
-        (1, 4, "V has 4 columns: with 3 rows at most 3"),
-    ] {
-        let rows = 3 * points;
-        let unit = (0..rows).map(|i| (i, i, 1.0));
-        let empty = |rows| SparseMatrix::from_triplets(rows, motions, []).unwrap();
-        let problem = LocalProblem {
-            dim: 3,
-            w: SparseMatrix::from_triplets(rows, rows, unit).unwrap(),
-            q: vec![0.0; rows],
-            mu: vec![0.3; points],
-            equality: Some(LocalEquality {
-                v: empty(rows),
-                r: empty(motions),
-                s: vec![0.0; motions],
-            }),
-            info: Info::default(),
-            solution: None,
-            guesses: Vec::new(),
-        };
-        std::fs::write(dir.path().join("many.hdf5"), problem.to_bytes().unwrap()).unwrap();
-        let output = stickslip(&["solve", "many.hdf5"], dir.path());
-        let error = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains(part), "{error}");
-        assert!(!dir.path().join("results").exists());
     }
 }
 

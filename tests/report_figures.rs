@@ -82,8 +82,8 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
             "rates",
             plot::success_rates(&rates()).expect("rates"),
             vec![
-                "solved in 2D [%]",
-                "solved in 3D [%]",
+                "solved, or own laws kept, in 2D [%]",
+                "solved, or own laws kept, in 3D [%]",
                 ">99.9<",
                 ">87.5<",
                 ">–<",

@@ -247,3 +247,42 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
         Problem::Global(_) => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interchange::{Info, LocalEquality, LocalProblem, SparseMatrix};
+
+    #[test]
+    fn more_rigid_motions_than_bodies_have_are_refused_before_they_are_expanded() {
+        for (points, motions, refusal) in [
+            (2000, 6000, Some("6000 columns: with 6000 rows at most 60 ")),
+            (1, 4, Some("4 columns: with 3 rows at most 3 ")),
+            (20, 60, None),
+        ] {
+            let rows = 3 * points;
+            let empty = |rows| SparseMatrix::from_triplets(rows, motions, []).unwrap();
+            let problem = Problem::Local(LocalProblem {
+                dim: 3,
+                w: SparseMatrix::from_triplets(rows, rows, []).unwrap(),
+                q: vec![0.0; rows],
+                mu: vec![0.3; points],
+                equality: Some(LocalEquality {
+                    v: empty(rows),
+                    r: empty(motions),
+                    s: vec![0.0; motions],
+                }),
+                info: Info::default(),
+                solution: None,
+                guesses: Vec::new(),
+            });
+            // Through the file, so that reading takes what it is said to take.
+            let path = Path::new("many.hdf5");
+            let read = fclib::from_bytes(path, problem.to_bytes().unwrap()).unwrap();
+            match (refuse_unsupported(path, &read), refusal) {
+                (Err(error), Some(part)) => assert!(error.to_string().contains(part), "{error}"),
+                (found, expected) => assert_eq!(found.is_ok(), expected.is_none(), "{found:?}"),
+            }
+        }
+    }
+}

@@ -135,7 +135,7 @@ fn draw_frame(canvas: &mut Canvas, frame: &Frame, friction: &[f64], lanes: usize
     let corners = [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]].map(|[a, b]| [x[a], y[b]]);
     canvas.line(&corners, BLACK, FRAME_MM);
     let middle = 0.5 * (x[0] + x[1]);
-    let heading = format!("solved in {dim}D [%]");
+    let heading = format!("solved, or own laws kept, in {dim}D [%]");
     canvas.text(
         &heading,
         [middle, y[0] - 3.0],
