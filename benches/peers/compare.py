@@ -7,7 +7,8 @@
 
 Both sides start from W, q and μ of the same file and must reach a natural map of 1e-9; the time is that of the solver
 alone, the best of all repeats, one thread. `ratio` is their time over ours: above 1 stickslip is faster. `difference` is
-the largest difference of the reactions relative to the largest reaction.
+the largest difference of the reactions relative to the largest reaction, `jump_difference` that of the jumps W r + q
+relative to the largest of q: where W is nearly singular, reactions may differ that leave all jumps the same.
 """
 
 import argparse
@@ -19,7 +20,7 @@ import numpy as np
 
 COLUMNS = [
     "problem", "dim", "points", "method", "iterations", "natural_map", "time_s", "peer", "peer_iterations",
-    "peer_natural_map", "peer_time_s", "ratio", "difference",
+    "peer_natural_map", "peer_time_s", "ratio", "difference", "jump_difference",
 ]
 TARGET = 1e-9
 
@@ -65,12 +66,17 @@ def vector(path):
     return np.array([float(line) for line in lines[1:]])
 
 
-def difference(problem, theirs):
+def differences(problem, theirs):
+    """Of the reactions and of the jumps."""
     with h5py.File(problem, "r") as file:
-        ours = np.array(file["solution/r"])
+        ours, q = np.array(file["solution/r"]), np.array(file["fclib_local/vectors/q"])
+        rows, columns, values = (np.array(file[f"fclib_local/W/{name}"]) for name in "ipx")
     reaction = Path(theirs["reaction"])
     found = vector(reaction if reaction.exists() else theirs["folder"] / reaction.name)
-    return np.abs(found - ours).max() / np.abs(ours).max()
+    step = found - ours
+    jump = np.zeros(len(q))
+    np.add.at(jump, rows, values * step[columns])
+    return np.abs(step).max() / np.abs(ours).max(), np.abs(jump).max() / np.abs(q).max()
 
 
 def main():
@@ -92,10 +98,12 @@ def main():
                 "natural_map": our["natural_map"], "time_s": our["solve_s"],
             }
         if their:
+            reactions, jumps = differences(problem, their)
             row |= {
                 "dim": their["dim"], "points": their["points"], "peer": their["solver"],
                 "peer_iterations": their["iterations"], "peer_natural_map": f"{float(their['natural_map']):.1e}",
-                "peer_time_s": f"{float(their['time_s']):.4g}", "difference": f"{difference(problem, their):.1e}",
+                "peer_time_s": f"{float(their['time_s']):.4g}", "difference": f"{reactions:.1e}",
+                "jump_difference": f"{jumps:.1e}",
             }
         if our and their:
             row["ratio"] = f"{float(their['time_s']) / float(our['solve_s']):.2f}"
