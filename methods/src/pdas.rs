@@ -145,7 +145,7 @@ impl Enforcement for Pdas {
 }
 
 /// The sets and their conditions.
-struct Sets;
+pub(crate) struct Sets;
 
 impl Scheme for Sets {
     type Piece = Branch;
