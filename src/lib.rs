@@ -7,6 +7,7 @@
 //!
 //! The algebraic half (the contact problem, its judge and the methods) is the package `stickslip-methods`.
 
+pub mod analytic;
 pub mod cli;
 pub mod fem;
 pub mod harness;

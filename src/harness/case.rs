@@ -171,8 +171,31 @@ pub struct CrackSpec {
 /// Geometry of a crack.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CrackShape {
-    /// 2D segment from the first to the second point [m]; n is the tangent turned by +90 degrees.
-    Segment([[f64; 2]; 2]),
+    /// 2D chain of straight segments through at least two points [m]; n is the tangent turned by +90 degrees.
+    Polyline(Vec<[f64; 2]>),
+    /// 2D circular arc, counter-clockwise for `to > from` [rad]; n is the tangent turned by +90 degrees, towards the
+    /// centre of a counter-clockwise arc. |to − from| = 2π: a closed circle.
+    Arc {
+        /// Centre [m].
+        centre: [f64; 2],
+        /// Radius [m].
+        radius: f64,
+        /// Angle of the first end from the x axis [rad].
+        from: f64,
+        /// Angle of the second end [rad].
+        to: f64,
+    },
+    /// Flat elliptic crack inside a solid; a disc if both half axes are equal.
+    Ellipse {
+        /// Centre [m].
+        centre: [f64; 3],
+        /// Unit normal, from side 2 to side 1.
+        normal: [f64; 3],
+        /// Unit direction of the first half axis, perpendicular to the normal; the local axis a.
+        axis: [f64; 3],
+        /// Half axes along `axis` and along normal × axis [m].
+        half_axes: [f64; 2],
+    },
     /// 3D plane through the whole body: a point [m] and a unit normal n (normalised by the parser).
     Plane {
         /// A point of the plane [m].
@@ -183,12 +206,14 @@ pub enum CrackShape {
 }
 
 /// Tip enrichment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tip {
     /// No tip functions: the crack ends at the last cell edge it crosses.
     None,
-    /// Four branch functions on the nodes of the tip cell.
+    /// Four branch functions on the nodes of the cells with the tip (topological enrichment).
     Branch,
+    /// Four branch functions on all nodes within a radius of the tip [m] (geometric enrichment).
+    Radius(f64),
 }
 
 /// Contact space of a crack.
@@ -196,6 +221,12 @@ pub enum Tip {
 pub enum ContactSpace {
     /// One point pair per crossed mesh edge, point forces (the founding paper's).
     EdgePairs,
+    /// One multiplier per crossed mesh edge, linear in between, integrated over the crack.
+    Facet,
+    /// One multiplier per star of crossed edges, integrated over the crack: stable.
+    Star,
+    /// One constant multiplier per cut cell.
+    P0,
 }
 
 impl ContactSpace {
@@ -203,6 +234,9 @@ impl ContactSpace {
     pub fn name(self) -> &'static str {
         match self {
             ContactSpace::EdgePairs => "edge-pairs",
+            ContactSpace::Facet => "facet",
+            ContactSpace::Star => "star",
+            ContactSpace::P0 => "p0",
         }
     }
 }

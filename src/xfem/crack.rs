@@ -37,7 +37,8 @@ impl Crack {
     /// Places a crack in a mesh.
     pub fn new(number: usize, spec: &CrackSpec, mesh: &Mesh) -> Self {
         let (origin, frame, length) = match spec.geometry {
-            CrackShape::Segment([p, q]) => {
+            CrackShape::Polyline(ref points) => {
+                let (p, q) = (points[0], points[points.len() - 1]);
                 let (p, q) = ([p[0], p[1], 0.0], [q[0], q[1], 0.0]);
                 let a = unit(&sub(&q, &p));
                 (
@@ -46,6 +47,7 @@ impl Crack {
                     norm(&sub(&q, &p)),
                 )
             }
+            CrackShape::Arc { .. } | CrackShape::Ellipse { .. } => unimplemented!(),
             CrackShape::Plane { point, normal } => {
                 let n = unit(&normal);
                 // The axis least along n; the first of equals, so that n = e_z gives a = e_x, b = e_y.

@@ -153,7 +153,7 @@ fn every_table_arrives_in_the_case() {
     );
     assert_eq!(
         case.cracks[0].geometry,
-        CrackShape::Segment([[-4.0, -4.0], [4.0, 4.0]])
+        CrackShape::Polyline(vec![[-4.0, -4.0], [4.0, 4.0]])
     );
     assert_eq!(case.cracks[0].tip, Tip::Branch);
     let support = &case.supports[1];

@@ -276,7 +276,7 @@ fn cracks_of_the_sliding_blocks_lie_on_the_followed_line() {
             assert_eq!(name, "sliding_block_off_grid");
             continue;
         };
-        let CrackShape::Segment(ends) = &case.cracks[0].geometry else {
+        let CrackShape::Polyline(ends) = &case.cracks[0].geometry else {
             panic!("{name}")
         };
         for end in ends {

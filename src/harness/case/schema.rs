@@ -104,7 +104,7 @@ fn segment(value: Value<'_>) -> Result<CrackShape, CaseError> {
     if !(length > 0.0 && length.is_finite()) {
         return Err(value.refuse("two distinct points", "crack without length"));
     }
-    Ok(CrackShape::Segment([[a[0], a[1]], [b[0], b[1]]]))
+    Ok(CrackShape::Polyline(vec![[a[0], a[1]], [b[0], b[1]]]))
 }
 
 fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
