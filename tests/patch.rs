@@ -180,7 +180,7 @@ fn the_jump_operator_sees_relative_motion_and_nothing_else() {
                 .terms
                 .iter()
                 .filter(|t| heaviside(t.0))
-                .map(|t| t.1)
+                .map(|t| dot(&t.1[0], &point.frame[0]))
                 .sum();
             if point.terms.iter().all(|t| heaviside(t.0)) && !name.contains("tip") {
                 assert!((sum - 2.0).abs() < 1e-13, "{name}: {sum}");

@@ -14,7 +14,7 @@ use crate::fem::elasticity::{CellMatrix, Lame};
 use crate::fem::mesh::Mesh;
 use crate::fem::ordering::nested_dissection;
 use crate::harness::boundary::{Prescribed, nodal_forces, prescribed, region_nodes};
-use crate::harness::case::{Case, CaseError, History, Quadrature};
+use crate::harness::case::{Case, CaseError, ContactSpace, History, Quadrature};
 use crate::harness::refusals::{
     check_probes, check_supports, crack_error, load_error, motion_error,
 };
@@ -22,10 +22,12 @@ use crate::harness::step::Setup;
 use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
 use crate::xfem::crack::Crack;
+use crate::xfem::edge_pairs::edge_pairs;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
-use crate::xfem::pairs::{ContactPoint, ContactSurface, edge_pairs, jump_rows};
+use crate::xfem::integrated::integrated_surface;
+use crate::xfem::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use crate::xfem::pieces::free_motions;
-use crate::xfem::traction::traction_rows;
+use crate::xfem::traction::{integrated_rows, traction_rows};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -41,8 +43,8 @@ pub struct Body {
     pub lame: Lame,
     /// Contact points of all cracks, in case order.
     pub points: Vec<ContactPoint>,
-    /// Facets of the crack surfaces by point numbers.
-    pub facets: Vec<Vec<usize>>,
+    /// Faces of the cracks.
+    pub surface: CrackSurface,
     /// Stiffness over all unknowns.
     pub stiffness: BlockMatrix,
     /// Number of every unknown among the free ones; `None`: prescribed.
@@ -154,33 +156,30 @@ impl Body {
                 })
             })
             .collect();
-        let conforming = !doubled.is_empty();
         let mut surface = ContactSurface::default();
         for number in 0..case.cracks.len() {
             match cracks.iter().position(|c| c.number == number) {
                 Some(index) => {
-                    surface.append(edge_pairs(&mesh, index, &cracks[index], &enrichment))
+                    let held = |unknown: usize| numbers[unknown].is_none();
+                    surface.append(match case.cracks[number].contact {
+                        ContactSpace::EdgePairs => edge_pairs(&integrator, index, held)?,
+                        space => integrated_surface(&integrator, index, space, |f| {
+                            (0..dim).any(|a| held(f as usize * dim + a))
+                        })?,
+                    });
                 }
                 None => surface.append(doubled.remove(&number).unwrap_or_default()),
             }
         }
-        // A pair whose normal jump is prescribed has no contact left to enforce.
-        surface.retain(|point| {
-            point.terms.iter().any(|&(f, c)| {
-                (0..dim).any(|a| {
-                    numbers[f as usize * dim + a].is_some() && (c * point.frame[0][a]).abs() > 1e-12
-                })
-            })
-        });
-        let ContactSurface { points, facets } = surface;
         for number in 0..case.cracks.len() {
-            if !points.iter().any(|p| p.crack == number) {
+            if !surface.points.iter().any(|p| p.crack == number) {
                 return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
             }
         }
+        let ContactSurface { points, surface } = surface;
         let jump = jump_rows(dim, &points);
         let traction = if needs.traction {
-            traction_rows(&integrator, &points)?
+            traction(case, &integrator, &points, &surface)?
         } else {
             Vec::new()
         };
@@ -226,16 +225,12 @@ impl Body {
                 Ok((force, load.history.clone()))
             })
             .collect::<Result<_, BodyError>>()?;
-        let space = match (conforming, case.quadrature) {
-            (true, _) => "node-pairs".to_owned(),
-            (false, Quadrature::SubCells) => "edge-pairs".to_owned(),
-            (false, Quadrature::Gauss(n)) => format!("edge-pairs/gauss-{n}"),
-        };
+        let space = space_name(case, &cracks);
         Ok(Body {
             quadrature: case.quadrature,
             lame,
             points,
-            facets,
+            surface,
             stiffness,
             numbers,
             prescribed: fixed,
@@ -336,6 +331,59 @@ impl Body {
     /// Nodes of a region of the case.
     pub fn region_nodes(&self, region: &crate::harness::case::Region) -> Vec<usize> {
         region_nodes(&self.integrator(), region)
+    }
+}
+
+/// Traction operator: by the stress at the points, or integrated where the jump is.
+fn traction(
+    case: &Case,
+    integrator: &CellIntegrator<'_>,
+    points: &[ContactPoint],
+    surface: &CrackSurface,
+) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
+    let dim = integrator.mesh.dim();
+    let integrated = |crack: usize| {
+        case.cracks[crack].contact != ContactSpace::EdgePairs
+            && integrator.cracks.iter().any(|c| c.number == crack)
+    };
+    let inside = surface
+        .quadrature
+        .iter()
+        .filter(|q| integrated(q.crack))
+        .cloned();
+    let mut rows = integrated_rows(integrator, points.len(), &inside.collect::<Vec<_>>());
+    let at_places = points
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| !integrated(p.crack));
+    let (numbers, own): (Vec<usize>, Vec<ContactPoint>) =
+        at_places.map(|(i, p)| (i, p.clone())).unzip();
+    for (i, block) in numbers
+        .into_iter()
+        .zip(traction_rows(integrator, &own)?.chunks(dim))
+    {
+        rows[i * dim..(i + 1) * dim].clone_from_slice(block);
+    }
+    Ok(rows)
+}
+
+/// Contact spaces of the cracks, each named once, with a mark for inexact quadrature.
+fn space_name(case: &Case, cracks: &[Crack]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for (number, spec) in case.cracks.iter().enumerate() {
+        let through = cracks.iter().any(|c| c.number == number);
+        let name = if through {
+            spec.contact.name()
+        } else {
+            "node-pairs"
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    match case.quadrature {
+        Quadrature::Gauss(n) if !cracks.is_empty() => format!("{}/gauss-{n}", names.join("+")),
+        _ => names.join("+"),
     }
 }
 

@@ -5,12 +5,13 @@ use std::collections::HashMap;
 use stickslip_methods::PointStatus;
 
 use crate::fem::cell::CellKind;
-use crate::fem::{Point, cross, dot, norm, sub};
+use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::harness::record::{FieldStep, Picture, PictureCell, PictureShape};
 use crate::xfem::basis::FunctionKind;
 use crate::xfem::cut::{self, Side, SubCells};
+use crate::xfem::pairs::SurfaceCorner;
 
 /// Body and crack faces at one increment.
 pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
@@ -226,53 +227,52 @@ fn insert_on_border(polygon: &mut Vec<Point>, x: &Point) {
     }
 }
 
-/// The contact points with their fields, joined along a 2D crack.
+/// The crack faces with their fields; every corner shows what the contact points that speak for it say.
 fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
     let dim = body.mesh.dim();
-    let count = body.points.len();
-    let local = |values: &[f64], c: usize| -> Vec<f64> {
-        (0..count)
-            .map(|i| if c < dim { values[i * dim + c] } else { 0.0 })
-            .collect()
-    };
-    let in_space = |values: &[f64]| -> Vec<[f64; 3]> {
-        (0..count)
-            .map(|i| {
-                let mut v = [0.0; 3];
-                for (axis, value) in body.points[i]
-                    .frame
-                    .iter()
-                    .zip(&values[i * dim..(i + 1) * dim])
-                {
-                    for a in 0..3 {
-                        v[a] += axis[a] * value;
-                    }
+    let corners = &body.surface.corners;
+    // Σ share · value of the point, component by component in space.
+    let in_space = |value: &dyn Fn(usize, usize) -> f64| -> Vec<[f64; 3]> {
+        let of_corner = |corner: &SurfaceCorner| {
+            let mut v = [0.0; 3];
+            for &(point, share) in &corner.shares {
+                let point = point as usize;
+                for (c, axis) in body.points[point].frame.iter().enumerate().take(dim) {
+                    v = add_scaled(&v, share * value(point, c), axis);
                 }
-                v
-            })
-            .collect()
+            }
+            v
+        };
+        corners.iter().map(of_corner).collect()
     };
-    let size = |values: &[f64]| -> Vec<f64> {
-        (0..count)
-            .map(|i| {
-                values[i * dim + 1..(i + 1) * dim]
-                    .iter()
-                    .map(|v| v * v)
-                    .sum::<f64>()
-                    .sqrt()
-            })
-            .collect()
+    let scalar = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let of_corner = |corner: &SurfaceCorner| {
+            let parts = corner.shares.iter();
+            parts
+                .map(|&(point, share)| share * value(point as usize))
+                .sum()
+        };
+        corners.iter().map(of_corner).collect()
     };
-    let status = now
-        .status
-        .iter()
-        .map(|s| match s {
+    // A state is not a mean: that of the point with the largest share.
+    let leading = |corner: &SurfaceCorner| -> f64 {
+        let most = corner.shares.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map_or(f64::NAN, |&(point, _)| match now.status[point as usize] {
             PointStatus::Open => 0.0,
             PointStatus::Stick => 1.0,
             PointStatus::Slip => 2.0,
         })
-        .collect();
+    };
+    let tangential = |values: &[f64], i: usize| {
+        values[i * dim + 1..(i + 1) * dim]
+            .iter()
+            .map(|v| v * v)
+            .sum::<f64>()
+            .sqrt()
+    };
+    let weight = |i: usize| body.points[i].weight;
     let cells = body
+        .surface
         .facets
         .iter()
         .filter(|facet| facet.len() >= dim)
@@ -287,22 +287,27 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
         .collect();
     Picture {
         dim,
-        points: body.points.iter().map(|p| p.x).collect(),
+        points: corners.iter().map(|corner| corner.x).collect(),
         cells,
         point_vectors: vec![
-            ("jump_m".into(), in_space(&now.jump)),
-            ("contact_force".into(), in_space(&now.p)),
+            ("jump_m".into(), in_space(&|i, c| now.jump[i * dim + c])),
+            (
+                "contact_traction_pa".into(),
+                in_space(&|i, c| now.p[i * dim + c] / weight(i)),
+            ),
         ],
         point_scalars: vec![
-            ("gap_m".into(), local(&now.jump, 0)),
-            ("slip_m".into(), size(&now.jump)),
-            ("p_n".into(), local(&now.p, 0)),
-            ("p_t".into(), size(&now.p)),
+            ("gap_m".into(), scalar(&|i| now.jump[i * dim])),
+            ("slip_m".into(), scalar(&|i| tangential(&now.jump, i))),
             (
-                "weight".into(),
-                body.points.iter().map(|p| p.weight).collect(),
+                "pressure_pa".into(),
+                scalar(&|i| now.p[i * dim] / weight(i)),
             ),
-            ("status".into(), status),
+            (
+                "shear_pa".into(),
+                scalar(&|i| tangential(&now.p, i) / weight(i)),
+            ),
+            ("status".into(), corners.iter().map(leading).collect()),
         ],
         cell_scalars: Vec::new(),
     }

@@ -271,6 +271,17 @@ impl CellIntegrator<'_> {
         )
     }
 
+    /// Values of the functions of a cell at a reference point (position x).
+    pub fn values(&self, cell: usize, xi: &Point, x: &Point, side: Side) -> Vec<f64> {
+        let functions = self.enrichment.cell_basis(self.mesh, cell);
+        let corners = self.mesh.corners(cell);
+        let mut values = vec![0.0; functions.len()];
+        let mut gradients = vec![[0.0; 3]; functions.len()];
+        self.basis(cell, &corners, &functions)
+            .evaluate(xi, x, side, &mut values, &mut gradients);
+        values
+    }
+
     /// Gradients of the functions of a cell at a reference point (position x) [1/m].
     pub fn gradients(&self, cell: usize, xi: &Point, x: &Point, side: Side) -> Vec<Point> {
         let functions = self.enrichment.cell_basis(self.mesh, cell);

@@ -9,7 +9,7 @@ use crate::harness::case::Tip;
 use super::crack::Crack;
 use super::cut;
 use super::enrichment::{EnrichmentError, ends_inside};
-use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
+use super::pairs::{ContactPoint, ContactSurface, scalar_terms, vertex_weights};
 
 /// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
 /// through cells. Side 1 gets the new nodes.
@@ -28,7 +28,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
             });
         }
     }
-    if crack.tip == Tip::Branch && !ends_inside(mesh, crack).is_empty() {
+    if crack.tip != Tip::None && !ends_inside(mesh, crack).is_empty() {
         return Err(EnrichmentError::ConformingTip {
             crack: crack.number,
         });
@@ -69,7 +69,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
             },
             frame: crack.frame,
             weight: weight[&node],
-            terms: vec![(new as u32, 1.0), (node as u32, -1.0)],
+            terms: scalar_terms(&crack.frame, &[(new as u32, 1.0), (node as u32, -1.0)]),
         };
         points.push((node, point));
     }

@@ -141,27 +141,35 @@ impl Enrichment {
             let mut closing: BTreeSet<u32> = BTreeSet::new();
             for (position, ahead) in ends_inside(mesh, crack) {
                 let tip = tips.len();
+                let branch = |node: u32| {
+                    (0..4).map(move |order| Function {
+                        node,
+                        kind: FunctionKind::Branch {
+                            tip: tip as u32,
+                            order,
+                        },
+                    })
+                };
                 for cell in cells_at(mesh, &position) {
-                    if crack.tip == Tip::Branch {
+                    if crack.tip != Tip::None {
                         if cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
                             claim(&mut split, cell)?;
                         }
                         tip_cells.push((cell, tip));
                         for &node in mesh.cell(cell) {
                             closing.insert(node);
-                            for order in 0..4 {
-                                let kind = FunctionKind::Branch {
-                                    tip: tip as u32,
-                                    order,
-                                };
-                                enriched.insert(Function { node, kind });
-                            }
+                            enriched.extend(branch(node));
                         }
                     } else if !through.contains(&cell) {
                         closing.extend(mesh.cell(cell));
                     }
                 }
-                if crack.tip == Tip::Branch {
+                if let Tip::Radius(radius) = crack.tip {
+                    let near = |x: &Point| norm(&sub(x, &position)) <= radius;
+                    let nodes = (0..mesh.nodes.len()).filter(|&n| near(&mesh.nodes[n]));
+                    enriched.extend(nodes.flat_map(|n| branch(n as u32)));
+                }
+                if crack.tip != Tip::None {
                     tips.push(TipFrame {
                         crack: index,
                         position,

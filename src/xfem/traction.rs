@@ -24,6 +24,7 @@ use super::crack::ON_CRACK;
 use super::cut::{Side, SubCells};
 use super::enrichment::reference_position;
 use super::pairs::ContactPoint;
+use super::surface_point::SurfacePoint;
 
 /// A cell touches a point within this, in units of its diagonal: above rounding, below the shortest distance of a crossed
 /// edge's point from a node that the crack does not run through.
@@ -50,6 +51,44 @@ pub fn traction_rows(
         .map(|point| point_rows(integrator, point, &parts(integrator, &users, point)?))
         .collect::<Result<_, _>>()?;
     Ok(rows.concat())
+}
+
+/// Rows of S for an integrated space: S_k u = −∫ φ_k F {σ(u)} n dΓ.
+pub fn integrated_rows(
+    integrator: &CellIntegrator<'_>,
+    count: usize,
+    quadrature: &[SurfacePoint],
+) -> Vec<Vec<(usize, f64)>> {
+    let dim = integrator.mesh.dim();
+    let mut measures: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    let mut rows = vec![BTreeMap::new(); count * dim];
+    for q in quadrature {
+        let [m1, m2] = *measures
+            .entry(q.cell)
+            .or_insert_with(|| q.sides.map(|side| measure(integrator, q.cell, side)));
+        for (side, share) in q.sides.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
+            let part = Part {
+                cell: q.cell,
+                xi: q.xi,
+                side,
+                measure: share,
+            };
+            for &(k, value) in &q.shares {
+                let own = &mut rows[k as usize * dim..(k as usize + 1) * dim];
+                add_stress(
+                    integrator,
+                    &part,
+                    &q.x,
+                    &q.frame,
+                    -q.weight * value * share,
+                    own,
+                );
+            }
+        }
+    }
+    rows.into_iter()
+        .map(|row| row.into_iter().collect())
+        .collect()
 }
 
 /// The parts at a point. All of them touch the nodes of the functions that jump there.
@@ -118,38 +157,49 @@ fn measure(integrator: &CellIntegrator<'_>, cell: usize, side: Side) -> f64 {
 }
 
 /// Rows (n, a[, b]) of one point.
-///
-/// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
-/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e).
 fn point_rows(
     integrator: &CellIntegrator<'_>,
     point: &ContactPoint,
     parts: &[Part],
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
-    let dim = integrator.mesh.dim();
-    let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
-    let n = &point.frame[0];
     let total: f64 = parts.iter().map(|p| p.measure).sum();
-    let mut rows = vec![BTreeMap::<usize, f64>::new(); dim];
+    let mut rows = vec![BTreeMap::<usize, f64>::new(); integrator.mesh.dim()];
     for part in parts.iter().filter(|p| p.measure > 0.0) {
         let factor = -point.weight * part.measure / total;
-        let functions = integrator.enrichment.cell(part.cell);
-        let gradients = integrator.gradients(part.cell, &part.xi, &point.x, part.side);
-        for (&f, g) in functions.iter().zip(&gradients) {
-            for (row, e) in rows.iter_mut().zip(&point.frame) {
-                let (normal, tangential) = (dot(g, n), dot(g, e));
-                for a in 0..dim {
-                    let value =
-                        lambda * dot(e, n) * g[a] + mu * (e[a] * normal + n[a] * tangential);
-                    if value != 0.0 {
-                        *row.entry(f as usize * dim + a).or_default() += factor * value;
-                    }
-                }
-            }
-        }
+        add_stress(integrator, part, &point.x, &point.frame, factor, &mut rows);
     }
     Ok(rows
         .into_iter()
         .map(|row| row.into_iter().collect())
         .collect())
+}
+
+/// rows += factor · F σ n of a part at x.
+///
+/// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
+/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e).
+fn add_stress(
+    integrator: &CellIntegrator<'_>,
+    part: &Part,
+    x: &Point,
+    frame: &[Point; 3],
+    factor: f64,
+    rows: &mut [BTreeMap<usize, f64>],
+) {
+    let dim = integrator.mesh.dim();
+    let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
+    let n = &frame[0];
+    let functions = integrator.enrichment.cell(part.cell);
+    let gradients = integrator.gradients(part.cell, &part.xi, x, part.side);
+    for (&f, g) in functions.iter().zip(&gradients) {
+        for (row, e) in rows.iter_mut().zip(frame) {
+            let (normal, tangential) = (dot(g, n), dot(g, e));
+            for a in 0..dim {
+                let value = lambda * dot(e, n) * g[a] + mu * (e[a] * normal + n[a] * tangential);
+                if value != 0.0 {
+                    *row.entry(f as usize * dim + a).or_default() += factor * value;
+                }
+            }
+        }
+    }
 }

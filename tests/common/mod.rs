@@ -92,10 +92,10 @@ pub fn contact_force(body: &Body, p: &[f64]) -> Vec<f64> {
     let dim = body.mesh.dim();
     let mut force = vec![0.0; body.numbers.len()];
     for (point, p) in body.points.iter().zip(p.chunks_exact(dim)) {
-        for &(f, c) in &point.terms {
-            for (axis, value) in point.frame.iter().zip(p) {
+        for (f, rows) in &point.terms {
+            for (row, value) in rows.iter().zip(p) {
                 for a in 0..dim {
-                    force[f as usize * dim + a] += c * axis[a] * value;
+                    force[*f as usize * dim + a] += row[a] * value;
                 }
             }
         }

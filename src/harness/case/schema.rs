@@ -92,7 +92,15 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
         contact: table
             .get("contact")
             .map_or(Ok(ContactSpace::EdgePairs), |v| {
-                v.one_of(&[(ContactSpace::EdgePairs.name(), ContactSpace::EdgePairs)])
+                v.one_of(
+                    &[
+                        ContactSpace::EdgePairs,
+                        ContactSpace::Facet,
+                        ContactSpace::Star,
+                        ContactSpace::P0,
+                    ]
+                    .map(|space| (space.name(), space)),
+                )
             })?,
     })
 }
