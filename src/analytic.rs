@@ -5,6 +5,19 @@
 //! its own with its derivation, its source and a test of the field equations. Signs as everywhere: the crack normal n
 //! points from side 2 to side 1, jump = u₁ − u₂, contact traction is the force per area on side 1, pressure positive.
 
+#[cfg(test)]
+mod check;
+mod contact_zone;
+mod crack_field;
+mod face_load;
+mod line_crack;
+mod one_dof;
+mod partial_opening;
+mod partial_slip;
+mod plane_elasticity;
+mod uniform_slip;
+mod uniform_stress;
+
 use crate::fem::Point;
 use crate::harness::case::{CrackShape, Material, Model};
 
@@ -88,7 +101,12 @@ pub trait Field: Send + Sync {
 }
 
 /// All solutions, in the order of the documentation.
-pub static SOLUTIONS: &[SolutionSpec] = &[];
+pub static SOLUTIONS: &[SolutionSpec] = &[
+    uniform_stress::SPEC,
+    uniform_slip::SPEC,
+    partial_slip::SPEC,
+    partial_opening::SPEC,
+];
 
 /// The solution of a name.
 pub fn solution(name: &str) -> Option<&'static SolutionSpec> {
