@@ -7,14 +7,17 @@
 
 #[cfg(test)]
 mod check;
+mod circular_interface;
 mod contact_zone;
 mod crack_field;
 mod face_load;
 mod line_crack;
+mod manufactured_slip;
 mod one_dof;
 mod partial_opening;
 mod partial_slip;
 mod plane_elasticity;
+mod sliding_block;
 mod uniform_slip;
 mod uniform_stress;
 
@@ -106,6 +109,9 @@ pub static SOLUTIONS: &[SolutionSpec] = &[
     uniform_slip::SPEC,
     partial_slip::SPEC,
     partial_opening::SPEC,
+    sliding_block::SPEC,
+    manufactured_slip::SPEC,
+    circular_interface::SPEC,
 ];
 
 /// The solution of a name.
