@@ -118,3 +118,24 @@ pub static SOLUTIONS: &[SolutionSpec] = &[
 pub fn solution(name: &str) -> Option<&'static SolutionSpec> {
     SOLUTIONS.iter().find(|s| s.name == name)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_solution_is_found_by_its_own_name_and_names_its_parameters_once() {
+        for (k, spec) in SOLUTIONS.iter().enumerate() {
+            assert!(SOLUTIONS[..k].iter().all(|s| s.name != spec.name));
+            assert!(solution(spec.name).is_some_and(|s| s.summary == spec.summary));
+            for (j, parameter) in spec.parameters.iter().enumerate() {
+                assert!(
+                    spec.parameters[..j]
+                        .iter()
+                        .all(|p| p.name != parameter.name)
+                );
+            }
+        }
+        assert!(solution("no-such-solution").is_none());
+    }
+}

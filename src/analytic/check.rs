@@ -3,7 +3,7 @@
 use super::line_crack::{apply, axes, resolve};
 use super::{Field, Setting};
 use crate::fem::elasticity::Lame;
-use crate::fem::{Point, norm, sub};
+use crate::fem::{Point, add_scaled, dot, norm, sub, unit};
 use crate::harness::case::{CrackShape, Material, Model};
 
 /// A setting for tests: E = 2, ν = 0.3, plane strain, μ = 0.5, body [−1, 1]².
@@ -133,6 +133,31 @@ pub fn check_contact(
                     "friction at {x:?}: {t} {expected}"
                 );
             }
+        }
+    }
+}
+
+/// K at both ends of a straight crack against the stress just ahead, in the frame (ahead, n).
+pub fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
+    let CrackShape::Polyline(points) = of.crack else {
+        panic!("not a straight crack")
+    };
+    let ends = [points[0], points[1]].map(|p| [p[0], p[1], 0.0]);
+    let length = norm(&sub(&ends[1], &ends[0]));
+    let n = axes(of.crack, &ends[0])[0];
+    let rho = 1e-9 * length;
+    for (tip, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
+        let ahead = unit(&sub(&tip, &other));
+        let on_n = apply(&field.stress(&add_scaled(&tip, rho, &ahead), 1.0), &n);
+        let found = field.intensity(&tip).unwrap();
+        let root = (2.0 * std::f64::consts::PI * rho).sqrt();
+        for (k, stress) in found.iter().zip([dot(&n, &on_n), dot(&ahead, &on_n)]) {
+            // What is left is √ρ times the stress that is not singular, at most of order one in all tests.
+            assert!(
+                (k - root * stress).abs() < 3.0 * root,
+                "{k} {}",
+                root * stress
+            );
         }
     }
 }

@@ -84,7 +84,7 @@ impl FaceLoad {
         self.near + self.far
     }
 
-    /// (Z, Z', Ẑ) at a point; the sign of a zero y tells the face. Infinite at a singular end.
+    /// (Z, Z', Ẑ) at a point; the sign of a zero y tells the face. Not finite at a singular end.
     fn potentials(&self, x: f64, y: f64) -> [Complex<f64>; 3] {
         let (b, slope, mean) = (self.half_length, self.slope, self.mean());
         let x = x - self.centre;
@@ -128,7 +128,7 @@ impl FaceLoad {
         [0.5 * u / elastic.shear, 0.5 * v / elastic.shear]
     }
 
-    /// Stress (xx, yy, xy) at a point [Pa].
+    /// Stress (xx, yy, xy) at a point [Pa]; not finite at a singular end itself.
     pub fn stress(&self, x: f64, y: f64) -> [f64; 3] {
         let [value, rate, _] = self.potentials(x, y);
         let lever = if y == 0.0 {

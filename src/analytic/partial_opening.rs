@@ -93,7 +93,7 @@ impl Solution for PartialOpening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::check::{check_contact, check_elasticity, setting};
+    use crate::analytic::check::{check_contact, check_elasticity, check_intensity, setting};
     use crate::analytic::face_load::FaceLoad;
     use crate::fem::Point;
     use crate::harness::case::CrackShape;
@@ -141,6 +141,7 @@ mod tests {
                 let field = solution.at(&[0.3, factor]).unwrap();
                 check_contact(field.as_ref(), None, &of, &along, [1e-13, 1e-14]);
                 check_elasticity(field.as_ref(), &of, &off, 3e-4, 1e-9);
+                check_intensity(field.as_ref(), &of);
                 open_points.push(along.iter().filter(|x| field.jump(x)[0] > 0.0).count());
             }
         }

@@ -174,7 +174,7 @@ impl Solution for PartialSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::check::{check_contact, check_elasticity, setting};
+    use crate::analytic::check::{check_contact, check_elasticity, check_intensity, setting};
     use crate::fem::Point;
     use crate::harness::case::{CrackShape, Material};
     use std::f64::consts::PI;
@@ -280,7 +280,7 @@ mod tests {
             for k in 1..=path.len() {
                 let now = at(solution.as_ref(), &path[..k]);
                 check_contact(now.as_ref(), before.as_deref(), &of, &along, [1e-13, 1e-14]);
-                // The remote pressure and shear are those asked for.
+                check_intensity(now.as_ref(), &of);
                 if k == 5 {
                     let points = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
                     check_elasticity(now.as_ref(), &of, &points, 3e-4, 1e-9);

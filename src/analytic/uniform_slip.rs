@@ -108,7 +108,7 @@ impl Solution for UniformSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::check::{check_contact, check_elasticity, setting};
+    use crate::analytic::check::{check_contact, check_elasticity, check_intensity, setting};
     use crate::fem::Point;
     use crate::harness::case::CrackShape;
 
@@ -145,6 +145,7 @@ mod tests {
             let points = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
             check_elasticity(field.as_ref(), &of, &points, 3e-4, 1e-9);
             check_contact(field.as_ref(), None, &of, &along(&crack), [1e-13, 1e-14]);
+            check_intensity(field.as_ref(), &of);
             let drop = (s.abs() - friction * c.abs()).max(0.0) * c.abs();
             let tip = crack.point(a, 0.0);
             let k = field.intensity(&tip).unwrap();
@@ -175,6 +176,7 @@ mod tests {
             1e-3,
             1e-8,
         );
+        check_intensity(field.as_ref(), &of);
         // n = (−1, 1)/√2: σ_nn = 0.6 + 0.3, σ_tn = 0.4.
         let root = (PI * 0.18_f64.sqrt()).sqrt();
         let k = field.intensity(&[0.3, 0.3, 0.0]).unwrap();
