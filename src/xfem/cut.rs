@@ -190,7 +190,7 @@ fn clip_tetrahedron(t: &[Point; 4], phi: &[f64; 4], side: Side, parts: &mut Vec<
 }
 
 /// The eight tetrahedra of edge midpoints.
-fn halve_tetrahedron(t: &[Point; 4]) -> Vec<[Point; 4]> {
+pub(super) fn halve_tetrahedron(t: &[Point; 4]) -> Vec<[Point; 4]> {
     let mid = |i: usize, j: usize| add_scaled(&t[i], 0.5, &sub(&t[j], &t[i]));
     let (m01, m02, m03) = (mid(0, 1), mid(0, 2), mid(0, 3));
     let (m12, m13, m23) = (mid(1, 2), mid(1, 3), mid(2, 3));
