@@ -22,8 +22,8 @@ use crate::fem::{Point, add_scaled, dot, norm, sub};
 
 use super::basis::TipFrame;
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use super::enrichment::cells_at;
-use super::sampling::{Front, comparison_points, double_dot, segment_distance, stress};
+use super::enrichment::{cells_at, reference_position};
+use super::sampling::{Front, comparison_points, double_dot, stress};
 use super::surface_point::SurfacePoint;
 use super::williams::{Mode, Williams, plane_modulus};
 
@@ -43,7 +43,7 @@ pub struct Fields<'a> {
 /// The domain: all cells with a node within a radius of the tip; q is 1 at those nodes and bilinear in the cells.
 #[derive(Debug, Clone, Copy)]
 pub struct Domain<'a> {
-    /// Radius [m]; 2 to 3 cells, or fixed.
+    /// Radius [m]; 3 cells, or fixed: the smaller, the more the error of the cells at the tip enters.
     pub radius: f64,
     /// Tips of all cracks, this one among them.
     pub fronts: &'a [Front],
@@ -153,7 +153,7 @@ fn stands_alone(
             integrator.enrichment.split[cell].is_some_and(|c| c as usize != tip.crack);
         let other_tip = fronts.iter().any(|front| {
             norm(&sub(&front[0], &tip.position)) > 1e-9 * size
-                && segment_distance(&mesh.centre(cell), front) < size
+                && reference_position(mesh, cell, &front[0], 1e-9).is_some()
         });
         !other_crack && !other_tip
     })

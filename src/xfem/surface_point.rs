@@ -1,8 +1,9 @@
 //! Quadrature points of the crack surface: where they lie, what jumps there, how far the faces overlap.
 
-use crate::fem::{Point, dot, sub};
+use crate::fem::{Point, dot, norm, sub};
 
 use super::cut::Side;
+use super::enrichment::cells_at;
 use super::sampling::CellField;
 use super::{cell_matrix::CellIntegrator, pairs::ContactPoint};
 
@@ -54,6 +55,35 @@ impl SurfacePoint {
         }
         traction
     }
+}
+
+/// Jump u₁ − u₂ in space [m] at a point of a crack of the enrichment, from all unknowns; `None` if no cell that this crack
+/// splits holds the point, or it lies off the crack by more than 1e-6 of such a cell, or beyond an end.
+pub fn jump_at(
+    integrator: &CellIntegrator<'_>,
+    crack: usize,
+    x: &Point,
+    u: &[f64],
+) -> Option<Point> {
+    let CellIntegrator {
+        mesh, enrichment, ..
+    } = integrator;
+    let shape = &integrator.cracks[crack];
+    let s = shape.abscissa(x);
+    if shape.length.is_finite() && !(0.0..=shape.length).contains(&s) {
+        return None;
+    }
+    cells_at(mesh, x).into_iter().find_map(|cell| {
+        let corners = mesh.corners(cell);
+        let near = 1e-6 * norm(&sub(&corners[0], &corners[2]));
+        if enrichment.split[cell] != Some(crack as u32) || shape.distance(x).abs() > near {
+            return None;
+        }
+        let xi = mesh.kind.inverse_map(&corners[..mesh.kind.nodes()], x)?;
+        let mut field = CellField::new(integrator, cell);
+        let [one, two] = [1.0, -1.0].map(|side| field.displacement(&xi, x, side, u));
+        Some(sub(&one, &two))
+    })
 }
 
 /// Deepest overlap of the two faces over sample points, max(0, −gap) [m]; only position, cell, sides and frame of a sample

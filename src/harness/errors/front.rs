@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::analytic::Field;
-use crate::fem::{Point, add_scaled, dot, norm, sub};
+use crate::fem::{Point, add_scaled, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::xfem::basis::TipFrame;
@@ -16,12 +16,14 @@ use crate::xfem::surface_point::SurfacePoint;
 
 use super::{Deviation, RULE, Scales, fronts};
 
-/// Reach of the jump fit behind the tip, in cells and in lengths of the crack; the nearest fifth is left out.
-const FIT_CELLS: f64 = 5.0;
-const FIT_LENGTHS: f64 = 0.25;
+/// Reach of the jump fit behind the tip, in lengths of the crack. It must not shrink with the mesh: with branch functions on
+/// the tip's cell only, the jump at a given number of cells behind the tip keeps its relative error on every mesh.
+const FIT_REACH: f64 = 0.25;
+/// The nearest part of the reach is left out, and at least this many cells.
 const FIT_LEFT_OUT: f64 = 0.2;
-/// Radius of the domain of the interaction integral, in cells.
-const DOMAIN_CELLS: f64 = 2.5;
+const FIT_CELLS_LEFT_OUT: f64 = 1.0;
+/// Radius of the domain of the interaction integral, in cells: the first that stands alone around the tip.
+const DOMAIN_CELLS: [f64; 2] = [3.0, 2.0];
 
 /// Tips inside the body with the name of their place, `crack-1 tip-2`.
 pub fn tip_fronts(body: &Body) -> Vec<(String, TipFrame)> {
@@ -71,15 +73,15 @@ pub fn tip_intensities(
             size = size.max(norm(&sub(&corners[i], &corners[j])));
         }
     }
-    let to = (FIT_CELLS * size).min(FIT_LENGTHS * crack.length);
+    let to = FIT_REACH * crack.length;
     let range = FitRange {
-        from: FIT_LEFT_OUT * to,
+        from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
         to,
     };
     let own = surface.iter().filter(|p| p.crack == crack.number);
     let samples = own
-        .map(|p| (p, -dot(&sub(&p.x, &tip.position), &tip.ahead)))
-        .filter(|(_, distance)| *distance > 0.0 && *distance <= to)
+        .map(|p| (p, norm(&sub(&p.x, &tip.position))))
+        .filter(|(_, distance)| *distance <= to)
         .map(|(p, distance)| JumpSample {
             distance,
             jump: p.jump(&integrator, &now.u),
@@ -101,19 +103,27 @@ pub fn tip_intensities(
         let at = |p: &SidedPoint| field.at(&p.xi, &p.x, p.side, &now.u).1;
         points.iter().map(at).collect::<Vec<_>>()
     };
-    let domain = Domain {
-        radius: DOMAIN_CELLS * size,
-        fronts: &fronts(body),
-        rule: RULE,
-    };
+    let fronts = fronts(body);
     let fields = Fields {
         gradients: &gradients,
         faces: &faces,
         body_force,
     };
+    let mut integral = None;
+    for cells in DOMAIN_CELLS {
+        let domain = Domain {
+            radius: cells * size,
+            fronts: &fronts,
+            rule: RULE,
+        };
+        integral = interaction(&integrator, tip, domain, &fields)?;
+        if integral.is_some() {
+            break;
+        }
+    }
     Ok(TipIntensities {
         jump: jump_fit(tip, body.lame, range, samples),
-        interaction: interaction(&integrator, tip, domain, &fields)?,
+        interaction: integral,
     })
 }
 
