@@ -1,0 +1,115 @@
+//! Norms over the crack surface: contact traction and jump.
+
+use crate::analytic::Field;
+use crate::harness::body::Body;
+use crate::harness::quantities::Snapshot;
+use crate::xfem::surface_point::SurfacePoint;
+
+use super::{Deviation, Scales, norm_row};
+
+/// Found and exact values at one place, in the local frame, with a weight.
+struct Sample {
+    weight: f64,
+    found: [f64; 3],
+    exact: [f64; 3],
+}
+
+/// Rows of traction, slip and gap.
+pub(super) fn rows(
+    body: &Body,
+    surface: &[SurfacePoint],
+    field: &dyn Field,
+    now: &Snapshot,
+    scales: &Scales,
+) -> Vec<Deviation> {
+    let dim = body.mesh.dim();
+    let integrator = body.integrator();
+    let mut rows = Vec::new();
+    if !surface.is_empty() {
+        let tractions: Vec<Sample> = surface
+            .iter()
+            .map(|p| Sample {
+                weight: p.weight,
+                found: p.traction(dim, &body.points, &now.p),
+                exact: field.traction(&p.x),
+            })
+            .collect();
+        let length: f64 = surface.iter().map(|p| p.weight).sum();
+        let scale = scales.stress * length.sqrt();
+        rows.push(norm_row("traction", squares(&tractions), scale));
+        let jumps: Vec<Sample> = surface
+            .iter()
+            .map(|p| Sample {
+                weight: p.weight,
+                found: p.local(&p.jump(&integrator, &now.u)),
+                exact: field.jump(&p.x),
+            })
+            .collect();
+        rows.extend(largest(["slip", "gap"], &jumps, scales.displacement));
+    }
+    if body.points.is_empty() {
+        return rows;
+    }
+    let local = |values: &[f64], i: usize, divisor: f64| {
+        let mut v = [0.0; 3];
+        for (v, value) in v.iter_mut().zip(&values[i * dim..(i + 1) * dim]) {
+            *v = value / divisor;
+        }
+        v
+    };
+    let points = || body.points.iter().enumerate();
+    let mean = 1.0 / body.points.len() as f64;
+    let tractions: Vec<Sample> = points()
+        .map(|(i, point)| Sample {
+            weight: mean,
+            found: local(&now.p, i, point.weight),
+            exact: field.traction(&point.x),
+        })
+        .collect();
+    rows.push(norm_row("traction_rms", squares(&tractions), scales.stress));
+    let jumps: Vec<Sample> = points()
+        .map(|(i, point)| Sample {
+            weight: mean,
+            found: local(&now.jump, i, 1.0),
+            exact: field.jump(&point.x),
+        })
+        .collect();
+    rows.extend(largest(
+        ["slip_points", "gap_points"],
+        &jumps,
+        scales.displacement,
+    ));
+    rows
+}
+
+fn square(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum()
+}
+
+fn difference(sample: &Sample) -> [f64; 3] {
+    [0, 1, 2].map(|k| sample.found[k] - sample.exact[k])
+}
+
+/// Weighted sums of squares: found, exact, difference.
+fn squares(samples: &[Sample]) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for sample in samples {
+        sums[0] += sample.weight * square(&sample.found);
+        sums[1] += sample.weight * square(&sample.exact);
+        sums[2] += sample.weight * square(&difference(sample));
+    }
+    sums
+}
+
+/// Largest tangential and normal error of the jump, over the largest exact jump.
+fn largest(names: [&'static str; 2], samples: &[Sample], scale: f64) -> [Deviation; 2] {
+    let over = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
+    let size = over(&|s| square(&s.exact).sqrt());
+    let [tangential, normal] = [1..3, 0..1];
+    [(names[0], tangential), (names[1], normal)].map(|(name, part)| {
+        let found = over(&|s| square(&s.found[part.clone()]).sqrt());
+        let exact = over(&|s| square(&s.exact[part.clone()]).sqrt());
+        let error = over(&|s| square(&difference(s)[part.clone()]).sqrt());
+        Deviation::new(name, String::new(), [found, exact], error, size, scale)
+    })
+}

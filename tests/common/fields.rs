@@ -1,0 +1,252 @@
+//! Exact fields, bodies that carry them on their outline, and quadrature points of crack surfaces between edge pairs.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use nalgebra::Complex;
+use stickslip::analytic::Field;
+use stickslip::fem::elasticity::Lame;
+use stickslip::fem::quadrature::gauss;
+use stickslip::fem::{Point, add_scaled, dot, norm, sub};
+use stickslip::harness::body::{Body, Needs};
+use stickslip::harness::quantities::Snapshot;
+use stickslip::xfem::basis::FunctionKind;
+use stickslip::xfem::cut;
+use stickslip::xfem::sampling::{strain, stress};
+use stickslip::xfem::surface_point::SurfacePoint;
+use stickslip::xfem::williams::{kolosov, plane_modulus};
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
+};
+
+use super::{METHOD, TOLERANCE, friction, no_load, parse};
+
+/// Straight crack |x| < a in an infinite plate under uniform remote stress, whose faces give up a constant part of the
+/// stress: Westergaard functions Z = A (z/√(z² − a²) − 1) of mode I and II (Tada, Paris & Irwin).
+#[derive(Debug, Clone, Copy)]
+pub struct Griffith {
+    /// Middle of the crack.
+    pub centre: Point,
+    /// Angle of the crack from the x axis.
+    pub angle: f64,
+    /// Half length.
+    pub a: f64,
+    /// Remote stress in the crack frame: along t, along n, shear.
+    pub remote: [f64; 3],
+    /// Stress given up at the faces: normal and shear.
+    pub drop: [f64; 2],
+    pub lame: Lame,
+}
+
+impl Griffith {
+    fn axes(&self) -> [Point; 2] {
+        let (s, c) = self.angle.sin_cos();
+        [[c, s, 0.0], [-s, c, 0.0]]
+    }
+
+    /// Ends of the crack.
+    pub fn ends(&self) -> [[f64; 2]; 2] {
+        [-self.a, self.a].map(|s| {
+            let x = add_scaled(&self.centre, s, &self.axes()[0]);
+            [x[0], x[1]]
+        })
+    }
+
+    /// Local coordinates; the second of a point on the crack carries the sign of its side.
+    fn local(&self, x: &Point, side: f64) -> [f64; 2] {
+        let [t, n] = self.axes();
+        let d = sub(x, &self.centre);
+        let y = dot(&d, &n);
+        let on_crack = y.abs() < 1e-12 * self.a;
+        [dot(&d, &t), if on_crack { 0f64.copysign(side) } else { y }]
+    }
+
+    fn remote_stress(&self) -> [Point; 3] {
+        let [tt, nn, nt] = self.remote;
+        [[tt, nt, 0.0], [nt, nn, 0.0], [0.0; 3]]
+    }
+
+    /// Z, its derivative and its integral per unit drop.
+    fn westergaard(&self, x: f64, y: f64) -> [Complex<f64>; 3] {
+        let z = Complex::new(x, y);
+        let root = (z - self.a).sqrt() * (z + self.a).sqrt();
+        [
+            z / root - 1.0,
+            -self.a * self.a / (root * root * root),
+            root - z,
+        ]
+    }
+}
+
+impl Field for Griffith {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let [x, y] = self.local(x, side);
+        let [z, _, integral] = self.westergaard(x, y);
+        let (k, g) = (kolosov(self.lame), 2.0 * self.lame.mu);
+        let e = strain(self.lame, 2, &self.remote_stress());
+        let [open, shear] = self.drop;
+        let u = e[0][0] * x
+            + e[0][1] * y
+            + open / g * ((k - 1.0) / 2.0 * integral.re - y * z.im)
+            + shear / g * ((k + 1.0) / 2.0 * integral.im + y * z.re);
+        let v = e[1][0] * x
+            + e[1][1] * y
+            + open / g * ((k + 1.0) / 2.0 * integral.im - y * z.re)
+            + shear / g * (-(k - 1.0) / 2.0 * integral.re - y * z.im);
+        let [t, n] = self.axes();
+        [0, 1, 2].map(|a| u * t[a] + v * n[a])
+    }
+
+    fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
+        let [x, y] = self.local(x, side);
+        let [z, dz, _] = self.westergaard(x, y);
+        let [open, shear] = self.drop;
+        let mut s = self.remote_stress();
+        s[0][0] += open * (z.re - y * dz.im) + shear * (2.0 * z.im + y * dz.re);
+        s[1][1] += open * (z.re + y * dz.im) - shear * y * dz.re;
+        s[0][1] += -open * y * dz.re + shear * (z.re - y * dz.im);
+        let axes = self.axes();
+        let mut global = [[0.0; 3]; 3];
+        for a in 0..2 {
+            for b in 0..2 {
+                global[a][b] = s[0][0] * axes[0][a] * axes[0][b]
+                    + s[1][1] * axes[1][a] * axes[1][b]
+                    + s[0][1] * (axes[0][a] * axes[1][b] + axes[1][a] * axes[0][b]);
+            }
+        }
+        global
+    }
+
+    fn traction(&self, _x: &Point) -> [f64; 3] {
+        // Side 1 has the outward normal −n.
+        let [_, nn, nt] = self.remote;
+        [self.drop[0] - nn, self.drop[1] - nt, 0.0]
+    }
+
+    fn jump(&self, x: &Point) -> [f64; 3] {
+        let [x, _] = self.local(x, 1.0);
+        let shape = 4.0 / plane_modulus(self.lame) * (self.a * self.a - x * x).max(0.0).sqrt();
+        [self.drop[0] * shape, self.drop[1] * shape, 0.0]
+    }
+
+    fn intensity(&self, front: &Point) -> Option<[f64; 3]> {
+        // Seen from the first tip, ahead is −t and the shear changes its sign.
+        let [x, _] = self.local(front, 1.0);
+        let k = (PI * self.a).sqrt();
+        Some([self.drop[0] * k, self.drop[1] * k * x.signum(), 0.0])
+    }
+
+    fn dissipation(&self) -> Option<f64> {
+        let slip = self.drop[1] * 2.0 * PI * self.a * self.a / plane_modulus(self.lame);
+        Some((self.remote[2] - self.drop[1]) * slip)
+    }
+}
+
+/// Sets the prescribed displacements of all standard functions to an exact field; those of enriched ones stay 0.
+pub fn hold(body: &mut Body, field: &dyn Field) {
+    let dim = body.mesh.dim();
+    for (&unknown, prescribed) in &mut body.prescribed {
+        let function = body.enrichment.functions[unknown / dim];
+        if function.kind == FunctionKind::Standard {
+            let x = body.mesh.nodes[function.node as usize];
+            prescribed.amount = field.displacement(&x, 1.0)[unknown % dim];
+        }
+    }
+}
+
+/// Solves a case whose prescribed displacements are those of a field.
+pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
+    let case = parse(text);
+    let mut body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    hold(&mut body, field);
+    let system =
+        Arc::new(ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap());
+    let registered = method(METHOD).expect("registered");
+    let options = Options::new(registered.options, &[]).unwrap();
+    let mut enforcement = (registered.build)(&options).unwrap();
+    let increment = Increment {
+        system: &system,
+        load: &body.load(case.path.end),
+        start_load: &no_load(&body),
+        start: &ContactState::zero(&system),
+        index: 0,
+        tolerance: TOLERANCE,
+    };
+    let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
+    assert_eq!(outcome.status, Status::Converged);
+    let status = vec![PointStatus::Open; body.points.len()];
+    let virgin = Snapshot::virgin(&body);
+    let now = Snapshot::new(&body, case.path.end, &outcome.state, None, status, &virgin);
+    (body, now)
+}
+
+/// Quadrature points of 2D cracks, multipliers linear between the edge pairs and constant from the last pair to a tip.
+pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
+    let mesh = &body.mesh;
+    let mut points = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let Some(crack) = body.enrichment.split[cell].map(|c| &body.cracks[c as usize]) else {
+            continue;
+        };
+        let corners = mesh.corners(cell);
+        let vertices = cut::facet(mesh.kind, &corners[..4], &crack.cell_phi(mesh, cell));
+        let mut ends: Vec<f64> = vertices.iter().map(|v| crack.abscissa(&v.0)).collect();
+        ends.sort_by(f64::total_cmp);
+        let pairs: Vec<(u32, f64)> = (body.points.iter().enumerate())
+            .filter(|(_, p)| vertices.iter().any(|v| norm(&sub(&v.0, &p.x)) < 1e-9))
+            .map(|(i, p)| (i as u32, p.s))
+            .collect();
+        let (from, to) = (ends[0].max(0.0), ends[1].min(crack.length));
+        let at_tip = [ends[0] < 0.0, ends[1] > crack.length];
+        for (s, w) in gauss(n) {
+            let t = 0.5 * (1.0 + s);
+            // s = ρ² from a tip: the jump and the auxiliary fields go with √s.
+            let (t, w) = match at_tip {
+                [true, _] => (t * t, w * t),
+                [_, true] => (1.0 - (1.0 - t).powi(2), w * (1.0 - t)),
+                _ => (t, 0.5 * w),
+            };
+            let s = from + t * (to - from);
+            let x = add_scaled(&crack.origin, s, &crack.frame[1]);
+            let shares = match *pairs.as_slice() {
+                [(i, a), (j, b)] => vec![(i, (b - s) / (b - a)), (j, (s - a) / (b - a))],
+                [(i, _)] => vec![(i, 1.0)],
+                _ => Vec::new(),
+            };
+            points.push(SurfacePoint {
+                crack: crack.number,
+                cell,
+                xi: mesh.kind.inverse_map(&corners[..4], &x).unwrap(),
+                x,
+                weight: w * (to - from),
+                sides: [1.0, -1.0],
+                frame: crack.frame,
+                shares,
+            });
+        }
+    }
+    points
+}
+
+/// A displacement given by a function with its gradient, the same on both sides, free of jumps.
+pub struct Smooth<F> {
+    /// Displacement and gradient ∂u_a/∂x_b.
+    pub field: F,
+    pub lame: Lame,
+    pub dim: usize,
+}
+
+impl<F: Fn(&Point) -> (Point, [Point; 3]) + Send + Sync> Field for Smooth<F> {
+    fn displacement(&self, x: &Point, _side: f64) -> Point {
+        (self.field)(x).0
+    }
+    fn stress(&self, x: &Point, _side: f64) -> [Point; 3] {
+        stress(self.lame, self.dim, &(self.field)(x).1)
+    }
+    fn traction(&self, _x: &Point) -> [f64; 3] {
+        [0.0; 3]
+    }
+    fn jump(&self, _x: &Point) -> [f64; 3] {
+        [0.0; 3]
+    }
+}
