@@ -112,7 +112,8 @@ fn a_crack_too_short_for_the_mesh_is_refused() {
 #[test]
 fn two_cracks_through_one_cell_are_refused_at_the_second() {
     let points = "[[0.05, -0.5], [0.1, 0.6]]";
-    let second = format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\n");
+    let second =
+        format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\ncontact = \"edge-pairs\"\n");
     assert_refused(
         &replaced(
             "[[support]]\non = \"bottom\"",

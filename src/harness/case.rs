@@ -5,6 +5,7 @@
 //! [`Case::error`] at the same file, line and column. The format is documented for users in `docs/case-format.md`.
 
 mod condition;
+mod crack;
 mod error;
 mod expect;
 mod mesh;
@@ -154,7 +155,7 @@ pub struct Follow {
 pub struct CrackSpec {
     /// Where the crack's table stands in the file.
     pub span: Span,
-    /// Where the geometry (`points_m` or `plane`) stands in the file.
+    /// Where the geometry (the value of `points_m`, `arc`, `plane`, ...) stands in the file.
     pub geometry_span: Span,
     /// Place and shape.
     pub geometry: CrackShape,

@@ -1,12 +1,13 @@
 //! Case files: every shipped case is accepted and says what its sources say; every fault is refused at its place.
 
+mod cracks;
 mod refusals;
 mod robustness;
 mod shipped;
 
 use stickslip::harness::case::{
-    self, Case, CaseError, CrackShape, ExpectKind, History, LoadKind, Model, Quadrature, Tip,
-    Tolerance,
+    self, Case, CaseError, ContactSpace, CrackShape, ExpectKind, History, LoadKind, Model,
+    Quadrature, Tip, Tolerance,
 };
 
 /// A 2D case with every table.
@@ -156,6 +157,7 @@ fn every_table_arrives_in_the_case() {
         CrackShape::Polyline(vec![[-4.0, -4.0], [4.0, 4.0]])
     );
     assert_eq!(case.cracks[0].tip, Tip::Branch);
+    assert_eq!(case.cracks[0].contact, ContactSpace::EdgePairs);
     let support = &case.supports[1];
     assert_eq!(support.on.sides, ["left", "top"]);
     assert_eq!(support.displacement, [None, Some(-0.1)]);
@@ -206,6 +208,7 @@ fn absent_keys_take_their_documented_defaults() {
     assert_eq!((case.path.increments, case.path.end), (1, 1.0));
     assert!(case.sweep.friction.is_empty() && case.sweep.refine == [1]);
     assert_eq!(case.cracks[0].tip, Tip::None);
+    assert_eq!(case.cracks[0].contact, ContactSpace::Star);
     assert_eq!(case.loads[0].history, History::Ramp);
     let plane = CrackShape::Plane {
         point: [0.0, 0.0, 0.7],

@@ -219,9 +219,12 @@ pub fn plane(min: [f64; 2], max: [f64; 2], cells: [usize; 2], rest: &str) -> Str
     )
 }
 
-/// A straight crack in 2D.
+/// A straight crack in 2D, with edge pairs.
 pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
-    format!("[[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = {friction:?}\ntip = \"{tip}\"\n")
+    format!(
+        "[[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = {friction:?}\ntip = \"{tip}\"\n\
+         contact = \"edge-pairs\"\n"
+    )
 }
 
 /// A support on sides (TOML), with its displacement (TOML).
@@ -234,7 +237,7 @@ pub fn load(on: &str, what: &str) -> String {
     format!("[[load]]\non = \"{on}\"\n{what}\n")
 }
 
-/// A solid box with planes: point, normal, friction.
+/// A solid box with planes: point, normal, friction; edge pairs.
 pub fn solid(
     max: [f64; 3],
     cells: [usize; 3],
@@ -245,7 +248,8 @@ pub fn solid(
         .iter()
         .map(|(point, normal, friction)| {
             format!(
-                "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n"
+                "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n\
+                 contact = \"edge-pairs\"\n"
             )
         })
         .collect();

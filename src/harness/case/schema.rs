@@ -3,10 +3,11 @@
 use super::error::CaseError;
 use super::reader::{Table, Value};
 use super::{
-    Condition, ContactSpace, CrackShape, CrackSpec, History, LoadKind, LoadSpec, Material,
-    MethodSpec, PathSpec, Quadrature, Region, SupportSpec, Tip,
+    Condition, History, LoadKind, LoadSpec, Material, MethodSpec, PathSpec, Quadrature, Region,
+    SupportSpec,
 };
 
+pub(super) use super::crack::crack;
 pub(super) use super::mesh::{mesh, sweep};
 
 /// Largest number of load increments; more is a slip of the finger.
@@ -47,82 +48,6 @@ pub(super) fn material(root: &Table<'_>) -> Result<Material, CaseError> {
 /// A friction coefficient.
 pub(super) fn friction(value: Value<'_>) -> Result<f64, CaseError> {
     value.number_if("friction >= 0", |mu| mu >= 0.0)
-}
-
-/// `[[crack]]`.
-pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError> {
-    let table = value.table(&["points_m", "plane", "friction", "tip", "contact"])?;
-    let (key, geometry) = table.exactly_one(&["points_m", "plane"])?;
-    let geometry_span = geometry.span();
-    let shape = match (key, dim) {
-        ("points_m", 2) => segment(geometry)?,
-        ("plane", 3) => plane(geometry)?,
-        (_, 2) => {
-            return Err(geometry.refuse(
-                "points_m = [[x, y], [x, y]] in 2D",
-                "a plane needs model = \"solid\"",
-            ));
-        }
-        _ => {
-            return Err(geometry.refuse(
-                "plane = { point_m, normal } in a solid",
-                "a segment needs a 2D model",
-            ));
-        }
-    };
-    let tip_value = table.get("tip");
-    let tip = match tip_value {
-        Some(v) => v.one_of(&[("none", Tip::None), ("branch", Tip::Branch)])?,
-        None if dim == 2 => Tip::Branch,
-        None => Tip::None,
-    };
-    if let (Some(v), Tip::Branch, 3) = (tip_value, tip, dim) {
-        return Err(v.refuse(
-            "none",
-            "a plane goes through the whole solid and has no tip",
-        ));
-    }
-    Ok(CrackSpec {
-        span: table.span(),
-        geometry_span,
-        geometry: shape,
-        friction: friction(table.required("friction")?)?,
-        tip,
-        tip_span: tip_value.map_or(table.span(), |v| v.span()),
-        contact: table
-            .get("contact")
-            .map_or(Ok(ContactSpace::EdgePairs), |v| {
-                v.one_of(&[(ContactSpace::EdgePairs.name(), ContactSpace::EdgePairs)])
-            })?,
-    })
-}
-
-fn segment(value: Value<'_>) -> Result<CrackShape, CaseError> {
-    let ends = value.list_of(2)?;
-    let (a, b) = (ends[0].numbers(2)?, ends[1].numbers(2)?);
-    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-    if !(length > 0.0 && length.is_finite()) {
-        return Err(value.refuse("two distinct points", "crack without length"));
-    }
-    Ok(CrackShape::Polyline(vec![[a[0], a[1]], [b[0], b[1]]]))
-}
-
-fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
-    let table = value.table(&["point_m", "normal"])?;
-    let point = table.required("point_m")?.numbers(3)?;
-    let given = table.required("normal")?;
-    let n = given.numbers(3)?;
-    // Scaled first, so that tiny and huge normals are not lost in the squares.
-    let largest = n.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    if largest == 0.0 {
-        return Err(given.refuse("a vector that is not zero", "normal without direction"));
-    }
-    let n = [n[0] / largest, n[1] / largest, n[2] / largest];
-    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-    Ok(CrackShape::Plane {
-        point: [point[0], point[1], point[2]],
-        normal: n.map(|x| x / length),
-    })
 }
 
 /// Axis and name of the sides of a box.
