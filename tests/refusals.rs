@@ -197,6 +197,18 @@ fn a_load_on_no_facet_is_refused() {
     assert_refused(&text, "[\"back\", \"top\"]", "holds no cell edge");
 }
 
+/// Goal: a crack that ends inside parts nothing, so a load cannot tell its sides apart.
+#[test]
+fn a_load_on_one_side_of_a_crack_with_a_tip_is_refused() {
+    let load = "[[load]]\nbody_n_per_m3 = [0, 4]\ncrack_side = 2\n";
+    for tip in ["branch", "none"] {
+        let text = good().replace("\"branch\"", &format!("{tip:?}")) + load;
+        assert_refused(&text, "2\n", "ends inside");
+    }
+    let text = replaced(POINTS, "[[-2, 0.23], [2, 0.31]]") + load;
+    assert!(try_body(&text).is_ok());
+}
+
 #[test]
 fn a_support_that_holds_no_node_is_refused() {
     let text = good()

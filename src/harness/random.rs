@@ -286,7 +286,8 @@ mod tests {
                 for (a, b) in all.supports.iter().zip(&alone.supports) {
                     assert_eq!(a.displacement, b.displacement);
                     // The bottom is held at zero by the default history.
-                    let held = a.displacement.iter().flatten().all(|&u| u == 0.0);
+                    let mut amounts = a.displacement.iter().flatten();
+                    let held = amounts.all(|&u| u == case::Amount::Number(0.0));
                     assert!(held || a.history.factor(2.0, 3.0) == b.history.factor(1.0, 1.0));
                 }
                 for (a, b) in all.loads.iter().zip(&alone.loads) {
