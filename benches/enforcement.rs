@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
 use stickslip::harness::body::{Body, Needs};
+use stickslip::harness::loading::Loading;
 use stickslip::harness::shipped;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, METHODS, Options, Silent, Tier,
@@ -32,7 +33,8 @@ fn enforcement(criterion: &mut Criterion) {
         let system =
             ContactSystem::new(body.elastic.clone(), frictions).expect("friction is valid");
         system.condense().expect("the body is held");
-        let load = body.load(case.path.end);
+        let loading = Loading::new(&body, &case, friction).expect("no closed form is asked for");
+        let load = loading.at(case.path.increments);
         let nothing = Load::zero(&body.elastic);
         let start = ContactState::zero(&system);
         let mut group = criterion.benchmark_group(format!("enforcement/{name}"));

@@ -54,6 +54,7 @@ pub struct ParameterSpec {
 pub type Build = fn(&Setting<'_>, &[f64]) -> Result<Box<dyn Solution>, String>;
 
 /// A registered solution.
+#[derive(Debug)]
 pub struct SolutionSpec {
     /// Name in case files.
     pub name: &'static str,

@@ -18,9 +18,10 @@ use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
 use crate::harness::export::ExportError;
+use crate::harness::loading::Loading;
 use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
-use crate::harness::run::{Choice, Fields, RunError, Settings, choices, run_case};
+use crate::harness::run::{Choice, Fields, RunError, Settings, choices, friction_values, run_case};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
 use crate::pages;
@@ -295,6 +296,10 @@ fn check_verb(files: &[PathBuf]) -> Result<bool, CliError> {
         expect::check(&case)?;
         for &refine in &case.sweep.refine {
             let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
+            for per_crack in friction_values(&case) {
+                let friction = per_crack.first().copied().unwrap_or(0.0);
+                Loading::new(&body, &case, friction).map_err(RunError::from)?;
+            }
             say(format_args!(
                 "{}: {}, {} cells, {} unknowns, {} contact points ({})",
                 file.display(),

@@ -38,17 +38,17 @@ impl Path {
 
     /// Solves increment `index` (from 0) of the path by a new instance of a method.
     fn step(&self, method: &str, index: usize, start: &ContactState) -> Outcome {
-        let time = |k: usize| self.case.path.end * k as f64 / self.case.path.increments as f64;
+        let loading = loading(&self.body, &self.case);
         let method = stickslip_methods::method(method).unwrap();
         let mut enforcement = (method.build)(&Options::new(method.options, &[]).unwrap()).unwrap();
         let before = if index == 0 {
             no_load(&self.body)
         } else {
-            self.body.load(time(index))
+            loading.at(index)
         };
         let increment = Increment {
             system: &self.system,
-            load: &self.body.load(time(index + 1)),
+            load: &loading.at(index + 1),
             start_load: &before,
             start,
             index,

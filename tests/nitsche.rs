@@ -182,7 +182,7 @@ fn the_stabilisation_vanishes_like_one_over_gamma() {
     let case = shipped("plate_mesh1");
     let body = Body::new(&case, 1, TRACTION).unwrap();
     let system = ContactSystem::new(body.elastic.clone(), vec![0.8; body.points.len()]).unwrap();
-    let load = body.load(case.path.end);
+    let load = loading(&body, &case).at(case.path.increments);
     let exact = solve_body(&body, &system, &load, 1e-12, (METHOD, &[]))
         .state
         .p;
@@ -211,7 +211,7 @@ fn oscillations_of_edge_pairs_off_the_grid_are_damped() {
         let body = Body::new(&case, refine, TRACTION).unwrap();
         let system =
             ContactSystem::new(body.elastic.clone(), vec![0.5; body.points.len()]).unwrap();
-        let load = body.load(case.path.end);
+        let load = loading(&body, &case).at(case.path.increments);
         let scatter = |name: &str, options: &[(String, f64)]| {
             let outcome = solve_body(&body, &system, &load, 1e-9, (name, options));
             let normal = outcome.state.p.iter().step_by(2).zip(&body.points);
@@ -233,7 +233,7 @@ fn oscillations_of_edge_pairs_off_the_grid_are_damped() {
 /// λ of a body from the claim of a run, γ = 2 λ.
 fn trace_constant(body: &Body, case: &Case) -> f64 {
     let system = ContactSystem::new(body.elastic.clone(), friction(case, body)).unwrap();
-    let load = body.load(case.path.end);
+    let load = loading(body, case).at(case.path.increments);
     let outcome = solve_body(body, &system, &load, 1e-9, ("nitsche", &options(1.0, 2.0)));
     match outcome.claim {
         Claim::Nitsche { gamma, .. } => 0.5 * gamma,
@@ -332,7 +332,7 @@ fn a_floating_piece_is_held_by_forces_that_balance_its_load() {
     let body = Body::new(&case, 1, TRACTION).unwrap();
     assert!(!body.elastic.floating().is_empty());
     let system = ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap();
-    let load = body.load(case.path.end);
+    let load = loading(&body, &case).at(case.path.increments);
     for theta in [1.0, 0.0, -1.0] {
         let options = options(theta, 2.0);
         let outcome = solve_body(&body, &system, &load, 1e-10, ("nitsche", &options));

@@ -112,7 +112,8 @@ fn a_crack_too_short_for_the_mesh_is_refused() {
 #[test]
 fn two_cracks_through_one_cell_are_refused_at_the_second() {
     let points = "[[0.05, -0.5], [0.1, 0.6]]";
-    let second = format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\n");
+    let second =
+        format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\ncontact = \"edge-pairs\"\n");
     assert_refused(
         &replaced(
             "[[support]]\non = \"bottom\"",
@@ -194,6 +195,18 @@ fn a_load_on_no_facet_is_refused() {
         + "[[load]]\non = [\"back\", \"top\"]\nwhere = \"x > 0.6 and x < 0.9\"\nline_n_per_m = [0, 0, 1]\n";
     let text = solid([1.0, 1.0, 1.0], [2, 2, 2], &[], &rest);
     assert_refused(&text, "[\"back\", \"top\"]", "holds no cell edge");
+}
+
+/// Goal: a crack that ends inside parts nothing, so a load cannot tell its sides apart.
+#[test]
+fn a_load_on_one_side_of_a_crack_with_a_tip_is_refused() {
+    let load = "[[load]]\nbody_n_per_m3 = [0, 4]\ncrack_side = 2\n";
+    for tip in ["branch", "none"] {
+        let text = good().replace("\"branch\"", &format!("{tip:?}")) + load;
+        assert_refused(&text, "2\n", "ends inside");
+    }
+    let text = replaced(POINTS, "[[-2, 0.23], [2, 0.31]]") + load;
+    assert!(try_body(&text).is_ok());
 }
 
 #[test]

@@ -42,6 +42,7 @@ cells = [5, 5, 5]
 [[crack]]
 plane = { point_m = [0.5, 0.5, 0.5], normal = [0.2, 0.1, 1] }
 friction = 0.3
+contact = "edge-pairs"
 [[support]]
 on = "bottom"
 displacement_m = [0, 0, 0]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use stickslip_methods::{Elastic, ElasticParts, JumpOperator, Load, MethodError, SymmetricMatrix};
+use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
 
 use crate::fem::assembly::{Cells, Scatter};
 use crate::fem::block_matrix::BlockMatrix;
@@ -13,11 +13,10 @@ use crate::fem::box_mesh::box_mesh;
 use crate::fem::elasticity::{CellMatrix, Lame};
 use crate::fem::mesh::Mesh;
 use crate::fem::ordering::nested_dissection;
-use crate::harness::boundary::{Prescribed, nodal_forces, prescribed, region_nodes};
-use crate::harness::case::{Case, CaseError, ContactSpace, History, Quadrature};
-use crate::harness::refusals::{
-    check_probes, check_supports, crack_error, load_error, motion_error,
-};
+use crate::harness::boundary::{Prescribed, prescribed, region_nodes};
+use crate::harness::case::{Case, CaseError, ContactSpace, Quadrature};
+use crate::harness::loading::{FixedLoad, fixed_loads};
+use crate::harness::refusals::{check_probes, check_supports, crack_error, motion_error};
 use crate::harness::step::Setup;
 use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
@@ -65,9 +64,8 @@ pub struct Body {
     pub jump_rows: Vec<Vec<(usize, f64)>>,
     /// Traction operator over all unknowns, in the same form; empty unless a run [`Needs`] it.
     pub traction_rows: Vec<Vec<(usize, f64)>>,
-    loads: Vec<(Vec<f64>, History)>,
-    support_histories: Vec<History>,
-    end: f64,
+    /// Loads whose nodal forces only change in size.
+    pub loads: Vec<FixedLoad>,
 }
 
 /// Why a case cannot be discretised.
@@ -216,15 +214,7 @@ impl Body {
                 .then(|| free_rows(&traction, &numbers, free as usize))
                 .transpose()?,
         })?;
-        let loads = case
-            .loads
-            .iter()
-            .map(|load| {
-                let force = nodal_forces(&integrator, &load.kind)
-                    .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
-                Ok((force, load.history.clone()))
-            })
-            .collect::<Result<_, BodyError>>()?;
+        let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks);
         Ok(Body {
             quadrature: case.quadrature,
@@ -242,8 +232,6 @@ impl Body {
             jump_rows: jump,
             traction_rows: traction,
             loads,
-            support_histories: case.supports.iter().map(|s| s.history.clone()).collect(),
-            end: case.path.end,
             mesh,
             cracks,
             enrichment,
@@ -267,54 +255,6 @@ impl Body {
             quadrature: self.quadrature,
             lame: self.lame,
         }
-    }
-
-    /// External forces at time t over all unknowns [N, in 2D N/m].
-    pub fn external_force(&self, t: f64) -> Vec<f64> {
-        let mut force = vec![0.0; self.numbers.len()];
-        for (vector, history) in &self.loads {
-            let factor = history.factor(t, self.end);
-            for (f, v) in force.iter_mut().zip(vector) {
-                *f += factor * v;
-            }
-        }
-        force
-    }
-
-    /// Prescribed part of the displacement at time t over all unknowns, 0 at the free ones [m].
-    fn prescribed_displacement(&self, t: f64) -> Vec<f64> {
-        let mut u = vec![0.0; self.numbers.len()];
-        for (&unknown, fixed) in &self.prescribed {
-            u[unknown] = fixed.amount * self.support_histories[fixed.support].factor(t, self.end);
-        }
-        u
-    }
-
-    /// Right-hand side at time t: f = f_ext − K u_prescribed at the free unknowns, and the jump the prescribed ones carry.
-    pub fn load(&self, t: f64) -> Load {
-        let prescribed = self.prescribed_displacement(t);
-        let held = self.stiffness.mul(&prescribed);
-        let external = self.external_force(t);
-        let free = |i: &usize| self.numbers[*i].is_some();
-        Load {
-            force: (0..self.numbers.len())
-                .filter(free)
-                .map(|i| external[i] - held[i])
-                .collect(),
-            offset: self.jump(&prescribed),
-            traction: self.traction(&prescribed),
-        }
-    }
-
-    /// All unknowns at time t from the free ones [m].
-    pub fn all_unknowns(&self, t: f64, u: &[f64]) -> Vec<f64> {
-        let mut all = self.prescribed_displacement(t);
-        for (value, number) in all.iter_mut().zip(&self.numbers) {
-            if let Some(n) = number {
-                *value = u[*n as usize];
-            }
-        }
-        all
     }
 
     /// Jump at the contact points in local frames (n, a[, b]) from all unknowns [m].

@@ -5,8 +5,11 @@
 //! [`Case::error`] at the same file, line and column. The format is documented for users in `docs/case-format.md`.
 
 mod condition;
+mod crack;
 mod error;
+mod exact;
 mod expect;
+mod load;
 mod mesh;
 mod parse;
 mod reader;
@@ -14,7 +17,9 @@ mod schema;
 
 pub use condition::Condition;
 pub use error::CaseError;
-pub use parse::{parse, read};
+pub use exact::ExactSpec;
+pub use load::{Amount, CrackSide, History, Linear, LoadKind, LoadSpec, Region, SupportSpec};
+pub use parse::{parse, parse_with, read};
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -50,6 +55,8 @@ pub struct Case {
     pub supports: Vec<SupportSpec>,
     /// Loads, in file order; they add up.
     pub loads: Vec<LoadSpec>,
+    /// The closed form the case has, if it names one.
+    pub exact: Option<ExactSpec>,
     /// Quadrature of cut cells.
     pub quadrature: Quadrature,
     /// Load path.
@@ -154,7 +161,7 @@ pub struct Follow {
 pub struct CrackSpec {
     /// Where the crack's table stands in the file.
     pub span: Span,
-    /// Where the geometry (`points_m` or `plane`) stands in the file.
+    /// Where the geometry (the value of `points_m`, `arc`, `plane`, ...) stands in the file.
     pub geometry_span: Span,
     /// Place and shape.
     pub geometry: CrackShape,
@@ -249,85 +256,6 @@ pub enum Quadrature {
     /// `gauss-N`: N points per direction on the whole cut cell, sides told apart point by point. Inexact; only to
     /// reproduce published numbers, and marked so in every report.
     Gauss(usize),
-}
-
-/// The part of the boundary a support or load acts on.
-#[derive(Debug, Clone)]
-pub struct Region {
-    /// Where it stands in the file.
-    pub span: Span,
-    /// Names of box sides (`left right bottom top`; 3D `left right` = x, `front back` = y, `bottom top` = z: minimum,
-    /// maximum). One name: that side. Two names: the edge (2D: the corner) both share. Three: the corner in 3D.
-    pub sides: Vec<String>,
-    /// Keeps only the nodes whose coordinates fulfil the condition.
-    pub condition: Option<Condition>,
-}
-
-/// How a support or load evolves over time: value = factor(t) × stated value.
-#[derive(Debug, Clone, PartialEq)]
-pub enum History {
-    /// factor = t / end.
-    Ramp,
-    /// factor = 1 at every increment.
-    Constant,
-    /// Piecewise linear through (t, factor) points, strictly increasing t, constant beyond the ends.
-    Points(Vec<[f64; 2]>),
-}
-
-impl History {
-    /// Factor at time `t` of a path that lasts until `end`.
-    pub fn factor(&self, t: f64, end: f64) -> f64 {
-        match self {
-            History::Ramp => t / end,
-            History::Constant => 1.0,
-            History::Points(points) => {
-                let next = points.partition_point(|p| p[0] <= t);
-                match (next.checked_sub(1).map(|i| points[i]), points.get(next)) {
-                    (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (t - a[0]) / (b[0] - a[0]),
-                    (Some(a), None) => a[1],
-                    (None, Some(b)) => b[1],
-                    (None, None) => 0.0,
-                }
-            }
-        }
-    }
-}
-
-/// Prescribed displacement.
-#[derive(Debug, Clone)]
-pub struct SupportSpec {
-    /// Where the table stands in the file.
-    pub span: Span,
-    /// Where it acts.
-    pub on: Region,
-    /// Per component: prescribed value [m] or free; `dim` entries.
-    pub displacement: Vec<Option<f64>>,
-    /// Evolution.
-    pub history: History,
-}
-
-/// A load.
-#[derive(Debug, Clone)]
-pub struct LoadSpec {
-    /// Where the table stands in the file.
-    pub span: Span,
-    /// What it is and where it acts.
-    pub kind: LoadKind,
-    /// Evolution.
-    pub history: History,
-}
-
-/// Kinds of load. Vectors have `dim` entries.
-#[derive(Debug, Clone)]
-pub enum LoadKind {
-    /// Force per area on a side [Pa].
-    Traction(Region, Vec<f64>),
-    /// Pressure on a side, positive towards the body [Pa].
-    Pressure(Region, f64),
-    /// Force per length on an edge of a 3D box [N/m].
-    Line(Region, Vec<f64>),
-    /// Force per volume in the whole body [N/m³].
-    Body(Vec<f64>),
 }
 
 /// Load path: times t_k = end · k / increments, k = 1..=increments.

@@ -8,6 +8,7 @@ use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
+use crate::harness::loading::Loading;
 use crate::harness::record::RunKey;
 use crate::harness::run::{Choice, RunError, friction_values, tolerance};
 use crate::harness::step::Solver;
@@ -107,12 +108,14 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
     let body = Body::new(case, refine.unwrap_or(1), needs)?;
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction)?;
+    let mu = per_crack.first().copied().unwrap_or(0.0);
+    let loading = Loading::new(&body, case, mu)?;
     let mut key = RunKey {
         case: case.name.clone(),
         mesh: body.label.clone(),
         space: body.space.clone(),
         method: request.choice.label.clone(),
-        friction: per_crack.first().copied().unwrap_or(0.0),
+        friction: mu,
         increment: 1,
     };
     let unsolved = |increment, verdict| ExportError::Unsolved {
@@ -126,7 +129,7 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);
     loop {
-        let load = body.load(case.path.time(key.increment));
+        let load = loading.at(key.increment);
         let increment = Increment {
             system: &system,
             load: &load,

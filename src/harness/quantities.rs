@@ -5,6 +5,7 @@ use stickslip_methods::{ContactState, PointStatus};
 use crate::harness::body::Body;
 use crate::harness::boundary::region_name;
 use crate::harness::case::Case;
+use crate::harness::loading::Loading;
 use crate::harness::record::{PointRow, QuantityRow, RunKey};
 
 /// The mechanics at the end of an increment, over all unknowns and points.
@@ -50,17 +51,18 @@ impl Snapshot {
         }
     }
 
-    /// The state a method returned at time t, after the given one; `consistency` as its claim asks.
+    /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks.
     pub fn new(
-        body: &Body,
-        time: f64,
+        loading: &Loading<'_>,
+        increment: usize,
         state: &ContactState,
         consistency: Option<&[f64]>,
         status: Vec<PointStatus>,
         before: &Snapshot,
     ) -> Self {
+        let body = loading.body();
         let dim = body.mesh.dim();
-        let u = body.all_unknowns(time, &state.u);
+        let u = loading.all_unknowns(increment, &state.u);
         let jump = body.jump(&u);
         let internal = body.stiffness.mul(&u);
         let mut force = internal.clone();
@@ -88,8 +90,8 @@ impl Snapshot {
         let size = work.abs() + stored.abs() + second + slip_work.abs() + opening.abs();
         let gap = work - (stored + second - slip_work + opening);
         Snapshot {
-            external: body.external_force(time),
-            time,
+            external: loading.external_force(increment),
+            time: loading.time(increment),
             jump,
             p: state.p.clone(),
             force,

@@ -2,8 +2,9 @@
 
 use crate::fem::mesh::Mesh;
 use crate::harness::body::BodyError;
-use crate::harness::boundary::{LoadError, region_nodes};
+use crate::harness::boundary::region_nodes;
 use crate::harness::case::{Case, CaseError, LoadKind, Span};
+use crate::harness::nodal_forces::LoadError;
 use crate::xfem::cell_matrix::CellIntegrator;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
 use crate::xfem::pieces::MotionError;
@@ -90,9 +91,10 @@ pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -
         LoadError::Empty(_) => {
             let span = match kind {
                 LoadKind::Traction(region, _)
+                | LoadKind::ExactTraction(region)
                 | LoadKind::Pressure(region, _)
                 | LoadKind::Line(region, _) => &region.span,
-                LoadKind::Body(_) => span,
+                LoadKind::Body(..) | LoadKind::ExactBody | LoadKind::InitialStress(_) => span,
             };
             case.error(
                 span,
@@ -103,4 +105,15 @@ pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -
             .into()
         }
     }
+}
+
+/// The error of a load on one side of a crack that does not part the body.
+pub fn one_sided_error(case: &Case, span: &Span) -> CaseError {
+    let message = "the crack ends inside the body: it has no sides away from its faces";
+    case.error(
+        span,
+        case.text(span),
+        "a crack through the whole body",
+        message,
+    )
 }

@@ -11,6 +11,7 @@ use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
+use crate::harness::loading::Loading;
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
 use crate::harness::record::{Results, RunFields, RunKey, RunRow};
@@ -154,6 +155,7 @@ fn option_error(case: &Case, spec: &MethodSpec, error: &OptionError) -> CaseErro
 /// One run before it starts.
 struct Cell<'a> {
     body: &'a Body,
+    loading: Arc<Loading<'a>>,
     friction: f64,
     system: Arc<ContactSystem>,
     choice: &'a Choice,
@@ -192,6 +194,8 @@ pub fn run_case(
             let system = Arc::new(
                 ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?,
             );
+            let mu = per_crack.first().copied().unwrap_or(0.0);
+            let loading = Arc::new(Loading::new(&body, case, mu)?);
             let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
             for (number, choice) in choices.iter().enumerate() {
                 cells.push(Cell {
@@ -201,7 +205,8 @@ pub fn run_case(
                         Fields::All => true,
                     },
                     body: &body,
-                    friction: per_crack.first().copied().unwrap_or(0.0),
+                    loading: loading.clone(),
+                    friction: mu,
                     system: system.clone(),
                     choice,
                     refine,
@@ -242,7 +247,7 @@ pub(crate) fn tolerance(case: &Case, tier: Tier) -> f64 {
 }
 
 /// Friction coefficients per run and crack.
-pub(crate) fn friction_values(case: &Case) -> Vec<Vec<f64>> {
+pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
     if case.sweep.friction.is_empty() {
         return vec![case.cracks.iter().map(|c| c.friction).collect()];
     }
@@ -257,6 +262,7 @@ pub(crate) fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let Cell {
         body,
+        loading,
         system,
         choice,
         ..
@@ -283,9 +289,8 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
     let mut start_load = Load::zero(&body.elastic);
     let mut steps = Vec::new();
     for increment in 1..=case.path.increments {
-        let time = case.path.time(increment);
         key.increment = increment;
-        let load = body.load(time);
+        let load = loading.at(increment);
         let problem = Increment {
             system,
             load: &load,
@@ -307,7 +312,14 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
             break;
         };
         let consistency = consistency.as_deref();
-        now = Snapshot::new(body, time, &outcome.state, consistency, status, &now);
+        now = Snapshot::new(
+            loading,
+            increment,
+            &outcome.state,
+            consistency,
+            status,
+            &now,
+        );
         if step.verdict.is_honest() {
             results
                 .quantities

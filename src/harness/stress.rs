@@ -15,7 +15,8 @@ use stickslip_methods::{
 
 use super::attempt::{Attempt, attempt, prepare};
 use super::body::{Body, BodyError, Needs};
-use super::case;
+use super::case::{self, Case};
+use super::loading::Loading;
 use super::random::{Kind, Specimen, Stream};
 use super::run::{Choice, Progress};
 use super::verdict::Verdict;
@@ -143,8 +144,10 @@ pub enum StressError {
 /// A body with the loads that are posed on it.
 pub struct Sample {
     specimen: Specimen,
-    /// The discretised body; increment k of its path is load k.
+    /// The discretised body.
     pub body: Body,
+    /// Its case; increment k of the path is load k.
+    case: Case,
     loads: Vec<usize>,
 }
 
@@ -162,9 +165,9 @@ impl Sample {
             let text = specimen.case(&all, &[1.0]);
             let body = case::parse("random.toml", text.as_str())
                 .map_err(BodyError::from)
-                .and_then(|case| Body::new(&case, 1, needs));
-            let body = match body {
-                Ok(body) => body,
+                .and_then(|case| Ok((Body::new(&case, 1, needs)?, case)));
+            let (body, case) = match body {
+                Ok(both) => both,
                 // The position asks for something the discretisation refuses, e.g. a crack that misses all edges.
                 Err(BodyError::Case(_)) => continue,
                 Err(source) => return Err(StressError::Body { dim, text, source }),
@@ -172,32 +175,40 @@ impl Sample {
             if !points.contains(&body.points.len()) {
                 continue;
             }
+            let mut sample = Self {
+                specimen,
+                body,
+                case,
+                loads: Vec::new(),
+            };
             let mut loads = Vec::new();
+            let loading = sample.loading()?;
             for load in all {
-                if loads.len() < LOADS && closes(&body, &load_of(&body, load))? {
+                if loads.len() < LOADS && closes(&sample.body, &loading.at(load + 1))? {
                     loads.push(load);
                 }
             }
             if loads.len() == LOADS {
-                return Ok(Self {
-                    specimen,
-                    body,
-                    loads,
-                });
+                sample.loads = loads;
+                return Ok(sample);
             }
         }
         Err(StressError::NoBody { dim, number })
+    }
+
+    /// What acts on the body; random cases have no closed form, so friction does not matter.
+    fn loading(&self) -> Result<Loading<'_>, StressError> {
+        Loading::new(&self.body, &self.case, 0.0).map_err(|source| StressError::Body {
+            dim: self.specimen.dim,
+            text: self.case.source.clone(),
+            source,
+        })
     }
 
     /// The case file of one of its problems, numbered within the body.
     pub fn case(&self, problem: usize, friction: &[f64]) -> String {
         self.specimen.case(&[self.loads[problem]], friction)
     }
-}
-
-/// Load `number` of a body.
-fn load_of(body: &Body, number: usize) -> Load {
-    body.load((number + 1) as f64)
 }
 
 /// Whether enough points would overlap without contact forces.
@@ -274,9 +285,10 @@ fn run_body(
     let number = problems.first().map_or(0, |problem| problem / LOADS);
     let sample = Sample::new(study.seed, dim, number, needs(choices))?;
     let body = &sample.body;
+    let loading = sample.loading()?;
     let loads: Vec<(usize, Load)> = problems
         .iter()
-        .map(|&problem| (problem, load_of(body, sample.loads[problem % LOADS])))
+        .map(|&problem| (problem, loading.at(sample.loads[problem % LOADS] + 1)))
         .collect();
     let rest = Load::zero(&body.elastic);
     let mut trials = Vec::new();

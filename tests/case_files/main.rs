@@ -1,12 +1,14 @@
 //! Case files: every shipped case is accepted and says what its sources say; every fault is refused at its place.
 
+mod cracks;
+mod loads;
 mod refusals;
 mod robustness;
 mod shipped;
 
 use stickslip::harness::case::{
-    self, Case, CaseError, CrackShape, ExpectKind, History, LoadKind, Model, Quadrature, Tip,
-    Tolerance,
+    self, Amount, Case, CaseError, ContactSpace, CrackShape, ExpectKind, History, LoadKind, Model,
+    Quadrature, Tip, Tolerance,
 };
 
 /// A 2D case with every table.
@@ -156,9 +158,10 @@ fn every_table_arrives_in_the_case() {
         CrackShape::Polyline(vec![[-4.0, -4.0], [4.0, 4.0]])
     );
     assert_eq!(case.cracks[0].tip, Tip::Branch);
+    assert_eq!(case.cracks[0].contact, ContactSpace::EdgePairs);
     let support = &case.supports[1];
     assert_eq!(support.on.sides, ["left", "top"]);
-    assert_eq!(support.displacement, [None, Some(-0.1)]);
+    assert_eq!(support.displacement, [None, Some(Amount::Number(-0.1))]);
     assert_eq!(
         support.history,
         History::Points(vec![[0.0, 0.0], [1.0, 2.5]])
@@ -166,9 +169,9 @@ fn every_table_arrives_in_the_case() {
     let condition = support.on.condition.as_ref().unwrap();
     assert!(condition.holds(&[1.0, 2.1, 0.0]) && !condition.holds(&[1.0, 2.0, 0.0]));
     assert!(
-        matches!(&case.loads[0].kind, LoadKind::Pressure(on, p) if on.sides == ["left"] && *p == 1e5)
+        matches!(&case.loads[0].kind, LoadKind::Pressure(on, p) if on.sides == ["left"] && p.at(&[3.0; 3]) == 1e5)
     );
-    assert!(matches!(&case.loads[1].kind, LoadKind::Body(f) if *f == [0.0, -1e4]));
+    assert!(matches!(&case.loads[1].kind, LoadKind::Body(f, None) if *f == [0.0, -1e4]));
     assert_eq!((case.path.increments, case.path.end), (4, 2.0));
     assert_eq!(
         (&case.sweep.friction[..], &case.sweep.refine[..]),
@@ -206,6 +209,7 @@ fn absent_keys_take_their_documented_defaults() {
     assert_eq!((case.path.increments, case.path.end), (1, 1.0));
     assert!(case.sweep.friction.is_empty() && case.sweep.refine == [1]);
     assert_eq!(case.cracks[0].tip, Tip::None);
+    assert_eq!(case.cracks[0].contact, ContactSpace::Star);
     assert_eq!(case.loads[0].history, History::Ramp);
     let plane = CrackShape::Plane {
         point: [0.0, 0.0, 0.7],

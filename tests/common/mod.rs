@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use stickslip::harness::body::{Body, BodyError, Needs};
 use stickslip::harness::case::{self, Case};
+use stickslip::harness::loading::Loading;
 use stickslip::harness::record::Results;
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
@@ -46,6 +47,8 @@ pub struct Solved {
     pub u: Vec<f64>,
     /// Jump, `dim` per point [m].
     pub jump: Vec<f64>,
+    /// External forces over all unknowns.
+    pub external: Vec<f64>,
 }
 
 impl Solved {
@@ -81,10 +84,9 @@ impl Solved {
         for (f, b) in force.iter_mut().zip(contact_force(&self.body, self.p())) {
             *f -= b;
         }
-        let external = self.body.external_force(1.0);
         let nodes = self.body.mesh.side_nodes(side);
         let rows = nodes.iter().map(|n| n * dim + component);
-        rows.map(|i| force[i] - external[i]).sum()
+        rows.map(|i| force[i] - self.external[i]).sum()
     }
 }
 
@@ -110,6 +112,12 @@ pub fn friction(case: &Case, body: &Body) -> Vec<f64> {
     points.map(|p| case.cracks[p.crack].friction).collect()
 }
 
+/// What acts on a body, with the friction of its first crack.
+pub fn loading<'a>(body: &'a Body, case: &'a Case) -> Loading<'a> {
+    let friction = case.cracks.first().map_or(0.0, |crack| crack.friction);
+    Loading::new(body, case, friction).unwrap_or_else(|e| panic!("{e}\n{}", case.source))
+}
+
 /// The load of a body nothing acts on.
 pub fn no_load(body: &Body) -> Load {
     Load::zero(&body.elastic)
@@ -117,16 +125,23 @@ pub fn no_load(body: &Body) -> Load {
 
 /// Solves the last load of a case in one increment; the method must converge to the tolerance.
 pub fn solve_with(text: &str, name: &str, tolerance: f64) -> Solved {
-    let case = parse(text);
-    let body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    let friction = friction(&case, &body);
+    solve_case(&parse(text), 1, name, tolerance)
+}
+
+/// Solves the last load of a case, refined by a factor, in one increment; the method must converge to the tolerance.
+pub fn solve_case(case: &Case, refine: usize, name: &str, tolerance: f64) -> Solved {
+    let text = &case.source;
+    let body = Body::new(case, refine, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let friction = friction(case, &body);
     let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).unwrap());
     let registered = method(name).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
     let mut enforcement = (registered.build)(&options).unwrap();
+    let loading = loading(&body, case);
+    let last = case.path.increments;
     let increment = Increment {
         system: &system,
-        load: &body.load(case.path.end),
+        load: &loading.at(last),
         start_load: &no_load(&body),
         start: &ContactState::zero(&system),
         index: 0,
@@ -134,14 +149,16 @@ pub fn solve_with(text: &str, name: &str, tolerance: f64) -> Solved {
     };
     let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
     assert_eq!(outcome.status, Status::Converged, "{name}\n{text}");
-    let u = body.all_unknowns(case.path.end, &outcome.state.u);
+    let u = loading.all_unknowns(last, &outcome.state.u);
     let jump = body.jump(&u);
+    let external = loading.external_force(last);
     Solved {
         body,
         system,
         outcome,
         u,
         jump,
+        external,
     }
 }
 
@@ -220,9 +237,12 @@ pub fn plane(min: [f64; 2], max: [f64; 2], cells: [usize; 2], rest: &str) -> Str
     )
 }
 
-/// A straight crack in 2D.
+/// A straight crack in 2D, with edge pairs.
 pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
-    format!("[[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = {friction:?}\ntip = \"{tip}\"\n")
+    format!(
+        "[[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = {friction:?}\ntip = \"{tip}\"\n\
+         contact = \"edge-pairs\"\n"
+    )
 }
 
 /// A support on sides (TOML), with its displacement (TOML).
@@ -235,7 +255,7 @@ pub fn load(on: &str, what: &str) -> String {
     format!("[[load]]\non = \"{on}\"\n{what}\n")
 }
 
-/// A solid box with planes: point, normal, friction.
+/// A solid box with planes: point, normal, friction; edge pairs.
 pub fn solid(
     max: [f64; 3],
     cells: [usize; 3],
@@ -246,7 +266,8 @@ pub fn solid(
         .iter()
         .map(|(point, normal, friction)| {
             format!(
-                "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n"
+                "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n\
+                 contact = \"edge-pairs\"\n"
             )
         })
         .collect();

@@ -10,13 +10,15 @@ use toml::de::DeTable;
 use super::error::{CaseError, Source};
 use super::expect::Runs;
 use super::reader::{Table, Value};
+use super::schema::Scene;
 use super::{Case, Model, schema};
+use crate::analytic::{SOLUTIONS, SolutionSpec};
 
 /// Largest case file read [bytes]; the largest of this project has 8 kB.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Keys of the document itself.
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "title",
     "model",
     "quadrature",
@@ -27,6 +29,7 @@ const KEYS: [&str; 15] = [
     "crack",
     "support",
     "load",
+    "exact",
     "path",
     "sweep",
     "method",
@@ -99,6 +102,18 @@ fn too_large(path: &Path, size: &str) -> CaseError {
 /// # Errors
 /// As for [`read`], from the size on.
 pub fn parse(file: impl Into<PathBuf>, source: impl Into<String>) -> Result<Case, CaseError> {
+    parse_with(file, source, SOLUTIONS)
+}
+
+/// As [`parse`], with closed forms of one's own instead of [`SOLUTIONS`].
+///
+/// # Errors
+/// As for [`parse`].
+pub fn parse_with(
+    file: impl Into<PathBuf>,
+    source: impl Into<String>,
+    solutions: &'static [SolutionSpec],
+) -> Result<Case, CaseError> {
     let (file, text): (PathBuf, String) = (file.into(), source.into());
     if text.len() as u64 > MAX_BYTES {
         return Err(too_large(&file, &format!("{} bytes", text.len())));
@@ -109,7 +124,7 @@ pub fn parse(file: impl Into<PathBuf>, source: impl Into<String>) -> Result<Case
             text: &text,
         };
         let parsed = DeTable::parse(&text).map_err(|e| syntax_error(source, &e))?;
-        read_document(&Table::root(source, parsed.get_ref(), &KEYS)?)?
+        read_document(&Table::root(source, parsed.get_ref(), &KEYS)?, solutions)?
     };
     let name = file
         .file_stem()
@@ -124,7 +139,7 @@ pub fn parse(file: impl Into<PathBuf>, source: impl Into<String>) -> Result<Case
 }
 
 /// Everything the document says; name, file and source are filled in by the caller.
-fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
+fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result<Case, CaseError> {
     let title = root.required("title")?.line()?;
     let model = root.required("model")?.one_of(&[
         ("plane-strain", Model::PlaneStrain),
@@ -150,6 +165,12 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
     let cracks = each(root, "crack", |v| schema::crack(v, dim))?;
     let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
     let mut runs = Runs::new(dim, &frictions, &sweep, &path);
+    let exact = schema::exact(root, solutions, cracks.len())?;
+    let scene = Scene {
+        dim,
+        cracks: cracks.len(),
+        exact: exact.is_some(),
+    };
     let probes = each(root, "probe", |v| runs.probe(v, dim))?;
     Ok(Case {
         name: String::new(),
@@ -160,8 +181,9 @@ fn read_document(root: &Table<'_>) -> Result<Case, CaseError> {
         material,
         mesh,
         cracks,
-        supports: each(root, "support", |v| schema::support(v, dim))?,
-        loads: each(root, "load", |v| schema::load(v, dim))?,
+        supports: each(root, "support", |v| schema::support(v, &scene))?,
+        loads: each(root, "load", |v| schema::load(v, &scene))?,
+        exact,
         quadrature,
         path,
         sweep,

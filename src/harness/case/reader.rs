@@ -312,7 +312,7 @@ impl<'a> Table<'a> {
 
 /// `, did you mean ...?` where one of the names is close.
 fn suggestion(found: &str, names: &[&str]) -> String {
-    // Names of the format have at most 14 letters; nothing much longer can be a slip of the finger.
+    // Names of the format have at most 17 letters; nothing much longer can be a slip of the finger.
     if found.len() > 32 {
         return String::new();
     }

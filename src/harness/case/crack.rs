@@ -1,0 +1,278 @@
+//! `[[crack]]` of a case file: shapes, tip enrichment, contact space.
+
+use super::error::CaseError;
+use super::reader::{Table, Value};
+use super::schema::friction;
+use super::{ContactSpace, CrackShape, CrackSpec, Tip};
+
+/// Most points of a polyline: all pairs of its segments are compared.
+const MAX_POINTS: usize = 1000;
+
+/// Sine of the smallest angle between two directions that are told apart, also from a turn of 180 degrees.
+const PARALLEL: f64 = 1e-9;
+
+/// Keys that say where a crack lies.
+const SHAPES: [&str; 5] = ["points_m", "arc", "plane", "disc", "ellipse"];
+
+/// `[[crack]]`.
+pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError> {
+    let [points, arc_key, plane_key, disc_key, ellipse_key] = SHAPES;
+    let table = value.table(&[
+        points,
+        arc_key,
+        plane_key,
+        disc_key,
+        ellipse_key,
+        "friction",
+        "tip",
+        "contact",
+    ])?;
+    let (key, geometry) = table.exactly_one(&SHAPES)?;
+    let flat = key == points || key == arc_key;
+    if flat != (dim == 2) {
+        let (allowed, message) = if flat {
+            (
+                "plane, disc or ellipse in a solid",
+                format!("`{key}` needs a 2D model"),
+            )
+        } else {
+            (
+                "points_m or arc in 2D",
+                format!("`{key}` needs model = \"solid\""),
+            )
+        };
+        return Err(geometry.refuse(allowed, message));
+    }
+    let shape = match key {
+        "points_m" => polyline(geometry)?,
+        "arc" => arc(geometry)?,
+        "plane" => plane(geometry)?,
+        "disc" => disc(geometry)?,
+        _ => ellipse(geometry)?,
+    };
+    let tip_value = table.get("tip");
+    Ok(CrackSpec {
+        span: table.span(),
+        geometry_span: geometry.span(),
+        tip: tip(tip_value, &shape)?,
+        tip_span: tip_value.map_or(table.span(), |v| v.span()),
+        geometry: shape,
+        friction: friction(table.required("friction")?)?,
+        contact: contact(&table)?,
+    })
+}
+
+/// `tip`; a plane goes through the whole solid and has none.
+fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
+    let endless = matches!(shape, CrackShape::Plane { .. });
+    let Some(value) = value else {
+        return Ok(if endless { Tip::None } else { Tip::Branch });
+    };
+    let tip = if value.any_table().is_ok() {
+        let radius = value
+            .table(&["branch_radius_m"])?
+            .required("branch_radius_m")?;
+        Tip::Radius(radius.number_if("branch_radius_m > 0", |r| r > 0.0)?)
+    } else if value.string().is_ok() {
+        value.one_of(&[("none", Tip::None), ("branch", Tip::Branch)])?
+    } else {
+        return Err(value.refuse("none, branch or { branch_radius_m = R }", "wrong type"));
+    };
+    if endless && tip != Tip::None {
+        return Err(value.refuse(
+            "none",
+            "a plane goes through the whole solid and has no tip",
+        ));
+    }
+    Ok(tip)
+}
+
+/// `contact`.
+fn contact(table: &Table<'_>) -> Result<ContactSpace, CaseError> {
+    let spaces = [
+        ContactSpace::EdgePairs,
+        ContactSpace::Facet,
+        ContactSpace::Star,
+        ContactSpace::P0,
+    ];
+    let named = spaces.map(|space| (space.name(), space));
+    table
+        .get("contact")
+        .map_or(Ok(ContactSpace::Star), |v| v.one_of(&named))
+}
+
+/// `points_m`: a chain of segments that neither folds back nor touches itself.
+fn polyline(value: Value<'_>) -> Result<CrackShape, CaseError> {
+    let entries = value.list()?;
+    if !(2..=MAX_POINTS).contains(&entries.len()) {
+        return Err(value.refuse(
+            format_args!("2 to {MAX_POINTS} points"),
+            format_args!("{} points", entries.len()),
+        ));
+    }
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for entry in entries {
+        let x = entry.numbers(2)?;
+        let x = [x[0], x[1]];
+        if let Some(&last) = points.last() {
+            let d = difference(last, x);
+            let length = d[0].hypot(d[1]);
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(entry.refuse(
+                    "a point distinct from the one before, at a finite distance",
+                    "crack without length",
+                ));
+            }
+            if let Some(&before) = points.len().checked_sub(2).and_then(|i| points.get(i)) {
+                let e = difference(before, last);
+                let scale = length * e[0].hypot(e[1]);
+                if e[0] * d[0] + e[1] * d[1] < 0.0 && cross(e, d).abs() <= PARALLEL * scale {
+                    return Err(entry.refuse(
+                        "a turn of less than 180 degrees",
+                        "the crack folds back on itself",
+                    ));
+                }
+                // The segment before shares its end with this one and cannot meet it elsewhere.
+                let earlier = points.windows(2).take(points.len() - 2);
+                if earlier.clone().any(|s| meet([s[0], s[1]], [last, x])) {
+                    return Err(entry.refuse(
+                        "a chain of segments that meet at their ends only",
+                        "the crack crosses or touches itself",
+                    ));
+                }
+            }
+        }
+        points.push(x);
+    }
+    Ok(CrackShape::Polyline(points))
+}
+
+fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [b[0] - a[0], b[1] - a[1]]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Whether two segments have a common point.
+fn meet([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
+    let side = |a, b, x| cross(difference(a, b), difference(a, x));
+    let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
+    if apart(side(a, b, p), side(a, b, q)) || apart(side(p, q, a), side(p, q, b)) {
+        return false;
+    }
+    // What remains meets, or lies on one line: there the boxes decide.
+    (0..2).all(|k| a[k].min(b[k]) <= p[k].max(q[k]) && p[k].min(q[k]) <= a[k].max(b[k]))
+}
+
+/// `arc`.
+fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
+    let table = value.table(&["centre_m", "radius_m", "from_deg", "to_deg"])?;
+    let centre = table.required("centre_m")?.numbers(2)?;
+    let radius = table
+        .required("radius_m")?
+        .number_if("radius_m > 0", |r| r > 0.0)?;
+    let angle = |key: &str| {
+        let allowed = format!("-360 <= {key} <= 360");
+        table
+            .required(key)?
+            .number_if(&allowed, |a| a.abs() <= 360.0)
+    };
+    let (from, to) = (angle("from_deg")?, angle("to_deg")?);
+    if from == to || (to - from).abs() > 360.0 {
+        return Err(table.required("to_deg")?.refuse(
+            format_args!("more than 0 and at most 360 degrees from from_deg = {from}"),
+            format_args!("an arc over {} degrees", to - from),
+        ));
+    }
+    Ok(CrackShape::Arc {
+        centre: [centre[0], centre[1]],
+        radius,
+        from: from.to_radians(),
+        to: to.to_radians(),
+    })
+}
+
+/// `plane`.
+fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
+    let table = value.table(&["point_m", "normal"])?;
+    let point = table.required("point_m")?.numbers(3)?;
+    Ok(CrackShape::Plane {
+        point: [point[0], point[1], point[2]],
+        normal: direction(table.required("normal")?)?,
+    })
+}
+
+/// `disc`: an ellipse with equal half axes, the first one along the body axis least along the normal.
+fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
+    let table = value.table(&["centre_m", "normal", "radius_m"])?;
+    let centre = table.required("centre_m")?.numbers(3)?;
+    let normal = direction(table.required("normal")?)?;
+    let radius = table
+        .required("radius_m")?
+        .number_if("radius_m > 0", |r| r > 0.0)?;
+    // The first of equals, so that a normal along z has its axis along x.
+    let mut least = 0;
+    for k in 1..3 {
+        if normal[k].abs() < normal[least].abs() - 1e-12 {
+            least = k;
+        }
+    }
+    let mut axis = [0.0; 3];
+    axis[least] = 1.0;
+    Ok(CrackShape::Ellipse {
+        centre: [centre[0], centre[1], centre[2]],
+        normal,
+        axis: normalised(perpendicular(axis, normal)),
+        half_axes: [radius; 2],
+    })
+}
+
+/// `ellipse`.
+fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
+    let table = value.table(&["centre_m", "normal", "axis", "half_axes_m"])?;
+    let centre = table.required("centre_m")?.numbers(3)?;
+    let normal = direction(table.required("normal")?)?;
+    let given = table.required("axis")?;
+    let axis = perpendicular(direction(given)?, normal);
+    if axis.iter().map(|v| v * v).sum::<f64>().sqrt() <= PARALLEL {
+        return Err(given.refuse(
+            "a direction that is not that of the normal",
+            "axis parallel to the normal",
+        ));
+    }
+    let mut half_axes = [0.0; 2];
+    let entries = table.required("half_axes_m")?.list_of(2)?;
+    for (half, entry) in half_axes.iter_mut().zip(entries) {
+        *half = entry.number_if("half_axes_m > 0, each", |a| a > 0.0)?;
+    }
+    Ok(CrackShape::Ellipse {
+        centre: [centre[0], centre[1], centre[2]],
+        normal,
+        axis: normalised(axis),
+        half_axes,
+    })
+}
+
+/// The unit vector along a given one.
+fn direction(value: Value<'_>) -> Result<[f64; 3], CaseError> {
+    let v = value.numbers(3)?;
+    // Scaled first, so that tiny and huge vectors are not lost in the squares.
+    let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    if largest == 0.0 {
+        return Err(value.refuse("a vector that is not zero", "vector without direction"));
+    }
+    Ok(normalised([v[0] / largest, v[1] / largest, v[2] / largest]))
+}
+
+fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|x| x / length)
+}
+
+/// The part of v perpendicular to the unit vector n.
+fn perpendicular(v: [f64; 3], n: [f64; 3]) -> [f64; 3] {
+    let along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+    [0, 1, 2].map(|k| v[k] - along * n[k])
+}

@@ -1,0 +1,440 @@
+//! Supports and loads of a case file: where they act, what they prescribe, how they evolve.
+
+use super::error::CaseError;
+use super::reader::{Table, Value};
+use super::{Condition, Span};
+
+/// The part of the boundary a support or load acts on.
+#[derive(Debug, Clone)]
+pub struct Region {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Names of box sides (`left right bottom top`; 3D `left right` = x, `front back` = y, `bottom top` = z: minimum,
+    /// maximum). One name: that side. Two names: the edge (2D: the corner) both share. Three: the corner in 3D.
+    pub sides: Vec<String>,
+    /// Keeps only the nodes whose coordinates fulfil the condition.
+    pub condition: Option<Condition>,
+}
+
+/// How a support or load evolves over time: value = factor(t) × stated value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum History {
+    /// factor = t / end.
+    Ramp,
+    /// factor = 1 at every increment.
+    Constant,
+    /// Piecewise linear through (t, factor) points, strictly increasing t, constant beyond the ends.
+    Points(Vec<[f64; 2]>),
+}
+
+impl History {
+    /// Factor at time `t` of a path that lasts until `end`.
+    pub fn factor(&self, t: f64, end: f64) -> f64 {
+        match self {
+            History::Ramp => t / end,
+            History::Constant => 1.0,
+            History::Points(points) => {
+                let next = points.partition_point(|p| p[0] <= t);
+                match (next.checked_sub(1).map(|i| points[i]), points.get(next)) {
+                    (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (t - a[0]) / (b[0] - a[0]),
+                    (Some(a), None) => a[1],
+                    (None, Some(b)) => b[1],
+                    (None, None) => 0.0,
+                }
+            }
+        }
+    }
+}
+
+/// Prescribed displacement.
+#[derive(Debug, Clone)]
+pub struct SupportSpec {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// Where it acts.
+    pub on: Region,
+    /// Per component: prescribed value or free; `dim` entries.
+    pub displacement: Vec<Option<Amount>>,
+    /// Evolution of the stated numbers; values of the closed form follow the history of `[exact]`.
+    pub history: History,
+}
+
+/// A prescribed component of the displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amount {
+    /// The same everywhere, times the history factor [m].
+    Number(f64),
+    /// The closed form at the node.
+    Exact,
+}
+
+/// A load.
+#[derive(Debug, Clone)]
+pub struct LoadSpec {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// What it is and where it acts.
+    pub kind: LoadKind,
+    /// Evolution of stated numbers; values of the closed form follow the history of `[exact]`.
+    pub history: History,
+}
+
+/// Kinds of load. Vectors have `dim` entries.
+#[derive(Debug, Clone)]
+pub enum LoadKind {
+    /// Force per area on a side [Pa].
+    Traction(Region, Vec<Linear>),
+    /// Force per area σ n of the closed form on a side.
+    ExactTraction(Region),
+    /// Pressure on a side, positive towards the body [Pa].
+    Pressure(Region, Linear),
+    /// Force per length on the edge of two sides, solid only [N/m].
+    Line(Region, Vec<f64>),
+    /// Force per volume, in the whole body or on one side of its only crack [N/m³].
+    Body(Vec<f64>, Option<CrackSide>),
+    /// Force per volume −div σ of the closed form in the whole body.
+    ExactBody,
+    /// Stress σ₀ the body has without any strain: σ = C ε + σ₀, tension positive; 2D: in-plane, other entries 0 [Pa].
+    InitialStress([[f64; 3]; 3]),
+}
+
+/// A number that varies linearly in space: at_origin + gradient · x, x the place in the undeformed body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linear {
+    /// Value at x = 0 [Pa].
+    pub at_origin: f64,
+    /// Slope along the axes [Pa/m]; third entry 0 in 2D.
+    pub gradient: [f64; 3],
+}
+
+impl Linear {
+    /// Value at a place.
+    pub fn at(&self, x: &[f64; 3]) -> f64 {
+        let slope: f64 = self.gradient.iter().zip(x).map(|(g, x)| g * x).sum();
+        self.at_origin + slope
+    }
+}
+
+/// One side of the only crack.
+#[derive(Debug, Clone)]
+pub struct CrackSide {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// +1: side 1, −1: side 2.
+    pub side: f64,
+}
+
+/// What a support or load may refer to.
+pub(super) struct Scene {
+    /// Space dimension.
+    pub(super) dim: usize,
+    /// Number of cracks.
+    pub(super) cracks: usize,
+    /// Whether the case names a closed form.
+    pub(super) exact: bool,
+}
+
+/// Axis and name of the sides of a box.
+fn sides(dim: usize) -> &'static [(&'static str, usize)] {
+    match dim {
+        2 => &[("left", 0), ("right", 0), ("bottom", 1), ("top", 1)],
+        _ => &[
+            ("left", 0),
+            ("right", 0),
+            ("front", 1),
+            ("back", 1),
+            ("bottom", 2),
+            ("top", 2),
+        ],
+    }
+}
+
+/// Names of the sides of a box.
+pub(super) fn side_names(dim: usize) -> Vec<&'static str> {
+    sides(dim).iter().map(|s| s.0).collect()
+}
+
+/// `on` and `where` of a support or load; `counts` says how many sides may be named.
+fn region(
+    table: &Table<'_>,
+    dim: usize,
+    counts: std::ops::RangeInclusive<usize>,
+) -> Result<Region, CaseError> {
+    let on = table.required("on")?;
+    let names = if on.string().is_ok() {
+        vec![on]
+    } else {
+        on.list()?
+    };
+    let mut taken = Vec::new();
+    for name in &names {
+        let (side, axis) =
+            name.one_of(&sides(dim).iter().map(|s| (s.0, *s)).collect::<Vec<_>>())?;
+        if taken.iter().any(|(_, other)| *other == axis) {
+            return Err(name.refuse(
+                "sides that meet in an edge or corner",
+                "these sides have no common points",
+            ));
+        }
+        taken.push((side, axis));
+    }
+    if !counts.contains(&taken.len()) {
+        let allowed = match (*counts.start(), *counts.end()) {
+            (1, 1) => "exactly one side".to_string(),
+            (2, 2) => "the two sides that meet in the edge".to_string(),
+            (low, high) => format!("{low} to {high} sides"),
+        };
+        return Err(on.refuse(allowed, format_args!("{} sides", taken.len())));
+    }
+    Ok(Region {
+        span: on.span(),
+        sides: taken
+            .into_iter()
+            .map(|(side, _)| side.to_string())
+            .collect(),
+        condition: table.get("where").map(|v| condition(v, dim)).transpose()?,
+    })
+}
+
+fn condition(value: Value<'_>, dim: usize) -> Result<Condition, CaseError> {
+    let text = value.string()?;
+    Condition::parse(text, dim).map_err(|e| value.refuse_part(text, e.at, e.allowed, e.message))
+}
+
+/// `history` of a support, a load or the closed form.
+pub(super) fn history(table: &Table<'_>) -> Result<History, CaseError> {
+    let Some(value) = table.get("history") else {
+        return Ok(History::Ramp);
+    };
+    if value.string().is_ok() {
+        return match value.one_of(&[("ramp", true), ("constant", false)])? {
+            true => Ok(History::Ramp),
+            false => Ok(History::Constant),
+        };
+    }
+    let allowed = "ramp, constant, or points [[t, factor], ...]";
+    let list = value
+        .list()
+        .map_err(|e| value.refuse(allowed, e.message()))?;
+    if list.is_empty() {
+        return Err(value.refuse("at least one point [t, factor]", "history without points"));
+    }
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for entry in list {
+        let pair = entry.list_of(2)?;
+        let previous = points.last().map(|p| p[0]);
+        let allowed = previous.map_or("t >= 0".to_string(), |t| {
+            format!("t > {t} (strictly increasing)")
+        });
+        let t = pair[0].number_if(&allowed, |t| previous.map_or(t >= 0.0, |p| t > p))?;
+        points.push([t, pair[1].number()?]);
+    }
+    Ok(History::Points(points))
+}
+
+/// Whether a value asks for the closed form, which the case must then name.
+fn is_exact(value: &Value<'_>, scene: &Scene) -> Result<bool, CaseError> {
+    match value.string() {
+        Ok("exact") if scene.exact => Ok(true),
+        Ok("exact") => Err(value.refuse(
+            "numbers, or \"exact\" in a case with an [exact] table",
+            "no closed form is named",
+        )),
+        _ => Ok(false),
+    }
+}
+
+/// `history` of what takes all its values from the closed form: it has no other than that of `[exact]`.
+fn no_history(table: &Table<'_>) -> Result<History, CaseError> {
+    match table.get("history") {
+        None => Ok(History::Ramp),
+        Some(value) => Err(value.refuse(
+            "no history here but one in [exact]",
+            "all values follow the history of the closed form",
+        )),
+    }
+}
+
+/// `[[support]]`.
+pub(super) fn support(value: Value<'_>, scene: &Scene) -> Result<SupportSpec, CaseError> {
+    let dim = scene.dim;
+    let table = value.table(&["on", "where", "displacement_m", "history"])?;
+    let on = region(&table, dim, 1..=dim)?;
+    let given = table.required("displacement_m")?;
+    let component = |v: &Value<'_>| match v.string() {
+        Ok("free") => Ok(None),
+        Ok(_) if is_exact(v, scene)? => Ok(Some(Amount::Exact)),
+        Ok(_) => Err(v.refuse("a number [m], \"free\" or \"exact\"", "unknown name")),
+        Err(_) => v
+            .number_if("a finite number [m], \"free\" or \"exact\"", |_| true)
+            .map(|number| Some(Amount::Number(number))),
+    };
+    let displacement = if given.string().is_ok() {
+        if !is_exact(&given, scene)? {
+            return Err(given.refuse(format_args!("{dim} entries or \"exact\""), "unknown name"));
+        }
+        vec![Some(Amount::Exact); dim]
+    } else {
+        given
+            .list_of(dim)?
+            .iter()
+            .map(component)
+            .collect::<Result<Vec<_>, _>>()?
+    };
+    if displacement.iter().all(Option::is_none) {
+        return Err(given.refuse("at least one number", "nothing is prescribed"));
+    }
+    let all_exact = (displacement.iter().flatten()).all(|amount| *amount == Amount::Exact);
+    Ok(SupportSpec {
+        span: table.span(),
+        on,
+        displacement,
+        history: if all_exact {
+            no_history(&table)?
+        } else {
+            history(&table)?
+        },
+    })
+}
+
+/// Keys of the kinds of load.
+const KINDS: [&str; 5] = [
+    "traction_pa",
+    "pressure_pa",
+    "line_n_per_m",
+    "body_n_per_m3",
+    "initial_stress_pa",
+];
+
+/// `[[load]]`.
+pub(super) fn load(value: Value<'_>, scene: &Scene) -> Result<LoadSpec, CaseError> {
+    let dim = scene.dim;
+    let [traction, pressure, line, body, initial] = KINDS;
+    let table = value.table(&[
+        "on",
+        "where",
+        traction,
+        pressure,
+        line,
+        body,
+        initial,
+        "crack_side",
+        "history",
+    ])?;
+    let (key, v) = table.exactly_one(&KINDS)?;
+    if let Some(place) = table.get("crack_side").filter(|_| key != body) {
+        return Err(place.refuse(
+            "crack_side beside body_n_per_m3 only",
+            format_args!("`{key}` does not tell the sides of a crack apart"),
+        ));
+    }
+    let kind = match key {
+        "traction_pa" if is_exact(&v, scene)? => {
+            LoadKind::ExactTraction(region(&table, dim, 1..=1)?)
+        }
+        "traction_pa" => {
+            let entries = v.list_of(dim)?;
+            let vector = entries.iter().map(|v| linear(v, dim));
+            LoadKind::Traction(
+                region(&table, dim, 1..=1)?,
+                vector.collect::<Result<_, _>>()?,
+            )
+        }
+        "pressure_pa" => LoadKind::Pressure(region(&table, dim, 1..=1)?, linear(&v, dim)?),
+        "line_n_per_m" if dim == 2 => {
+            return Err(v.refuse(
+                "traction_pa or pressure_pa in 2D",
+                "a line load needs model = \"solid\"",
+            ));
+        }
+        "line_n_per_m" => LoadKind::Line(region(&table, dim, 2..=2)?, v.numbers(dim)?),
+        _ => {
+            if let Some(place) = table.get("on").or(table.get("where")) {
+                return Err(place.refuse(
+                    "neither `on` nor `where`",
+                    format_args!("`{key}` acts in the whole body"),
+                ));
+            }
+            inside(&table, key, v, scene)?
+        }
+    };
+    let history = match kind {
+        LoadKind::ExactTraction(_) | LoadKind::ExactBody => no_history(&table)?,
+        _ => history(&table)?,
+    };
+    Ok(LoadSpec {
+        span: table.span(),
+        kind,
+        history,
+    })
+}
+
+/// Body forces and initial stresses.
+fn inside(
+    table: &Table<'_>,
+    key: &str,
+    v: Value<'_>,
+    scene: &Scene,
+) -> Result<LoadKind, CaseError> {
+    let side = table.get("crack_side");
+    if key == "initial_stress_pa" {
+        return initial_stress(&v, scene.dim);
+    }
+    if is_exact(&v, scene)? {
+        return match side {
+            None => Ok(LoadKind::ExactBody),
+            Some(side) => Err(side.refuse(
+                "no crack_side beside \"exact\"",
+                "the closed form tells the sides apart itself",
+            )),
+        };
+    }
+    let side = side.map(|side| {
+        let number = side.integer(1..=2)?;
+        if scene.cracks != 1 {
+            return Err(side.refuse(
+                "a case with exactly one [[crack]]",
+                format_args!("{} cracks", scene.cracks),
+            ));
+        }
+        Ok(CrackSide {
+            span: side.span(),
+            side: if number == 1 { 1.0 } else { -1.0 },
+        })
+    });
+    Ok(LoadKind::Body(v.numbers(scene.dim)?, side.transpose()?))
+}
+
+/// `initial_stress_pa`: xx, yy, xy; in a solid xx, yy, zz, yz, xz, xy.
+fn initial_stress(value: &Value<'_>, dim: usize) -> Result<LoadKind, CaseError> {
+    let places: &[(usize, usize)] = if dim == 2 {
+        &[(0, 0), (1, 1), (0, 1)]
+    } else {
+        &[(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+    };
+    let mut stress = [[0.0; 3]; 3];
+    for (number, &(a, b)) in value.numbers(places.len())?.into_iter().zip(places) {
+        stress[a][b] = number;
+        stress[b][a] = number;
+    }
+    Ok(LoadKind::InitialStress(stress))
+}
+
+/// A number, or a table that lets it vary linearly in space.
+fn linear(value: &Value<'_>, dim: usize) -> Result<Linear, CaseError> {
+    let allowed = "a finite number [Pa] or { at_origin_pa, gradient_pa_per_m }";
+    if value.any_table().is_err() {
+        return Ok(Linear {
+            at_origin: value.number_if(allowed, |_| true)?,
+            gradient: [0.0; 3],
+        });
+    }
+    let table = value.table(&["at_origin_pa", "gradient_pa_per_m"])?;
+    let mut gradient = [0.0; 3];
+    let given = table.required("gradient_pa_per_m")?.numbers(dim)?;
+    gradient[..dim].copy_from_slice(&given);
+    Ok(Linear {
+        at_origin: table.required("at_origin_pa")?.number()?,
+        gradient,
+    })
+}

@@ -1,0 +1,69 @@
+//! Which side of the only crack nodes and points lie on: what closed forms and one-sided loads ask for.
+//!
+//! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
+
+use crate::fem::Point;
+use crate::harness::case::Case;
+use crate::xfem::cell_matrix::CellIntegrator;
+use crate::xfem::crack::Crack;
+use crate::xfem::cut::Side;
+
+/// Sides of the first crack of a case, in a mesh.
+pub struct Sides {
+    crack: Crack,
+    nodes: Vec<Side>,
+}
+
+impl Sides {
+    /// Sides of all nodes; `None` for a body without crack.
+    pub fn new(case: &Case, integrator: &CellIntegrator<'_>) -> Option<Self> {
+        let mesh = integrator.mesh;
+        if let Some(crack) = integrator.cracks.first() {
+            let nodes = (0..mesh.nodes.len()).map(|node| crack.side_of(node));
+            return Some(Sides {
+                nodes: nodes.collect(),
+                crack: crack.clone(),
+            });
+        }
+        // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
+        let crack = Crack::new(0, case.cracks.first()?, mesh);
+        let mut nodes: Vec<Side> = (0..mesh.nodes.len()).map(|n| crack.side_of(n)).collect();
+        for cell in 0..mesh.cell_count() {
+            let side = sign(crack.distance(&mesh.centre(cell)));
+            for &node in mesh.cell(cell) {
+                if crack.phi[node as usize] == 0.0 {
+                    nodes[node as usize] = side;
+                }
+            }
+        }
+        Some(Sides { crack, nodes })
+    }
+
+    /// The crack.
+    pub fn crack(&self) -> &Crack {
+        &self.crack
+    }
+
+    /// Side of a node; of one on a crack through cells side 1, as its shifted Heaviside function has it.
+    pub fn of_node(&self, node: usize) -> Side {
+        self.nodes[node]
+    }
+
+    /// Side of a point of a cell; `split` is the side where the crack splits the cell.
+    pub fn of_point(
+        &self,
+        integrator: &CellIntegrator<'_>,
+        cell: usize,
+        x: &Point,
+        split: Side,
+    ) -> Side {
+        match integrator.enrichment.split[cell] {
+            Some(_) => split,
+            None => sign(self.crack.distance(x)),
+        }
+    }
+}
+
+fn sign(distance: f64) -> Side {
+    if distance >= 0.0 { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,486 @@
+//! Supports and loads that take their values from a closed form, through the whole chain.
+
+mod common;
+
+use assert_cmd::Command;
+use common::*;
+use stickslip::analytic::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use stickslip::fem::elasticity::Lame;
+use stickslip::harness::body::{Body, BodyError, Needs};
+use stickslip::harness::case::{self, Amount, Case, CrackShape};
+use stickslip::harness::loading::Loading;
+use stickslip::harness::sides::Sides;
+use stickslip_methods::Load;
+
+type Point = [f64; 3];
+
+/// Closed forms made for these tests.
+static FORMS: &[SolutionSpec] = &[
+    SolutionSpec {
+        name: "two-maps",
+        summary: "an affine map on each side",
+        parameters: &[],
+        build: |_, _| Ok(Box::new(TwoMaps)),
+    },
+    SolutionSpec {
+        name: "sliding",
+        summary: "uniform stress at the limit of friction, rigid slip along x",
+        parameters: &[
+            ParameterSpec {
+                name: "pressure_pa",
+                summary: "pressure",
+                default: None,
+            },
+            ParameterSpec {
+                name: "slip_m",
+                summary: "slip at factor 1",
+                default: Some(1e-3),
+            },
+        ],
+        build: sliding,
+    },
+    SolutionSpec {
+        name: "smooth",
+        summary: "cubic displacement without jump, pressed onto the crack",
+        parameters: &[],
+        build: |setting, _| {
+            let lame = Lame::new(setting.material, setting.model);
+            let last = setting.model.dim() - 1;
+            Ok(Box::new(Smooth { lame, last }))
+        },
+    },
+];
+
+/// u = factor × (A x + c), other A and c on each side.
+#[derive(Clone, Copy)]
+struct TwoMaps;
+
+fn map(x: &Point, side: f64) -> Point {
+    let a = if side > 0.0 {
+        [[0.3, -0.2, 0.5], [0.7, 0.1, -0.4], [-0.6, 0.2, 0.9]]
+    } else {
+        [[-0.1, 0.4, 0.2], [0.05, -0.8, 0.3], [0.15, -0.35, 0.45]]
+    };
+    let c = [0.2 * side, 0.5 - 0.1 * side, -0.3 * side];
+    [0, 1, 2].map(|k| c[k] + (0..3).map(|l| a[k][l] * x[l]).sum::<f64>())
+}
+
+impl Solution for TwoMaps {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        match factors.last() {
+            Some(&factor) if factor < 2.0 => Ok(Box::new(Scaled(factor))),
+            _ => Err("factors are below 2".into()),
+        }
+    }
+}
+
+struct Scaled(f64);
+
+impl Field for Scaled {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        map(x, side).map(|u| self.0 * u)
+    }
+    fn stress(&self, _: &Point, _: f64) -> [Point; 3] {
+        [[0.0; 3]; 3]
+    }
+    /// Degree 3 in x, other on each side.
+    fn body_force(&self, x: &Point, side: f64) -> Point {
+        [x[0].powi(3), side * x[0] * x[1], 1.0 + side]
+    }
+    fn traction(&self, _: &Point) -> Point {
+        [0.0; 3]
+    }
+    fn jump(&self, _: &Point) -> Point {
+        [0.0; 3]
+    }
+}
+
+/// σ_yy = −p, σ_xy = μ p, slip along +x: force on side 1 is (p, −μ p), against the slip.
+struct Sliding {
+    strain: [[f64; 2]; 2],
+    pressure: f64,
+    friction: f64,
+    slip: f64,
+}
+
+fn sliding(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let CrackShape::Polyline(points) = setting.crack else {
+        return Err("the crack must be a polyline".into());
+    };
+    if points[0][1] != points[1][1] {
+        return Err("the crack must be horizontal".into());
+    }
+    assert_eq!(setting.body, [[0.0; 3], [1.0, 1.0, 0.0]]);
+    let (e, nu) = (setting.material.young, setting.material.poisson);
+    let (p, mu) = (values[0], setting.friction);
+    // Plane strain, σ_xx = 0.
+    let shear = mu * p * (1.0 + nu) / e;
+    let (xx, yy) = (p * nu * (1.0 + nu) / e, -p * (1.0 - nu * nu) / e);
+    Ok(Box::new(Sliding {
+        strain: [[xx, shear], [shear, yy]],
+        pressure: p,
+        friction: mu,
+        slip: values[1],
+    }))
+}
+
+impl Solution for Sliding {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        if factors.windows(2).any(|w| w[1] < w[0]) {
+            return Err("slip must not turn back".into());
+        }
+        let slip = self.slip * factors.last().unwrap();
+        Ok(Box::new(Sliding { slip, ..*self }))
+    }
+}
+
+impl Field for Sliding {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let [[xx, xy], [yx, yy]] = self.strain;
+        [
+            xx * x[0] + xy * x[1] + 0.5 * side * self.slip,
+            yx * x[0] + yy * x[1],
+            0.0,
+        ]
+    }
+    fn stress(&self, _: &Point, _: f64) -> [Point; 3] {
+        let shear = self.friction * self.pressure;
+        [[0.0, shear, 0.0], [shear, -self.pressure, 0.0], [0.0; 3]]
+    }
+    fn traction(&self, _: &Point) -> Point {
+        [self.pressure, -self.friction * self.pressure, 0.0]
+    }
+    fn jump(&self, _: &Point) -> Point {
+        [0.0, self.slip, 0.0]
+    }
+}
+
+/// u_x = k x² l, u_y = k y l (solid), u_l = −e l + k x l² with l the last coordinate: pressed, and without jump.
+#[derive(Clone, Copy)]
+struct Smooth {
+    lame: Lame,
+    last: usize,
+}
+
+const K: f64 = 1e-3;
+const PRESSED: f64 = 2e-2;
+
+impl Solution for Smooth {
+    fn at(&self, _: &[f64]) -> Result<Box<dyn Field>, String> {
+        Ok(Box::new(*self))
+    }
+}
+
+impl Field for Smooth {
+    fn displacement(&self, x: &Point, _: f64) -> Point {
+        let l = x[self.last];
+        let mut u = [K * x[0] * x[0] * l, K * x[1] * l, 0.0];
+        u[self.last] = -PRESSED * l + K * x[0] * l * l;
+        u
+    }
+    fn stress(&self, x: &Point, _: f64) -> [Point; 3] {
+        let (n, l) = (self.last, x[self.last]);
+        let mut g = [[0.0; 3]; 3];
+        g[0][0] = 2.0 * K * x[0] * l;
+        g[0][n] = K * x[0] * x[0];
+        if n == 2 {
+            (g[1][1], g[1][2]) = (K * l, K * x[1]);
+        }
+        g[n][0] = K * l * l;
+        g[n][n] = -PRESSED + 2.0 * K * x[0] * l;
+        let trace = g[0][0] + g[1][1] + g[2][2];
+        let mut s = [[0.0; 3]; 3];
+        for a in 0..=n {
+            for b in 0..=n {
+                s[a][b] = self.lame.mu * (g[a][b] + g[b][a]);
+            }
+            s[a][a] += self.lame.lambda * trace;
+        }
+        s
+    }
+    /// Central differences: exact for a quadratic stress.
+    fn body_force(&self, x: &Point, side: f64) -> Point {
+        let step = 1e-2;
+        let mut b = [0.0; 3];
+        for k in 0..=self.last {
+            let (mut p, mut m) = (*x, *x);
+            p[k] += step;
+            m[k] -= step;
+            let (p, m) = (self.stress(&p, side), self.stress(&m, side));
+            for a in 0..=self.last {
+                b[a] -= (p[a][k] - m[a][k]) / (2.0 * step);
+            }
+        }
+        b
+    }
+    fn traction(&self, _: &Point) -> Point {
+        [0.0; 3]
+    }
+    fn jump(&self, _: &Point) -> Point {
+        [0.0; 3]
+    }
+}
+
+fn exact_case(text: &str) -> Case {
+    case::parse_with("test.toml", text, FORMS).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn all_sides(dim: usize, displacement: &str) -> String {
+    clamped(dim).replace(if dim == 2 { "[0, 0]" } else { "[0, 0, 0]" }, displacement)
+}
+
+/// Goal: on supported sides both faces of a crack that leaves there move as the closed form says, wherever it cuts: an
+/// affine map per side is reproduced all along the side, on both sides of the crack, at every increment.
+/// Tolerance: rounding of sums of terms of order one.
+#[test]
+fn prescribed_sides_follow_the_closed_form_on_both_faces() {
+    let exact = "[exact]\nsolution = \"two-maps\"\n[path]\nincrements = 3\n";
+    let flat = |p: [f64; 2], q: [f64; 2]| {
+        let rest = crack(p, q, 0.3, "none") + exact + &all_sides(2, "\"exact\"");
+        plane([0.0, 0.0], [3.0, 3.0], [6, 6], &rest)
+    };
+    let block = |point: Point, normal: Point| {
+        let rest = exact.to_owned() + &all_sides(3, "[\"exact\", \"exact\", \"exact\"]");
+        solid([3.0, 3.0, 3.0], [3, 3, 3], &[(point, normal, 0.3)], &rest)
+    };
+    for (name, text) in [
+        ("straight", flat([-1.0, 1.6], [4.0, 1.6])),
+        ("reversed", flat([4.0, 1.6], [-1.0, 1.6])),
+        ("oblique", flat([-1.0, 0.3], [4.0, 2.6])),
+        ("through nodes", flat([-1.0, -1.0], [4.0, 4.0])),
+        ("on cell edges", flat([-1.0, 1.5], [4.0, 1.5])),
+        ("plane", block([0.0, 0.0, 1.7], [0.0, 0.0, 1.0])),
+        ("oblique plane", block([1.4, 1.6, 1.5], [1.0, 0.3, 2.0])),
+        ("plane on facets", block([0.0, 0.0, 2.0], [0.0, 0.0, -1.0])),
+    ] {
+        let case = exact_case(&text);
+        let body = Body::new(&case, 1, Needs::default()).unwrap();
+        let loading = loading(&body, &case);
+        let integrator = body.integrator();
+        let sides = Sides::new(&case, &integrator).unwrap();
+        let mut seen = [0, 0];
+        for increment in 1..=3 {
+            let factor = increment as f64 / 3.0;
+            let u = loading.prescribed_displacement(increment);
+            for facets in body.mesh.sides.values() {
+                for facet in facets {
+                    let nodes: Vec<Point> = body
+                        .mesh
+                        .facet_nodes(*facet)
+                        .map(|n| body.mesh.nodes[n])
+                        .collect();
+                    for (s, t) in [(0.1, 0.2), (0.5, 0.55), (0.85, 0.3), (0.97, 0.92)] {
+                        // A point inside the facet.
+                        let opposite = nodes.len() - 1;
+                        let x = [0, 1, 2].map(|a| {
+                            let along = nodes[0][a] + s * (nodes[1][a] - nodes[0][a]);
+                            match opposite {
+                                1 => along,
+                                _ => along + t * (nodes[opposite][a] - nodes[0][a]),
+                            }
+                        });
+                        let distance = sides.crack().distance(&x);
+                        if distance.abs() < 1e-6 {
+                            continue;
+                        }
+                        let side = distance.signum();
+                        seen[usize::from(side > 0.0)] += 1;
+                        let found = integrator.displacement(facet.cell, &x, side, &u).unwrap();
+                        let wanted = map(&x, side);
+                        for a in 0..body.mesh.dim() {
+                            let error = found[a] - factor * wanted[a];
+                            assert!(error.abs() < 1e-12, "{name} {x:?} {side}: {error:e}");
+                        }
+                    }
+                }
+            }
+        }
+        assert!(seen[0] > 10 && seen[1] > 10, "{name}: {seen:?}");
+    }
+}
+
+fn sliding_text(y: f64, friction: f64, rest: &str) -> String {
+    let rest = crack([-0.1, y], [1.1, y], friction, "none")
+        + "[exact]\nsolution = \"sliding\"\npressure_pa = 2e-2\n"
+        + rest;
+    plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest)
+}
+
+/// Source: Hooke, Coulomb. Goal: a block at the limit of friction, slipping rigidly, its border held by the closed form:
+/// uniform contact traction (p, −μ p), the stated slip, the displacement to rounding. Edge pairs are exact for a horizontal
+/// cut. Tolerance 1e-10: the method ends within 1e-12 of equilibrium.
+#[test]
+fn a_rigid_slip_under_exact_displacements_is_reproduced() {
+    for y in [0.47, 0.4 + 1e-6, 0.6] {
+        let case = exact_case(&sliding_text(y, 0.35, &all_sides(2, "\"exact\"")));
+        let found = solve_case(&case, 1, METHOD, TOLERANCE);
+        assert!(found.traction(0).len() >= 4);
+        for (p, q) in found.traction(0).iter().zip(found.traction(1)) {
+            assert!((p / 2e-2 - 1.0).abs() < 1e-10, "{y}: {p}");
+            assert!((q / (-0.35 * 2e-2) - 1.0).abs() < 1e-10, "{y}: {q}");
+        }
+        for jump in found.jump.chunks(2) {
+            assert!(jump[0].abs() < 1e-14 && (jump[1] - 1e-3).abs() < 1e-13);
+        }
+    }
+}
+
+/// Goal: the closed form follows the friction of the run, while K is factored once for all of them.
+#[test]
+fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() {
+    let rest = all_sides(2, "\"exact\"") + "[sweep]\nfriction = [0.1, 0.4, 0.9]\n";
+    let results = run(
+        &exact_case(&sliding_text(0.47, 0.3, &rest)),
+        &["b-newton", "nsgs"],
+    );
+    assert_eq!(results.runs.len(), 6);
+    for row in &results.runs {
+        assert_eq!((row.factorisations, row.verdict.as_str()), (1, "solved"));
+    }
+    for point in &results.points {
+        let ratio = -point.p_a / point.p_n;
+        assert!((ratio / point.key.friction - 1.0).abs() < 1e-7, "{point:?}");
+        assert!((point.slip_a_m / 1e-3 - 1.0).abs() < 1e-7, "{point:?}");
+    }
+}
+
+/// Source: manufactured solution. Goal: exact tractions on all sides but the bottom and exact body forces, in the plane and in a
+/// solid: the displacement converges with order 2. Wrong signs, normals or sides leave an error that does not fall.
+#[test]
+fn exact_tractions_and_body_forces_converge_with_order_two() {
+    let exact = "[exact]\nsolution = \"smooth\"\n[[load]]\nbody_n_per_m3 = \"exact\"\n";
+    let loads = |sides: &[&str]| -> String {
+        let one = |side: &&str| load(side, "traction_pa = \"exact\"");
+        sides.iter().map(one).collect()
+    };
+    let flat = crack([-0.1, 0.47], [1.1, 0.47], 5.0, "none")
+        + exact
+        + &support("\"bottom\"", "\"exact\"")
+        + &support("[\"left\", \"top\"]", "\"exact\"")
+        + &loads(&["left", "right", "top"]);
+    let flat = plane([0.0, 0.0], [1.0, 1.0], [5, 5], &flat);
+    let block = exact.to_owned()
+        + &support("\"bottom\"", "\"exact\"")
+        + &support("[\"left\", \"top\"]", "\"exact\"")
+        + &loads(&["left", "right", "front", "back", "top"]);
+    let planes = [([0.0, 0.0, 0.47], [0.0, 0.0, 1.0], 5.0)];
+    let block = solid([1.0, 1.0, 1.0], [3, 3, 3], &planes, &block);
+    for (text, refine) in [(flat, [1, 2, 4]), (block, [1, 2, 3])] {
+        let case = exact_case(&text);
+        let lame = Lame::new(case.material, case.model);
+        let field = Smooth {
+            lame,
+            last: case.model.dim() - 1,
+        };
+        let errors = refine.map(|refine| {
+            let found = solve_case(&case, refine, METHOD, 1e-10);
+            // Root mean square over the nodes; the largest error carries a logarithm of h.
+            let dim = found.body.mesh.dim();
+            let nodes = found.body.mesh.nodes.iter().zip(found.u.chunks(dim));
+            let squares = nodes.map(|(x, u)| {
+                let exact = field.displacement(x, 1.0);
+                (0..dim).map(|a| (u[a] - exact[a]).powi(2)).sum::<f64>()
+            });
+            (squares.sum::<f64>() / found.body.mesh.nodes.len() as f64).sqrt()
+        });
+        println!("{errors:?}");
+        for k in 1..3 {
+            let order =
+                (errors[k - 1] / errors[k]).ln() / (refine[k] as f64 / refine[k - 1] as f64).ln();
+            assert!(order > 1.7, "{order} {errors:?}");
+        }
+        assert!(errors[2] < 0.02 * K, "{errors:?}");
+    }
+}
+
+/// Goal: body forces of a closed form are integrated side by side: resultant and moment of a polynomial that jumps across an
+/// oblique crack. Sources: ∫∫ over [0, 1]², crack y = 0.2 + 0.5 x, side 1 above.
+#[test]
+fn exact_body_forces_are_integrated_on_each_side() {
+    let rest = crack([-0.2, 0.1], [1.2, 0.8], 0.3, "none")
+        + "[exact]\nsolution = \"two-maps\"\n[[load]]\nbody_n_per_m3 = \"exact\"\n"
+        + &clamped(2);
+    let case = exact_case(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest));
+    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let force = loading(&body, &case).external_force(1);
+    let nodes = || body.mesh.nodes.iter().enumerate();
+    let x: f64 = nodes().map(|(n, _)| force[2 * n]).sum();
+    assert!((x - 0.25).abs() < 1e-14, "{x}");
+    let x: f64 = nodes().map(|(n, x)| x[0] * force[2 * n]).sum();
+    assert!((x - 0.2).abs() < 1e-14, "{x}");
+    // ∫ x (∫_c^1 y dy − ∫_0^c y dy) dx = ∫ x (½ − c²) dx with c = 0.2 + 0.5 x
+    let exact = 0.25 - (0.04 / 2.0 + 0.2 / 3.0 + 0.25 / 4.0);
+    let y: f64 = nodes().map(|(n, _)| force[2 * n + 1]).sum();
+    assert!((y - exact).abs() < 1e-14, "{y} {exact}");
+}
+
+/// Goal: what the closed form refuses is refused at `[exact]`, naming the increment; nothing is computed.
+#[test]
+fn a_closed_form_that_does_not_hold_is_refused_at_its_table() {
+    let all = all_sides(2, "\"exact\"");
+    let sloping = sliding_text(0.47, 0.3, &all).replace("[1.1, 0.47]", "[1.1, 0.5]");
+    let back = sliding_text(0.47, 0.3, &all).replace(
+        "pressure_pa = 2e-2\n",
+        "pressure_pa = 2e-2\nhistory = [[1, 1], [2, 0.5]]\n[path]\nincrements = 3\nend = 3\n",
+    );
+    for (text, words) in [
+        (
+            sloping,
+            "the crack must be horizontal: got sliding with friction 0.3",
+        ),
+        (back, "increment 2: slip must not turn back"),
+    ] {
+        let case = exact_case(&text);
+        let body = Body::new(&case, 1, Needs::default()).unwrap();
+        let Err(BodyError::Case(error)) = Loading::new(&body, &case, 0.3) else {
+            panic!("accepted:\n{text}")
+        };
+        let line = text[..text.find("[exact]").unwrap()].matches('\n').count() + 1;
+        assert_eq!((error.line(), error.column()), (line, 1), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+        assert_eq!(error.key(), "exact", "{error}");
+    }
+}
+
+/// Goal: a name that no closed form has is refused by `check` and `run`, exit code 2.
+#[test]
+fn an_unknown_closed_form_is_refused_by_the_program() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("bad.toml");
+    let text = sliding_text(0.47, 0.3, &clamped(2)).replace("\"sliding\"", "\"sliding-by-name\"");
+    std::fs::write(&file, text).unwrap();
+    for command in ["check", "run"] {
+        let mut program = Command::cargo_bin("stickslip").unwrap();
+        program.current_dir(dir.path()).arg(command).arg(&file);
+        let output = program.output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{command}: {output:?}");
+        let shown = String::from_utf8(output.stderr).unwrap();
+        assert!(shown.contains("exact.solution: unknown"), "{shown}");
+    }
+}
+
+/// Goal: a component can be stated as a number beside exact ones; the number follows the history of the support.
+#[test]
+fn stated_and_exact_components_stand_side_by_side() {
+    let rest = "[[support]]\non = \"top\"\ndisplacement_m = [\"exact\", -7e-3]\nhistory = \"constant\"\n\
+                [[support]]\non = \"bottom\"\ndisplacement_m = \"exact\"\n[path]\nincrements = 2\n";
+    let case = exact_case(&sliding_text(0.47, 0.3, rest));
+    assert_eq!(
+        case.supports[0].displacement,
+        [Some(Amount::Exact), Some(Amount::Number(-7e-3))]
+    );
+    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let loading = loading(&body, &case);
+    let u = loading.prescribed_displacement(1);
+    let field = loading.exact(1).unwrap();
+    for node in body.mesh.side_nodes("top") {
+        let x = &body.mesh.nodes[node];
+        assert_eq!(u[2 * node], field.displacement(x, 1.0)[0]);
+        assert_eq!(u[2 * node + 1], -7e-3);
+    }
+    let Load { force, offset, .. } = loading.at(1);
+    assert_eq!(
+        (force.len(), offset.len()),
+        (body.elastic.unknowns(), 2 * body.points.len())
+    );
+}
