@@ -7,6 +7,7 @@ pub mod case;
 pub mod exchange;
 pub mod expect;
 pub mod export;
+pub mod path;
 pub mod picture;
 pub mod problem_file;
 pub mod quantities;
