@@ -4,6 +4,7 @@ pub mod attempt;
 pub mod body;
 pub mod boundary;
 pub mod case;
+pub mod converge;
 pub mod exchange;
 pub mod expect;
 pub mod export;
