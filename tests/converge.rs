@@ -340,6 +340,31 @@ fn bad_arguments_are_refused_and_leave_nothing_behind() {
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
 }
 
+/// Source: the block slides rigidly, whatever the mesh. Goal: round-off is neither printed nor drawn, nor given an order.
+#[test]
+fn round_off_is_no_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let arguments = [
+        "converge",
+        "sliding_block_conforming",
+        "--refine",
+        "1,2,3",
+        "--spaces",
+        "edge-pairs",
+    ];
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let read = |file: &str| std::fs::read_to_string(dir.path().join("results").join(file)).unwrap();
+    let rows = csv_row::rows(&read("orders.csv"));
+    let slip = rows.iter().filter(|row| row["quantity"] == "max_slip");
+    let slip: Vec<_> = slip
+        .map(|row| [&row["kind"], &row["error"], &row["order"]].map(String::as_str))
+        .collect();
+    assert_eq!(slip, [["finest", "0", "NaN"]; 2]);
+    let figure = "results/figures/sliding_block_conforming.hybrid.mu-0.1.max_slip.error.svg";
+    assert!(!dir.path().join(figure).exists());
+}
+
 /// Goal: rows come in the order of their table, whatever the order of the runs.
 #[test]
 fn rows_are_sorted() {

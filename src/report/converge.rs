@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
-use super::number::{fixed, significant, time, value};
+use super::number::{RESIDUAL_FLOOR, fixed, significant, time, value};
 use super::plot::{Curve, CurvePlot, convergence_plot, error_plot};
 use super::standard::file_name;
 use super::tables::{Align, Column, Table};
@@ -102,7 +102,7 @@ impl Row for ErrorRow {
             value(*found),
             value(*reference),
             significant(*error_bar, ERROR_DIGITS),
-            significant(*error, ERROR_DIGITS),
+            significant(above_round_off(*error, *kind), ERROR_DIGITS),
             kind.map_or("", Kind::name).to_owned(),
             significant(*order, ERROR_DIGITS),
             time(seconds.total()),
@@ -162,7 +162,7 @@ impl Row for OrderRow {
             value(*finest_h),
             value(*reference),
             significant(*error_bar, ERROR_DIGITS),
-            significant(*error, ERROR_DIGITS),
+            significant(above_round_off(*error, Some(*kind)), ERROR_DIGITS),
             significant(*order, ERROR_DIGITS),
             value(theory.unwrap_or(f64::NAN)),
         ]);
@@ -178,6 +178,24 @@ impl Row for OrderRow {
 /// A number for reading; a dash where there is none.
 fn shown(x: f64, text: impl Fn(f64) -> String) -> String {
     if x.is_finite() { text(x) } else { "–".into() }
+}
+
+/// An error with three digits.
+fn scientific(error: f64) -> String {
+    if error == 0.0 {
+        "0".into()
+    } else {
+        format!("{error:.2e}")
+    }
+}
+
+/// A relative error without round-off, which would differ between machines; those against closed forms may have units.
+fn above_round_off(error: f64, kind: Option<Kind>) -> f64 {
+    if kind != Some(Kind::Exact) && error < RESIDUAL_FLOOR {
+        0.0
+    } else {
+        error
+    }
 }
 
 /// A quantity with its place.
@@ -241,7 +259,7 @@ pub fn error_table(rows: &[ErrorRow]) -> Result<Table, ReportError> {
             row.dofs.to_string(),
             row.points.to_string(),
             row.verdict.clone(),
-            shown(row.error, |e| format!("{e:.2e}")),
+            shown(above_round_off(row.error, row.kind), scientific),
             shown(row.order, |p| fixed(p, 2)),
             row.kind.map_or("–", Kind::name).into(),
             shown(row.seconds.total(), |s| significant(s, 2)),
@@ -284,7 +302,7 @@ pub fn order_table(rows: &[OrderRow]) -> Result<Table, ReportError> {
             row.kind.name().into(),
             significant(row.reference, 7),
             shown(row.error_bar, |e| significant(e, 2)),
-            shown(row.error, |e| format!("{e:.2e}")),
+            shown(above_round_off(row.error, Some(row.kind)), scientific),
             shown(row.order, |p| fixed(p, 2)),
             row.theory.map_or_else(|| "–".into(), |p| fixed(p, 1)),
         ])?;
@@ -319,7 +337,9 @@ fn add_figures(
             let own = errors.iter().filter(|row| {
                 row.variant == order.variant && (&row.quantity, &row.at) == (&quantity, &at)
             });
-            let mut own: Vec<&ErrorRow> = own.filter(|row| row.error > 0.0).collect();
+            let mut own: Vec<&ErrorRow> = own
+                .filter(|row| above_round_off(row.error, row.kind) > 0.0)
+                .collect();
             own.sort_by_key(|row| row.refine);
             Curve {
                 label,
@@ -342,7 +362,7 @@ fn add_figures(
         let known = theories.iter().flatten().next().is_some();
         let what = place(&quantity, &at);
         let note = if known {
-            "orders over the last two halvings, in brackets and dotted theoretical ones"
+            "orders over the last two halvings, in brackets and dotted the theoretical ones"
         } else {
             "orders over the last two halvings; triangle: order 1"
         };

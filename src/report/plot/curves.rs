@@ -156,18 +156,19 @@ pub fn convergence_plot(plot: &CurvePlot, orders: &[Option<f64>]) -> Result<Stri
     let mut lines = Vec::new();
     let mut slopes: Vec<f64> = Vec::new();
     for (index, (curve, order)) in curves.iter().zip(orders).enumerate() {
-        let Some(slope) = *order else { continue };
-        if !slopes.contains(&slope) {
-            slopes.push(slope);
-        }
         let by_size = |a: &&[f64; 2], b: &&[f64; 2]| a[0].total_cmp(&b[0]);
         let ends = curve
             .iter()
             .min_by(by_size)
             .zip(curve.iter().max_by(by_size));
-        let Some((finest, coarsest)) = ends.filter(|(a, b)| a[0] < b[0]) else {
+        let (Some(slope), Some((finest, coarsest))) = (*order, ends) else {
             continue;
         };
+        // A line for every curve would hide them.
+        if slopes.contains(&slope) || finest[0] == coarsest[0] {
+            continue;
+        }
+        slopes.push(slope);
         // Over the last two halvings.
         let far = coarsest[0].min(4.0 * finest[0]);
         let height = finest[1] * (far / finest[0]).powf(slope);
