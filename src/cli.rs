@@ -1,5 +1,6 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod converge;
 mod exchange;
 mod output;
 mod progress;
@@ -74,6 +75,8 @@ enum Verb {
     },
     /// Run every method on random problems: how often each succeeds, by friction coefficient
     Stress(stress::Arguments),
+    /// Measure errors and observed orders on sequences of meshes, by contact space and tip enrichment
+    Converge(converge::Arguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
@@ -142,6 +145,14 @@ pub enum CliError {
         /// The name.
         name: String,
     },
+    /// A method whose limit are laws of its own, where errors of the discretisation are asked for.
+    #[error(
+        "method `{name}` solves laws of its own: its modelling error would hide that of the mesh"
+    )]
+    Inexact {
+        /// The method.
+        name: &'static str,
+    },
     /// A method option.
     #[error("--method {argument}: {source}")]
     Option {
@@ -194,6 +205,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
             run_verb(&cases, &method, settings, &out)
         }
         Verb::Stress(arguments) => stress::run(arguments),
+        Verb::Converge(arguments) => converge::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),

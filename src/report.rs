@@ -6,6 +6,7 @@
 
 pub mod bundle;
 pub mod comparison;
+pub mod converge;
 pub mod csv;
 mod error;
 pub mod number;

@@ -135,11 +135,66 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
             vec!["penalty parameter [N/m]", "10¹²", "μ = 1.2", ">1<"],
         ),
         (
+            "convergence",
+            convergence(),
+            vec![
+                "cell size h [m]",
+                "p0, 0.2: 1.00 (1)",
+                ">0.5<",
+                ">1<",
+                ">0.02<",
+            ],
+        ),
+        (
+            "convergence without theory",
+            plot::convergence_plot(&orders(&[("star", 0.8)]), &[None]).expect("convergence"),
+            vec!["star: 0.80", ">1<"],
+        ),
+        (
             "loop",
             plot::line_plot(&cycle).expect("loop"),
             vec!["force [10³ N/m]", "−200", "latin"],
         ),
     ]
+}
+
+/// Errors h^p on four meshes; the theoretical order rounds p to halves.
+fn orders(curves: &[(&str, f64)]) -> CurvePlot {
+    let curve = |(index, (name, p)): (usize, &(&str, f64))| {
+        let size = [0.1, 0.05, 0.025, 0.0125];
+        let error = |h: f64| [h, (1.0 + 0.2 * index as f64) * h.powf(*p)];
+        Curve {
+            label: format!("{name}: {p:.2}"),
+            points: size.map(error).to_vec(),
+        }
+    };
+    CurvePlot {
+        caption: "inclined crack, hybrid, μ = 0.3".into(),
+        x_label: "cell size h [m]".into(),
+        y_label: "error: energy".into(),
+        curves: curves.iter().enumerate().map(curve).collect(),
+    }
+}
+
+/// Four contact spaces with two tip enrichments.
+fn convergence() -> String {
+    let sequences: Vec<(String, f64)> = [("none", 0.47), ("0.2", 1.0)]
+        .into_iter()
+        .flat_map(|(tip, p)| {
+            let spaces = ["star", "facet", "edge-pairs", "p0"]
+                .into_iter()
+                .enumerate();
+            spaces.map(move |(i, space)| (format!("{space}, {tip}"), p - 0.02 * (3 - i) as f64))
+        })
+        .collect();
+    let named: Vec<(&str, f64)> = sequences.iter().map(|(n, p)| (n.as_str(), *p)).collect();
+    let mut plot = orders(&named);
+    let theory: Vec<f64> = named.iter().map(|(_, p)| (2.0 * p).round() / 2.0).collect();
+    for (curve, theory) in plot.curves.iter_mut().zip(&theory) {
+        curve.label += &format!(" ({theory})");
+    }
+    let theory: Vec<Option<f64>> = theory.into_iter().map(Some).collect();
+    plot::convergence_plot(&plot, &theory).expect("convergence")
 }
 
 /// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.

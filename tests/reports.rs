@@ -6,6 +6,7 @@ use report_data::{METHODS, key, results};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use stickslip::harness::converge::orders::{ErrorRow, OrderRow};
 use stickslip::harness::record::RunRow;
 use stickslip::report::comparison::{ComparisonRow, VariantRow};
 use stickslip::report::csv::Row;
@@ -36,6 +37,8 @@ fn csv_bundle() -> Bundle {
         file(FailureRow::FILE, csv::file::<FailureRow>(&[])),
         file(ComparisonRow::FILE, csv::file::<ComparisonRow>(&[])),
         file(VariantRow::FILE, csv::file::<VariantRow>(&[])),
+        file(ErrorRow::FILE, csv::file::<ErrorRow>(&[])),
+        file(OrderRow::FILE, csv::file::<OrderRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }

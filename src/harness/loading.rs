@@ -162,6 +162,11 @@ impl<'a> Loading<'a> {
         self.body
     }
 
+    /// Number of increments.
+    pub fn increments(&self) -> usize {
+        self.case.path.increments
+    }
+
     /// Time at the end of an increment.
     pub fn time(&self, increment: usize) -> f64 {
         self.case.path.time(increment)

@@ -3,19 +3,16 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, Method, OptionError, Options, Tier,
-};
+use stickslip_methods::{ContactSystem, Method, OptionError, Options, Tier};
 
-use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::expect::{self, expectation_rows};
 use crate::harness::loading::Loading;
+use crate::harness::path::Path;
 use crate::harness::picture::field_step;
-use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
+use crate::harness::quantities::{point_rows, quantity_rows};
 use crate::harness::record::{Results, RunFields, RunKey, RunRow};
-use crate::harness::step::Solver;
 
 /// A method with its options.
 #[derive(Debug, Clone)]
@@ -276,64 +273,29 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         friction: cell.friction,
         increment: 1,
     };
-    let mut solver = match Solver::prepare(choice, system, body.setup(), tier, &key) {
-        Ok(solver) => solver,
-        Err(refused) => {
-            results.runs.push(refused.run);
-            return results;
-        }
-    };
-    let mut state = ContactState::zero(system);
-    let mut now = Snapshot::virgin(body);
-    // Nothing acts before the first increment, whatever the histories say at t = 0.
-    let mut start_load = Load::zero(&body.elastic);
     let mut steps = Vec::new();
-    for increment in 1..=case.path.increments {
-        key.increment = increment;
-        let load = loading.at(increment);
-        let problem = Increment {
-            system,
-            load: &load,
-            start_load: &start_load,
-            start: &state,
-            index: increment - 1,
-            tolerance: tolerance(case, tier),
-        };
-        let step = solver.solve(&key, &problem);
-        results.runs.push(step.run);
-        results.history.extend(step.history);
-        let Some(Judged {
-            outcome,
-            status,
-            consistency,
-            ..
-        }) = step.answer
-        else {
-            break;
-        };
-        let consistency = consistency.as_deref();
-        now = Snapshot::new(
-            loading,
-            increment,
-            &outcome.state,
-            consistency,
-            status,
-            &now,
-        );
-        if step.verdict.is_honest() {
-            results
-                .quantities
-                .extend(quantity_rows(case, body, &key, &now));
-            results.points.extend(point_rows(body, &key, &now));
-            if cell.fields {
-                steps.push(field_step(body, &now));
-            }
-        } else {
-            // What follows would start from a state nobody vouches for.
-            break;
+    let path = Path {
+        case,
+        loading,
+        system,
+        choice,
+        tier,
+    };
+    let started = path.follow(&mut key, &mut |key, ended| {
+        results.runs.push(ended.run);
+        results.history.extend(ended.history);
+        let Some(now) = ended.now else { return };
+        results
+            .quantities
+            .extend(quantity_rows(case, body, key, now));
+        results.points.extend(point_rows(body, key, now));
+        if cell.fields {
+            steps.push(field_step(body, now));
         }
-        state = outcome.state;
-        start_load = load;
+    });
+    // A run that could not start is held to nothing.
+    if !started {
+        return results;
     }
     results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
     if !steps.is_empty() {

@@ -31,7 +31,9 @@ mod surface;
 pub use canvas::{Width, italic, subscript};
 pub use contour::{Magnification, displacement_contours};
 pub use cost::method_cost;
-pub use curves::{Curve, CurvePlot, Tier, error_plot, line_plot, residual_history};
+pub use curves::{
+    Curve, CurvePlot, Tier, convergence_plot, error_plot, line_plot, residual_history,
+};
 pub use methods::rank as method_rank;
 pub use profile::{contact_slip, contact_traction};
 pub use rates::success_rates;

@@ -54,7 +54,7 @@ pub fn stem(key: &RunKey) -> String {
     ])
 }
 
-fn file_name(parts: &[&str]) -> String {
+pub(super) fn file_name(parts: &[&str]) -> String {
     let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
     let clean = |c: char| if allowed(c) { c } else { '-' };
     parts.join(".").chars().map(clean).collect()

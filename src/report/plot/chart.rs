@@ -55,7 +55,7 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Horizontal lines in [`Style::level`].
     pub levels: Vec<f64>,
-    pub slope: Option<SlopeTriangle>,
+    pub slopes: Vec<SlopeTriangle>,
     /// Whether curves get few markers, away from those of the others.
     pub spread: bool,
 }
@@ -149,7 +149,7 @@ fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
         } = Style::level();
         canvas.dashed(&[[frame.left, y], [frame.right, y]], colour, width, dashes);
     }
-    if let Some(slope) = &panel.slope {
+    for slope in &panel.slopes {
         draw_slope(canvas, panel, frame, slope);
     }
     // All lines first: none runs over a marker.

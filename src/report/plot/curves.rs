@@ -93,7 +93,7 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
         y,
         series: Vec::new(),
         levels,
-        slope: None,
+        slopes: Vec::new(),
         spread: true,
     };
     let methods: Vec<&str> = keys.iter().map(|key| key.method.as_str()).collect();
@@ -137,26 +137,87 @@ pub struct CurvePlot {
 /// # Errors
 /// [`ReportError::Figure`] when no point has two positive coordinates.
 pub fn error_plot(plot: &CurvePlot, slope: Option<f64>) -> Result<String, ReportError> {
-    const FIGURE: &str = "error plot";
+    let curves = positive(plot);
+    let triangle = slope.and_then(|slope| {
+        let middle = steadiest(curves.first()?, slope)?;
+        triangle_below(&curves, slope, middle)
+    });
+    logarithmic(plot, curves, Vec::new(), triangle.into_iter().collect())
+}
+
+/// Errors against the cell size, both axes logarithmic. `orders` holds one theoretical order per curve, where there is
+/// one: it is drawn as a dotted line through the finest point of the curve, and each different order as a triangle. Without
+/// any, a triangle of order 1 guides the eye.
+///
+/// # Errors
+/// [`ReportError::Figure`] when no point has two positive coordinates.
+pub fn convergence_plot(plot: &CurvePlot, orders: &[Option<f64>]) -> Result<String, ReportError> {
+    let curves = positive(plot);
+    let mut lines = Vec::new();
+    let mut slopes: Vec<f64> = Vec::new();
+    for (index, (curve, order)) in curves.iter().zip(orders).enumerate() {
+        let by_size = |a: &&[f64; 2], b: &&[f64; 2]| a[0].total_cmp(&b[0]);
+        let ends = curve
+            .iter()
+            .min_by(by_size)
+            .zip(curve.iter().max_by(by_size));
+        let (Some(slope), Some((finest, coarsest))) = (*order, ends) else {
+            continue;
+        };
+        // A line for every curve would hide them.
+        if slopes.contains(&slope) || finest[0] == coarsest[0] {
+            continue;
+        }
+        slopes.push(slope);
+        // Over the last two halvings.
+        let far = coarsest[0].min(4.0 * finest[0]);
+        let height = finest[1] * (far / finest[0]).powf(slope);
+        lines.push((index, vec![*finest, [far, height]]));
+    }
+    if slopes.is_empty() {
+        slopes.push(1.0);
+    }
+    slopes.sort_by(f64::total_cmp);
+    let (low, high) =
+        super::axis::range(curves.iter().flatten().map(|p| p[0])).unwrap_or((1.0, 1.0));
+    let count = slopes.len() as f64;
+    let triangles = slopes.iter().enumerate().filter_map(|(index, &slope)| {
+        let middle = low * (high / low).powf((index as f64 + 0.5) / count);
+        triangle_below(&curves, slope, middle)
+    });
+    let triangles = triangles.collect();
+    logarithmic(plot, curves, lines, triangles)
+}
+
+/// Points with two positive coordinates, by curve.
+fn positive(plot: &CurvePlot) -> Vec<Vec<[f64; 2]>> {
     let positive = |p: &&[f64; 2]| p.iter().all(|c| c.is_finite() && *c > 0.0);
-    let curves: Vec<Vec<[f64; 2]>> = plot
-        .curves
+    plot.curves
         .iter()
         .map(|curve| curve.points.iter().filter(positive).copied().collect())
-        .collect();
-    let triangle = slope.and_then(|slope| triangle_below(&curves, slope));
+        .collect()
+}
+
+/// Both axes logarithmic; `lines` are dotted, each in the colour of the curve with its number.
+fn logarithmic(
+    plot: &CurvePlot,
+    curves: Vec<Vec<[f64; 2]>>,
+    lines: Vec<(usize, Vec<[f64; 2]>)>,
+    slopes: Vec<SlopeTriangle>,
+) -> Result<String, ReportError> {
     let points = || curves.iter().flatten();
     // The factor leaves room for the number below the triangle.
-    let lowest = triangle.iter().map(|t| t.y.min(t.end()) / 2.0);
+    let lowest = slopes.iter().map(|t| t.y.min(t.end()) / 2.0);
+    let guides = lines.iter().flat_map(|(_, line)| line).map(|p| p[1]);
     let x = Axis::log(&plot.x_label, points().map(|p| p[0]));
-    let y = Axis::log(&plot.y_label, points().map(|p| p[1]).chain(lowest));
-    let (Some(x), Some(y)) = (x, y) else {
+    let y = points().map(|p| p[1]).chain(lowest).chain(guides);
+    let (Some(x), Some(y)) = (x, Axis::log(&plot.y_label, y)) else {
         return Err(ReportError::figure(
-            FIGURE,
+            "error plot",
             "no point with two positive coordinates",
         ));
     };
-    generic(plot, curves, x, y, triangle)
+    generic(plot, curves, lines, x, y, slopes)
 }
 
 /// Both axes linear, points joined in their order, e.g. force against displacement over a cycle.
@@ -181,22 +242,23 @@ pub fn line_plot(plot: &CurvePlot) -> Result<String, ReportError> {
         .iter()
         .map(|curve| curve.points.clone())
         .collect();
-    generic(plot, curves, x, y, None)
+    generic(plot, curves, Vec::new(), x, y, Vec::new())
 }
 
 fn generic(
     plot: &CurvePlot,
     curves: Vec<Vec<[f64; 2]>>,
+    lines: Vec<(usize, Vec<[f64; 2]>)>,
     x: Axis,
     y: Axis,
-    slope: Option<SlopeTriangle>,
+    slopes: Vec<SlopeTriangle>,
 ) -> Result<String, ReportError> {
-    let panel = Panel {
+    let mut panel = Panel {
         x,
         y,
         series: Vec::new(),
         levels: Vec::new(),
-        slope,
+        slopes,
         spread: false,
     };
     let labels = plot
@@ -208,11 +270,20 @@ fn generic(
         let at = |p: &[f64; 2]| [panel.x.place(p[0]), panel.y.place(p[1])];
         curve.iter().flat_map(at).collect()
     };
+    let styles = Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>());
+    panel.series = lines
+        .into_iter()
+        .map(|(index, points)| Series {
+            points,
+            style: Style::limit(styles[index].colour),
+            markers: Vec::new(),
+        })
+        .collect();
     let figure = Figure {
         title: format!("{} against {}", plot.y_label, plot.x_label),
         caption: plain(&plot.caption),
         height: 46.0,
-        styles: Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>()),
+        styles,
         labels,
         marks: Vec::new(),
     };
@@ -229,7 +300,7 @@ struct Figure {
     marks: Vec<Entry>,
 }
 
-/// One panel with its curves.
+/// One panel with its curves over the lines it has already.
 fn draw(
     figure: Figure,
     mut panel: Panel,
@@ -242,15 +313,12 @@ fn draw(
     };
     let legend = figure.labels.into_iter().zip(&figure.styles).map(entry);
     let legend = vec![legend.collect(), figure.marks];
-    panel.series = curves
-        .into_iter()
-        .zip(figure.styles)
-        .map(|(points, style)| Series {
-            points,
-            style,
-            markers: Vec::new(),
-        })
-        .collect();
+    let own = curves.into_iter().zip(figure.styles);
+    panel.series.extend(own.map(|(points, style)| Series {
+        points,
+        style,
+        markers: Vec::new(),
+    }));
     let chart = Chart {
         title: figure.title,
         caption: figure.caption,
@@ -262,9 +330,9 @@ fn draw(
     chart.svg()
 }
 
-/// A slope triangle a quarter of the x range wide, beside the steadiest agreement with the slope.
-fn triangle_below(curves: &[Vec<[f64; 2]>], slope: f64) -> Option<SlopeTriangle> {
-    let mut first = curves.first()?.clone();
+/// Where a curve agrees best with a slope.
+fn steadiest(curve: &[[f64; 2]], slope: f64) -> Option<f64> {
+    let mut first = curve.to_vec();
     first.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let deviation = |pair: &&[[f64; 2]]| {
         let [a, b] = [pair[0], pair[1]];
@@ -274,13 +342,16 @@ fn triangle_below(curves: &[Vec<[f64; 2]>], slope: f64) -> Option<SlopeTriangle>
         .windows(2)
         .filter(|pair| pair[1][0] > pair[0][0])
         .min_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
+    Some((best[0][0] * best[1][0]).sqrt())
+}
+
+/// A slope triangle a quarter of the x range wide, below all curves about `middle`.
+fn triangle_below(curves: &[Vec<[f64; 2]>], slope: f64, middle: f64) -> Option<SlopeTriangle> {
     let all = || curves.iter().flatten();
     let (low, high) = super::axis::range(all().map(|p| p[0]))?;
     let half = (high / low).powf(0.11);
     // Kept inside the axis, with room for the number beside the upright leg.
-    let middle = (best[0][0] * best[1][0])
-        .sqrt()
-        .clamp(low * half.powf(1.3), high / half.powf(1.3));
+    let middle = middle.clamp(low * half.powf(1.3), high / half.powf(1.3));
     let x = [middle / half, middle * half];
     let (bottom, top) = super::axis::range(all().map(|p| p[1]))?;
     let below = (top / bottom).powf(0.07).max(1.2);

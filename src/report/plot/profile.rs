@@ -289,7 +289,7 @@ impl<'a> Profile<'a> {
             y: Axis::linear(&format!("{name} [{unit}]"), shown, 4),
             series: Vec::new(),
             levels: Vec::new(),
-            slope: None,
+            slopes: Vec::new(),
             spread: false,
         };
         ProfilePanel { panel, factor }

@@ -1,0 +1,121 @@
+//! The verb `converge`: errors and observed orders on sequences of meshes.
+
+use std::path::PathBuf;
+
+use super::output::{say, warn};
+use super::progress::Bar;
+use super::{CliError, find_case, parse_choice, refuse_twins};
+use crate::harness::case::{ContactSpace, Tip};
+use crate::harness::converge::{self, Study, orders};
+use crate::report::{Provenance, prepare_output};
+
+/// Contact spaces by name.
+const SPACES: [ContactSpace; 4] = [
+    ContactSpace::Star,
+    ContactSpace::Facet,
+    ContactSpace::P0,
+    ContactSpace::EdgePairs,
+];
+
+/// Arguments of the verb.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Case files or names
+    #[arg(required = true)]
+    cases: Vec<String>,
+    /// Refinement factors, e.g. 1,2,4,8; by default those of the case if it has several, else 1,2,4,8
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
+    refine: Vec<u16>,
+    /// Contact spaces of all cracks: star, facet, p0, edge-pairs; by default star and the case's own
+    #[arg(long, value_delimiter = ',', value_parser = space)]
+    spaces: Vec<ContactSpace>,
+    /// Enrichment of all tips: none, branch, or a radius in m; by default the case's own
+    #[arg(long, value_delimiter = ',', value_parser = tip)]
+    tips: Vec<Tip>,
+    /// Exact method with options, NAME or NAME:key=value,key=value
+    #[arg(long, short, default_value = "hybrid")]
+    method: String,
+    /// Folder for the results
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+}
+
+fn space(text: &str) -> Result<ContactSpace, String> {
+    let known = SPACES.map(ContactSpace::name).join(", ");
+    let found = SPACES.into_iter().find(|space| space.name() == text);
+    found.ok_or_else(|| format!("one of {known}"))
+}
+
+fn tip(text: &str) -> Result<Tip, String> {
+    match (text, text.parse::<f64>()) {
+        ("none", _) => Ok(Tip::None),
+        ("branch", _) => Ok(Tip::Branch),
+        (_, Ok(radius)) if radius > 0.0 && radius.is_finite() => Ok(Tip::Radius(radius)),
+        _ => Err("none, branch, or a radius > 0 in m".into()),
+    }
+}
+
+/// None of nothing.
+fn given<T>(values: Vec<T>) -> Option<Vec<T>> {
+    (!values.is_empty()).then_some(values)
+}
+
+/// Runs the study; false if a mesh was not solved.
+pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+    let cases = arguments
+        .cases
+        .iter()
+        .map(|name| find_case(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
+    let choice = parse_choice(&arguments.method)?;
+    if !choice.method.exact {
+        return Err(CliError::Inexact {
+            name: choice.method.name,
+        });
+    }
+    let mut refine: Vec<usize> = arguments.refine.into_iter().map(usize::from).collect();
+    refine.sort_unstable();
+    refine.dedup();
+    let study = Study {
+        refine: given(refine),
+        spaces: given(arguments.spaces),
+        tips: given(arguments.tips),
+        choice,
+    };
+    prepare_output(&arguments.out)?;
+    let bar = Bar::new();
+    let mut samples = Vec::new();
+    for case in &cases {
+        samples.extend(converge::run(case, &study, &converge::closed_form, &bar)?);
+    }
+    bar.finish();
+
+    let (errors, orders) = orders::rows(&samples);
+    let provenance = Provenance::collect(rayon::current_num_threads())
+        .with_option("method", study.choice.label.clone());
+    let bundle = crate::report::converge::bundle(&errors, &orders, &provenance)?;
+    bundle.commit(&arguments.out)?;
+    let table = crate::report::converge::order_table(&orders)?;
+    say(format_args!("{}", table.terminal()));
+    let failed = || samples.iter().filter(|s| !s.verdict.is_honest());
+    say(format_args!(
+        "{} runs: {} solved, {} not\nResults: {}",
+        samples.len(),
+        samples.len() - failed().count(),
+        failed().count(),
+        arguments.out.display()
+    ));
+    for sample in failed() {
+        warn(format_args!(
+            "{}: {} {} {} {} mu={}",
+            sample.verdict,
+            sample.variant.case,
+            sample.mesh,
+            sample.variant.space,
+            sample.variant.tip,
+            sample.variant.friction
+        ));
+    }
+    Ok(failed().next().is_none())
+}
