@@ -1,9 +1,11 @@
 //! Extended finite elements: cracks, enrichment, cut cells, contact points.
 
 pub mod basis;
+pub mod cell_facets;
 pub mod cell_matrix;
 pub mod conforming;
 pub mod crack;
+pub mod curve;
 pub mod cut;
 pub mod edge_pairs;
 pub mod ellipse;
@@ -18,7 +20,10 @@ pub mod intensity;
 pub mod interaction;
 pub mod multipliers;
 pub mod pairs;
+pub mod partition;
 pub mod pieces;
+pub mod placement;
+pub mod polygon;
 pub mod sampling;
 pub mod slice;
 pub mod star_forest;

@@ -9,7 +9,8 @@ use assert_cmd::Command;
 use common::*;
 use stickslip::harness::case::{Case, ContactSpace, Tip};
 use stickslip::harness::converge::orders::{self, ErrorRow, Kind, OrderRow};
-use stickslip::harness::converge::{self, Deviation, Measured, Regularity, Sample, Study};
+use stickslip::harness::converge::{self, Measured, Regularity, Sample, Study};
+use stickslip::harness::errors::Deviation;
 use stickslip::harness::run::{Choice, Quiet};
 use stickslip::report::{Provenance, csv as table};
 
@@ -68,7 +69,7 @@ fn power_law(case: &Case, body: &stickslip::harness::body::Body) -> Vec<Deviatio
 }
 
 fn samples(case: &Case, study: &Study) -> Vec<Sample> {
-    let exact: &converge::ClosedForm<'_> = &|case, body, _, _| Ok(Some(power_law(case, body)));
+    let exact: &converge::ClosedForm<'_> = &|loading, _| Ok(Some(power_law(case, loading.body())));
     converge::run(case, study, exact, &Quiet).unwrap()
 }
 

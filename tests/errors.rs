@@ -226,7 +226,7 @@ fn opened(jump: [f64; 2]) -> (Body, Snapshot, Vec<SurfacePoint>) {
         [5, 5],
         &(crack([-1.0, 0.11], [2.0, 0.9], 0.3, "none") + &clamped(2)),
     ));
-    let [n, t, _] = body.cracks[0].frame;
+    let [n, t, _] = body.cracks[0].frame(&body.points[0].x);
     let jump = add_scaled(&n.map(|v| jump[0] * v), jump[1], &t);
     let mut now = Snapshot::virgin(&body);
     for (f, function) in body.enrichment.functions.iter().enumerate() {

@@ -10,6 +10,7 @@ use stickslip::harness::body::{Body, BodyError, Needs};
 use stickslip::harness::case::{self, Amount, Case, CrackShape};
 use stickslip::harness::loading::Loading;
 use stickslip::harness::sides::Sides;
+use stickslip::xfem::cell_facets::region_at;
 use stickslip_methods::Load;
 
 type Point = [f64; 3];
@@ -285,7 +286,11 @@ fn prescribed_sides_follow_the_closed_form_on_both_faces() {
                         }
                         let side = distance.signum();
                         seen[usize::from(side > 0.0)] += 1;
-                        let found = integrator.displacement(facet.cell, &x, side, &u).unwrap();
+                        let region = body
+                            .enrichment
+                            .partition(facet.cell)
+                            .map_or(0, |partition| region_at(&body.cracks, partition, &x));
+                        let found = integrator.displacement(facet.cell, &x, region, &u).unwrap();
                         let wanted = map(&x, side);
                         for a in 0..body.mesh.dim() {
                             let error = found[a] - factor * wanted[a];

@@ -12,11 +12,10 @@ use stickslip::harness::case::{Material, Model};
 use stickslip::harness::errors::{fronts, tip_fronts, tip_intensities};
 use stickslip::harness::quantities::Snapshot;
 use stickslip::xfem::basis::{FunctionKind, TipFrame};
-use stickslip::xfem::cell_matrix::SidedPoint;
-use stickslip::xfem::enrichment::cells_at;
 use stickslip::xfem::intensity::{FitRange, JumpSample, jump_fit};
 use stickslip::xfem::interaction::{Domain, Fields, interaction};
-use stickslip::xfem::sampling::stress;
+use stickslip::xfem::placement::cells_at;
+use stickslip::xfem::sampling::{ComparisonPoint, stress};
 use stickslip::xfem::surface_point::{SurfacePoint, jump_at};
 use stickslip::xfem::williams::{Mode, Williams};
 
@@ -68,10 +67,10 @@ fn of_exact(
     loaded: bool,
 ) -> [f64; 2] {
     let h = 1e-6;
-    let gradients = |cell: usize, points: &[SidedPoint]| -> Vec<[Point; 3]> {
-        let split = body.enrichment.split[cell].is_some();
-        let gradient = |p: &SidedPoint| {
-            let side = if split { p.side } else { 1.0 };
+    let gradients = |cell: usize, points: &[ComparisonPoint]| -> Vec<[Point; 3]> {
+        assert!(cell < body.mesh.cell_count());
+        let gradient = |at: &ComparisonPoint| {
+            let (p, side) = (&at.point, at.side.unwrap_or(1.0));
             // Central differences of the displacement; away from the tip and the faces, where ∇q is not zero.
             let mut g = [[0.0; 3]; 3];
             for b in 0..2 {
@@ -168,8 +167,8 @@ fn a_smooth_field_with_body_force_has_no_intensity() {
             (p, [0, 1, 2].map(|a| -dot(&sigma[a], &p.frame[0])))
         })
         .collect();
-    let gradients = |_: usize, points: &[SidedPoint]| -> Vec<[Point; 3]> {
-        points.iter().map(|p| gradient(&p.x)).collect()
+    let gradients = |_: usize, points: &[ComparisonPoint]| -> Vec<[Point; 3]> {
+        points.iter().map(|p| gradient(&p.point.x)).collect()
     };
     for (at, tip) in tip_fronts(&body) {
         let of = |faces: &[(&SurfacePoint, Point)], force: Point| {

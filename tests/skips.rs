@@ -96,7 +96,7 @@ fn a_crack_without_tips_has_no_branch_functions() {
     let body = body(&plane([0.0, 0.0], [1.0, 1.0], [6, 7], &rest));
     assert!(body.enrichment.tips.is_empty() && body.enrichment.tip_cells.is_empty());
     let cut: std::collections::BTreeSet<u32> = (0..body.mesh.cell_count())
-        .filter(|&c| body.enrichment.split[c].is_some())
+        .filter(|&c| body.enrichment.partition(c).is_some())
         .flat_map(|c| body.mesh.cell(c).to_vec())
         .collect();
     assert_eq!(

@@ -20,7 +20,7 @@ use crate::harness::refusals::{check_probes, check_supports, crack_error, motion
 use crate::harness::step::Setup;
 use crate::xfem::cell_matrix::{CellError, CellIntegrator};
 use crate::xfem::conforming;
-use crate::xfem::crack::Crack;
+use crate::xfem::crack::{Crack, arms};
 use crate::xfem::edge_pairs::edge_pairs;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
 use crate::xfem::integrated::integrated_surface;
@@ -156,17 +156,19 @@ impl Body {
             .collect();
         let mut surface = ContactSurface::default();
         for number in 0..case.cracks.len() {
-            match cracks.iter().position(|c| c.number == number) {
-                Some(index) => {
-                    let held = |unknown: usize| numbers[unknown].is_none();
-                    surface.append(match case.cracks[number].contact {
-                        ContactSpace::EdgePairs => edge_pairs(&integrator, index, held)?,
-                        space => integrated_surface(&integrator, index, space, |f| {
-                            (0..dim).any(|a| held(f as usize * dim + a))
-                        })?,
-                    });
-                }
-                None => surface.append(doubled.remove(&number).unwrap_or_default()),
+            let held = |unknown: usize| numbers[unknown].is_none();
+            if let Some(own) = doubled.remove(&number) {
+                surface.append(own.retain(|point| point.acts(dim, held)));
+            }
+            // The arms of a crack one after the other.
+            let arms = (0..cracks.len()).filter(|&index| cracks[index].number == number);
+            for index in arms {
+                surface.append(match case.cracks[number].contact {
+                    ContactSpace::EdgePairs => edge_pairs(&integrator, index, held)?,
+                    space => integrated_surface(&integrator, index, space, |f| {
+                        (0..dim).any(|a| held(f as usize * dim + a))
+                    })?,
+                });
             }
         }
         for number in 0..case.cracks.len() {
@@ -348,7 +350,7 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
         .into_iter()
         .map(|number| Crack::new(number, &case.cracks[number], mesh))
         .collect();
-    Ok((cracks, doubled))
+    Ok((arms(cracks, mesh), doubled))
 }
 
 /// Products of sparse rows with a vector.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::harness::case::{Amount, Case, Region};
 use crate::xfem::basis::FunctionKind;
+use crate::xfem::cell_facets::pieces;
 use crate::xfem::cell_matrix::CellIntegrator;
 
 /// A prescribed unknown: a number times the history factor of the support, or the value the closed form gives it.
@@ -90,25 +91,28 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
 
 /// Enriched functions of some nodes of a cell that do not vanish between them.
 fn enriched_on(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) -> Vec<usize> {
-    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-    let nodes: Vec<usize> = local.iter().map(|&i| mesh.cell(cell)[i] as usize).collect();
-    let mut found = Vec::new();
-    for &node in &nodes {
-        for f in enrichment.enriched_of(node) {
-            let lives = match enrichment.functions[f].kind {
-                FunctionKind::Standard => false,
-                FunctionKind::Branch { .. } => true,
-                // H differs from its value at the node somewhere on the part.
-                FunctionKind::Heaviside { crack } => {
-                    let phi = &integrator.cracks[crack as usize].phi;
-                    enrichment.cell(cell).contains(&(f as u32))
-                        && nodes.iter().any(|&n| phi[n] * enrichment.shifts[f] < 0.0)
-                }
-            };
-            if lives {
-                found.push(f);
-            }
-        }
-    }
-    found
+    let CellIntegrator {
+        mesh, enrichment, ..
+    } = integrator;
+    let nodes: Vec<u32> = local.iter().map(|&i| mesh.cell(cell)[i]).collect();
+    let functions = enrichment.cell(cell);
+    let steps = enrichment.steps(cell);
+    let regions: Vec<usize> = pieces(mesh, integrator.cracks, enrichment, cell, local)
+        .into_iter()
+        .map(|(_, region)| region)
+        .collect();
+    let lives = |i: usize, f: u32| match enrichment.functions[f as usize].kind {
+        FunctionKind::Standard => false,
+        FunctionKind::Branch { .. } => true,
+        // H differs from its value at the node somewhere on the part.
+        FunctionKind::Heaviside { .. } => regions
+            .iter()
+            .any(|r| steps[r * functions.len() + i] != 0.0),
+    };
+    functions
+        .iter()
+        .enumerate()
+        .filter(|&(i, &f)| nodes.contains(&enrichment.functions[f as usize].node) && lives(i, f))
+        .map(|(_, &f)| f as usize)
+        .collect()
 }

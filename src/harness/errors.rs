@@ -23,8 +23,9 @@ use crate::analytic::Field;
 use crate::fem::{Point, dot, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
+use crate::xfem::basis::TipFrame;
 use crate::xfem::cell_matrix::CellError;
-use crate::xfem::sampling::Front;
+use crate::xfem::placement;
 use crate::xfem::surface_point::SurfacePoint;
 
 pub use bulk::{Bulk, bulk};
@@ -166,9 +167,10 @@ fn side_of(body: &Body, x: &Point) -> f64 {
 }
 
 /// Tips of all cracks, whether they carry branch functions or not.
-pub fn fronts(body: &Body) -> Vec<Front> {
-    tip_fronts(body)
-        .into_iter()
-        .map(|(_, tip)| [tip.position; 2])
+pub fn fronts(body: &Body) -> Vec<TipFrame> {
+    let cracks = body.cracks.iter().enumerate();
+    cracks
+        .flat_map(|(index, crack)| placement::fronts(&body.mesh, index, crack))
+        .map(|(tip, _)| tip)
         .collect()
 }

@@ -21,8 +21,8 @@ use crate::harness::refusals::{load_error, one_sided_error};
 use crate::harness::sides::Sides;
 use crate::xfem::basis::FunctionKind;
 use crate::xfem::cell_matrix::CellIntegrator;
-use crate::xfem::enrichment::ends_inside;
 use crate::xfem::pairs::ContactPoint;
+use crate::xfem::placement::ends_inside;
 
 /// A load that keeps its shape: its nodal forces and how they evolve.
 pub struct FixedLoad {

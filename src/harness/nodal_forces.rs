@@ -7,14 +7,15 @@
 //! φ runs over all functions of the body, enriched ones too; split facets and cells are integrated side by side.
 
 use crate::analytic::Field;
-use crate::fem::mesh::Facet;
 use crate::fem::quadrature::{WeightedPoint, gauss_cell, segment, triangle, triangle_collapsed};
 use crate::fem::{Point, cross, dot, norm, sub};
 use crate::harness::boundary::region_nodes;
 use crate::harness::case::{LoadKind, Region};
 use crate::harness::sides::Sides;
+use crate::xfem::basis::Region as CellRegion;
+use crate::xfem::cell_facets::{Piece, pieces};
 use crate::xfem::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use crate::xfem::cut::{self, Side, SubCells};
+use crate::xfem::cut;
 
 /// Gauss points per segment where loads act: exact for linear shape functions times linear densities, for closed forms
 /// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
@@ -28,8 +29,8 @@ const EXACT_TRIANGLE: usize = 5;
 /// Gauss points per direction in whole cells for body forces of closed forms: degree 7.
 const EXACT_CELL: usize = 4;
 
-/// A density at a point of a cell on a side of the crack that splits it.
-type Density<'a> = &'a dyn Fn(usize, &Point, Side) -> Point;
+/// A density at a point in a region of a cell.
+type Density<'a> = &'a dyn Fn(usize, &Point, CellRegion) -> Point;
 
 /// A region that holds no facet or edge to load.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -133,29 +134,29 @@ fn third(v: &[f64]) -> f64 {
     v.get(2).copied().unwrap_or(0.0)
 }
 
-/// f(φ) += Σ w φ(x) t(x) over points of a cell, each on a side of its crack.
+/// f(φ) += Σ w φ(x) t(x) over points of a cell, each in a region of the cell.
 fn add_points(
     integrator: &CellIntegrator<'_>,
     cell: usize,
-    points: &[(WeightedPoint, Side)],
+    points: &[(WeightedPoint, CellRegion)],
     density: Density<'_>,
     force: &mut [f64],
 ) -> Result<(), LoadError> {
     let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
     let functions = integrator.enrichment.cell_basis(mesh, cell);
     let corners = mesh.corners(cell);
-    let basis = integrator.basis(cell, &corners, &functions);
+    let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
     let mut values = vec![0.0; functions.len()];
     let mut gradients = vec![[0.0; 3]; functions.len()];
-    for (p, side) in points {
+    for (p, region) in points {
         let Some(xi) = mesh.kind.inverse_map(basis.corners, &p.x) else {
             return Err(LoadError::Cell(CellError {
                 at: mesh.centre(cell),
                 reason: "a loaded point has no reference position".into(),
             }));
         };
-        let t = density(cell, &p.x, *side);
-        basis.evaluate(&xi, &p.x, *side, &mut values, &mut gradients);
+        let t = density(cell, &p.x, *region);
+        basis.evaluate(&xi, &p.x, *region, &mut values, &mut gradients);
         for (&f, n) in integrator.enrichment.cell(cell).iter().zip(&values) {
             for a in 0..dim {
                 force[f as usize * dim + a] += p.weight * n * t[a];
@@ -183,7 +184,7 @@ fn body_points(
     integrator: &CellIntegrator<'_>,
     cell: usize,
     rule: Rule,
-) -> Result<Vec<(WeightedPoint, Side)>, LoadError> {
+) -> Result<Vec<(WeightedPoint, CellRegion)>, LoadError> {
     let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
     let corners = mesh.corners(cell);
     let corners = &corners[..mesh.kind.nodes()];
@@ -191,7 +192,7 @@ fn body_points(
         let points = gauss_cell(mesh.dim(), n).into_iter().map(|(xi, w)| {
             let weight = w * mesh.kind.gradients(corners, &xi).1;
             let x = mesh.kind.map(corners, &xi);
-            (WeightedPoint { x, weight }, 1.0)
+            (WeightedPoint { x, weight }, 0)
         });
         points.collect()
     };
@@ -199,21 +200,24 @@ fn body_points(
         return Ok(whole(if rule == Rule::Exact { EXACT_CELL } else { 2 }));
     }
     if rule == Rule::Exact && !enrichment.has_branch(cell) {
-        let Some(crack) = enrichment.split[cell] else {
+        let Some(partition) = enrichment.partition(cell) else {
             return Ok(whole(EXACT_CELL));
         };
-        let phi = integrator.cracks[crack as usize].cell_phi(mesh, cell);
-        let parts = [1.0, -1.0].into_iter().flat_map(|side| {
-            let points = SubCells::of(mesh.kind, corners, &phi, side).fine_points();
-            points.into_iter().map(move |p| (p, side))
-        });
+        let parts = partition
+            .parts
+            .iter()
+            .enumerate()
+            .flat_map(|(region, part)| {
+                let points = part.sub_cells().fine_points();
+                points.into_iter().map(move |p| (p, region))
+            });
         return Ok(parts.collect());
     }
     let points = integrator.points(cell)?.into_iter().map(|p| {
         let SidedPoint {
-            x, weight, side, ..
+            x, weight, region, ..
         } = p;
-        (WeightedPoint { x, weight }, side)
+        (WeightedPoint { x, weight }, region)
     });
     Ok(points.collect())
 }
@@ -228,11 +232,11 @@ fn initial_stress(
     for cell in 0..mesh.cell_count() {
         let functions = integrator.enrichment.cell_basis(mesh, cell);
         let corners = mesh.corners(cell);
-        let basis = integrator.basis(cell, &corners, &functions);
+        let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
         let mut values = vec![0.0; functions.len()];
         let mut gradients = vec![[0.0; 3]; functions.len()];
         for p in integrator.points(cell)? {
-            basis.evaluate(&p.xi, &p.x, p.side, &mut values, &mut gradients);
+            basis.evaluate(&p.xi, &p.x, p.region, &mut values, &mut gradients);
             for (&f, g) in integrator.enrichment.cell(cell).iter().zip(&gradients) {
                 for a in 0..dim {
                     force[f as usize * dim + a] -= p.weight * dot(&stress[a], g);
@@ -243,13 +247,13 @@ fn initial_stress(
     Ok(())
 }
 
-/// Traction on the facets of a side; `density(cell, x, side, n)` is the force per area for the outward normal n.
+/// Traction on the facets of a side; `density(cell, x, region, n)` is the force per area for the outward normal n.
 fn facet_force(
     integrator: &CellIntegrator<'_>,
     region: &Region,
     rule: Rule,
     force: &mut [f64],
-    density: impl Fn(usize, &Point, Side, &Point) -> Point,
+    density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
 ) -> Result<(), LoadError> {
     let mesh = integrator.mesh;
     let nodes = region_nodes(integrator, region);
@@ -266,14 +270,15 @@ fn facet_force(
             continue;
         }
         loaded = true;
-        for (part, side) in facet_parts(integrator, facet) {
+        let local = mesh.kind.facets()[facet.local];
+        for (part, region) in divided(integrator, facet.cell, local) {
             if mesh.dim() == 2 {
                 let (p, q) = (part[0], part[1]);
                 let d = sub(&q, &p);
                 let length = norm(&d);
                 let normal = [d[1] / length, -d[0] / length, 0.0];
-                let points = loaded_segment(integrator, rule, facet.cell, &p, &q, side);
-                let density = |cell, x: &Point, side| density(cell, x, side, &normal);
+                let points = loaded_segment(integrator, rule, facet.cell, &p, &q, region);
+                let density = |cell, x: &Point, region| density(cell, x, region, &normal);
                 add_points(integrator, facet.cell, &points, &density, force)?;
             } else {
                 for t in cut::fan(&part) {
@@ -285,8 +290,8 @@ fn facet_force(
                             Rule::Fixed => triangle(&t),
                             Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
                         };
-                        let points: Vec<_> = points.into_iter().map(|p| (p, side)).collect();
-                        let density = |cell, x: &Point, side| density(cell, x, side, &normal);
+                        let points: Vec<_> = points.into_iter().map(|p| (p, region)).collect();
+                        let density = |cell, x: &Point, region| density(cell, x, region, &normal);
                         add_points(integrator, facet.cell, &points, &density, force)?;
                     }
                 }
@@ -300,34 +305,15 @@ fn facet_force(
     }
 }
 
-/// A facet, or its two parts where the cell is split; oriented with the outward normal.
-fn facet_parts(integrator: &CellIntegrator<'_>, facet: Facet) -> Vec<(Vec<Point>, f64)> {
-    let mesh = integrator.mesh;
-    let local = mesh.kind.facets()[facet.local];
-    let corners = mesh.corners(facet.cell);
-    let vertices: Vec<Point> = local.iter().map(|&i| corners[i]).collect();
-    let Some(crack) = integrator.enrichment.split[facet.cell] else {
-        return vec![(vertices, 1.0)];
-    };
-    let phi = integrator.cracks[crack as usize].cell_phi(mesh, facet.cell);
-    let phi: Vec<f64> = local.iter().map(|&i| phi[i]).collect();
-    parts(&vertices, &phi)
-}
-
-/// Parts of a polygon or segment on both sides.
-fn parts(vertices: &[Point], phi: &[f64]) -> Vec<(Vec<Point>, f64)> {
-    if let ([p, q], [f, g]) = (vertices, phi) {
-        if f * g < 0.0 {
-            let c = cut::crossing(p, *f, q, *g);
-            return vec![(vec![*p, c], f.signum()), (vec![c, *q], g.signum())];
-        }
-        let side = if *f < 0.0 || *g < 0.0 { -1.0 } else { 1.0 };
-        return vec![(vertices.to_vec(), side)];
-    }
-    let both = [1.0, -1.0].map(|side| (cut::polygon_part(vertices, phi, side), side));
-    both.into_iter()
-        .filter(|(part, _)| part.len() > 2)
-        .collect()
+/// An edge or facet between local nodes, divided among the regions of the cell.
+fn divided(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) -> Vec<Piece> {
+    pieces(
+        integrator.mesh,
+        integrator.cracks,
+        integrator.enrichment,
+        cell,
+        local,
+    )
 }
 
 fn loaded_segment(
@@ -336,8 +322,8 @@ fn loaded_segment(
     cell: usize,
     p: &Point,
     q: &Point,
-    side: f64,
-) -> Vec<(WeightedPoint, Side)> {
+    region: CellRegion,
+) -> Vec<(WeightedPoint, CellRegion)> {
     let n = if integrator.enrichment.has_branch(cell) {
         BRANCH_POINTS
     } else if rule == Rule::Exact {
@@ -347,7 +333,7 @@ fn loaded_segment(
     };
     segment(p, q, n)
         .into_iter()
-        .map(|point| (point, side))
+        .map(|point| (point, region))
         .collect()
 }
 
@@ -372,7 +358,6 @@ fn line_force(
     {
         let local = mesh.kind.facets()[facet.local];
         let cell = mesh.cell(facet.cell);
-        let corners = mesh.corners(facet.cell);
         for i in 0..local.len() {
             let ends = [local[i], local[(i + 1) % local.len()]];
             if !ends
@@ -382,22 +367,14 @@ fn line_force(
                 continue;
             }
             loaded = true;
-            let vertices = ends.map(|k| corners[k]);
-            let pieces = match integrator.enrichment.split[facet.cell] {
-                Some(crack) => {
-                    let phi = integrator.cracks[crack as usize].cell_phi(mesh, facet.cell);
-                    parts(&vertices, &ends.map(|k| phi[k]))
-                }
-                None => vec![(vertices.to_vec(), 1.0)],
-            };
-            for (part, side) in pieces {
+            for (part, region) in divided(integrator, facet.cell, &ends) {
                 let points = loaded_segment(
                     integrator,
                     Rule::Fixed,
                     facet.cell,
                     &part[0],
                     &part[1],
-                    side,
+                    region,
                 );
                 add_points(integrator, facet.cell, &points, &|_, _, _| density, force)?;
             }

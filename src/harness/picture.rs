@@ -9,9 +9,11 @@ use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::harness::record::{FieldStep, Picture, PictureCell, PictureShape};
-use crate::xfem::basis::FunctionKind;
-use crate::xfem::cut::{self, Side, SubCells};
+use crate::xfem::crack::Parent;
+use crate::xfem::cut::{self, Side};
 use crate::xfem::pairs::SurfaceCorner;
+use crate::xfem::partition::{Part, Partition};
+use crate::xfem::polygon;
 
 /// Body and crack faces at one increment.
 pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
@@ -36,39 +38,36 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
     for cell in 0..mesh.cell_count() {
         let corners = mesh.corners(cell);
         let corners = &corners[..mesh.kind.nodes()];
-        let Some(crack) = body.enrichment.split[cell] else {
+        let Some(partition) = body.enrichment.partition(cell) else {
             cells.push(PictureCell {
                 shape: whole,
                 points: corners
                     .iter()
-                    .map(|x| vertices.of(cell, x, 1.0, now))
+                    .map(|x| vertices.of(cell, x, 0, now))
                     .collect(),
             });
-            let h = integrator.displacement_gradient(cell, &[0.0; 3], 1.0, &now.u);
+            let h = integrator.displacement_gradient(cell, &[0.0; 3], 0, &now.u);
             stress.push(body.lame.von_mises(&h, dim));
             sides.push(0.0);
             continue;
         };
-        let phi = body.cracks[crack as usize].cell_phi(mesh, cell);
-        for side in [1.0, -1.0] {
-            for (shape, part) in cell_parts(body, cell, corners, &phi, side) {
+        for (region, part) in partition.parts.iter().enumerate() {
+            for (shape, part) in pieces_of(body, cell, corners, partition, part) {
                 cells.push(PictureCell {
                     shape,
                     points: part
                         .iter()
-                        .map(|x| vertices.of(cell, x, side, now))
+                        .map(|x| vertices.of(cell, x, region, now))
                         .collect(),
                 });
                 let mut centre = [0.0; 3];
                 for x in &part {
-                    for a in 0..3 {
-                        centre[a] += x[a] / part.len() as f64;
-                    }
+                    centre = add_scaled(&centre, 1.0 / part.len() as f64, x);
                 }
                 let xi = mesh.kind.inverse_map(corners, &centre).unwrap_or_default();
-                let h = integrator.displacement_gradient(cell, &xi, side, &now.u);
+                let h = integrator.displacement_gradient(cell, &xi, region, &now.u);
                 stress.push(body.lame.von_mises(&h, dim));
-                sides.push(side);
+                sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
             }
         }
     }
@@ -82,13 +81,16 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
     }
 }
 
-/// Points of the picture, one per place and side.
+/// Faces of cracks that a point lies on: crack, and whether on side 1.
+type Faces = Vec<(usize, bool)>;
+
+/// Points of the picture, one per place and faces.
 struct Vertices<'a> {
     body: &'a Body,
     points: Vec<Point>,
     displacement: Vec<Point>,
-    /// Number by (place in quanta, side) for the points that are no mesh nodes.
-    found: HashMap<([i64; 3], Option<bool>), usize>,
+    /// Number by place in quanta and faces, for the points that are no mesh nodes.
+    found: HashMap<([i64; 3], Faces), usize>,
     /// Length below which places are equal [m]: far below a cell, far above rounding.
     quantum: f64,
 }
@@ -114,103 +116,116 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// Number of a vertex of a cell: that of the node if it is one on its own side, otherwise one of its own.
-    fn of(&mut self, cell: usize, x: &Point, side: Side, now: &Snapshot) -> usize {
+    /// Number of a vertex of a region of a cell: that of the node if it is one on its own side, otherwise one of its own.
+    fn of(&mut self, cell: usize, x: &Point, region: usize, now: &Snapshot) -> usize {
         let body = self.body;
-        let nodes = body.mesh.cell(cell);
-        let node = nodes
-            .iter()
-            .map(|&n| n as usize)
-            .find(|&n| body.mesh.nodes[n] == *x);
-        let across = match body.enrichment.split[cell] {
-            Some(crack) => self.jumps(crack as usize, x).then_some(side),
-            None => node.and_then(|node| self.reached_side(cell, node)),
+        let nodes = body.mesh.cell(cell).iter().map(|&n| n as usize);
+        let node = nodes.into_iter().find(|&n| body.mesh.nodes[n] == *x);
+        let faces = match body.enrichment.partition(cell) {
+            Some(partition) => self.cut_faces(&partition.parts[region], x),
+            None => node.map_or_else(Vec::new, |node| self.reached_faces(cell, node)),
         };
         if let Some(node) = node {
-            let crack = body.enrichment.split[cell].map(|c| &body.cracks[c as usize]);
-            let own = match (across, crack) {
-                (Some(side), Some(crack)) => crack.side_of(node) == side,
-                (across, _) => across.is_none(),
-            };
-            if own {
+            let own =
+                |&(crack, upper): &(usize, bool)| (body.cracks[crack].side_of(node) > 0.0) == upper;
+            if faces.iter().all(own) {
                 return node;
             }
         }
-        let key = (
-            x.map(|v| (v / self.quantum).round() as i64),
-            across.map(|side| side > 0.0),
-        );
+        let key = (x.map(|v| (v / self.quantum).round() as i64), faces);
         *self.found.entry(key).or_insert_with(|| {
-            let u = body.integrator().displacement(cell, x, side, &now.u);
+            let u = body.integrator().displacement(cell, x, region, &now.u);
             self.points.push(*x);
             self.displacement.push(u.unwrap_or([f64::NAN; 3]));
             self.points.len() - 1
         })
     }
 
-    /// True between the ends of a crack: ahead of a tip the two sides are one.
+    /// True between the ends of a crack: ahead of a tip, and beyond a crack that it ends on, the two sides are one.
     fn jumps(&self, crack: usize, x: &Point) -> bool {
         let crack = &self.body.cracks[crack];
-        let s = crack.abscissa(x);
-        crack.length.is_infinite() || (s > self.quantum && s < crack.length - self.quantum)
+        let beyond = |p: &Parent| self.body.cracks[p.crack].distance(x) * p.side < -self.quantum;
+        crack.jumps_at(x, self.quantum) && !crack.parents.iter().any(beyond)
     }
 
-    /// Side of a whole cell, if a node of it lies on a crack and counts to the other side.
-    fn reached_side(&self, cell: usize, node: usize) -> Option<Side> {
-        let (mesh, enrichment) = (&self.body.mesh, &self.body.enrichment);
-        enrichment.cell_basis(mesh, cell).iter().find_map(|f| {
-            let crack = match f.kind {
-                FunctionKind::Standard => return None,
-                FunctionKind::Heaviside { crack } => crack as usize,
-                FunctionKind::Branch { tip, .. } => enrichment.tips[tip as usize].crack,
-            };
-            let here =
-                mesh.cell(cell)[f.local] as usize == node && self.jumps(crack, &mesh.nodes[node]);
-            f.whole
-                .filter(|&side| here && side != self.body.cracks[crack].side_of(node))
-        })
+    /// Faces of a part of a cut cell at a point.
+    fn cut_faces(&self, part: &Part, x: &Point) -> Faces {
+        let on = |&&(crack, _): &&(usize, Side)| {
+            self.body.cracks[crack].distance(x).abs() <= self.quantum && self.jumps(crack, x)
+        };
+        part.sides
+            .iter()
+            .filter(on)
+            .map(|&(crack, side)| (crack, side > 0.0))
+            .collect()
+    }
+
+    /// Faces of a whole cell at a node that lies on a crack.
+    fn reached_faces(&self, cell: usize, node: usize) -> Faces {
+        let body = self.body;
+        let x = &body.mesh.nodes[node];
+        let centre = body.mesh.centre(cell);
+        let cracks = 0..body.cracks.len();
+        cracks
+            .filter(|&k| body.cracks[k].phi[node] == 0.0 && self.jumps(k, x))
+            .filter(|_| !body.enrichment.enriched_of(node).is_empty())
+            .map(|k| (k, body.cracks[k].distance(&centre) > 0.0))
+            .collect()
     }
 }
 
-/// Parts of a cut cell on one side: a polygon in 2D; in 3D a hexahedron where the crack parts two opposite faces,
-/// tetrahedra elsewhere.
-fn cell_parts(
+/// What a part of a cut cell is drawn as: a polygon in 2D, triangles if it is not convex; in 3D a hexahedron where one
+/// crack parts two opposite faces, tetrahedra elsewhere.
+fn pieces_of(
     body: &Body,
     cell: usize,
     corners: &[Point],
-    phi: &[f64],
-    side: Side,
+    partition: &Partition,
+    part: &Part,
 ) -> Vec<(PictureShape, Vec<Point>)> {
     let kind = body.mesh.kind;
     if kind == CellKind::Quad4 {
-        let mut polygon = cut::polygon_part(corners, &phi[..4], side);
+        let mut polygon = part.polygon.clone();
         for &(_, tip) in body.enrichment.tip_cells.iter().filter(|(c, _)| *c == cell) {
             insert_on_border(&mut polygon, &body.enrichment.tips[tip].position);
         }
-        return vec![(PictureShape::Polygon, polygon)];
+        if polygon::is_convex(&polygon) {
+            return vec![(PictureShape::Polygon, polygon)];
+        }
+        let triangles = polygon::triangles(&polygon).into_iter();
+        return triangles
+            .map(|t| (PictureShape::Polygon, t.to_vec()))
+            .collect();
     }
-    for axis in 0..3 {
-        let level = phi[0].signum() * kind.corner(0)[axis];
-        if (0..8).all(|i| phi[i] * level * kind.corner(i)[axis] > 0.0) {
-            let opposite = |i: usize| {
-                (0..8).find(|&j| {
-                    (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis))
-                })
-            };
-            let part = (0..8).map(|i| match opposite(i) {
-                Some(j) if phi[i] * side < 0.0 => {
-                    cut::crossing(&corners[i], phi[i], &corners[j], phi[j])
-                }
-                _ => corners[i],
-            });
-            return vec![(PictureShape::Hexahedron, part.collect())];
+    if let (&[(crack, side)], 2) = (part.sides.as_slice(), partition.parts.len()) {
+        let phi = body.cracks[crack].cell_phi(&body.mesh, cell);
+        if let Some(hexahedron) = hexahedron(kind, corners, &phi, side) {
+            return vec![(PictureShape::Hexahedron, hexahedron)];
         }
     }
-    let parts = SubCells::of(kind, corners, phi, side).tetrahedra;
-    parts
-        .iter()
-        .map(|t| (PictureShape::Tetra, t.to_vec()))
-        .collect()
+    let parts = part.tetrahedra.iter();
+    parts.map(|t| (PictureShape::Tetra, t.to_vec())).collect()
+}
+
+/// One side of a cell of which a crack parts two opposite faces.
+fn hexahedron(kind: CellKind, corners: &[Point], phi: &[f64; 8], side: Side) -> Option<Vec<Point>> {
+    (0..3).find_map(|axis| {
+        let level = phi[0].signum() * kind.corner(0)[axis];
+        if !(0..8).all(|i| phi[i] * level * kind.corner(i)[axis] > 0.0) {
+            return None;
+        }
+        let opposite = |i: usize| {
+            (0..8)
+                .find(|&j| (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis)))
+        };
+        let part = (0..8).map(|i| match opposite(i) {
+            Some(j) if phi[i] * side < 0.0 => {
+                cut::crossing(&corners[i], phi[i], &corners[j], phi[j])
+            }
+            _ => corners[i],
+        });
+        Some(part.collect())
+    })
 }
 
 /// Makes a point on an edge of a polygon a vertex of it.

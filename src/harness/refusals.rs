@@ -56,7 +56,12 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     let (crack, allowed) = match error {
         EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
-        EnrichmentError::Crossing { second, .. } => (*second, "cracks at least one cell apart"),
+        EnrichmentError::Crowded { ending, .. } => {
+            (*ending, "tips at least one cell away from other cracks")
+        }
+        EnrichmentError::Partition { crack, .. } => {
+            (*crack, "a finer mesh, or cracks farther apart")
+        }
         EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
         EnrichmentError::ConformingTip { crack } => (
             *crack,

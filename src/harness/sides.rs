@@ -4,6 +4,7 @@
 
 use crate::fem::Point;
 use crate::harness::case::Case;
+use crate::xfem::basis::Region;
 use crate::xfem::cell_matrix::CellIntegrator;
 use crate::xfem::crack::Crack;
 use crate::xfem::cut::Side;
@@ -49,16 +50,16 @@ impl Sides {
         self.nodes[node]
     }
 
-    /// Side of a point of a cell; `split` is the side where the crack splits the cell.
+    /// Side of a point in a region of a cell.
     pub fn of_point(
         &self,
         integrator: &CellIntegrator<'_>,
         cell: usize,
         x: &Point,
-        split: Side,
+        region: Region,
     ) -> Side {
-        match integrator.enrichment.split[cell] {
-            Some(_) => split,
+        match integrator.enrichment.side(cell, region, 0) {
+            Some(side) => side,
             None => sign(self.crack.distance(x)),
         }
     }

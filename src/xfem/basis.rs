@@ -8,9 +8,11 @@
 //! Shifting makes ū_i the displacement of node i itself. Only H and g_1 jump: [[H]] = 2, [[g_1]] = 2 √r.
 
 use crate::fem::cell::CellKind;
-use crate::fem::{Point, dot, sub};
+use crate::fem::{Point, cross, dot, norm, sub};
 
+use super::curve::{Curve, turned};
 use super::cut::Side;
+use super::ellipse::Ellipse;
 
 /// Kind of a scalar function; its node is kept beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,33 +33,126 @@ pub enum FunctionKind {
     },
 }
 
-/// A tip inside the body with its frame.
+/// A tip or front inside the body with its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipFrame {
     /// Crack number.
     pub crack: usize,
-    /// Position [m].
+    /// Position; of an ellipse its centre [m].
     pub position: Point,
-    /// Unit direction out of the crack.
+    /// Unit direction out of the crack; of an ellipse its first axis.
     pub ahead: Point,
     /// Crack normal, towards side 1.
     pub normal: Point,
+    /// What the crack behind it looks like.
+    pub shape: FrontShape,
+}
+
+/// Shape of a crack near its tip, which bends the coordinates of the branch functions along with it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FrontShape {
+    /// Straight.
+    Straight,
+    /// A circular arc.
+    Arc {
+        /// Its curve.
+        curve: Curve,
+        /// Whether the tip is its last end.
+        last: bool,
+    },
+    /// The front of an elliptic crack in 3D.
+    Ellipse(Ellipse),
+}
+
+/// Crack-tip coordinates of a point: r = √(ψ² + φ²), θ = atan2(φ, ψ).
+#[derive(Debug, Clone, Copy)]
+pub struct TipCoordinates {
+    /// Distance ahead of the front along the crack, negative behind it [m].
+    pub psi: f64,
+    /// Distance from the crack, positive on side 1 [m].
+    pub phi: f64,
+    /// ∇ψ.
+    pub psi_gradient: Point,
+    /// ∇φ.
+    pub phi_gradient: Point,
 }
 
 impl TipFrame {
+    /// True for the front of a 3D crack.
+    pub fn shape_is_ellipse(&self) -> bool {
+        matches!(self.shape, FrontShape::Ellipse(_))
+    }
+
+    /// Coordinates of a point.
+    pub fn coordinates(&self, x: &Point) -> TipCoordinates {
+        let d = sub(x, &self.position);
+        match &self.shape {
+            FrontShape::Straight => TipCoordinates {
+                psi: dot(&d, &self.ahead),
+                phi: dot(&d, &self.normal),
+                psi_gradient: self.ahead,
+                phi_gradient: self.normal,
+            },
+            FrontShape::Arc { curve, last } => {
+                // ψ runs along the arc: constant on its radii, so ∇ψ shrinks outwards.
+                let near = curve.nearest(x);
+                let sign = if *last { 1.0 } else { -1.0 };
+                let end = if *last { curve.length() } else { 0.0 };
+                let stretch = match curve {
+                    Curve::Arc { centre, radius, .. } => radius / norm(&sub(x, centre)),
+                    Curve::Chain(_) => 1.0,
+                };
+                TipCoordinates {
+                    psi: sign * (near.s - end),
+                    phi: near.phi,
+                    psi_gradient: near.tangent.map(|t| sign * stretch * t),
+                    phi_gradient: turned(&near.tangent),
+                }
+            }
+            FrontShape::Ellipse(ellipse) => {
+                let near = ellipse.nearest(x);
+                TipCoordinates {
+                    psi: near.psi,
+                    phi: dot(&d, &self.normal),
+                    psi_gradient: near.ahead,
+                    phi_gradient: self.normal,
+                }
+            }
+        }
+    }
+
+    /// Distance r from the tip or front [m].
+    pub fn distance(&self, x: &Point) -> f64 {
+        let at = self.coordinates(x);
+        at.psi.hypot(at.phi)
+    }
+
+    /// Frame at the point of the front nearest to x: ahead, crack normal, tangent = ahead × normal.
+    pub fn frame(&self, x: &Point) -> [Point; 3] {
+        let ahead = match &self.shape {
+            FrontShape::Ellipse(ellipse) => ellipse.nearest(x).ahead,
+            _ => self.ahead,
+        };
+        [ahead, self.normal, cross(&ahead, &self.normal)]
+    }
+
     /// Branch functions and their gradients at a point.
     ///
     /// `side` says on which face a point of the crack lies (θ = ±π); `None` takes the side from the position.
     pub fn branch(&self, x: &Point, side: Option<Side>) -> ([f64; 4], [Point; 4]) {
-        let d = sub(x, &self.position);
-        let (x1, mut x2) = (dot(&d, &self.ahead), dot(&d, &self.normal));
+        let TipCoordinates {
+            psi,
+            mut phi,
+            psi_gradient,
+            phi_gradient,
+        } = self.coordinates(x);
         match side {
-            Some(side) if side > 0.0 => x2 = x2.max(0.0),
-            Some(_) => x2 = -((-x2).max(0.0)),
+            Some(side) if side > 0.0 => phi = phi.max(0.0),
+            Some(_) => phi = -((-phi).max(0.0)),
             None => {}
         }
-        let r = x1.hypot(x2);
-        let theta = x2.atan2(x1);
+        let r = psi.hypot(phi);
+        let theta = phi.atan2(psi);
         let (root, s, c) = (r.sqrt(), (0.5 * theta).sin(), (0.5 * theta).cos());
         let (sin, cos) = (theta.sin(), theta.cos());
         let angular = [s, c, s * sin, c * sin];
@@ -75,13 +170,16 @@ impl TipFrame {
                 let (gr, gt) = (0.5 * angular[l] / root, slope[l] / root);
                 let (g1, g2) = (gr * cos - gt * sin, gr * sin + gt * cos);
                 for a in 0..3 {
-                    gradients[l][a] = g1 * self.ahead[a] + g2 * self.normal[a];
+                    gradients[l][a] = g1 * psi_gradient[a] + g2 * phi_gradient[a];
                 }
             }
         }
         (values, gradients)
     }
 }
+
+/// Number of a part of a cell, see [`super::partition`]; 0 in a cell that no crack cuts.
+pub type Region = usize;
 
 /// One scalar function of one cell.
 #[derive(Debug, Clone, Copy)]
@@ -92,18 +190,6 @@ pub struct CellFunction {
     pub kind: FunctionKind,
     /// H(x_j) (Heaviside) or g_l(x_k) (branch) at the node.
     pub shift: f64,
-    /// Side of the function's crack that the whole cell lies on, if the crack does not split it.
-    pub whole: Option<Side>,
-}
-
-impl CellFunction {
-    /// Constant of a Heaviside function on a side of the splitting crack, H − H(x_j); 1 for the others.
-    pub fn step(&self, side: Side) -> f64 {
-        match self.kind {
-            FunctionKind::Heaviside { .. } => self.whole.unwrap_or(side) - self.shift,
-            _ => 1.0,
-        }
-    }
 }
 
 /// The functions of one cell, ready to be evaluated.
@@ -115,40 +201,47 @@ pub struct CellBasis<'a> {
     pub corners: &'a [Point],
     /// Functions, the standard ones first.
     pub functions: &'a [CellFunction],
-    /// Crack that splits the cell.
-    pub crack: Option<usize>,
+    /// Region by region and function by function: H − H(x_j) of a Heaviside function, the side of its crack for a branch
+    /// function (0: by position), 1 for a standard one.
+    pub steps: &'a [f64],
     /// All tips of the body.
     pub tips: &'a [TipFrame],
 }
 
 impl CellBasis<'_> {
-    /// Values and gradients of all functions at ξ (position x), on a side of the splitting crack.
+    /// Constants of the functions in a region.
+    pub fn steps(&self, region: Region) -> &[f64] {
+        let count = self.functions.len();
+        &self.steps[region * count..(region + 1) * count]
+    }
+
+    /// Values and gradients of all functions at ξ (position x) in a region of the cell.
     pub fn evaluate(
         &self,
         xi: &Point,
         x: &Point,
-        side: Side,
+        region: Region,
         values: &mut [f64],
         gradients: &mut [Point],
     ) {
         let n = self.kind.shape(xi);
         let (dn, _) = self.kind.gradients(self.corners, xi);
         let mut cached: Option<(u32, [f64; 4], [Point; 4])> = None;
-        for (f, (value, gradient)) in self.functions.iter().zip(values.iter_mut().zip(gradients)) {
+        let out = values.iter_mut().zip(gradients);
+        for ((f, step), (value, gradient)) in self.functions.iter().zip(self.steps(region)).zip(out)
+        {
             let (ni, dni) = (n[f.local], dn[f.local]);
             match f.kind {
                 FunctionKind::Standard => (*value, *gradient) = (ni, dni),
                 FunctionKind::Heaviside { .. } => {
-                    let h = f.step(side);
-                    (*value, *gradient) = (ni * h, dni.map(|d| d * h));
+                    (*value, *gradient) = (ni * step, dni.map(|d| d * step));
                 }
                 FunctionKind::Branch { tip, order } => {
                     let (g, dg) = match cached {
                         Some((number, g, dg)) if number == tip => (g, dg),
                         _ => {
-                            let frame = &self.tips[tip as usize];
-                            let split = (self.crack == Some(frame.crack)).then_some(side);
-                            let (g, dg) = frame.branch(x, split.or(f.whole));
+                            let side = (*step != 0.0).then_some(*step);
+                            let (g, dg) = self.tips[tip as usize].branch(x, side);
                             cached = Some((tip, g, dg));
                             (g, dg)
                         }
@@ -176,6 +269,7 @@ mod tests {
             position: [0.3, -0.2, 0.0],
             ahead: [c, s, 0.0],
             normal: [-s, c, 0.0],
+            shape: FrontShape::Straight,
         }
     }
 

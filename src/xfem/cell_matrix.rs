@@ -1,13 +1,13 @@
 //! Stiffness of enriched cells.
 //!
-//! Cells with Heaviside functions only need the standard stiffness of their two sides, K⁺ and K⁻: every function is
-//! N_i times a constant on each side, f_i^± = 1 (standard) or ±1 − H_j (Heaviside), so
+//! Cells with Heaviside functions only need the standard stiffness K^r of their regions r, the two sides of a crack or the
+//! parts between several: every function is N_i times a constant in each, f_i^r = 1 (standard) or ±1 − H_j (Heaviside), so
 //!
 //! ```text
-//!   K[(p,a),(q,b)] = Σ_± f_p^± f_q^± K^±[(i_p,a),(i_q,b)]
+//!   K[(p,a),(q,b)] = Σ_r f_p^r f_q^r K^r[(i_p,a),(i_q,b)]
 //! ```
 //!
-//! On affine cells the smaller side is integrated and the larger is K_e minus it: half the work, and a sliver keeps its
+//! On affine cells the largest region is K_e minus the others: half the work, and a sliver keeps its
 //! full relative accuracy (its entries may be 10⁻²⁴ of K_e and still count). Cells with branch functions are integrated
 //! function by function.
 
@@ -15,13 +15,17 @@ use crate::fem::cell::CellKind;
 use crate::fem::elasticity::{CellMatrix, Gram, Lame, cell_stiffness, flatten};
 use crate::fem::mesh::Mesh;
 use crate::fem::quadrature::{WeightedPoint, gauss_cell};
-use crate::fem::{Point, sub};
+use crate::fem::{Point, cross, sub, unit};
 use crate::harness::case::Quadrature;
 
-use super::basis::{CellBasis, CellFunction};
+use super::basis::{CellBasis, CellFunction, FrontShape, Region};
 use super::crack::Crack;
-use super::cut::{self, Side, SubCells};
+use super::cut::{self, Side};
 use super::enrichment::Enrichment;
+use super::facets::CrackFacets;
+use super::front::{FrontPiece, FrontRule, front_cell_points};
+use super::graded::graded_tetrahedra;
+use super::partition::{Part, Partition};
 
 /// A quadrature point of a cell.
 #[derive(Debug, Clone, Copy)]
@@ -32,8 +36,8 @@ pub struct SidedPoint {
     pub x: Point,
     /// Weight [m^dim].
     pub weight: f64,
-    /// Side of the splitting crack.
-    pub side: Side,
+    /// Part of the cell.
+    pub region: Region,
 }
 
 /// A cell whose sub-cells cannot be integrated.
@@ -69,12 +73,12 @@ impl CellIntegrator<'_> {
         } else if self.enrichment.has_branch(cell) {
             self.by_functions(cell, &basis)
         } else {
-            self.by_sides(cell, &basis, plain)
+            self.by_regions(cell, &basis, plain)
         }
     }
 
-    /// K⁺ and K⁻ combined.
-    fn by_sides(
+    /// The standard stiffness of every region, combined.
+    fn by_regions(
         &self,
         cell: usize,
         basis: &[CellFunction],
@@ -84,22 +88,20 @@ impl CellIntegrator<'_> {
         let corners = self.mesh.corners(cell);
         let corners = &corners[..kind.nodes()];
         let points = self.points(cell)?;
-        let volume = |side: Side| -> f64 {
-            points
-                .iter()
-                .filter(|p| p.side == side)
-                .map(|p| p.weight)
-                .sum()
+        let regions = self.enrichment.regions(cell);
+        let volume = |region: Region| -> f64 {
+            let own = points.iter().filter(|p| p.region == region);
+            own.map(|p| p.weight).sum()
         };
-        let small = if volume(1.0) <= volume(-1.0) {
-            1.0
-        } else {
-            -1.0
-        };
-        let integrate = |side: Side| {
+        // The first of the largest: the others are integrated.
+        let largest = (0..regions)
+            .rev()
+            .max_by(|&a, &b| volume(a).total_cmp(&volume(b)))
+            .unwrap_or(0);
+        let integrate = |region: Region| {
             let mut gram = Gram::zero(kind.nodes(), dim);
             let mut flat = vec![0.0; kind.nodes() * dim];
-            for p in points.iter().filter(|p| p.side == side) {
+            for p in points.iter().filter(|p| p.region == region) {
                 flatten(
                     &kind.gradients(corners, &p.xi).0[..kind.nodes()],
                     dim,
@@ -109,17 +111,28 @@ impl CellIntegrator<'_> {
             }
             gram.stiffness(self.lame)
         };
-        let k_small = integrate(small);
-        let k_large = if kind.is_affine(corners) && self.quadrature == Quadrature::SubCells {
-            CellMatrix::difference(plain, &k_small)
-        } else {
-            integrate(-small)
-        };
+        let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
+        let exact = kind.is_affine(corners) && self.quadrature == Quadrature::SubCells;
+        let mut rest = plain.clone();
+        for region in 0..regions {
+            if exact && region == largest {
+                parts.push(CellMatrix::zero(0));
+                continue;
+            }
+            let own = integrate(region);
+            rest = CellMatrix::difference(&rest, &own);
+            parts.push(own);
+        }
+        if exact {
+            parts[largest] = rest;
+        }
         let mut k = CellMatrix::zero(basis.len() * dim);
-        for (side, part) in [(small, &k_small), (-small, &k_large)] {
+        let cell_basis = self.basis(cell, corners, basis);
+        for (region, part) in parts.iter().enumerate() {
+            let steps = cell_basis.steps(region);
             for (p, fp) in basis.iter().enumerate() {
                 for (q, fq) in basis.iter().enumerate() {
-                    let f = fp.step(side) * fq.step(side);
+                    let f = steps[p] * steps[q];
                     if f == 0.0 {
                         continue;
                     }
@@ -139,13 +152,13 @@ impl CellIntegrator<'_> {
     fn by_functions(&self, cell: usize, basis: &[CellFunction]) -> Result<CellMatrix, CellError> {
         let dim = self.mesh.dim();
         let corners = self.mesh.corners(cell);
-        let cell_basis = self.basis(cell, &corners, basis);
+        let cell_basis = self.basis(cell, &corners[..self.mesh.kind.nodes()], basis);
         let mut gram = Gram::zero(basis.len(), dim);
         let mut values = vec![0.0; basis.len()];
         let mut gradients = vec![[0.0; 3]; basis.len()];
         let mut flat = vec![0.0; basis.len() * dim];
         for p in self.points(cell)? {
-            cell_basis.evaluate(&p.xi, &p.x, p.side, &mut values, &mut gradients);
+            cell_basis.evaluate(&p.xi, &p.x, p.region, &mut values, &mut gradients);
             flatten(&gradients, dim, &mut flat);
             gram.add(p.weight, &flat);
         }
@@ -156,14 +169,14 @@ impl CellIntegrator<'_> {
     pub fn basis<'b>(
         &'b self,
         cell: usize,
-        corners: &'b [Point; 8],
+        corners: &'b [Point],
         functions: &'b [CellFunction],
     ) -> CellBasis<'b> {
         CellBasis {
             kind: self.mesh.kind,
-            corners: &corners[..self.mesh.kind.nodes()],
+            corners,
             functions,
-            crack: self.enrichment.split[cell].map(|c| c as usize),
+            steps: self.enrichment.steps(cell),
             tips: &self.enrichment.tips,
         }
     }
@@ -173,14 +186,18 @@ impl CellIntegrator<'_> {
         let kind = self.mesh.kind;
         let corners = self.mesh.corners(cell);
         let corners = &corners[..kind.nodes()];
-        let split = self.enrichment.split[cell].map(|c| &self.cracks[c as usize]);
+        let partition = self.enrichment.partition(cell);
         let branch = self.enrichment.has_branch(cell);
-        match (split, self.quadrature) {
-            (None, _) if !branch => Ok(whole_cell(kind, corners, 2, |_| 1.0)),
-            (Some(crack), Quadrature::Gauss(n)) => Ok(whole_cell(kind, corners, n, |x| {
-                if crack.distance(x) >= 0.0 { 1.0 } else { -1.0 }
+        match (partition, self.quadrature) {
+            (None, _) if !branch => Ok(whole_cell(kind, corners, 2, |_| 0)),
+            (Some(partition), Quadrature::Gauss(n)) => Ok(whole_cell(kind, corners, n, |x| {
+                let holds = |&(crack, side): &(usize, Side)| {
+                    (self.cracks[crack].distance(x) >= 0.0) == (side > 0.0)
+                };
+                let inside = |part: &Part| part.sides.iter().all(holds);
+                partition.parts.iter().position(inside).unwrap_or(0)
             })),
-            _ => self.sub_cell_points(cell, corners, split, branch),
+            _ => self.sub_cell_points(cell, corners, partition, branch),
         }
     }
 
@@ -188,44 +205,41 @@ impl CellIntegrator<'_> {
         &self,
         cell: usize,
         corners: &[Point],
-        split: Option<&Crack>,
+        partition: Option<&Partition>,
         branch: bool,
     ) -> Result<Vec<SidedPoint>, CellError> {
         let kind = self.mesh.kind;
         let affine = kind.is_affine(corners);
-        let phi = match split {
-            Some(crack) => crack.cell_phi(self.mesh, cell),
-            None => [1.0; 8],
-        };
+        let whole = Partition::whole(kind, corners);
+        let parts = &partition.unwrap_or(&whole).parts;
         let tip = self
             .enrichment
             .tip_cells
             .iter()
             .find(|&&(c, _)| c == cell)
-            .map(|&(_, tip)| self.enrichment.tips[tip].position);
+            .map(|&(_, tip)| tip);
         let mut points = Vec::new();
-        for side in [1.0, -1.0] {
-            let part = match (branch, tip) {
-                (true, Some(tip)) => {
-                    let polygon = cut::polygon_part(corners, &phi[..kind.nodes()], side);
-                    cut::tip_points(&polygon, &tip, affine)
+        for (region, part) in parts.iter().enumerate() {
+            let side = tip
+                .and_then(|tip| part.side(self.enrichment.tips[tip].crack))
+                .unwrap_or(1.0);
+            let rule = match (branch, tip, kind) {
+                (true, Some(tip), CellKind::Quad4) => {
+                    cut::tip_points(&part.polygon, &self.enrichment.tips[tip].position, affine)
                 }
-                (true, None) => {
-                    let polygon = cut::polygon_part(corners, &phi[..kind.nodes()], side);
+                (true, Some(tip), CellKind::Hex8) if partition.is_some() => {
+                    self.front_points(cell, corners, tip, part, side)?
+                }
+                (true, _, CellKind::Quad4) => {
                     let tips: Vec<Point> =
                         self.enrichment.tips.iter().map(|t| t.position).collect();
-                    cut::graded_points(&cut::fan(&polygon), &tips)
+                    cut::graded_points(&part.sub_cells().triangles, &tips)
                 }
-                (false, _) => {
-                    let cells = SubCells::of(kind, corners, &phi, side);
-                    if affine {
-                        cells.points()
-                    } else {
-                        cells.fine_points()
-                    }
-                }
+                (true, _, CellKind::Hex8) => self.graded(&part.tetrahedra),
+                (false, ..) if affine => part.sub_cells().points(),
+                (false, ..) => part.sub_cells().fine_points(),
             };
-            for WeightedPoint { x, weight } in part {
+            for WeightedPoint { x, weight } in rule {
                 let Some(xi) = kind.inverse_map(corners, &x) else {
                     return Err(
                         self.error(cell, "a sub-cell point has no reference position".into())
@@ -235,7 +249,7 @@ impl CellIntegrator<'_> {
                     xi,
                     x,
                     weight,
-                    side,
+                    region,
                 });
             }
         }
@@ -252,6 +266,53 @@ impl CellIntegrator<'_> {
             return Err(self.error(cell, reason));
         }
         Ok(points)
+    }
+
+    /// Points of one side of a 3D cell that the front runs through.
+    fn front_points(
+        &self,
+        cell: usize,
+        corners: &[Point],
+        tip: usize,
+        part: &Part,
+        side: Side,
+    ) -> Result<Vec<WeightedPoint>, CellError> {
+        let frame = &self.enrichment.tips[tip];
+        let FrontShape::Ellipse(ellipse) = &frame.shape else {
+            return Err(self.error(cell, "a tip in a solid without a front".into()));
+        };
+        let crack = &self.cracks[frame.crack];
+        let facets = CrackFacets::of_cell(self.mesh, cell, frame.crack, crack, self.enrichment);
+        let Some(cut) = facets.facets.iter().find_map(|f| f.front.as_ref()) else {
+            // The front only grazes the cell.
+            return Ok(self.graded(&part.tetrahedra));
+        };
+        let along = unit(&sub(&cut.chord[1], &cut.chord[0]));
+        let across = cross(&ellipse.normal, &along);
+        let piece = FrontPiece {
+            chord: cut.chord,
+            normal: ellipse.normal,
+            at: |x: &Point| ellipse.meet(x, &across),
+        };
+        let rule = FrontRule {
+            along: 5,
+            affine: false,
+        };
+        let phi = crack.cell_phi(self.mesh, cell);
+        Ok(front_cell_points(corners, &phi, side, &piece, rule))
+    }
+
+    /// Points of tetrahedra near a front.
+    fn graded(&self, tetrahedra: &[[Point; 4]]) -> Vec<WeightedPoint> {
+        /// Halvings; a cell that the front grazes needs the most.
+        const DEPTH: usize = 8;
+        let tips = &self.enrichment.tips;
+        let distance = |x: &Point| {
+            tips.iter()
+                .map(|t| t.distance(x))
+                .fold(f64::INFINITY, f64::min)
+        };
+        graded_tetrahedra(tetrahedra, distance, DEPTH)
     }
 
     fn error(&self, cell: usize, reason: String) -> CellError {
@@ -272,24 +333,24 @@ impl CellIntegrator<'_> {
     }
 
     /// Values of the functions of a cell at a reference point (position x).
-    pub fn values(&self, cell: usize, xi: &Point, x: &Point, side: Side) -> Vec<f64> {
+    pub fn values(&self, cell: usize, xi: &Point, x: &Point, region: Region) -> Vec<f64> {
         let functions = self.enrichment.cell_basis(self.mesh, cell);
         let corners = self.mesh.corners(cell);
         let mut values = vec![0.0; functions.len()];
         let mut gradients = vec![[0.0; 3]; functions.len()];
-        self.basis(cell, &corners, &functions)
-            .evaluate(xi, x, side, &mut values, &mut gradients);
+        self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions)
+            .evaluate(xi, x, region, &mut values, &mut gradients);
         values
     }
 
     /// Gradients of the functions of a cell at a reference point (position x) [1/m].
-    pub fn gradients(&self, cell: usize, xi: &Point, x: &Point, side: Side) -> Vec<Point> {
+    pub fn gradients(&self, cell: usize, xi: &Point, x: &Point, region: Region) -> Vec<Point> {
         let functions = self.enrichment.cell_basis(self.mesh, cell);
         let corners = self.mesh.corners(cell);
         let mut values = vec![0.0; functions.len()];
         let mut gradients = vec![[0.0; 3]; functions.len()];
-        self.basis(cell, &corners, &functions)
-            .evaluate(xi, x, side, &mut values, &mut gradients);
+        self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions)
+            .evaluate(xi, x, region, &mut values, &mut gradients);
         gradients
     }
 
@@ -298,13 +359,13 @@ impl CellIntegrator<'_> {
         &self,
         cell: usize,
         xi: &Point,
-        side: Side,
+        region: Region,
         u: &[f64],
     ) -> [Point; 3] {
         let dim = self.mesh.dim();
         let corners = self.mesh.corners(cell);
         let x = (self.mesh.kind).map(&corners[..self.mesh.kind.nodes()], xi);
-        let gradients = self.gradients(cell, xi, &x, side);
+        let gradients = self.gradients(cell, xi, &x, region);
         let mut h = [[0.0; 3]; 3];
         for (&f, g) in self.enrichment.cell(cell).iter().zip(&gradients) {
             for a in 0..dim {
@@ -316,16 +377,16 @@ impl CellIntegrator<'_> {
         h
     }
 
-    /// Displacement at a point of a cell, on a side of the crack that splits it.
-    pub fn displacement(&self, cell: usize, x: &Point, side: Side, u: &[f64]) -> Option<Point> {
+    /// Displacement at a point of a cell, in one of its regions.
+    pub fn displacement(&self, cell: usize, x: &Point, region: Region, u: &[f64]) -> Option<Point> {
         let dim = self.mesh.dim();
         let functions = self.enrichment.cell_basis(self.mesh, cell);
         let corners = self.mesh.corners(cell);
-        let basis = self.basis(cell, &corners, &functions);
+        let basis = self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions);
         let xi = self.mesh.kind.inverse_map(basis.corners, x)?;
         let mut values = vec![0.0; functions.len()];
         let mut gradients = vec![[0.0; 3]; functions.len()];
-        basis.evaluate(&xi, x, side, &mut values, &mut gradients);
+        basis.evaluate(&xi, x, region, &mut values, &mut gradients);
         let mut v = [0.0; 3];
         for (&f, n) in self.enrichment.cell(cell).iter().zip(&values) {
             for (a, va) in v.iter_mut().enumerate().take(dim) {
@@ -354,12 +415,12 @@ impl CellIntegrator<'_> {
     }
 }
 
-/// Tensor Gauss points of the whole cell with a side each.
+/// Tensor Gauss points of the whole cell with a region each.
 fn whole_cell(
     kind: CellKind,
     corners: &[Point],
     n: usize,
-    side: impl Fn(&Point) -> Side,
+    region: impl Fn(&Point) -> Region,
 ) -> Vec<SidedPoint> {
     gauss_cell(kind.dim(), n)
         .into_iter()
@@ -369,7 +430,7 @@ fn whole_cell(
                 xi,
                 x,
                 weight: w * kind.gradients(corners, &xi).1,
-                side: side(&x),
+                region: region(&x),
             }
         })
         .collect()

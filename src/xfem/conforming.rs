@@ -3,13 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::fem::mesh::{Facet, Mesh};
-use crate::fem::{Point, norm, sub};
+use crate::fem::{Point, add_scaled, norm, sub};
 use crate::harness::case::Tip;
 
 use super::crack::Crack;
 use super::cut;
-use super::enrichment::{EnrichmentError, ends_inside};
+use super::enrichment::EnrichmentError;
 use super::pairs::{ContactPoint, ContactSurface, scalar_terms, vertex_weights};
+use super::partition::crossings;
+use super::placement::ends_inside;
 
 /// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
 /// through cells. Side 1 gets the new nodes.
@@ -59,6 +61,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
         mesh.grid.push(mesh.grid[node]);
         twin.insert(node as u32, new as u32);
         let x = mesh.nodes[node];
+        let frame = crack.frame(&x);
         let point = ContactPoint {
             crack: crack.number,
             x,
@@ -67,9 +70,9 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
             } else {
                 0.0
             },
-            frame: crack.frame,
+            frame,
             weight: weight[&node],
-            terms: scalar_terms(&crack.frame, &[(new as u32, 1.0), (node as u32, -1.0)]),
+            terms: scalar_terms(&frame, &[(new as u32, 1.0), (node as u32, -1.0)]),
         };
         points.push((node, point));
     }
@@ -118,27 +121,26 @@ fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
     lower.into_iter().map(|(_, facet)| facet).collect()
 }
 
-/// True if a facet on the crack's line lies between its ends.
+/// True if a facet on the crack's curve or plane lies between its ends.
 fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
-    if crack.length.is_infinite() {
-        return true;
-    }
     let corners = mesh.corners(facet.cell);
     let tolerance = 1e-9 * norm(&sub(&corners[0], &corners[2]));
-    mesh.facet_nodes(facet).all(|node| {
-        let s = crack.abscissa(&mesh.nodes[node]);
-        s >= -tolerance && s <= crack.length + tolerance
-    })
+    mesh.facet_nodes(facet)
+        .all(|node| crack.jumps_at(&mesh.nodes[node], -tolerance))
 }
 
-/// True if the crack's line inside a split cell has its middle between the ends of the crack.
+/// True if the crack inside a split cell has its middle between the ends of the crack.
 fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
     let corners = mesh.corners(cell);
-    let facet = cut::facet(
-        mesh.kind,
-        &corners[..mesh.kind.nodes()],
-        &crack.cell_phi(mesh, cell),
-    );
-    let s = facet.iter().map(|v| crack.abscissa(&v.0)).sum::<f64>() / facet.len() as f64;
-    crack.length.is_infinite() || (s > 0.0 && s < crack.length)
+    let corners = &corners[..mesh.kind.nodes()];
+    let facet = crossings(mesh.kind, corners, &crack.cell_phi(mesh, cell), crack);
+    let size = norm(&sub(&corners[0], &corners[2]));
+    let near = facet
+        .iter()
+        .all(|v| crack.distance(&v.0).abs() < 1e-6 * size);
+    let scale = 1.0 / facet.len() as f64;
+    let middle = facet
+        .iter()
+        .fold([0.0; 3], |sum, v| add_scaled(&sum, scale, &v.0));
+    near && crack.jumps_at(&middle, 0.0)
 }

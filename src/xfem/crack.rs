@@ -1,32 +1,65 @@
-//! Crack geometry and level sets: straight cracks in 2D, planes through the body in 3D.
+//! Cracks in a mesh: geometry, level sets at the nodes, what ends them.
 //!
 //! ```text
-//!   φ(x) = n · (x − x₁)   signed distance, side 1 is φ >= 0 (H = +1)
-//!   s(x) = a · (x − x₁)   abscissa along a 2D crack; the crack is φ = 0, 0 <= s <= L
-//!
-//!   2D: a = (x₂ − x₁)/L, n = a turned by +90°        3D: (n, a, b) right-handed, a from the axis least along n
+//!   φ(x)   signed distance to the crack's curve or plane, side 1 is φ >= 0 (H = +1)
+//!   2D: the crack is the part s₀ <= s <= s₁ of a curve, a = tangent, n = a turned by +90°
+//!   3D: a plane, or the part ψ <= 0 inside an ellipse; (n, a, b) right-handed, a from the axis least along n
 //! ```
+//!
+//! A crack that meets an earlier one ends there: it is an arm whose step is 0 beyond its parent (Daux, Moës, Dolbow,
+//! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
 use crate::fem::mesh::Mesh;
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::harness::case::{CrackShape, CrackSpec, Tip};
+
+use super::curve::{Curve, turned};
+use super::cut::{self, Side};
+use super::ellipse::Ellipse;
 
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
 /// Far above rounding of coordinates (1e-16 of the body, about 1e-13 h), far below any cut that matters to stiffness.
 pub const ON_CRACK: f64 = 1e-10;
 
-/// A crack with its level set at the nodes.
+/// Geometry of a crack.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Geometry {
+    /// 2D.
+    Curve(Curve),
+    /// Plane through the whole solid.
+    Plane {
+        /// A point [m].
+        origin: Point,
+        /// n, a, b.
+        frame: [Point; 3],
+    },
+    /// Flat ellipse in a solid.
+    Ellipse(Ellipse),
+}
+
+/// What an arm ends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parent {
+    /// Index of the crack it ends on.
+    pub crack: usize,
+    /// Side of that crack on which the arm lies.
+    pub side: Side,
+}
+
+/// A crack, or the part of one between the cracks it meets, with its level set at the nodes.
 #[derive(Debug, Clone)]
 pub struct Crack {
     /// Number in the case file, from 0.
     pub number: usize,
-    /// First point of a 2D crack, a point of a 3D plane [m].
-    pub origin: Point,
-    /// Local frame: n, a and (3D) b.
-    pub frame: [Point; 3],
-    /// Length L of a 2D crack; infinite for a plane [m].
-    pub length: f64,
+    /// Place and shape.
+    pub geometry: Geometry,
+    /// First and last abscissa of a 2D arm [m]; infinite in 3D.
+    pub range: [f64; 2],
+    /// Whether the first and last abscissa are the crack's own ends, not a meeting with another crack.
+    pub free: [bool; 2],
+    /// Cracks at which it ends; its step is 0 on their other side.
+    pub parents: Vec<Parent>,
     /// Enrichment of tips inside the body.
     pub tip: Tip,
     /// φ at the nodes, snapped to 0 within [`ON_CRACK`] [m].
@@ -34,40 +67,50 @@ pub struct Crack {
 }
 
 impl Crack {
-    /// Places a crack in a mesh.
+    /// Places a crack in a mesh, alone.
     pub fn new(number: usize, spec: &CrackSpec, mesh: &Mesh) -> Self {
-        let (origin, frame, length) = match spec.geometry {
-            CrackShape::Polyline(ref points) => {
-                let (p, q) = (points[0], points[points.len() - 1]);
-                let (p, q) = ([p[0], p[1], 0.0], [q[0], q[1], 0.0]);
-                let a = unit(&sub(&q, &p));
-                (
-                    p,
-                    [[-a[1], a[0], 0.0], a, [0.0, 0.0, 1.0]],
-                    norm(&sub(&q, &p)),
-                )
+        let flat = |p: &[f64; 2]| [p[0], p[1], 0.0];
+        let geometry = match &spec.geometry {
+            CrackShape::Polyline(points) => {
+                Geometry::Curve(Curve::Chain(points.iter().map(flat).collect()))
             }
-            CrackShape::Arc { .. } | CrackShape::Ellipse { .. } => unimplemented!(),
-            CrackShape::Plane { point, normal } => {
-                let n = unit(&normal);
-                // The axis least along n; the first of equals, so that n = e_z gives a = e_x, b = e_y.
-                let mut axis = 0;
-                for k in 1..3 {
-                    if n[k].abs() < n[axis].abs() - 1e-12 {
-                        axis = k;
-                    }
-                }
-                let mut e = [0.0; 3];
-                e[axis] = 1.0;
-                let a = unit(&add_scaled(&e, -n[axis], &n));
-                (point, [n, a, cross(&n, &a)], f64::INFINITY)
-            }
+            CrackShape::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => Geometry::Curve(Curve::Arc {
+                centre: flat(centre),
+                radius: *radius,
+                from: *from,
+                to: *to,
+            }),
+            CrackShape::Plane { point, normal } => Geometry::Plane {
+                origin: *point,
+                frame: plane_frame(normal),
+            },
+            CrackShape::Ellipse {
+                centre,
+                normal,
+                axis,
+                half_axes,
+            } => Geometry::Ellipse(Ellipse {
+                centre: *centre,
+                normal: *normal,
+                axis: *axis,
+                half_axes: *half_axes,
+            }),
+        };
+        let range = match &geometry {
+            Geometry::Curve(curve) => [0.0, curve.length()],
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
         };
         let mut crack = Crack {
             number,
-            origin,
-            frame,
-            length,
+            geometry,
+            range,
+            free: [true; 2],
+            parents: Vec::new(),
             tip: spec.tip,
             phi: Vec::new(),
         };
@@ -83,14 +126,33 @@ impl Crack {
         crack
     }
 
-    /// φ(x), signed distance to the crack's line or plane [m].
+    /// φ(x), signed distance to the crack's curve or plane [m].
     pub fn distance(&self, x: &Point) -> f64 {
-        dot(&self.frame[0], &sub(x, &self.origin))
+        match &self.geometry {
+            Geometry::Curve(curve) => curve.nearest(x).phi,
+            Geometry::Plane { origin, frame } => dot(&frame[0], &sub(x, origin)),
+            Geometry::Ellipse(e) => dot(&e.normal, &sub(x, &e.centre)),
+        }
     }
 
-    /// s(x), abscissa along the crack [m]; meaningful in 2D.
+    /// s(x), abscissa along a 2D crack; 0 in 3D [m].
     pub fn abscissa(&self, x: &Point) -> f64 {
-        dot(&self.frame[1], &sub(x, &self.origin))
+        match &self.geometry {
+            Geometry::Curve(curve) => curve.nearest(x).s,
+            _ => 0.0,
+        }
+    }
+
+    /// Local frame n, a, b at a point of the crack.
+    pub fn frame(&self, x: &Point) -> [Point; 3] {
+        match &self.geometry {
+            Geometry::Curve(curve) => {
+                let a = curve.nearest(x).tangent;
+                [turned(&a), a, [0.0, 0.0, 1.0]]
+            }
+            Geometry::Plane { frame, .. } => *frame,
+            Geometry::Ellipse(e) => [e.normal, e.axis, cross(&e.normal, &e.axis)],
+        }
     }
 
     /// Level set at the nodes of a cell.
@@ -102,15 +164,212 @@ impl Crack {
         phi
     }
 
-    /// H at a node: +1 on side 1 and on the crack, −1 on side 2.
-    pub fn side_of(&self, node: usize) -> f64 {
+    /// Crossing of an edge from `p` (φ = `f`) to `q` (φ = `g`), f g < 0.
+    pub fn crossing(&self, p: &Point, f: f64, q: &Point, g: f64) -> Point {
+        match &self.geometry {
+            Geometry::Curve(curve) if !curve.is_straight() => {
+                // φ is monotone enough for bisection; 60 halvings reach rounding.
+                let d = sub(q, p);
+                let (mut low, mut high) = (0.0, 1.0);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if self.distance(&add_scaled(p, middle, &d)) * f > 0.0 {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                add_scaled(p, 0.5 * (low + high), &d)
+            }
+            _ => cut::crossing(p, f, q, g),
+        }
+    }
+
+    /// Side of a node: +1 on side 1 and on the crack, −1 on side 2.
+    pub fn side_of(&self, node: usize) -> Side {
         if self.phi[node] >= 0.0 { 1.0 } else { -1.0 }
     }
 
-    /// The two ends of a 2D crack: position and unit direction pointing out of the crack.
-    pub fn ends(&self) -> [(Point, Point); 2] {
-        let a = self.frame[1];
-        let end = add_scaled(&self.origin, self.length, &a);
-        [(self.origin, [-a[0], -a[1], -a[2]]), (end, a)]
+    /// True if the displacement jumps at a point of the crack's curve or plane: between the ends, by more than `slack` [m].
+    pub fn jumps_at(&self, x: &Point, slack: f64) -> bool {
+        match &self.geometry {
+            Geometry::Curve(curve) => {
+                let s = curve.nearest(x).s;
+                curve.is_closed() || (s > self.range[0] + slack && s < self.range[1] - slack)
+            }
+            Geometry::Plane { .. } => true,
+            Geometry::Ellipse(e) => e.nearest(x).psi < -slack,
+        }
     }
+
+    /// The free ends of a 2D arm, those that no other crack takes: position and unit direction pointing out of the crack.
+    pub fn ends(&self) -> Vec<(Point, Point)> {
+        let Geometry::Curve(curve) = &self.geometry else {
+            return Vec::new();
+        };
+        if curve.is_closed() {
+            return Vec::new();
+        }
+        let mut ends = Vec::new();
+        if self.free[0] {
+            let (x, a) = curve.at(0.0);
+            ends.push((x, a.map(|v| -v)));
+        }
+        if self.free[1] {
+            ends.push(curve.at(self.range[1]));
+        }
+        ends
+    }
+}
+
+/// n, a, b of a plane: a from the axis least along n, the first of equals, so that n = e_z gives a = e_x, b = e_y.
+fn plane_frame(normal: &Point) -> [Point; 3] {
+    let n = unit(normal);
+    let mut axis = 0;
+    for k in 1..3 {
+        if n[k].abs() < n[axis].abs() - 1e-12 {
+            axis = k;
+        }
+    }
+    let mut e = [0.0; 3];
+    e[axis] = 1.0;
+    let a = unit(&add_scaled(&e, -n[axis], &n));
+    [n, a, cross(&n, &a)]
+}
+
+/// Cuts cracks at the earlier ones they meet. A crack keeps its index if nothing crosses it; arms follow in order.
+pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Vec<Crack> {
+    let mut done: Vec<Crack> = Vec::new();
+    for crack in cracks {
+        let next = match &crack.geometry {
+            Geometry::Curve(curve) => curve_arms(&crack, curve, &done, mesh),
+            _ => plane_arms(&crack, &done, mesh),
+        };
+        done.extend(next);
+    }
+    done
+}
+
+/// Arms of a 2D crack: its parts between the earlier cracks it meets.
+fn curve_arms(crack: &Crack, curve: &Curve, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
+    let length = curve.length();
+    let size = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+    // Closer than this to a crack is on it.
+    let slack = 1e-6 * size;
+    let mut cuts: Vec<(f64, usize)> = Vec::new();
+    for (index, other) in earlier.iter().enumerate() {
+        for s in meetings(curve, other, 0.25 * size, slack) {
+            if !cuts.iter().any(|c| (c.0 - s).abs() < 10.0 * slack) {
+                cuts.push((s, index));
+            }
+        }
+    }
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut bounds: Vec<(f64, Option<usize>)> = vec![(0.0, None)];
+    bounds.extend(cuts.into_iter().map(|(s, index)| (s, Some(index))));
+    bounds.push((length, None));
+    // An end on another crack is no tip.
+    bounds.dedup_by(|b, a| {
+        let same = b.0 - a.0 <= 10.0 * slack;
+        if same && a.1.is_none() {
+            *a = *b;
+        }
+        same
+    });
+    bounds
+        .windows(2)
+        .map(|w| {
+            let middle =
+                |from: f64, to: f64| curve.at(from + 0.01 * (to - from).clamp(-size, size)).0;
+            let parent = |end: (f64, Option<usize>), inner: f64| {
+                end.1.map(|index| Parent {
+                    crack: index,
+                    side: earlier[index].distance(&middle(end.0, inner)).signum(),
+                })
+            };
+            Crack {
+                range: [w[0].0, w[1].0],
+                free: [w[0].1.is_none(), w[1].1.is_none()],
+                parents: [parent(w[0], w[1].0), parent(w[1], w[0].0)]
+                    .into_iter()
+                    .flatten()
+                    .collect(),
+                ..crack.clone()
+            }
+        })
+        .collect()
+}
+
+/// Abscissas of a curve at which it meets another 2D crack between that one's ends.
+fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
+    let length = curve.length();
+    let count = (length / step).ceil().max(1.0) as usize;
+    let distance = |s: f64| other.distance(&curve.at(s).0);
+    let on = |s: f64| {
+        let x = curve.at(s).0;
+        distance(s).abs() <= slack && {
+            let along = other.abscissa(&x);
+            along >= other.range[0] - slack && along <= other.range[1] + slack
+        }
+    };
+    let mut found = Vec::new();
+    // An end on the other crack, whichever side rounding puts it on.
+    found.extend([0.0, length].into_iter().filter(|&s| on(s)));
+    for k in 0..count {
+        let (mut low, mut high) = (
+            length * k as f64 / count as f64,
+            length * (k + 1) as f64 / count as f64,
+        );
+        let start = distance(low);
+        if start * distance(high) >= 0.0 {
+            continue;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if distance(middle) * start > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let s = 0.5 * (low + high);
+        if on(s) {
+            found.push(s);
+        }
+    }
+    found
+}
+
+/// Arms of a plane or ellipse: its parts on both sides of the earlier planes that it crosses inside the body.
+fn plane_arms(crack: &Crack, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
+    let mut parts = vec![crack.clone()];
+    for (index, other) in earlier.iter().enumerate() {
+        if !matches!(other.geometry, Geometry::Plane { .. }) || !meet(crack, other, mesh) {
+            continue;
+        }
+        parts = parts
+            .into_iter()
+            .flat_map(|part| {
+                [1.0, -1.0].map(|side| {
+                    let mut arm = part.clone();
+                    arm.parents.push(Parent { crack: index, side });
+                    arm
+                })
+            })
+            .collect();
+    }
+    parts
+}
+
+/// True if some cell is cut by both planes.
+fn meet(crack: &Crack, other: &Crack, mesh: &Mesh) -> bool {
+    (0..mesh.cell_count()).any(|cell| {
+        let inside = |c: &Crack| cut::is_split(mesh.kind, &c.cell_phi(mesh, cell));
+        inside(crack)
+            && inside(other)
+            && crack.jumps_at(
+                &mesh.centre(cell),
+                -norm(&sub(&mesh.corners(cell)[0], &mesh.corners(cell)[6])),
+            )
+    })
 }

@@ -111,6 +111,11 @@ pub struct SubCells {
     pub tetrahedra: Vec<[Point; 4]>,
 }
 
+/// The six tetrahedra of a hexahedron.
+pub fn tetrahedra_of(corners: &[Point]) -> Vec<[Point; 4]> {
+    TETRAHEDRA.map(|t| t.map(|i| corners[i])).to_vec()
+}
+
 impl SubCells {
     /// Sub-cells of one side.
     pub fn of(kind: CellKind, corners: &[Point], phi: &[f64], side: Side) -> Self {
@@ -162,7 +167,7 @@ pub fn fan(polygon: &[Point]) -> Vec<[Point; 3]> {
 }
 
 /// Appends the part of a tetrahedron on one side, as tetrahedra.
-fn clip_tetrahedron(t: &[Point; 4], phi: &[f64; 4], side: Side, parts: &mut Vec<[Point; 4]>) {
+pub fn clip_tetrahedron(t: &[Point; 4], phi: &[f64; 4], side: Side, parts: &mut Vec<[Point; 4]>) {
     let (inside, outside): (Vec<usize>, Vec<usize>) = (0..4).partition(|&i| phi[i] * side >= 0.0);
     if !inside.iter().any(|&i| phi[i] != 0.0) {
         return; // at most a face on the crack
@@ -206,11 +211,20 @@ pub fn halve_tetrahedron(t: &[Point; 4]) -> Vec<[Point; 4]> {
     ]
 }
 
-/// Points of a polygon part that contains a tip in its closure: the fan of [`tip_triangle`]s.
+/// Points of a counter-clockwise polygon with a tip in its closure: the fan of [`tip_triangle`]s, negative where the
+/// outline turns its back on the tip.
 pub fn tip_points(part: &[Point], tip: &Point, affine: bool) -> Vec<WeightedPoint> {
-    (0..part.len())
-        .flat_map(|i| tip_triangle(tip, &part[i], &part[(i + 1) % part.len()], affine))
-        .collect()
+    let mut points = Vec::new();
+    for i in 0..part.len() {
+        let (a, b) = (&part[i], &part[(i + 1) % part.len()]);
+        let sign = 1.0f64.copysign(cross(&sub(a, tip), &sub(b, tip))[2]);
+        let triangle = tip_triangle(tip, a, b, affine).into_iter();
+        points.extend(triangle.map(|p| WeightedPoint {
+            weight: sign * p.weight,
+            ..p
+        }));
+    }
+    points
 }
 
 /// Points of triangles that carry branch functions of tips outside of them: halved until no tip is closer than the

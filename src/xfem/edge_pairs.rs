@@ -6,7 +6,7 @@
 //!
 //! P is a point force. Off the grid lines the pairs miss the patch test; the integrated spaces do not.
 
-use crate::fem::{Point, norm, sub};
+use crate::fem::Point;
 
 use super::basis::FunctionKind;
 use super::cell_matrix::{CellError, CellIntegrator};
@@ -37,11 +37,8 @@ pub fn edge_pairs(
             let nodes = corner.nodes?;
             let at_tip = AT_TIP * sizes[nodes[0] as usize].min(sizes[nodes[1] as usize]);
             let terms = jump_terms(integrator, index, nodes, &corner.x, at_tip);
-            let normal = crack.frame[0];
-            let acts = |&(f, c): &(u32, f64)| {
-                (0..dim).any(|a| !held(f as usize * dim + a) && (c * normal[a]).abs() > 1e-12)
-            };
-            terms.iter().any(acts).then(|| ContactPoint {
+            let frame = crack.frame(&corner.x);
+            (!terms.is_empty()).then(|| ContactPoint {
                 crack: crack.number,
                 x: corner.x,
                 s: if dim == 2 {
@@ -49,9 +46,9 @@ pub fn edge_pairs(
                 } else {
                     0.0
                 },
-                frame: crack.frame,
+                frame,
                 weight: 0.0,
-                terms: scalar_terms(&crack.frame, &terms),
+                terms: scalar_terms(&frame, &terms),
             })
         })
         .collect();
@@ -73,9 +70,11 @@ pub fn edge_pairs(
             }
         }
     }
+    // Their parts of the crack stay with them: the supports carry those.
+    let acts = |point: &ContactPoint| point.acts(dim, &held);
     let mut keyed: Vec<(usize, ContactPoint)> = Vec::new();
     for (corner, point) in points.into_iter().enumerate() {
-        keyed.extend(point.map(|p| (corner, p)));
+        keyed.extend(point.filter(acts).map(|p| (corner, p)));
     }
     let faces = facets.facets.iter().map(|f| f.corners.clone()).collect();
     let mut numbers: Vec<usize> = (0..keyed.len()).collect();
@@ -112,12 +111,14 @@ fn jump_terms(
     for (node, share) in shares {
         for f in enrichment.enriched_of(node) {
             let coefficient = match enrichment.functions[f].kind {
-                FunctionKind::Heaviside { crack } if crack as usize == index => 2.0 * share,
+                FunctionKind::Heaviside { crack } => {
+                    share * step_jump(integrator, index, crack as usize, x)
+                }
                 FunctionKind::Branch { tip, order: 0 }
                     if enrichment.tips[tip as usize].crack == index =>
                 {
                     // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
-                    let r = norm(&sub(x, &enrichment.tips[tip as usize].position));
+                    let r = enrichment.tips[tip as usize].distance(x);
                     if r > at_tip {
                         2.0 * r.sqrt() * share
                     } else {
@@ -126,10 +127,21 @@ fn jump_terms(
                 }
                 _ => 0.0,
             };
-            if coefficient > 0.0 {
+            if coefficient != 0.0 {
                 terms.push((f as u32, coefficient));
             }
         }
     }
     terms
+}
+
+/// Jump across the `index`-th crack of the step of a crack at a point of the former: its own step changes by 2; that of a
+/// crack which ends on it from one side to nothing.
+fn step_jump(integrator: &CellIntegrator<'_>, index: usize, stepping: usize, x: &Point) -> f64 {
+    let crack = &integrator.cracks[stepping];
+    if stepping == index {
+        return 2.0;
+    }
+    let parent = crack.parents.iter().find(|p| p.crack == index);
+    parent.map_or(0.0, |p| p.side * 1.0f64.copysign(crack.distance(x)))
 }

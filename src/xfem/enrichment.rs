@@ -1,17 +1,16 @@
 //! Which nodes carry which enriched functions, and which functions live in each cell.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use crate::fem::Point;
 use crate::fem::mesh::Mesh;
-use crate::fem::{Point, add_scaled, norm, sub};
 use crate::harness::case::Tip;
 
-use super::basis::{CellFunction, FunctionKind, TipFrame};
-use super::crack::Crack;
+use super::basis::{CellFunction, FunctionKind, Region, TipFrame};
+use super::crack::{Crack, Parent};
 use super::cut::{self, Side};
-
-/// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
-const ON_EDGE: f64 = 1e-9;
+use super::partition::{Part, Partition, PartitionError};
+use super::placement::{Along, along, fronts, undisturbed};
 
 /// A scalar function of the whole body: a node and a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,13 +36,23 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
-    /// Two cracks cut the same cell.
-    #[error("cracks {} and {} cut the same cell, near {at:?}", first + 1, second + 1)]
-    Crossing {
-        /// Earlier crack, from 0.
-        first: usize,
-        /// Later crack, from 0.
-        second: usize,
+    /// A crack ends in a cell that another one cuts.
+    #[error("crack {} ends in a cell that crack {} cuts, near {at:?}: let it end on that crack, or farther away", ending + 1, other + 1)]
+    Crowded {
+        /// The crack with the tip, from 0.
+        ending: usize,
+        /// The other crack, from 0.
+        other: usize,
+        /// Centre of the cell [m].
+        at: Point,
+    },
+    /// A cell cannot be divided.
+    #[error("crack {}: {reason}, near {at:?}", crack + 1)]
+    Partition {
+        /// Crack number, from 0.
+        crack: usize,
+        /// What is wrong.
+        reason: PartitionError,
         /// Centre of the cell [m].
         at: Point,
     },
@@ -70,76 +79,63 @@ pub struct Enrichment {
     pub functions: Vec<Function>,
     /// Shift of every function: H(x_j) or g_l(x_k); 0 for standard ones.
     pub shifts: Vec<f64>,
-    /// Tips inside the body that carry branch functions.
+    /// Tips and fronts inside the body that carry branch functions.
     pub tips: Vec<TipFrame>,
-    /// Crack that splits each cell (tip cells included), if any.
-    pub split: Vec<Option<u32>>,
-    /// Cells with a tip in their closure: (cell, tip number), sorted.
+    /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// Divided cells.
+    partitions: BTreeMap<usize, Partition>,
     cell_ptr: Vec<usize>,
     cell_functions: Vec<u32>,
-    /// Per entry of `cell_functions`: the side of the function's crack that the whole cell lies on, if it lies on one.
-    cell_sides: Vec<Option<Side>>,
+    /// Starts of the step constants of every cell: region by region, function by function.
+    step_ptr: Vec<usize>,
+    steps: Vec<f64>,
     node_ptr: Vec<usize>,
     /// Nodes with φ = 0 for some crack.
     on_crack: Vec<bool>,
     standard: usize,
 }
 
-/// How a 2D cell that the crack's line splits lies along the crack.
-enum Along {
-    /// Beyond an end.
-    Away,
-    /// The crack runs through.
-    Through,
-    /// The crack ends inside.
-    Ends,
-}
-
 impl Enrichment {
     /// Enriches the nodes around the given cracks; none of them may run along cell facets.
     pub fn new(mesh: &Mesh, cracks: &[Crack]) -> Result<Self, EnrichmentError> {
-        let mut split: Vec<Option<u32>> = vec![None; mesh.cell_count()];
+        let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut enriched: BTreeSet<Function> = BTreeSet::new();
         let mut tips = Vec::new();
         let mut tip_cells = Vec::new();
         for (index, crack) in cracks.iter().enumerate() {
-            let claim = |split: &mut Vec<Option<u32>>, cell: usize| match split[cell] {
-                Some(other) if other as usize != index => Err(EnrichmentError::Crossing {
-                    first: cracks[other as usize].number,
-                    second: crack.number,
-                    at: mesh.centre(cell),
-                }),
-                _ => {
-                    split[cell] = Some(index as u32);
-                    Ok(())
-                }
-            };
             let mut through = BTreeSet::new();
-            let mut touched = false;
+            let mut ending = Vec::new();
             for cell in 0..mesh.cell_count() {
-                let phi = crack.cell_phi(mesh, cell);
-                if !cut::is_split(mesh.kind, &phi) {
-                    continue;
-                }
-                match along(mesh, crack, cell, &phi) {
-                    Along::Away => {}
+                match along(mesh, crack, cell) {
                     Along::Through => {
-                        touched = true;
-                        claim(&mut split, cell)?;
                         through.insert(cell);
+                        inside.entry(cell).or_default().push(index);
                     }
-                    Along::Ends => touched = true,
+                    Along::Ends => ending.push(cell),
+                    Along::Away => {}
                 }
             }
-            if !touched {
+            let other_arm = cracks
+                .iter()
+                .enumerate()
+                .any(|(i, c)| i != index && c.number == crack.number);
+            if through.is_empty() && ending.is_empty() && !other_arm {
                 return Err(EnrichmentError::Outside {
                     crack: crack.number,
                 });
             }
             // Nodes where the jump must close (no tip functions) or is left to the branch functions.
             let mut closing: BTreeSet<u32> = BTreeSet::new();
-            for (position, ahead) in ends_inside(mesh, crack) {
+            for (frame, mut cells) in fronts(mesh, index, crack) {
+                if frame.shape_is_ellipse() {
+                    cells.clone_from(&ending);
+                }
+                if crack.tip == Tip::None {
+                    let beyond = cells.iter().filter(|c| !through.contains(c));
+                    closing.extend(beyond.flat_map(|&c| mesh.cell(c)));
+                    continue;
+                }
                 let tip = tips.len();
                 let branch = |node: u32| {
                     (0..4).map(move |order| Function {
@@ -150,33 +146,24 @@ impl Enrichment {
                         },
                     })
                 };
-                for cell in cells_at(mesh, &position) {
-                    if crack.tip != Tip::None {
-                        if cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
-                            claim(&mut split, cell)?;
+                for cell in cells {
+                    if cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
+                        let list = inside.entry(cell).or_default();
+                        if !list.contains(&index) {
+                            list.push(index);
                         }
-                        tip_cells.push((cell, tip));
-                        for &node in mesh.cell(cell) {
-                            closing.insert(node);
-                            enriched.extend(branch(node));
-                        }
-                    } else if !through.contains(&cell) {
-                        closing.extend(mesh.cell(cell));
                     }
+                    tip_cells.push((cell, tip));
+                    closing.extend(mesh.cell(cell));
+                    enriched.extend(mesh.cell(cell).iter().flat_map(|&n| branch(n)));
                 }
                 if let Tip::Radius(radius) = crack.tip {
-                    let near = |x: &Point| norm(&sub(x, &position)) <= radius;
-                    let nodes = (0..mesh.nodes.len()).filter(|&n| near(&mesh.nodes[n]));
+                    let reach = radius.min(undisturbed(crack, &frame));
+                    let near = |&n: &usize| frame.distance(&mesh.nodes[n]) <= reach;
+                    let nodes = (0..mesh.nodes.len()).filter(near);
                     enriched.extend(nodes.flat_map(|n| branch(n as u32)));
                 }
-                if crack.tip != Tip::None {
-                    tips.push(TipFrame {
-                        crack: index,
-                        position,
-                        ahead,
-                        normal: crack.frame[0],
-                    });
-                }
+                tips.push(frame);
             }
             for &cell in &through {
                 for &node in mesh.cell(cell) {
@@ -190,6 +177,29 @@ impl Enrichment {
             }
         }
         tip_cells.sort_unstable();
+        for &(cell, tip) in &tip_cells {
+            let own = tips[tip].crack;
+            let others = inside.get(&cell).into_iter().flatten();
+            if let Some(&other) = others.into_iter().find(|&&c| c != own) {
+                return Err(EnrichmentError::Crowded {
+                    ending: cracks[own].number,
+                    other: cracks[other].number,
+                    at: mesh.centre(cell),
+                });
+            }
+        }
+        let mut partitions = BTreeMap::new();
+        for (cell, list) in inside {
+            let partition = Partition::new(mesh, cell, cracks, &list).map_err(|reason| {
+                let crack = list.last().map_or(0, |&c| cracks[c].number);
+                EnrichmentError::Partition {
+                    crack,
+                    reason,
+                    at: mesh.centre(cell),
+                }
+            })?;
+            partitions.insert(cell, partition);
+        }
         let standard = mesh.nodes.len();
         let functions: Vec<Function> = (0..standard as u32)
             .map(|node| Function {
@@ -202,9 +212,7 @@ impl Enrichment {
             .iter()
             .map(|f| match f.kind {
                 FunctionKind::Standard => 0.0,
-                FunctionKind::Heaviside { crack } => {
-                    cracks[crack as usize].side_of(f.node as usize)
-                }
+                FunctionKind::Heaviside { crack } => node_step(cracks, crack as usize, f.node),
                 FunctionKind::Branch { tip, order } => {
                     let frame: &TipFrame = &tips[tip as usize];
                     let side = cracks[frame.crack].side_of(f.node as usize);
@@ -216,11 +224,12 @@ impl Enrichment {
             functions,
             shifts,
             tips,
-            split,
             tip_cells,
+            partitions,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
-            cell_sides: Vec::new(),
+            step_ptr: vec![0],
+            steps: Vec::new(),
             node_ptr: Vec::new(),
             on_crack: (0..standard)
                 .map(|node| cracks.iter().any(|crack| crack.phi[node] == 0.0))
@@ -253,34 +262,83 @@ impl Enrichment {
     fn index_cells(&mut self, mesh: &Mesh, cracks: &[Crack]) {
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
+            let parts: Vec<Option<&Part>> = match self.partitions.get(&cell) {
+                Some(partition) => partition.parts.iter().map(Some).collect(),
+                None => vec![None],
+            };
+            let mut lists: Vec<Vec<f64>> = vec![vec![1.0; nodes.len()]; parts.len()];
             self.cell_functions.extend_from_slice(nodes);
-            self.cell_sides.extend(nodes.iter().map(|_| None));
             for &node in nodes {
                 for f in self.enriched_of(node as usize) {
-                    let side = match self.functions[f].kind {
-                        FunctionKind::Heaviside { crack } if self.split[cell] != Some(crack) => {
-                            let side = whole_side(&cracks[crack as usize], nodes);
-                            if side == self.shifts[f] {
+                    let steps: Vec<f64> = match self.functions[f].kind {
+                        FunctionKind::Heaviside { crack } => {
+                            let step = |part: &Option<&Part>| {
+                                cell_step(cracks, crack as usize, nodes, *part)
+                            };
+                            let steps: Vec<f64> =
+                                parts.iter().map(|p| step(p) - self.shifts[f]).collect();
+                            if steps.iter().all(|&s| s == 0.0) {
                                 continue;
                             }
-                            Some(side)
+                            steps
                         }
-                        // On the crack itself a branch function takes the value of the cell's side.
+                        // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
-                            let index = self.tips[tip as usize].crack;
-                            let phi = cracks[index].cell_phi(mesh, cell);
-                            let apart = self.split[cell] != Some(index as u32)
-                                && !cut::is_split(mesh.kind, &phi);
-                            apart.then(|| whole_side(&cracks[index], nodes))
+                            let crack = &cracks[self.tips[tip as usize].crack];
+                            let cut = cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell));
+                            let side = |part: &Option<&Part>| match part
+                                .and_then(|p| p.side(self.tips[tip as usize].crack))
+                            {
+                                Some(side) => side,
+                                None if cut => 0.0,
+                                None => whole_side(crack, nodes),
+                            };
+                            parts.iter().map(side).collect()
                         }
-                        _ => None,
+                        FunctionKind::Standard => continue,
                     };
                     self.cell_functions.push(f as u32);
-                    self.cell_sides.push(side);
+                    for (list, step) in lists.iter_mut().zip(steps) {
+                        list.push(step);
+                    }
                 }
             }
             self.cell_ptr.push(self.cell_functions.len());
+            // Cells with standard functions only share the ones in front.
+            if lists[0].len() > nodes.len() || lists.len() > 1 {
+                self.steps.extend(lists.concat());
+            }
+            self.step_ptr.push(self.steps.len());
         }
+    }
+
+    /// Division of a cell; `None` if no crack cuts it.
+    pub fn partition(&self, cell: usize) -> Option<&Partition> {
+        self.partitions.get(&cell)
+    }
+
+    /// Divided cells in order.
+    pub fn cut_cells(&self) -> impl Iterator<Item = (usize, &Partition)> {
+        self.partitions
+            .iter()
+            .map(|(&cell, partition)| (cell, partition))
+    }
+
+    /// Number of regions of a cell.
+    pub fn regions(&self, cell: usize) -> usize {
+        self.partition(cell).map_or(1, |p| p.parts.len())
+    }
+
+    /// Side of a crack on which a region lies, if the crack cuts the cell there.
+    pub fn side(&self, cell: usize, region: Region, crack: usize) -> Option<Side> {
+        self.partition(cell)?.parts[region].side(crack)
+    }
+
+    /// Step constants of a cell, see [`super::basis::CellBasis::steps`].
+    pub fn steps(&self, cell: usize) -> &[f64] {
+        const STANDARD: [f64; 8] = [1.0; 8];
+        let own = &self.steps[self.step_ptr[cell]..self.step_ptr[cell + 1]];
+        if own.is_empty() { &STANDARD } else { own }
     }
 
     /// Enriched functions of a node.
@@ -301,24 +359,19 @@ impl Enrichment {
     /// Functions of a cell with their local nodes and shifts.
     pub fn cell_basis(&self, mesh: &Mesh, cell: usize) -> Vec<CellFunction> {
         let nodes = mesh.cell(cell);
-        let sides = &self.cell_sides[self.cell_ptr[cell]..self.cell_ptr[cell + 1]];
-        self.cell(cell)
-            .iter()
-            .zip(sides)
-            .map(|(&f, &whole)| {
-                let function = self.functions[f as usize];
-                CellFunction {
-                    // Every function of the cell belongs to one of its nodes.
-                    local: nodes
-                        .iter()
-                        .position(|&n| n == function.node)
-                        .unwrap_or_default(),
-                    kind: function.kind,
-                    shift: self.shifts[f as usize],
-                    whole,
-                }
-            })
-            .collect()
+        let of = |&f: &u32| {
+            let function = self.functions[f as usize];
+            CellFunction {
+                // Every function of the cell belongs to one of its nodes.
+                local: nodes
+                    .iter()
+                    .position(|&n| n == function.node)
+                    .unwrap_or_default(),
+                kind: function.kind,
+                shift: self.shifts[f as usize],
+            }
+        };
+        self.cell(cell).iter().map(of).collect()
     }
 
     /// True if the cell carries standard functions only.
@@ -345,6 +398,33 @@ impl Enrichment {
     }
 }
 
+/// Step of a crack at a node: its side, 0 beyond a crack it ends on.
+fn node_step(cracks: &[Crack], index: usize, node: u32) -> f64 {
+    let crack = &cracks[index];
+    let beyond = |p: &Parent| cracks[p.crack].side_of(node as usize) != p.side;
+    if crack.parents.iter().any(beyond) {
+        0.0
+    } else {
+        crack.side_of(node as usize)
+    }
+}
+
+/// Step of a crack in a part of a cell, or in a whole one.
+fn cell_step(cracks: &[Crack], index: usize, nodes: &[u32], part: Option<&Part>) -> f64 {
+    let side = |crack: usize| match part {
+        None => whole_side(&cracks[crack], nodes),
+        Some(part) => part
+            .side(crack)
+            .unwrap_or_else(|| 1.0f64.copysign(cracks[crack].distance(&part.middle()))),
+    };
+    let beyond = |p: &Parent| side(p.crack) != p.side;
+    if cracks[index].parents.iter().any(beyond) {
+        0.0
+    } else {
+        side(index)
+    }
+}
+
 /// Side of a crack that a cell it does not split lies on.
 fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
     if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) {
@@ -352,70 +432,4 @@ fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
     } else {
         1.0
     }
-}
-
-/// Where a split cell lies along the crack.
-fn along(mesh: &Mesh, crack: &Crack, cell: usize, phi: &[f64]) -> Along {
-    if crack.length.is_infinite() {
-        return Along::Through;
-    }
-    let corners = mesh.corners(cell);
-    let facet = cut::facet(mesh.kind, &corners[..mesh.kind.nodes()], phi);
-    let tolerance = ON_EDGE * norm(&sub(&corners[0], &corners[2]));
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (x, _) in &facet {
-        let s = crack.abscissa(x);
-        low = low.min(s);
-        high = high.max(s);
-    }
-    if high <= tolerance || low >= crack.length - tolerance {
-        Along::Away
-    } else if low >= -tolerance && high <= crack.length + tolerance {
-        Along::Through
-    } else {
-        Along::Ends
-    }
-}
-
-/// Ends of a 2D crack strictly inside the body: position and direction ahead. An end on the outer boundary is no tip.
-pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(Point, Point)> {
-    if crack.length.is_infinite() {
-        return Vec::new();
-    }
-    crack
-        .ends()
-        .into_iter()
-        .filter(|(x, ahead)| {
-            let Some(&cell) = cells_at(mesh, x).first() else {
-                return false;
-            };
-            let corners = mesh.corners(cell);
-            let step = 1e-6 * norm(&sub(&corners[0], &corners[2]));
-            !cells_at(mesh, &add_scaled(x, step, ahead)).is_empty()
-        })
-        .collect()
-}
-
-/// Cells whose closure contains a point, within 1e-9 of their diagonal.
-pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
-    (0..mesh.cell_count())
-        .filter(|&cell| reference_position(mesh, cell, x, ON_EDGE).is_some())
-        .collect()
-}
-
-/// Reference position of a point in the closure of a cell, give or take `slack` diagonals; `None` if it lies outside.
-pub fn reference_position(mesh: &Mesh, cell: usize, x: &Point, slack: f64) -> Option<Point> {
-    let corners = mesh.corners(cell);
-    let corners = &corners[..mesh.kind.nodes()];
-    let margin = slack * norm(&sub(&corners[0], &corners[2]));
-    let outside = (0..mesh.dim()).any(|a| {
-        corners.iter().all(|c| c[a] < x[a] - margin) || corners.iter().all(|c| c[a] > x[a] + margin)
-    });
-    if outside {
-        return None;
-    }
-    let xi = mesh.kind.inverse_map(corners, x)?;
-    xi.iter()
-        .all(|v| v.abs() <= 1.0 + 4.0 * slack)
-        .then_some(xi)
 }

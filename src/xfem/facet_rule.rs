@@ -1,7 +1,13 @@
 //! Quadrature on the facets of a crack, with the linear functions of their corners.
 
-use crate::fem::quadrature::{gauss, triangle, triangle_collapsed};
-use crate::fem::{Point, add_scaled, dot, norm, sub};
+use crate::fem::quadrature::{WeightedPoint, gauss, triangle, triangle_collapsed};
+use crate::fem::{Point, add_scaled, cross, dot, norm, sub, unit};
+
+use super::ellipse::Ellipse;
+use super::facets::FrontCut;
+use super::front::FrontPiece;
+use super::front_facet::front_facet_points;
+use super::graded::graded_triangles;
 
 /// A quadrature point of a facet.
 #[derive(Debug, Clone)]
@@ -79,57 +85,130 @@ pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetP
 }
 
 /// Points of a convex polygon in space.
-pub fn polygon_points(polygon: &[Point], integrand: Integrand<'_>) -> Vec<FacetPoint> {
-    let count = polygon.len();
-    let rule = |t: &[Point; 3]| match integrand {
-        Integrand::Polynomial => triangle(t),
-        _ => triangle_collapsed(t, 6),
+pub fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
+    let rule = |t: &[Point; 3]| {
+        if affine {
+            triangle(t)
+        } else {
+            triangle_collapsed(t, 6)
+        }
     };
     let mut points = Vec::new();
+    for (t, corners) in fans(polygon) {
+        for p in rule(&t) {
+            points.extend(with_hats(p, &t, &corners, polygon.len()));
+        }
+    }
+    points
+}
+
+/// Points of a convex polygon whose jump varies like the root of a distance from a front outside of it.
+pub fn graded_facet(polygon: &[Point], distance: impl Fn(&Point) -> f64) -> Vec<FacetPoint> {
+    /// Points per direction and halvings: relative error of √distance below 1e-6.
+    const POINTS: usize = 5;
+    const DEPTH: usize = 8;
+    let mut points = Vec::new();
+    for (t, corners) in fans(polygon) {
+        for p in graded_triangles(&[t], &distance, POINTS, DEPTH) {
+            points.extend(with_hats(p, &t, &corners, polygon.len()));
+        }
+    }
+    points
+}
+
+/// Points of a convex polygon cut from a face by the front of an elliptic crack, up to the front itself.
+pub fn front_facet(ellipse: &Ellipse, cut: &FrontCut, polygon: &[Point]) -> Vec<FacetPoint> {
+    /// Points along the chord between two corners.
+    const ALONG: usize = 5;
+    let chord = cut.chord;
+    let along = unit(&sub(&chord[1], &chord[0]));
+    let mut centre = [0.0; 3];
+    for x in polygon {
+        centre = add_scaled(&centre, 1.0 / polygon.len() as f64, x);
+    }
+    let ahead = cross(&along, &ellipse.normal);
+    let away = dot(&ahead, &sub(&centre, &chord[0]));
+    let behind = ahead.map(|v| v * away.signum());
+    let piece = FrontPiece {
+        chord,
+        normal: ellipse.normal,
+        at: |x: &Point| ellipse.meet(x, &behind),
+    };
+    let triangles = fans(polygon);
+    front_facet_points(&cut.face, &piece, &behind, ALONG)
+        .into_iter()
+        .filter_map(|p| {
+            // Between chord and front a point lies just outside all triangles: the nearest one speaks for it.
+            let outside = |t: &[Point; 3]| {
+                let parts = barycentric(t, &p.x)?;
+                Some(parts.iter().fold(0.0, |worst: f64, v| worst.max(-v)))
+            };
+            let (t, corners) = triangles
+                .iter()
+                .filter(|(t, _)| outside(t).is_some())
+                .min_by(|a, b| {
+                    outside(&a.0)
+                        .unwrap_or(f64::INFINITY)
+                        .total_cmp(&outside(&b.0).unwrap_or(f64::INFINITY))
+                })?;
+            with_hats(p, t, corners, polygon.len())
+        })
+        .collect()
+}
+
+/// A triangle of a fan with the corners of the polygon it takes, `None` for the centroid.
+type FanTriangle = ([Point; 3], [Option<usize>; 3]);
+
+/// Triangles of the centroid and the edges; a triangle is one itself.
+fn fans(polygon: &[Point]) -> Vec<FanTriangle> {
+    let count = polygon.len();
     let mut centre = [0.0; 3];
     for x in polygon {
         centre = add_scaled(&centre, 1.0 / count as f64, x);
     }
     // A triangle needs no centroid: its hats are linear throughout.
-    let fans: Vec<([Point; 3], [Option<usize>; 3])> = if count == 3 {
-        vec![(
+    if count == 3 {
+        return vec![(
             [polygon[0], polygon[1], polygon[2]],
             [Some(0), Some(1), Some(2)],
-        )]
-    } else {
-        (0..count)
-            .map(|i| {
-                let j = (i + 1) % count;
-                ([centre, polygon[i], polygon[j]], [None, Some(i), Some(j)])
-            })
-            .collect()
-    };
-    for (t, corners) in fans {
-        let (e1, e2) = (sub(&t[1], &t[0]), sub(&t[2], &t[0]));
-        let (a, b, c) = (dot(&e1, &e1), dot(&e1, &e2), dot(&e2, &e2));
-        let determinant = a * c - b * b;
-        if determinant <= 0.0 {
-            continue;
-        }
-        for p in rule(&t) {
-            let d = sub(&p.x, &t[0]);
-            let (f, g) = (dot(&d, &e1), dot(&d, &e2));
-            let (u, v) = ((c * f - b * g) / determinant, (a * g - b * f) / determinant);
-            let mut hats = vec![0.0; count];
-            for (corner, value) in corners.into_iter().zip([1.0 - u - v, u, v]) {
-                match corner {
-                    Some(i) => hats[i] += value,
-                    None => hats.iter_mut().for_each(|h| *h += value / count as f64),
-                }
-            }
-            points.push(FacetPoint {
-                x: p.x,
-                weight: p.weight,
-                hats,
-            });
+        )];
+    }
+    (0..count)
+        .map(|i| {
+            let j = (i + 1) % count;
+            ([centre, polygon[i], polygon[j]], [None, Some(i), Some(j)])
+        })
+        .collect()
+}
+
+/// Barycentric coordinates in the plane of a triangle; `None` if it has no area.
+fn barycentric(t: &[Point; 3], x: &Point) -> Option<[f64; 3]> {
+    let (e1, e2, d) = (sub(&t[1], &t[0]), sub(&t[2], &t[0]), sub(x, &t[0]));
+    let (a, b, c) = (dot(&e1, &e1), dot(&e1, &e2), dot(&e2, &e2));
+    let determinant = a * c - b * b;
+    let (f, g) = (dot(&d, &e1), dot(&d, &e2));
+    let (u, v) = ((c * f - b * g) / determinant, (a * g - b * f) / determinant);
+    (determinant > 0.0).then_some([1.0 - u - v, u, v])
+}
+
+fn with_hats(
+    p: WeightedPoint,
+    t: &[Point; 3],
+    corners: &[Option<usize>; 3],
+    count: usize,
+) -> Option<FacetPoint> {
+    let mut hats = vec![0.0; count];
+    for (corner, value) in corners.iter().zip(barycentric(t, &p.x)?) {
+        match corner {
+            Some(i) => hats[*i] += value,
+            None => hats.iter_mut().for_each(|h| *h += value / count as f64),
         }
     }
-    points
+    Some(FacetPoint {
+        x: p.x,
+        weight: p.weight,
+        hats,
+    })
 }
 
 #[cfg(test)]
@@ -171,7 +250,7 @@ mod tests {
             })
             .collect();
         for polygon in [&pentagon[..3], &pentagon[..4], &pentagon[..]] {
-            let points = polygon_points(polygon, Integrand::Polynomial);
+            let points = polygon_points(polygon, true);
             assert!(
                 points
                     .iter()
@@ -179,7 +258,7 @@ mod tests {
             );
             let area: f64 = super::super::pairs::vertex_weights(polygon).iter().sum();
             assert!((sum(&points, |_| 1.0) - area).abs() < 1e-14);
-            let fine = polygon_points(polygon, Integrand::Rational);
+            let fine = polygon_points(polygon, false);
             let linear = |p: &FacetPoint| p.hats[1] * (1.0 + p.x[0]);
             assert!((sum(&points, linear) - sum(&fine, linear)).abs() < 1e-14);
         }

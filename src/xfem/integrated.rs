@@ -9,14 +9,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::fem::{Point, add_scaled, unit};
+use crate::fem::{Point, add_scaled, cross, dot, unit};
 use crate::harness::case::ContactSpace;
 
 use super::basis::FunctionKind;
 use super::cell_matrix::{CellError, CellIntegrator};
-use super::crack::Crack;
+use super::crack::{Crack, Geometry};
 use super::edge_pairs::AT_TIP;
-use super::facet_rule::{FacetPoint, Integrand, polygon_points, segment_points};
+use super::facet_rule::{
+    FacetPoint, Integrand, front_facet, graded_facet, polygon_points, segment_points,
+};
 use super::facets::{CrackFacets, Facet};
 use super::multipliers::{Crossing, Multipliers, constant_space, facet_space, star_space};
 use super::pairs::{ContactPoint, ContactSurface, CrackSurface, SurfaceCorner};
@@ -89,21 +91,17 @@ impl<'a> FreeJumps<'a> {
 
     /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     fn crossings(&self, facets: &CrackFacets) -> Vec<Option<Crossing>> {
-        let tips: Vec<Point> = self
-            .integrator
-            .enrichment
-            .tips
-            .iter()
-            .map(|t| t.position)
-            .collect();
+        let tips = &self.integrator.enrichment.tips;
         facets
             .corners
             .iter()
             .map(|corner| {
                 let [i, j] = corner.nodes?;
                 let size = self.sizes[i as usize].min(self.sizes[j as usize]);
-                let distance = |tip: &Point| crate::fem::norm(&crate::fem::sub(tip, &corner.x));
-                if tips.iter().any(|tip| distance(tip) <= AT_TIP * size) {
+                if tips
+                    .iter()
+                    .any(|tip| tip.distance(&corner.x) <= AT_TIP * size)
+                {
                     return None;
                 }
                 let free = |node: u32| self.nodes.contains(&node).then_some(node);
@@ -123,7 +121,7 @@ impl<'a> FreeJumps<'a> {
     /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.
     fn carries(&self, facets: &CrackFacets, facet: usize) -> bool {
         let mesh = self.integrator.mesh;
-        let Facet { cell, .. } = facets.facets[facet];
+        let cell = facets.facets[facet].cell;
         let area: f64 = super::pairs::vertex_weights(&facets.polygon(&facets.facets[facet]))
             .iter()
             .sum();
@@ -145,11 +143,13 @@ pub fn surface_points(
     multipliers: &Multipliers,
 ) -> Result<Vec<SurfacePoint>, CellError> {
     let crack = &integrator.cracks[index];
+    let kind = integrator.mesh.kind;
     let mut points = Vec::new();
     for (facet, shares) in facets.facets.iter().zip(&multipliers.shares) {
         if shares.iter().any(Vec::is_empty) {
             continue;
         }
+        let corners = integrator.mesh.corners(facet.cell);
         for point in facet_points(integrator, index, facets, facet) {
             let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
             for (hat, own) in point.hats.iter().zip(shares) {
@@ -157,9 +157,7 @@ pub fn surface_points(
                     *sum.entry(k).or_default() += hat * share;
                 }
             }
-            let corners = integrator.mesh.corners(facet.cell);
-            let corners = &corners[..integrator.mesh.kind.nodes()];
-            let Some(xi) = integrator.mesh.kind.inverse_map(corners, &point.x) else {
+            let Some(xi) = kind.inverse_map(&corners[..kind.nodes()], &point.x) else {
                 return Err(CellError {
                     at: point.x,
                     reason: "a point of the crack has no reference position".into(),
@@ -171,8 +169,8 @@ pub fn surface_points(
                 x: point.x,
                 xi,
                 weight: point.weight,
-                sides: [1.0, -1.0],
-                frame: crack.frame,
+                regions: facet.regions,
+                frame: facet.frame,
                 shares: sum.into_iter().filter(|(_, share)| *share != 0.0).collect(),
             });
         }
@@ -192,30 +190,33 @@ fn facet_points(
     } = integrator;
     let corners = mesh.corners(facet.cell);
     let polygon = facets.polygon(facet);
-    let tips: Vec<Point> = enrichment
-        .tips
-        .iter()
-        .filter(|tip| tip.crack == index)
-        .map(|tip| tip.position)
-        .collect();
-    let integrand = if enrichment.has_branch(facet.cell) {
-        Integrand::Root(&tips)
-    } else if mesh.kind.is_affine(&corners[..mesh.kind.nodes()]) {
-        Integrand::Polynomial
-    } else {
-        Integrand::Rational
-    };
-    match polygon.as_slice() {
-        &[p, q] => segment_points(&[p, q], integrand),
-        polygon => polygon_points(polygon, integrand),
+    let affine = mesh.kind.is_affine(&corners[..mesh.kind.nodes()]);
+    let branch = enrichment.has_branch(facet.cell);
+    if let &[p, q] = polygon.as_slice() {
+        let own = enrichment.tips.iter().filter(|tip| tip.crack == index);
+        let tips: Vec<Point> = own.map(|tip| tip.position).collect();
+        let integrand = match (branch, affine) {
+            (true, _) => Integrand::Root(&tips),
+            (false, true) => Integrand::Polynomial,
+            (false, false) => Integrand::Rational,
+        };
+        return segment_points(&[p, q], integrand);
+    }
+    match (&integrator.cracks[index].geometry, branch, &facet.front) {
+        (Geometry::Ellipse(ellipse), true, Some(cut)) => front_facet(ellipse, cut, &polygon),
+        (Geometry::Ellipse(ellipse), true, None) => {
+            let distance = |x: &Point| ellipse.nearest(x).psi.abs();
+            graded_facet(&polygon, distance)
+        }
+        _ => polygon_points(&polygon, affine),
     }
 }
 
 /// [[φ_f]] of the functions of a cell at a point of the crack.
 pub fn jump_terms(integrator: &CellIntegrator<'_>, q: &SurfacePoint) -> Vec<(u32, f64)> {
     let values = q
-        .sides
-        .map(|side| integrator.values(q.cell, &q.xi, &q.x, side));
+        .regions
+        .map(|region| integrator.values(q.cell, &q.xi, &q.x, region));
     let functions = integrator.enrichment.cell(q.cell);
     functions
         .iter()
@@ -256,7 +257,7 @@ impl Moments {
             crack: crack.number,
             x,
             s: if dim == 2 { crack.abscissa(&x) } else { 0.0 },
-            frame: self.frame.map(|axis| unit(&axis)),
+            frame: mean_frame(&self.frame),
             weight: self.weight,
             terms: self
                 .jump
@@ -265,6 +266,13 @@ impl Moments {
                 .collect(),
         }
     }
+}
+
+/// Right-handed frame around a mean normal; its first tangent closest to the mean of the tangents.
+fn mean_frame(sums: &[Point; 3]) -> [Point; 3] {
+    let n = unit(&sums[0]);
+    let a = unit(&add_scaled(&sums[1], -dot(&sums[1], &n), &n));
+    [n, a, cross(&n, &a)]
 }
 
 /// Numbers the points along the crack and gathers the surface.

@@ -104,6 +104,7 @@ pub fn jump_fit_along(
 mod tests {
     use super::*;
     use crate::harness::case::{Material, Model};
+    use crate::xfem::basis::FrontShape;
     use crate::xfem::williams::{Mode, Williams};
 
     const RANGE: FitRange = FitRange {
@@ -126,6 +127,7 @@ mod tests {
             position: [1.0, 2.0, 0.5],
             ahead: [c, 0.0, s],
             normal: [0.0, 1.0, 0.0],
+            shape: FrontShape::Straight,
         }
     }
 

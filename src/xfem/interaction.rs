@@ -21,14 +21,15 @@ use rayon::prelude::*;
 use crate::fem::{Point, add_scaled, dot, norm, sub};
 
 use super::basis::TipFrame;
-use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use super::enrichment::{cells_at, reference_position};
-use super::sampling::{Front, comparison_points, double_dot, stress};
+use super::cell_matrix::{CellError, CellIntegrator};
+use super::cut::Side;
+use super::placement::{cells_at, reference_position};
+use super::sampling::{ComparisonPoint, comparison_points, double_dot, stress};
 use super::surface_point::SurfacePoint;
 use super::williams::{Mode, Williams, plane_modulus};
 
 /// Displacement gradients ∂u_a/∂x_b at points of a cell.
-pub type Gradients<'a> = dyn Fn(usize, &[SidedPoint]) -> Vec<[Point; 3]> + Sync + 'a;
+pub type Gradients<'a> = dyn Fn(usize, &[ComparisonPoint]) -> Vec<[Point; 3]> + Sync + 'a;
 
 /// What the integral is taken of.
 pub struct Fields<'a> {
@@ -37,7 +38,7 @@ pub struct Fields<'a> {
     /// Points of the crack surface with the contact traction on side 1, in space [Pa].
     pub faces: &'a [(&'a SurfacePoint, Point)],
     /// Force per volume at a point and side [N/m³].
-    pub body_force: &'a (dyn Fn(&Point, f64) -> Point + Sync),
+    pub body_force: &'a (dyn Fn(&Point, Option<Side>) -> Point + Sync),
 }
 
 /// The domain: all cells with a node within a radius of the tip; q is 1 at those nodes and bilinear in the cells.
@@ -46,7 +47,7 @@ pub struct Domain<'a> {
     /// Radius [m]; 3 cells, or fixed: the smaller, the more the error of the cells at the tip enters.
     pub radius: f64,
     /// Tips of all cracks, this one among them.
-    pub fronts: &'a [Front],
+    pub fronts: &'a [TipFrame],
     /// Points per direction of the rule, see [`comparison_points`].
     pub rule: usize,
 }
@@ -91,9 +92,10 @@ pub fn interaction(
             vec![[[0.0; 3]; 3]; points.len()] // ∇q = 0
         };
         let mut sums = [0.0; 2];
-        for (p, h) in points.iter().zip(&gradients) {
+        for (at, h) in points.iter().zip(&gradients) {
+            let p = &at.point;
             let (q, dq) = weight(integrator, cell, &inside, corners, &p.xi);
-            let force = (fields.body_force)(&p.x, p.side);
+            let force = (fields.body_force)(&p.x, at.side);
             if !ring && force == [0.0; 3] {
                 continue;
             }
@@ -137,7 +139,7 @@ pub fn interaction(
 fn stands_alone(
     integrator: &CellIntegrator<'_>,
     tip: &TipFrame,
-    fronts: &[Front],
+    fronts: &[TipFrame],
     inside: &[bool],
     cells: &[usize],
 ) -> bool {
@@ -149,11 +151,13 @@ fn stands_alone(
     cells.iter().all(|&cell| {
         let corners = mesh.corners(cell);
         let size = norm(&sub(&corners[0], &corners[2]));
-        let other_crack =
-            integrator.enrichment.split[cell].is_some_and(|c| c as usize != tip.crack);
+        let other_crack = integrator.enrichment.partition(cell).is_some_and(|p| {
+            let sides = p.parts.iter().flat_map(|part| &part.sides);
+            sides.into_iter().any(|s| s.0 != tip.crack)
+        });
         let other_tip = fronts.iter().any(|front| {
-            norm(&sub(&front[0], &tip.position)) > 1e-9 * size
-                && reference_position(mesh, cell, &front[0], 1e-9).is_some()
+            norm(&sub(&front.position, &tip.position)) > 1e-9 * size
+                && reference_position(mesh, cell, &front.position, 1e-9).is_some()
         });
         !other_crack && !other_tip
     })

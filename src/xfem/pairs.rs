@@ -29,6 +29,13 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// True if the normal jump depends on an unknown that is not prescribed; otherwise there is no contact to enforce.
+    pub fn acts(&self, dim: usize, held: impl Fn(usize) -> bool) -> bool {
+        let free = |f: u32, a: usize| !held(f as usize * dim + a);
+        let mut terms = self.terms.iter();
+        terms.any(|(f, rows)| (0..dim).any(|a| free(*f, a) && rows[0][a].abs() > 1e-12))
+    }
+
     /// Order of the points of a crack: along it in 2D, by position in 3D.
     pub fn compare(&self, other: &Self) -> Ordering {
         self.s
@@ -133,6 +140,20 @@ impl ContactSurface {
                 quadrature: Vec::new(),
             },
         }
+    }
+
+    /// The surface of a crack along cell facets without the points that do not fulfil a condition; each corner there is a
+    /// point.
+    pub fn retain(self, keep: impl Fn(&ContactPoint) -> bool) -> Self {
+        let faces = self.surface.facets;
+        let kept = |(i, point): (usize, ContactPoint)| keep(&point).then_some((i, point));
+        let points = self
+            .points
+            .into_iter()
+            .enumerate()
+            .filter_map(kept)
+            .collect();
+        ContactSurface::new(points, faces)
     }
 
     /// Adds another surface behind this one.

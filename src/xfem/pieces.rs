@@ -1,14 +1,10 @@
 //! Connected pieces of the cut body and the rigid motions its supports leave free.
 //!
-//! Every node has one copy per side of a crack that cuts its cells: the standard function is the copy on the node's own
-//! side, the Heaviside function the one across. Cells join the copies they touch; what stays joined is a piece. A rigid
-//! motion r of a piece reads, in the functions of the body,
-//!
-//! ```text
-//!   ū_i = r(x_i) if the own copy belongs to the piece,     b_j = ½ H_j (r_own − r_across)
-//! ```
+//! Every node has one copy per combination of constants that its Heaviside functions take around it: its own side, the
+//! other side of a crack, the sectors around a junction. Regions of cells join the copies they touch; what stays joined is
+//! a piece.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, SVD, SymmetricEigen};
 
 use crate::fem::Point;
 use crate::fem::mesh::Mesh;
@@ -40,10 +36,20 @@ pub enum MotionError {
     },
 }
 
-/// Piece of every copy: index = function number (standard: own copy, Heaviside: copy across), `None` for branch functions.
-pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usize) {
-    let count = enrichment.functions.len();
-    let mut parent: Vec<usize> = (0..count).collect();
+/// The connected pieces of a body.
+#[derive(Debug, Clone)]
+pub struct Pieces {
+    /// Number of pieces.
+    pub count: usize,
+    /// Copies of every node: constants of its Heaviside functions there (all 0 on the node's own side), and the piece.
+    copies: Vec<Vec<(Vec<f64>, usize)>>,
+}
+
+/// Finds the pieces.
+pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
+    // Copies by node and constants; −2, 0 or 2, or ±1 beyond the end of an arm: exact.
+    let mut number: Vec<Vec<(Vec<f64>, usize)>> = vec![Vec::new(); mesh.nodes.len()];
+    let mut parent: Vec<usize> = Vec::new();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {
             parent[i] = parent[parent[i]];
@@ -51,28 +57,35 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usiz
         }
         i
     }
+    let mut copy_at = |parent: &mut Vec<usize>, node: usize, constants: Vec<f64>| {
+        let known = &mut number[node];
+        match known.iter().find(|(c, _)| *c == constants) {
+            Some(&(_, copy)) => copy,
+            None => {
+                parent.push(parent.len());
+                known.push((constants, parent.len() - 1));
+                parent.len() - 1
+            }
+        }
+    };
+    // A node without cells of its own side still has a copy there.
+    for node in 0..mesh.nodes.len() {
+        let none = vec![0.0; heaviside_of(enrichment, node).count()];
+        copy_at(&mut parent, node, none);
+    }
     for cell in 0..mesh.cell_count() {
-        let split = enrichment.split[cell];
-        let sides: &[f64] = if split.is_some() {
-            &[1.0, -1.0]
-        } else {
-            &[0.0]
-        };
-        for &side in sides {
+        let functions = enrichment.cell(cell);
+        let steps = enrichment.steps(cell);
+        for region in 0..enrichment.regions(cell) {
             let mut first = None;
             for &node in mesh.cell(cell) {
-                let across = enrichment.enriched_of(node as usize).find(|&f| {
-                    let FunctionKind::Heaviside { crack } = enrichment.functions[f].kind else {
-                        return false;
-                    };
-                    // A whole cell lists only the functions of cracks it lies across.
-                    if Some(crack) == split {
-                        enrichment.shifts[f] != side
-                    } else {
-                        enrichment.cell(cell).contains(&(f as u32))
-                    }
+                let constants = heaviside_of(enrichment, node as usize).map(|f| {
+                    let place = functions.iter().position(|&g| g as usize == f);
+                    place.map_or(0.0, |i| steps[region * functions.len() + i])
                 });
-                let copy = root(&mut parent, across.unwrap_or(node as usize));
+                let constants = constants.collect();
+                let copy = copy_at(&mut parent, node as usize, constants);
+                let copy = root(&mut parent, copy);
                 match first {
                     None => first = Some(copy),
                     Some(other) => parent[copy] = root(&mut parent, other),
@@ -80,21 +93,73 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> (Vec<Option<usize>>, usiz
             }
         }
     }
-    let mut number = vec![None; count];
-    let mut total = 0;
-    let piece = (0..count)
-        .map(|f| {
-            if matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. }) {
-                return None;
-            }
-            let r = root(&mut parent, f);
-            Some(*number[r].get_or_insert_with(|| {
-                total += 1;
-                total - 1
-            }))
+    let mut piece_of = vec![None; parent.len()];
+    let mut count = 0;
+    let copies = number
+        .into_iter()
+        .map(|list| {
+            let numbered = list.into_iter().map(|(constants, copy)| {
+                let r = root(&mut parent, copy);
+                let piece = *piece_of[r].get_or_insert_with(|| {
+                    count += 1;
+                    count - 1
+                });
+                (constants, piece)
+            });
+            numbered.collect()
         })
         .collect();
-    (piece, total)
+    Pieces { count, copies }
+}
+
+/// Heaviside functions of a node.
+fn heaviside_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
+    let own = enrichment.enriched_of(node);
+    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Heaviside { .. }))
+}
+
+impl Pieces {
+    /// Piece of a node on its own side.
+    pub fn of_node(&self, node: usize) -> usize {
+        self.copies[node][0].1
+    }
+
+    /// All unknowns of a field given piece by piece, 0 in the branch functions.
+    ///
+    /// ```text
+    ///   ū + Σ_f c_f b_f = r of the copy's piece at x, for every copy of the node
+    /// ```
+    pub fn field(
+        &self,
+        mesh: &Mesh,
+        enrichment: &Enrichment,
+        r: impl Fn(usize, &Point) -> Point,
+    ) -> Vec<f64> {
+        let dim = mesh.dim();
+        let mut u = vec![0.0; enrichment.functions.len() * dim];
+        for (node, copies) in self.copies.iter().enumerate() {
+            let x = &mesh.nodes[node];
+            let own = r(copies[0].1, x);
+            u[node * dim..(node + 1) * dim].copy_from_slice(&own[..dim]);
+            let functions: Vec<usize> = heaviside_of(enrichment, node).collect();
+            let others = &copies[1..];
+            if functions.is_empty() || others.is_empty() {
+                continue;
+            }
+            let matrix = DMatrix::from_fn(others.len(), functions.len(), |i, j| others[i].0[j]);
+            let right = DMatrix::from_fn(others.len(), dim, |i, a| r(others[i].1, x)[a] - own[a]);
+            // As many independent copies as functions, or fewer: the smallest solution then leaves unused ones at rest.
+            let Ok(found) = SVD::new(matrix, true, true).solve(&right, 1e-12) else {
+                continue;
+            };
+            for (j, f) in functions.into_iter().enumerate() {
+                for a in 0..dim {
+                    u[f * dim + a] = found[(j, a)];
+                }
+            }
+        }
+        u
+    }
 }
 
 /// The rigid motions that the prescribed unknowns leave free, checked against contact.
@@ -110,17 +175,16 @@ pub fn free_motions(
     /// Eigenvalues of the normalised support matrix below this are zero: supports act on motions of order one.
     const ZERO: f64 = 1e-10;
     let dim = mesh.dim();
-    let (piece, count) = pieces(mesh, enrichment);
+    let pieces = pieces(mesh, enrichment);
+    let count = pieces.count;
     let mut held = vec![false; count];
-    for (f, p) in piece.iter().enumerate() {
-        if let (Some(p), FunctionKind::Standard) = (p, enrichment.functions[f].kind) {
-            held[*p] |= (0..dim).any(|a| numbers[f * dim + a].is_none());
-        }
+    for node in 0..mesh.nodes.len() {
+        held[pieces.of_node(node)] |= (0..dim).any(|a| numbers[node * dim + a].is_none());
     }
     if let Some(loose) = held.iter().position(|h| !h) {
         if count > 1 {
             let own: Vec<&Point> = (0..mesh.nodes.len())
-                .filter(|&n| piece[n] == Some(loose))
+                .filter(|&n| pieces.of_node(n) == loose)
                 .map(|n| &mesh.nodes[n])
                 .collect();
             let at =
@@ -130,7 +194,7 @@ pub fn free_motions(
         let count = if dim == 2 { 3 } else { 6 };
         return Err(MotionError::Rigid { count });
     }
-    let modes = piece_motions(mesh, enrichment, &piece, count);
+    let modes = piece_motions(mesh, enrichment, &pieces);
     // Support matrix S_kl = Σ over prescribed unknowns of mode_k mode_l: its kernel are the free motions.
     let m = modes.len();
     let mut support = DMatrix::<f64>::zeros(m, m);
@@ -189,12 +253,7 @@ pub fn free_motions(
 }
 
 /// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
-fn piece_motions(
-    mesh: &Mesh,
-    enrichment: &Enrichment,
-    piece: &[Option<usize>],
-    count: usize,
-) -> Vec<Vec<f64>> {
+fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<Vec<f64>> {
     let dim = mesh.dim();
     let (size, centre) = mesh.extent();
     let rotations: &[[usize; 2]] = if dim == 2 {
@@ -214,29 +273,16 @@ fn piece_motions(
         r
     };
     let kinds = dim + rotations.len();
-    let mut modes = Vec::with_capacity(count * kinds);
-    for p in 0..count {
+    let mut modes = Vec::with_capacity(pieces.count * kinds);
+    for piece in 0..pieces.count {
         for kind in 0..kinds {
-            let mut mode = vec![0.0; enrichment.functions.len() * dim];
-            for (f, function) in enrichment.functions.iter().enumerate() {
-                let node = function.node as usize;
-                let factor = match function.kind {
-                    FunctionKind::Standard if piece[f] == Some(p) => 1.0,
-                    FunctionKind::Heaviside { .. } => {
-                        let own = f64::from(u8::from(piece[node] == Some(p)));
-                        let across = f64::from(u8::from(piece[f] == Some(p)));
-                        0.5 * enrichment.shifts[f] * (own - across)
-                    }
-                    _ => 0.0,
-                };
-                if factor != 0.0 {
-                    let r = motion(kind, &mesh.nodes[node]);
-                    for a in 0..dim {
-                        mode[f * dim + a] = factor * r[a];
-                    }
+            modes.push(pieces.field(mesh, enrichment, |p, x| {
+                if p == piece {
+                    motion(kind, x)
+                } else {
+                    [0.0; 3]
                 }
-            }
-            modes.push(mode);
+            }));
         }
     }
     modes

@@ -9,15 +9,23 @@ use crate::fem::elasticity::Lame;
 use crate::fem::quadrature::{
     WeightedPoint, gauss_cell, tetrahedron, tip_triangle, triangle_collapsed,
 };
-use crate::fem::{Point, add_scaled, dot, norm, sub};
+use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 
-use super::basis::CellFunction;
+use super::basis::{CellFunction, Region, TipFrame};
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use super::cut::{self, Side, SubCells};
-use super::enrichment::reference_position;
+use super::cut::{self, Side};
+use super::partition::Partition;
+use super::placement::reference_position;
+use super::polygon::{self, segment_distance};
 
-/// A crack front: a tip in 2D (both ends equal), a straight piece of the front in 3D [m].
-pub type Front = [Point; 2];
+/// A point of comparison.
+#[derive(Debug, Clone, Copy)]
+pub struct ComparisonPoint {
+    /// The point, with the region whose functions count there.
+    pub point: SidedPoint,
+    /// Side of the crack that cuts the cell, or ends in it; `None` elsewhere.
+    pub side: Option<Side>,
+}
 
 /// The functions of one cell with room for their values.
 pub struct CellField<'a> {
@@ -43,20 +51,21 @@ impl<'a> CellField<'a> {
         }
     }
 
-    fn evaluate(&mut self, xi: &Point, x: &Point, side: Side) {
+    fn evaluate(&mut self, xi: &Point, x: &Point, region: Region) {
+        let kind = self.integrator.mesh.kind;
         self.integrator
-            .basis(self.cell, &self.corners, &self.functions)
-            .evaluate(xi, x, side, &mut self.values, &mut self.gradients);
+            .basis(self.cell, &self.corners[..kind.nodes()], &self.functions)
+            .evaluate(xi, x, region, &mut self.values, &mut self.gradients);
     }
 
-    /// Displacement at ξ (position x) on a side, from all unknowns [m].
-    pub fn displacement(&mut self, xi: &Point, x: &Point, side: Side, u: &[f64]) -> Point {
-        self.at(xi, x, side, u).0
+    /// Displacement at ξ (position x) in a region, from all unknowns [m].
+    pub fn displacement(&mut self, xi: &Point, x: &Point, region: Region, u: &[f64]) -> Point {
+        self.at(xi, x, region, u).0
     }
 
-    /// Displacement [m] and its gradient ∂u_a/∂x_b at ξ (position x) on a side, from all unknowns.
-    pub fn at(&mut self, xi: &Point, x: &Point, side: Side, u: &[f64]) -> (Point, [Point; 3]) {
-        self.evaluate(xi, x, side);
+    /// Displacement [m] and its gradient ∂u_a/∂x_b at ξ (position x) in a region, from all unknowns.
+    pub fn at(&mut self, xi: &Point, x: &Point, region: Region, u: &[f64]) -> (Point, [Point; 3]) {
+        self.evaluate(xi, x, region);
         let dim = self.integrator.mesh.dim();
         let (mut v, mut h) = ([0.0; 3], [[0.0; 3]; 3]);
         let functions = self.integrator.enrichment.cell(self.cell);
@@ -113,73 +122,88 @@ pub fn double_dot(a: &[Point; 3], b: &[Point; 3]) -> f64 {
 pub fn comparison_points(
     integrator: &CellIntegrator<'_>,
     cell: usize,
-    fronts: &[Front],
+    fronts: &[TipFrame],
     n: usize,
-) -> Result<Vec<SidedPoint>, CellError> {
+) -> Result<Vec<ComparisonPoint>, CellError> {
     let mesh = integrator.mesh;
     let kind = mesh.kind;
     let corners = mesh.corners(cell);
     let corners = &corners[..kind.nodes()];
     let diameter = diameter(corners);
-    let near = |x: &Point, size: f64| fronts.iter().any(|f| segment_distance(x, f) < size);
-    let split = integrator.enrichment.split[cell].map(|c| &integrator.cracks[c as usize]);
+    let near = |x: &Point, size: f64| fronts.iter().any(|f| f.distance(x) < size);
+    let partition = integrator.enrichment.partition(cell);
     // The centre is at most half a diameter from any point of the cell.
-    if split.is_none() && !near(&mesh.centre(cell), 2.0 * diameter) {
+    if partition.is_none() && !near(&mesh.centre(cell), 2.0 * diameter) {
         return Ok(gauss_cell(kind.dim(), n)
             .into_iter()
-            .map(|(xi, w)| SidedPoint {
-                xi,
-                x: kind.map(corners, &xi),
-                weight: w * kind.gradients(corners, &xi).1,
-                side: 1.0,
+            .map(|(xi, w)| ComparisonPoint {
+                point: SidedPoint {
+                    xi,
+                    x: kind.map(corners, &xi),
+                    weight: w * kind.gradients(corners, &xi).1,
+                    region: 0,
+                },
+                side: None,
             })
             .collect());
     }
     // A crack without tip functions ends in a cell that it does not split; the exact field jumps there all the same.
-    let crack = split.or_else(|| {
-        integrator.cracks.iter().find(|crack| {
-            cut::is_split(kind, &crack.cell_phi(mesh, cell))
-                && fronts.iter().any(|f| {
-                    crack.distance(&f[0]).abs() <= 1e-9 * diameter
-                        && reference_position(mesh, cell, &f[0], 1e-9).is_some()
-                })
-        })
+    let ending = fronts.iter().map(|f| f.crack).find(|&index| {
+        let crack = &integrator.cracks[index];
+        partition.is_none()
+            && cut::is_split(kind, &crack.cell_phi(mesh, cell))
+            && fronts.iter().any(|f| {
+                let at = |x: &Point| reference_position(mesh, cell, x, 1e-9).is_some();
+                f.crack == index
+                    && (at(&f.position)
+                        || f.shape_is_ellipse() && near(&mesh.centre(cell), diameter))
+            })
     });
-    let phi = crack.map_or([1.0; 8], |crack| crack.cell_phi(mesh, cell));
+    let divided = match ending {
+        Some(index) => Partition::new(mesh, cell, integrator.cracks, &[index]).ok(),
+        None => None,
+    };
+    let whole = Partition::whole(kind, corners);
+    let parts = &partition.or(divided.as_ref()).unwrap_or(&whole).parts;
     let mut points = Vec::new();
-    for side in [1.0, -1.0] {
-        let part = match kind {
-            CellKind::Quad4 => {
-                let polygon = cut::polygon_part(corners, &phi[..4], side);
-                flat_points(&polygon, fronts, n, kind.is_affine(corners))
-            }
-            CellKind::Hex8 => SubCells::of(kind, corners, &phi, side)
+    for (number, part) in parts.iter().enumerate() {
+        let region = if partition.is_some() { number } else { 0 };
+        let side = part.sides.first().map(|s| s.1);
+        let rule = match kind {
+            CellKind::Quad4 => flat_points(&part.polygon, fronts, n, kind.is_affine(corners)),
+            CellKind::Hex8 => part
                 .tetrahedra
                 .iter()
                 .flat_map(|t| solid_points(t, fronts, n))
                 .collect(),
         };
-        for WeightedPoint { x, weight } in part {
+        for WeightedPoint { x, weight } in rule {
             let Some(xi) = kind.inverse_map(corners, &x) else {
                 return Err(CellError {
                     at: x,
                     reason: "a point of a sub-cell has no reference position".into(),
                 });
             };
-            points.push(SidedPoint {
+            let point = SidedPoint {
                 xi,
                 x,
                 weight,
-                side,
-            });
+                region,
+            };
+            points.push(ComparisonPoint { point, side });
         }
     }
     Ok(points)
 }
 
-/// Points of a convex polygon: a fan about the tip in its closure, or triangles halved towards the tips outside.
-fn flat_points(polygon: &[Point], fronts: &[Front], n: usize, affine: bool) -> Vec<WeightedPoint> {
-    let triangles = cut::fan(polygon);
+/// Points of a polygon: a fan about the tip in its closure, or triangles halved towards the tips outside.
+fn flat_points(
+    polygon: &[Point],
+    fronts: &[TipFrame],
+    n: usize,
+    affine: bool,
+) -> Vec<WeightedPoint> {
+    let triangles = polygon::triangles(polygon);
     let size = diameter(polygon);
     let inside = fronts.iter().find(|f| {
         triangles.iter().any(|t| {
@@ -187,23 +211,33 @@ fn flat_points(polygon: &[Point], fronts: &[Front], n: usize, affine: bool) -> V
                 0.5 * norm(&crate::fem::cross(&sub(b, a), &sub(c, a)))
             };
             let whole = area(&t[0], &t[1], &t[2]);
-            let sum: f64 = (0..3).map(|i| area(&f[0], &t[i], &t[(i + 1) % 3])).sum();
+            let sum: f64 = (0..3)
+                .map(|i| area(&f.position, &t[i], &t[(i + 1) % 3]))
+                .sum();
             sum <= whole + 1e-10 * size * size
         })
     });
     if let Some(tip) = inside {
         // Each outer edge in n/4 parts: doubling n doubles the angular points of the fan, too.
         let parts = n.div_ceil(4);
-        return (0..polygon.len())
-            .flat_map(|i| {
-                let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-                let edge = sub(&b, &a);
-                (0..parts).flat_map(move |k| {
-                    let [p, q] = [k, k + 1].map(|k| add_scaled(&a, k as f64 / parts as f64, &edge));
-                    tip_triangle(&tip[0], &p, &q, affine && n <= 4)
-                })
-            })
-            .collect();
+        let mut points = Vec::new();
+        for i in 0..polygon.len() {
+            let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+            let edge = sub(&b, &a);
+            let divided = (0..=parts).map(|k| add_scaled(&a, k as f64 / parts as f64, &edge));
+            let ends: Vec<Point> = divided.collect();
+            for w in ends.windows(2) {
+                // Negative where the outline of a bent part turns its back on the tip.
+                let fan = cross(&sub(&w[0], &tip.position), &sub(&w[1], &tip.position));
+                let sign = 1.0f64.copysign(fan[2]);
+                let triangle = tip_triangle(&tip.position, &w[0], &w[1], affine && n <= 4);
+                points.extend(triangle.into_iter().map(|p| WeightedPoint {
+                    weight: sign * p.weight,
+                    ..p
+                }));
+            }
+        }
+        return points;
     }
     /// Halvings; a tip 1e-9 edges away needs 30.
     const DEPTH: usize = 40;
@@ -213,7 +247,7 @@ fn flat_points(polygon: &[Point], fronts: &[Front], n: usize, affine: bool) -> V
         let size = diameter(&t);
         let near = fronts
             .iter()
-            .any(|f| (0..3).any(|i| segment_distance(&f[0], &[t[i], t[(i + 1) % 3]]) < size));
+            .any(|f| (0..3).any(|i| segment_distance(&f.position, &t[i], &t[(i + 1) % 3]) < size));
         if !near || depth == DEPTH {
             points.extend(triangle_collapsed(&t, n));
             continue;
@@ -230,7 +264,7 @@ fn flat_points(polygon: &[Point], fronts: &[Front], n: usize, affine: bool) -> V
 /// Points of a tetrahedron, halved towards the fronts; more than 4 points per direction asked for: halved once more.
 ///
 /// Three halvings leave an eighth of the neighbourhood of a front unresolved, where the rule still finds most of the energy.
-fn solid_points(t: &[Point; 4], fronts: &[Front], n: usize) -> Vec<WeightedPoint> {
+fn solid_points(t: &[Point; 4], fronts: &[TipFrame], n: usize) -> Vec<WeightedPoint> {
     let depth = if n > 4 { 4 } else { 3 };
     let mut stack = vec![(*t, 0)];
     let mut points = Vec::new();
@@ -240,7 +274,7 @@ fn solid_points(t: &[Point; 4], fronts: &[Front], n: usize) -> Vec<WeightedPoint
             centre = add_scaled(&centre, 0.25, x);
         }
         let size = diameter(&t);
-        let near = fronts.iter().any(|f| segment_distance(&centre, f) < size);
+        let near = fronts.iter().any(|f| f.distance(&centre) < size);
         if (near && level < depth) || (n > 4 && level == 0) {
             stack.extend(
                 cut::halve_tetrahedron(&t)
@@ -265,23 +299,12 @@ fn diameter(points: &[Point]) -> f64 {
     largest
 }
 
-/// Distance of a point from a segment whose ends may coincide [m].
-pub fn segment_distance(x: &Point, [p, q]: &[Point; 2]) -> f64 {
-    let d = sub(q, p);
-    let length2 = dot(&d, &d);
-    let t = if length2 > 0.0 {
-        (dot(&sub(x, p), &d) / length2).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    norm(&sub(x, &add_scaled(p, t, &d)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::harness::body::{Body, Needs};
     use crate::harness::case;
+    use crate::xfem::basis::FrontShape;
 
     fn body(model: &str, mesh: &str, rest: &str) -> Body {
         let text = format!(
@@ -325,18 +348,19 @@ mod tests {
             let body = square(tip);
             let integrator = body.integrator();
             let crack = &body.cracks[0];
-            let ends = crack.ends().map(|(x, _)| x);
-            let fronts = ends.map(|x| [x, x]);
+            let fronts = crate::harness::errors::fronts(&body);
+            let ends: Vec<Point> = fronts.iter().map(|f| f.position).collect();
             for (n, tolerance) in [(4, 1e-6), (8, 1e-9)] {
                 let (mut area, mut found) = (0.0, [0.0; 2]);
                 for cell in 0..body.mesh.cell_count() {
                     for p in comparison_points(&integrator, cell, &fronts, n).unwrap() {
+                        let ComparisonPoint { point: p, side } = p;
                         area += p.weight;
                         for (sum, end) in found.iter_mut().zip(&ends) {
                             *sum += p.weight / norm(&sub(&p.x, end));
                         }
-                        if body.enrichment.split[cell].is_some() {
-                            assert!(crack.distance(&p.x) * p.side > -1e-12);
+                        if let Some(side) = side {
+                            assert!(crack.distance(&p.x) * side > -1e-12);
                         }
                     }
                 }
@@ -362,12 +386,22 @@ mod tests {
              [[support]]\non = \"bottom\"\ndisplacement_m = [0, 0, 0]\n",
         );
         let integrator = body.integrator();
-        let front = [[3.2, 2.8, 0.0], [3.2, 2.8, 2.0]];
-        let exact = 2.0 * inverse_distance(&front[0]);
+        // The line x = 3.2, y = 2.8.
+        let front = TipFrame {
+            crack: 0,
+            position: [3.2, 2.8, 0.0],
+            ahead: [1.0, 0.0, 0.0],
+            normal: [0.0, 1.0, 0.0],
+            shape: FrontShape::Straight,
+        };
+        let exact = 2.0 * inverse_distance(&front.position);
         let error = |n: usize| {
             let found: f64 = (0..body.mesh.cell_count())
-                .flat_map(|cell| comparison_points(&integrator, cell, &[front], n).unwrap())
-                .map(|p| p.weight / segment_distance(&p.x, &front))
+                .flat_map(|cell| {
+                    let fronts = std::slice::from_ref(&front);
+                    comparison_points(&integrator, cell, fronts, n).unwrap()
+                })
+                .map(|p| p.point.weight / front.distance(&p.point.x))
                 .sum();
             (found / exact - 1.0).abs()
         };

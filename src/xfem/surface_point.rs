@@ -1,9 +1,10 @@
 //! Quadrature points of the crack surface: where they lie, what jumps there, how far the faces overlap.
 
-use crate::fem::{Point, dot, norm, sub};
+use crate::fem::{Point, add_scaled, dot, norm, sub};
 
-use super::cut::Side;
-use super::enrichment::cells_at;
+use super::basis::Region;
+use super::partition::Face;
+use super::placement::cells_at;
 use super::sampling::CellField;
 use super::{cell_matrix::CellIntegrator, pairs::ContactPoint};
 
@@ -20,8 +21,8 @@ pub struct SurfacePoint {
     pub xi: Point,
     /// Share of the crack surface: length [m] or area [m²].
     pub weight: f64,
-    /// Side of the cell's functions on the two faces: that of side 1, that of side 2.
-    pub sides: [Side; 2],
+    /// Regions of the cell that meet here: that on side 1, that on side 2.
+    pub regions: [Region; 2],
     /// Local frame n, a, b.
     pub frame: [Point; 3],
     /// Contact points and the value of their multiplier basis functions here: λ_h = Σ share · P/w of the contact point,
@@ -34,8 +35,8 @@ impl SurfacePoint {
     pub fn jump(&self, integrator: &CellIntegrator<'_>, u: &[f64]) -> Point {
         let mut field = CellField::new(integrator, self.cell);
         let [one, two] = self
-            .sides
-            .map(|side| field.displacement(&self.xi, &self.x, side, u));
+            .regions
+            .map(|region| field.displacement(&self.xi, &self.x, region, u));
         sub(&one, &two)
     }
 
@@ -69,19 +70,34 @@ pub fn jump_at(
         mesh, enrichment, ..
     } = integrator;
     let shape = &integrator.cracks[crack];
-    let s = shape.abscissa(x);
-    if shape.length.is_finite() && !(0.0..=shape.length).contains(&s) {
+    if !shape.jumps_at(x, 0.0) {
         return None;
     }
     cells_at(mesh, x).into_iter().find_map(|cell| {
         let corners = mesh.corners(cell);
         let near = 1e-6 * norm(&sub(&corners[0], &corners[2]));
-        if enrichment.split[cell] != Some(crack as u32) || shape.distance(x).abs() > near {
+        if shape.distance(x).abs() > near {
             return None;
         }
+        // The piece of the crack in this cell that is nearest to the point.
+        let faces = enrichment
+            .partition(cell)?
+            .faces
+            .iter()
+            .filter(|f| f.crack == crack);
+        let middle = |face: &Face| {
+            let scale = 1.0 / face.corners.len() as f64;
+            face.corners
+                .iter()
+                .fold([0.0; 3], |sum, c| add_scaled(&sum, scale, &c.0))
+        };
+        let away = |face: &Face| norm(&sub(&middle(face), x));
+        let face = faces.min_by(|a, b| away(a).total_cmp(&away(b)))?;
         let xi = mesh.kind.inverse_map(&corners[..mesh.kind.nodes()], x)?;
         let mut field = CellField::new(integrator, cell);
-        let [one, two] = [1.0, -1.0].map(|side| field.displacement(&xi, x, side, u));
+        let [one, two] = face
+            .parts
+            .map(|region| field.displacement(&xi, x, region, u));
         Some(sub(&one, &two))
     })
 }

@@ -19,11 +19,11 @@ use rayon::prelude::*;
 use crate::fem::quadrature::gauss_cell;
 use crate::fem::{Point, dot};
 
+use super::basis::Region;
 use super::cell_matrix::{CellError, CellIntegrator};
 use super::crack::ON_CRACK;
-use super::cut::{Side, SubCells};
-use super::enrichment::reference_position;
 use super::pairs::ContactPoint;
+use super::placement::reference_position;
 use super::surface_point::SurfacePoint;
 
 /// A cell touches a point within this, in units of its diagonal: above rounding, below the shortest distance of a crossed
@@ -35,7 +35,7 @@ struct Part {
     cell: usize,
     /// Reference position of the point in the cell.
     xi: Point,
-    side: Side,
+    region: Region,
     /// Volume [m³] or area [m²].
     measure: f64,
 }
@@ -60,17 +60,17 @@ pub fn integrated_rows(
     quadrature: &[SurfacePoint],
 ) -> Vec<Vec<(usize, f64)>> {
     let dim = integrator.mesh.dim();
-    let mut measures: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
         let [m1, m2] = *measures
-            .entry(q.cell)
-            .or_insert_with(|| q.sides.map(|side| measure(integrator, q.cell, side)));
-        for (side, share) in q.sides.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
+            .entry((q.cell, q.regions))
+            .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
+        for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
             let part = Part {
                 cell: q.cell,
                 xi: q.xi,
-                side,
+                region,
                 measure: share,
             };
             for &(k, value) in &q.shares {
@@ -113,20 +113,22 @@ fn parts(
         let Some(xi) = reference_position(mesh, cell, &point.x, TOUCHES) else {
             continue;
         };
-        let crack = enrichment.split[cell].map(|k| &cracks[k as usize]);
-        let sides: &[Side] = match crack {
-            Some(crack) if crack.number == point.crack => &[1.0, -1.0],
-            // Another crack passes by: the point lies on one of its sides.
-            Some(crack) if crack.distance(&point.x) < 0.0 => &[-1.0],
-            _ => &[1.0],
-        };
-        for &side in sides {
-            parts.push(Part {
-                cell,
-                xi,
-                side,
-                measure: measure(integrator, cell, side),
+        for region in 0..enrichment.regions(cell) {
+            // A region touches the point unless another crack keeps them apart.
+            let apart = enrichment.partition(cell).is_some_and(|p| {
+                let sides = &p.parts[region].sides;
+                sides.iter().any(|&(c, side)| {
+                    cracks[c].number != point.crack && cracks[c].distance(&point.x) * side < 0.0
+                })
             });
+            if !apart {
+                parts.push(Part {
+                    cell,
+                    xi,
+                    region,
+                    measure: measure(integrator, cell, region),
+                });
+            }
         }
     }
     if parts.is_empty() {
@@ -138,21 +140,22 @@ fn parts(
     Ok(parts)
 }
 
-/// Measure of a whole cell, or of one side of a cut one.
-fn measure(integrator: &CellIntegrator<'_>, cell: usize, side: Side) -> f64 {
+/// Measure of a whole cell, or of one region of a cut one.
+fn measure(integrator: &CellIntegrator<'_>, cell: usize, region: Region) -> f64 {
     let kind = integrator.mesh.kind;
-    let corners = integrator.mesh.corners(cell);
-    let corners = &corners[..kind.nodes()];
-    match integrator.enrichment.split[cell] {
-        Some(k) => {
-            let phi = integrator.cracks[k as usize].cell_phi(integrator.mesh, cell);
-            let points = SubCells::of(kind, corners, &phi, side).points();
+    match integrator.enrichment.partition(cell) {
+        Some(partition) => {
+            let points = partition.parts[region].sub_cells().points();
             points.iter().map(|p| p.weight).sum()
         }
-        None => gauss_cell(kind.dim(), 2)
-            .iter()
-            .map(|(xi, w)| w * kind.gradients(corners, xi).1)
-            .sum(),
+        None => {
+            let corners = integrator.mesh.corners(cell);
+            let corners = &corners[..kind.nodes()];
+            gauss_cell(kind.dim(), 2)
+                .iter()
+                .map(|(xi, w)| w * kind.gradients(corners, xi).1)
+                .sum()
+        }
     }
 }
 
@@ -190,7 +193,7 @@ fn add_stress(
     let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
     let n = &frame[0];
     let functions = integrator.enrichment.cell(part.cell);
-    let gradients = integrator.gradients(part.cell, &part.xi, x, part.side);
+    let gradients = integrator.gradients(part.cell, &part.xi, x, part.region);
     for (&f, g) in functions.iter().zip(&gradients) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let (normal, tangential) = (dot(g, n), dot(g, e));

@@ -108,6 +108,7 @@ mod tests {
     use crate::fem::elasticity::Lame;
     use crate::fem::{add_scaled, dot};
     use crate::harness::case::{Material, Model};
+    use crate::xfem::basis::FrontShape;
     use crate::xfem::sampling::stress;
 
     /// Source: Williams 1957; definition of K by the stress ahead. Goal: σ_22, σ_12, σ_23 = 1/√(2πr) ahead of the tip, faces
@@ -120,6 +121,7 @@ mod tests {
             position: [0.2, 0.1, 0.0],
             ahead: [c, s, 0.0],
             normal: [-s, c, 0.0],
+            shape: FrontShape::Straight,
         };
         let material = Material {
             young: 3.0,

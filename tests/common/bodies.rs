@@ -1,7 +1,6 @@
 //! Cracked bodies in general and special position, and fields on their pieces.
 
 use stickslip::harness::body::{Body, Needs};
-use stickslip::xfem::basis::FunctionKind;
 use stickslip::xfem::pieces::pieces;
 
 use super::{clamped, crack, parse, plane, solid};
@@ -84,25 +83,9 @@ pub fn motions(dim: usize) -> Vec<Motion> {
     all
 }
 
-/// A field given piece by piece, 0 in the branch functions: ū_j = r_own(x_j), b_j = ½ H_j (r_own − r_across)(x_j).
+/// A field given piece by piece, 0 in the branch functions.
 pub fn piecewise(body: &Body, field: impl Fn(usize, &[f64; 3]) -> [f64; 3]) -> Vec<f64> {
-    let dim = body.mesh.dim();
-    let (piece, _) = pieces(&body.mesh, &body.enrichment);
-    let mut u = vec![0.0; body.numbers.len()];
-    for (f, function) in body.enrichment.functions.iter().enumerate() {
-        let node = function.node as usize;
-        let of = |f: usize| field(piece[f].unwrap(), &body.mesh.nodes[node]);
-        for a in 0..dim {
-            u[f * dim + a] = match function.kind {
-                FunctionKind::Standard => of(f)[a],
-                FunctionKind::Heaviside { .. } => {
-                    0.5 * body.enrichment.shifts[f] * (of(node)[a] - of(f)[a])
-                }
-                FunctionKind::Branch { .. } => 0.0,
-            };
-        }
-    }
-    u
+    pieces(&body.mesh, &body.enrichment).field(&body.mesh, &body.enrichment, field)
 }
 
 /// A motion of some pieces, 0 on the others.

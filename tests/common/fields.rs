@@ -9,9 +9,10 @@ use stickslip::fem::elasticity::Lame;
 use stickslip::fem::quadrature::gauss;
 use stickslip::fem::{Point, add_scaled, dot, norm, sub};
 use stickslip::harness::body::{Body, Needs};
+use stickslip::harness::case::Amount;
 use stickslip::harness::quantities::Snapshot;
 use stickslip::xfem::basis::FunctionKind;
-use stickslip::xfem::cut;
+use stickslip::xfem::crack::Geometry;
 use stickslip::xfem::sampling::{strain, stress};
 use stickslip::xfem::surface_point::SurfacePoint;
 use stickslip::xfem::williams::{kolosov, plane_modulus};
@@ -19,7 +20,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
 };
 
-use super::{METHOD, TOLERANCE, friction, no_load, parse};
+use super::{METHOD, TOLERANCE, friction, loading, no_load, parse};
 
 /// Straight crack |x| < a in an infinite plate under uniform remote stress, whose faces give up a constant part of the
 /// stress: Westergaard functions Z = A (z/√(z² − a²) − 1) of mode I and II (Tada, Paris & Irwin).
@@ -149,7 +150,7 @@ pub fn hold(body: &mut Body, field: &dyn Field) {
         let function = body.enrichment.functions[unknown / dim];
         if function.kind == FunctionKind::Standard {
             let x = body.mesh.nodes[function.node as usize];
-            prescribed.amount = field.displacement(&x, 1.0)[unknown % dim];
+            prescribed.amount = Amount::Number(field.displacement(&x, 1.0)[unknown % dim]);
         }
     }
 }
@@ -164,9 +165,10 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
     let registered = method(METHOD).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
     let mut enforcement = (registered.build)(&options).unwrap();
+    let held = loading(&body, &case);
     let increment = Increment {
         system: &system,
-        load: &body.load(case.path.end),
+        load: &held.at(1),
         start_load: &no_load(&body),
         start: &ContactState::zero(&system),
         index: 0,
@@ -176,7 +178,8 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
     assert_eq!(outcome.status, Status::Converged);
     let status = vec![PointStatus::Open; body.points.len()];
     let virgin = Snapshot::virgin(&body);
-    let now = Snapshot::new(&body, case.path.end, &outcome.state, None, status, &virgin);
+    let now = Snapshot::new(&held, 1, &outcome.state, None, status, &virgin);
+    drop(held);
     (body, now)
 }
 
@@ -184,20 +187,19 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
 pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
     let mesh = &body.mesh;
     let mut points = Vec::new();
-    for cell in 0..mesh.cell_count() {
-        let Some(crack) = body.enrichment.split[cell].map(|c| &body.cracks[c as usize]) else {
-            continue;
-        };
+    for (cell, partition) in body.enrichment.cut_cells() {
+        let crack = &body.cracks[partition.faces[0].crack];
+        let length = crack.range[1];
         let corners = mesh.corners(cell);
-        let vertices = cut::facet(mesh.kind, &corners[..4], &crack.cell_phi(mesh, cell));
+        let vertices = &partition.faces[0].corners;
         let mut ends: Vec<f64> = vertices.iter().map(|v| crack.abscissa(&v.0)).collect();
         ends.sort_by(f64::total_cmp);
         let pairs: Vec<(u32, f64)> = (body.points.iter().enumerate())
             .filter(|(_, p)| vertices.iter().any(|v| norm(&sub(&v.0, &p.x)) < 1e-9))
             .map(|(i, p)| (i as u32, p.s))
             .collect();
-        let (from, to) = (ends[0].max(0.0), ends[1].min(crack.length));
-        let at_tip = [ends[0] < 0.0, ends[1] > crack.length];
+        let (from, to) = (ends[0].max(0.0), ends[1].min(length));
+        let at_tip = [ends[0] < 0.0, ends[1] > length];
         for (s, w) in gauss(n) {
             let t = 0.5 * (1.0 + s);
             // s = ρ² from a tip: the jump and the auxiliary fields go with √s.
@@ -207,7 +209,10 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
                 _ => (t, 0.5 * w),
             };
             let s = from + t * (to - from);
-            let x = add_scaled(&crack.origin, s, &crack.frame[1]);
+            let Geometry::Curve(curve) = &crack.geometry else {
+                panic!("a 2D crack");
+            };
+            let x = curve.at(s).0;
             let shares = match *pairs.as_slice() {
                 [(i, a), (j, b)] => vec![(i, (b - s) / (b - a)), (j, (s - a) / (b - a))],
                 [(i, _)] => vec![(i, 1.0)],
@@ -219,8 +224,8 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
                 xi: mesh.kind.inverse_map(&corners[..4], &x).unwrap(),
                 x,
                 weight: w * (to - from),
-                sides: [1.0, -1.0],
-                frame: crack.frame,
+                regions: partition.faces[0].parts,
+                frame: crack.frame(&x),
                 shares,
             });
         }

@@ -1,6 +1,7 @@
 //! What one mesh of a sequence leaves behind.
 
 use super::tips::Regularity;
+use crate::harness::errors::Deviation;
 use crate::harness::record::RunRow;
 use crate::harness::verdict::Verdict;
 
@@ -65,21 +66,6 @@ impl Seconds {
             solve: sum(|row| row.solve_s),
         }
     }
-}
-
-/// One quantity against its closed form.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Deviation {
-    /// What is measured, e.g. `traction`.
-    pub quantity: &'static str,
-    /// Where; empty: the whole body.
-    pub at: String,
-    /// Value of the run.
-    pub found: f64,
-    /// Value of the closed form.
-    pub exact: f64,
-    /// The error.
-    pub error: f64,
 }
 
 /// One followed quantity of interest.

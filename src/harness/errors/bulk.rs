@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::analytic::Field;
-use crate::fem::{Point, sub};
+use crate::fem::{Point, dot, sub};
 use crate::harness::body::Body;
 use crate::xfem::basis::FunctionKind;
 use crate::xfem::cell_matrix::CellError;
@@ -56,11 +56,11 @@ pub fn bulk(body: &Body, field: &dyn Field, u: &[f64], rule: usize) -> Result<Bu
     let fronts = fronts(body);
     let of_cell = |cell: usize| -> Result<Bulk, CellError> {
         let mut discrete = CellField::new(&integrator, cell);
-        let split = body.enrichment.split[cell].is_some();
         let mut sums = Bulk::default();
-        for p in comparison_points(&integrator, cell, &fronts, rule)? {
-            let side = if split { p.side } else { side_of(body, &p.x) };
-            let (v, h) = discrete.at(&p.xi, &p.x, p.side, u);
+        for at in comparison_points(&integrator, cell, &fronts, rule)? {
+            let p = at.point;
+            let side = at.side.unwrap_or_else(|| side_of(body, &p.x));
+            let (v, h) = discrete.at(&p.xi, &p.x, p.region, u);
             let found = stress(lame, dim, &h);
             let exact = field.stress(&p.x, side);
             let error = [0, 1, 2].map(|a| sub(&found[a], &exact[a]));
@@ -98,9 +98,10 @@ pub(super) fn nodal_displacement(body: &Body, field: &dyn Field, u: &[f64]) -> [
     // Both nodes of a doubled pair lie on the crack: their side is the sign with which they enter the jump.
     let mut pair_side = vec![None; body.mesh.nodes.len()];
     for point in &body.points {
-        for &(f, coefficient) in &point.terms {
-            let function = body.enrichment.functions[f as usize];
+        for (f, rows) in &point.terms {
+            let function = body.enrichment.functions[*f as usize];
             if function.kind == FunctionKind::Standard {
+                let coefficient = dot(&rows[0], &point.frame[0]);
                 pair_side[function.node as usize] = Some(f64::signum(coefficient));
             }
         }

@@ -6,15 +6,16 @@ use crate::analytic::Field;
 use crate::fem::{Point, add_scaled, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
-use crate::xfem::basis::TipFrame;
-use crate::xfem::cell_matrix::{CellError, SidedPoint};
-use crate::xfem::enrichment::{cells_at, ends_inside};
-use crate::xfem::intensity::{FitRange, JumpSample, jump_fit};
+use crate::xfem::basis::{FrontShape, TipFrame};
+use crate::xfem::cell_matrix::CellError;
+use crate::xfem::crack::{Crack, Geometry};
+use crate::xfem::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use crate::xfem::interaction::{Domain, Fields, interaction};
-use crate::xfem::sampling::CellField;
-use crate::xfem::surface_point::SurfacePoint;
+use crate::xfem::placement::{self, cells_at};
+use crate::xfem::sampling::{CellField, ComparisonPoint};
+use crate::xfem::surface_point::{SurfacePoint, jump_at};
 
-use super::{Deviation, RULE, Scales, fronts};
+use super::{Deviation, RULE, Scales, fronts, side_of};
 
 /// Reach of the jump fit behind the tip, in lengths of the crack. It must not shrink with the mesh: with branch functions on
 /// the tip's cell only, the jump at a given number of cells behind the tip keeps its relative error on every mesh.
@@ -25,22 +26,49 @@ const FIT_CELLS_LEFT_OUT: f64 = 1.0;
 /// Radius of the domain of the interaction integral, in cells: the first that stands alone around the tip.
 const DOMAIN_CELLS: [f64; 2] = [3.0, 2.0];
 
-/// Tips inside the body with the name of their place, `crack-1 tip-2`.
+/// Points of a 3D front at which intensities are found, evenly spaced in its parameter.
+const FRONT_POINTS: usize = 8;
+/// Samples behind a point of a 3D front.
+const FRONT_SAMPLES: usize = 24;
+
+/// Tips inside the body with the name of their place, `crack-1 tip-2`; points of a 3D front by their parameter,
+/// `crack-1 front-45deg`.
 pub fn tip_fronts(body: &Body) -> Vec<(String, TipFrame)> {
     let mut tips = Vec::new();
     for (index, crack) in body.cracks.iter().enumerate() {
-        for (number, (position, ahead)) in ends_inside(&body.mesh, crack).into_iter().enumerate() {
-            let tip = TipFrame {
-                crack: index,
-                position,
-                ahead,
-                normal: crack.frame[0],
+        let name = format!("crack-{}", crack.number + 1);
+        for (number, (tip, _)) in placement::fronts(&body.mesh, index, crack)
+            .into_iter()
+            .enumerate()
+        {
+            let FrontShape::Ellipse(ellipse) = &tip.shape else {
+                tips.push((format!("{name} tip-{}", number + 1), tip));
+                continue;
             };
-            let at = format!("crack-{} tip-{}", crack.number + 1, number + 1);
-            tips.push((at, tip));
+            for k in 0..FRONT_POINTS {
+                let parameter = 2.0 * PI * k as f64 / FRONT_POINTS as f64;
+                let position = ellipse.point(parameter);
+                let local = TipFrame {
+                    crack: index,
+                    position,
+                    ahead: ellipse.nearest(&position).ahead,
+                    normal: ellipse.normal,
+                    shape: FrontShape::Straight,
+                };
+                tips.push((format!("{name} front-{}deg", 360 * k / FRONT_POINTS), local));
+            }
         }
     }
     tips
+}
+
+/// Length of a 2D crack, smaller axis of an ellipse [m].
+fn crack_size(crack: &Crack) -> f64 {
+    match &crack.geometry {
+        Geometry::Curve(_) => crack.range[1] - crack.range[0],
+        Geometry::Ellipse(e) => 2.0 * e.half_axes[0].min(e.half_axes[1]),
+        Geometry::Plane { .. } => f64::INFINITY,
+    }
 }
 
 /// K_I, K_II[, K_III] at a tip [Pa √m].
@@ -61,7 +89,7 @@ pub fn tip_intensities(
     surface: &[SurfacePoint],
     tip: &TipFrame,
     now: &Snapshot,
-    body_force: &(dyn Fn(&Point, f64) -> Point + Sync),
+    body_force: &(dyn Fn(&Point, Option<f64>) -> Point + Sync),
 ) -> Result<TipIntensities, CellError> {
     let integrator = body.integrator();
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
@@ -73,11 +101,18 @@ pub fn tip_intensities(
             size = size.max(norm(&sub(&corners[i], &corners[j])));
         }
     }
-    let to = FIT_REACH * crack.length;
+    let to = FIT_REACH * crack_size(crack);
     let range = FitRange {
         from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
         to,
     };
+    if dim == 3 {
+        let jump = |x: &Point| jump_at(&integrator, tip.crack, x, &now.u);
+        return Ok(TipIntensities {
+            jump: jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump),
+            interaction: None,
+        });
+    }
     let own = surface.iter().filter(|p| p.crack == crack.number);
     let samples = own
         .map(|p| (p, norm(&sub(&p.x, &tip.position))))
@@ -98,9 +133,12 @@ pub fn tip_intensities(
             (p, traction)
         })
         .collect();
-    let gradients = |cell: usize, points: &[SidedPoint]| {
+    let gradients = |cell: usize, points: &[ComparisonPoint]| {
         let mut field = CellField::new(&integrator, cell);
-        let at = |p: &SidedPoint| field.at(&p.xi, &p.x, p.side, &now.u).1;
+        let at = |p: &ComparisonPoint| {
+            let p = &p.point;
+            field.at(&p.xi, &p.x, p.region, &now.u).1
+        };
         points.iter().map(at).collect::<Vec<_>>()
     };
     let fronts = fronts(body);
@@ -141,17 +179,27 @@ pub(super) fn rows(
             continue;
         };
         let size = exact.iter().map(|k| k * k).sum::<f64>().sqrt();
-        let scale = scales.stress * (0.5 * PI * body.cracks[tip.crack].length).sqrt();
-        let body_force = |x: &Point, side: f64| field.body_force(x, side);
+        let scale = scales.stress * (0.5 * PI * crack_size(&body.cracks[tip.crack])).sqrt();
+        let body_force = |x: &Point, side: Option<f64>| {
+            let side = side.unwrap_or_else(|| side_of(body, x));
+            field.body_force(x, side)
+        };
         let found = tip_intensities(body, surface, &tip, now, &body_force)?;
         let jump = found.jump.unwrap_or([f64::NAN; 3]);
         let interaction = found.interaction.unwrap_or([f64::NAN; 2]);
-        for (name, found, exact) in [
+        let flat = [
             ("k1_jump", jump[0], exact[0]),
             ("k2_jump", jump[1], exact[1]),
             ("k1_interaction", interaction[0], exact[0]),
             ("k2_interaction", interaction[1], exact[1]),
-        ] {
+        ];
+        let solid = [
+            ("k1_jump", jump[0], exact[0]),
+            ("k2_jump", jump[1], exact[1]),
+            ("k3_jump", jump[2], exact[2]),
+        ];
+        let found: &[_] = if body.mesh.dim() == 2 { &flat } else { &solid };
+        for &(name, found, exact) in found {
             let difference = (found - exact).abs();
             rows.push(Deviation::new(
                 name,
