@@ -249,6 +249,7 @@ fn prescribed_sides_follow_the_closed_form_on_both_faces() {
         ("oblique", flat([-1.0, 0.3], [4.0, 2.6])),
         ("through nodes", flat([-1.0, -1.0], [4.0, 4.0])),
         ("on cell edges", flat([-1.0, 1.5], [4.0, 1.5])),
+        ("distorted", moved(&flat([-1.0, 0.3], [4.0, 2.6]))),
         ("plane", block([0.0, 0.0, 1.7], [0.0, 0.0, 1.0])),
         ("oblique plane", block([1.4, 1.6, 1.5], [1.0, 0.3, 2.0])),
         ("plane on facets", block([0.0, 0.0, 2.0], [0.0, 0.0, -1.0])),
