@@ -90,7 +90,8 @@ struct ExactStep {
     force: Vec<f64>,
 }
 
-/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1.
+/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
+/// of the path; a closed form is evaluated for no others.
 pub struct Loading<'a> {
     body: &'a Body,
     case: &'a Case,
