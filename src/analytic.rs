@@ -58,9 +58,7 @@ pub trait Solution: Send + Sync {
 }
 
 /// Exact state of a body at one time. `side` is that of the crack, +1 or −1; a formula that holds in the whole body
-/// needs it only on the crack itself, where the two faces have different values. Where the crack leaves through a side
-/// that the closed form holds, the displacement of a side is asked for on both sides of the crack, up to a cell beyond:
-/// there it must be the formula of that side, continued.
+/// needs it only on the crack itself, where the two faces have different values.
 pub trait Field: Send + Sync {
     /// Displacement [m].
     fn displacement(&self, x: &Point, side: f64) -> Point;
