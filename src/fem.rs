@@ -5,6 +5,7 @@ pub mod block_matrix;
 pub mod box_mesh;
 pub mod cell;
 pub mod elasticity;
+pub mod grid_motion;
 pub mod mesh;
 pub mod ordering;
 pub mod quadrature;

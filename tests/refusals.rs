@@ -237,6 +237,25 @@ fn a_mesh_folded_by_following_a_steep_line_is_refused() {
     assert!(try_body(&text.replace("45, half", "42, half")).is_ok());
 }
 
+/// Goal: a motion of the grid that folds a cell is refused at the table that asks for it, not at another one.
+#[test]
+fn a_mesh_folded_by_turning_or_moving_it_is_refused() {
+    let with = |motion: &str| {
+        let mark = "mesh = { ";
+        let text = good();
+        assert_eq!(text.matches(mark).count(), 1);
+        text.replace(mark, &format!("{mark}{motion}, "))
+    };
+    let twist = "twist = { angle_deg = 179 }";
+    assert_refused(&with(twist), "{ angle_deg", "fold the cell");
+    let distort = "distort = { amplitude = 0.49, seed = 4 }";
+    assert_refused(&with(distort), "{ amplitude", "fold the cell");
+    let both = "distort = { amplitude = 0.49, seed = 4 }, twist = { angle_deg = 10 }";
+    assert_refused(&with(both), "{ amplitude", "fold the cell");
+    let mild = "distort = { amplitude = 0.2, seed = 4 }, twist = { angle_deg = 30 }";
+    assert!(try_body(&with(mild)).is_ok());
+}
+
 #[test]
 fn a_method_option_out_of_range_is_refused_at_its_value() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,10 +1,11 @@
-//! Structured meshes of boxes: uniform or graded grid lines, optionally bent to follow a straight line.
+//! Structured meshes of boxes: uniform or graded grid lines, optionally moved inside the box.
 
 use std::collections::BTreeMap;
 
 use super::cell::CellKind;
 use super::mesh::{Facet, Mesh};
-use crate::harness::case::{Follow, MeshSpec};
+use super::{Point, grid_motion};
+use crate::harness::case::{MeshSpec, Span};
 
 /// Names of the sides per axis: minimum, maximum.
 pub fn side_names(dim: usize) -> &'static [[&'static str; 2]] {
@@ -16,7 +17,7 @@ pub fn side_names(dim: usize) -> &'static [[&'static str; 2]] {
 
 /// Builds the mesh of a box.
 ///
-/// Fails with the offending cell if the bent grid lines fold it over.
+/// Fails with the offending cell if moved grid points fold it over.
 pub fn box_mesh(spec: &MeshSpec) -> Result<Mesh, FoldedCell> {
     let dim = spec.lines.len();
     let kind = if dim == 2 {
@@ -34,9 +35,6 @@ pub fn box_mesh(spec: &MeshSpec) -> Result<Mesh, FoldedCell> {
                 let mut x = [0.0; 3];
                 for (axis, index) in [i, j, k].into_iter().enumerate().take(dim) {
                     x[axis] = spec.lines[axis][index];
-                }
-                if let Some(follow) = &spec.follow {
-                    x[dim - 1] += shift(follow, spec, &x);
                 }
                 nodes.push(x);
                 grid.push([i as u32, j as u32, k as u32]);
@@ -82,74 +80,78 @@ pub fn box_mesh(spec: &MeshSpec) -> Result<Mesh, FoldedCell> {
             }
         }
     }
-    let mesh = Mesh::new(kind, nodes, grid, cells, sides);
+    let mut mesh = Mesh::new(kind, nodes, grid, cells, sides);
+    if let Some(follow) = &spec.follow {
+        let shift = |_: usize, _: &[u32; 3], x: &[f64; 3]| {
+            let mut x = *x;
+            x[dim - 1] += grid_motion::follow_shift(follow, spec, &x);
+            x
+        };
+        move_nodes(&mut mesh, &follow.span, shift)?;
+    }
+    if let Some(twist) = &spec.twist {
+        let turn = |_, grid: &_, x: &_| grid_motion::twisted(twist, spec, grid, x);
+        move_nodes(&mut mesh, &twist.span, turn)?;
+    }
+    if let Some(distort) = &spec.distort {
+        let shake = |n, grid: &_, x: &_| grid_motion::distorted(distort, spec, n, grid, x);
+        move_nodes(&mut mesh, &distort.span, shake)?;
+    }
+    Ok(mesh)
+}
+
+/// Moves every node; `span` says in the case file who asked for it.
+fn move_nodes(
+    mesh: &mut Mesh,
+    span: &Span,
+    place: impl Fn(usize, &[u32; 3], &Point) -> Point,
+) -> Result<(), FoldedCell> {
+    for node in 0..mesh.nodes.len() {
+        mesh.nodes[node] = place(node, &mesh.grid[node], &mesh.nodes[node]);
+    }
+    let kind = mesh.kind;
     for cell in 0..mesh.cell_count() {
         let corners = mesh.corners(cell);
         let corners = &corners[..kind.nodes()];
         if (0..kind.nodes()).any(|i| kind.gradients(corners, &kind.corner(i)).1 <= 0.0) {
             return Err(FoldedCell {
                 centre: mesh.centre(cell),
+                span: span.clone(),
             });
         }
     }
-    Ok(mesh)
+    Ok(())
 }
 
-/// Bending the grid lines folded a cell over.
+/// Moving grid points folded a cell over.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("the bent grid lines fold the cell at {centre:?} over")]
+#[error("the moved grid points fold the cell at {centre:?} over")]
 pub struct FoldedCell {
     /// Mean of the cell's node positions [m].
-    pub centre: [f64; 3],
-}
-
-/// Shift of the last coordinate: s(x) r, see [`Follow`].
-fn shift(follow: &Follow, spec: &MeshSpec, x: &[f64; 3]) -> f64 {
-    let last = spec.lines.len() - 1;
-    let slope = follow.angle.tan();
-    let lines = &spec.lines[0];
-    let (left, right) = (lines[0], lines[lines.len() - 1]);
-    let from = (follow.point[0] - follow.half_length).max(left);
-    let to = (follow.point[0] + follow.half_length).min(right);
-    let s = if x[0] < from {
-        slope * (from - follow.point[0]) * (x[0] - left) / (from - left)
-    } else if x[0] > to {
-        slope * (to - follow.point[0]) * (right - x[0]) / (right - to)
-    } else {
-        slope * (x[0] - follow.point[0])
-    };
-    // The row [low, high] that holds the point moves as a whole: the crack then keeps its place within the row.
-    let levels = &spec.lines[last];
-    let height = levels[levels.len() - 1] - levels[0];
-    let on_line = |level: f64| (level - follow.point[last]).abs() <= 1e-9 * height;
-    let above = levels.partition_point(|&level| level < follow.point[last] && !on_line(level));
-    let high = levels[above.min(levels.len() - 1)];
-    let low = if on_line(high) {
-        high
-    } else {
-        levels[above.saturating_sub(1)]
-    };
-    let (bottom, top) = (levels[0], levels[levels.len() - 1]);
-    let r = if x[last] < low {
-        (x[last] - bottom) / (low - bottom)
-    } else if x[last] > high {
-        (top - x[last]) / (top - high)
-    } else {
-        1.0
-    };
-    s * r
+    pub centre: Point,
+    /// Where the motion stands in the case file.
+    pub span: Span,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::{norm, sub};
+    use crate::harness::case::{Distort, Follow, Twist};
 
     fn spec(lines: Vec<Vec<f64>>, follow: Option<Follow>) -> MeshSpec {
         MeshSpec {
             span: 0..0,
             lines,
             follow,
+            twist: None,
+            distort: None,
         }
+    }
+
+    fn unit_square(cells: usize) -> MeshSpec {
+        let line: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
+        spec(vec![line.clone(), line], None)
     }
 
     #[test]
@@ -214,5 +216,85 @@ mod tests {
         };
         let lines = vec![vec![-1.0, 0.0, 1.0]; 2];
         assert!(box_mesh(&spec(lines, Some(follow))).is_err());
+    }
+
+    fn twist(degrees: f64) -> Option<Twist> {
+        Some(Twist {
+            span: 3..4,
+            angle: f64::to_radians(degrees),
+        })
+    }
+
+    /// Goal: every point keeps its distance from the centre and turns by α w w; lines at the centre turn by α, the border
+    /// and its neighbourhood stay; the nodes a refined mesh shares with the coarse one are at the same places.
+    #[test]
+    fn a_twist_turns_the_lines_at_the_centre_and_keeps_the_border() {
+        let mut coarse = unit_square(8);
+        coarse.twist = twist(30.0);
+        let mesh = box_mesh(&coarse).unwrap();
+        let plain = box_mesh(&unit_square(8)).unwrap();
+        let centre = [0.5, 0.5, 0.0];
+        for ((x, start), grid) in mesh.nodes.iter().zip(&plain.nodes).zip(&mesh.grid) {
+            let (d, e) = (sub(x, &centre), sub(start, &centre));
+            assert!((norm(&d) - norm(&e)).abs() < 1e-15);
+            if grid[..2].iter().any(|&i| i == 0 || i == 8) {
+                assert_eq!(x, start);
+            } else if norm(&e) > 0.0 {
+                let w = |s: f64| (1.0 - 4.0 * s * s).powi(2);
+                let turned = (d[1] * e[0] - d[0] * e[1]).atan2(d[0] * e[0] + d[1] * e[1]);
+                let wanted = 30f64.to_radians() * w(e[0]) * w(e[1]);
+                assert!((turned - wanted).abs() < 1e-14, "{start:?}");
+            }
+        }
+        let fine = box_mesh(&coarse.refined(3)).unwrap();
+        for (x, grid) in mesh.nodes.iter().zip(&mesh.grid) {
+            let there = fine.nodes[(3 * grid[0] + 25 * 3 * grid[1]) as usize];
+            assert!(norm(&sub(x, &there)) < 1e-15);
+        }
+        // Turned so far that lines cross.
+        for (degrees, folds) in [(89.0, false), (179.0, true)] {
+            coarse.twist = twist(degrees);
+            let folded = box_mesh(&coarse.refined(4)).err().map(|fold| fold.span);
+            assert_eq!(folded, folds.then_some(3..4), "{degrees}");
+        }
+    }
+
+    /// Goal: interior nodes move by up to the stated part of the narrower interval beside them, in both senses, along all
+    /// axes; the border stays; the same seed gives the same mesh, another one another.
+    #[test]
+    fn a_distorted_mesh_moves_interior_nodes_only_and_is_reproducible() {
+        let graded = vec![0.0, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9, 2.0];
+        for dim in [2, 3] {
+            let plain = spec(vec![graded.clone(); dim], None);
+            let moved = |seed| {
+                let mut spec = plain.clone();
+                let (span, amplitude) = (5..7, 0.25);
+                spec.distort = Some(Distort {
+                    span,
+                    amplitude,
+                    seed,
+                });
+                box_mesh(&spec).unwrap()
+            };
+            let (mesh, start) = (moved(1), box_mesh(&plain).unwrap());
+            let mut extreme = [0.0f64; 2];
+            for ((x, s), grid) in mesh.nodes.iter().zip(&start.nodes).zip(&mesh.grid) {
+                let border = grid[..dim].iter().any(|&i| i == 0 || i == 8);
+                for a in 0..dim {
+                    if border {
+                        assert_eq!(x[a], s[a]);
+                        continue;
+                    }
+                    let i = grid[a] as usize;
+                    let size = (graded[i + 1] - graded[i]).min(graded[i] - graded[i - 1]);
+                    let part = (x[a] - s[a]) / size;
+                    assert!(part.abs() <= 0.25 + 1e-12, "{part}");
+                    extreme = [extreme[0].min(part), extreme[1].max(part)];
+                }
+            }
+            assert!(extreme[0] < -0.2 && extreme[1] > 0.2, "{extreme:?}");
+            assert_eq!(mesh.nodes, moved(1).nodes);
+            assert_ne!(mesh.nodes, moved(2).nodes);
+        }
     }
 }

@@ -123,13 +123,8 @@ impl Body {
             .collect();
         let label = cells.join("x");
         let mut mesh = box_mesh(&spec).map_err(|fold| {
-            let follow = spec.follow.as_ref().map_or(&case.mesh.span, |f| &f.span);
-            case.error(
-                follow,
-                &label,
-                "an angle and length that keep all cells convex",
-                fold,
-            )
+            let allowed = "a motion of the grid points that keeps all cells convex";
+            case.error(&fold.span, &label, allowed, &fold)
         })?;
         let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
         let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;

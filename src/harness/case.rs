@@ -135,6 +135,31 @@ pub struct MeshSpec {
     pub lines: Vec<Vec<f64>>,
     /// Bends the second family of grid lines so that it follows a straight line.
     pub follow: Option<Follow>,
+    /// Turns the grid lines about the centre; after following, 2D only.
+    pub twist: Option<Twist>,
+    /// Moves the inner nodes at random; after everything else, 2D only.
+    pub distort: Option<Distort>,
+}
+
+/// Grid lines turned about the centre of a 2D box by angle × w(x) w(y), w(s) = (1 − s²)² with s = ±1 on the border: the
+/// border and the directions of the lines there stay.
+#[derive(Debug, Clone)]
+pub struct Twist {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// Turn at the centre, counter-clockwise [rad], less than 180 degrees either way.
+    pub angle: f64,
+}
+
+/// Inner nodes moved along every axis by up to amplitude × the narrower interval between grid lines beside them.
+#[derive(Debug, Clone)]
+pub struct Distort {
+    /// Where the table stands in the file.
+    pub span: Span,
+    /// Largest move in intervals, 0 <= amplitude < 0.5.
+    pub amplitude: f64,
+    /// Seed of the moves; every node has a stream of its own.
+    pub seed: u64,
 }
 
 /// Grid lines that follow a straight line inside the body and stay straight on its border.

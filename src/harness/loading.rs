@@ -3,8 +3,12 @@
 //! ```text
 //!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
 //!   f = f_ext − K u_prescribed   at the free unknowns,      offset = B u_prescribed
-//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ s_j (u(x_j, s_j) − u(x_j, −s_j)),  s_j = H(x_j)
+//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ s_j (u(x_j, s_j) − u⁻(x_j)),  s_j = H(x_j)
+//!   u⁻(x) = 2 u(x', −s) − u(2 x' − x, −s)   u of the other side, continued to x: x' foot of x on the crack
 //! ```
+//!
+//! Closed forms tell the sides apart by the place of a point, but on the crack itself. So the other side's field is
+//! continued linearly, with the order of the interpolation it enters.
 //!
 //! The closed form depends on friction, so there is one [`Loading`] per friction coefficient; the body, its stiffness and
 //! all that is derived from it do not, and serve all of them.
@@ -13,7 +17,7 @@ use rayon::prelude::*;
 use stickslip_methods::Load;
 
 use crate::analytic::{Field, Setting};
-use crate::fem::{Point, dot};
+use crate::fem::{Point, add_scaled, dot, sub};
 use crate::harness::body::{Body, BodyError};
 use crate::harness::case::{Amount, Case, CaseError, ExactSpec, History, LoadKind};
 use crate::harness::nodal_forces::{add_exact_forces, fixed_forces, no_force};
@@ -90,7 +94,8 @@ struct ExactStep {
     force: Vec<f64>,
 }
 
-/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1.
+/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
+/// of the path; a closed form is evaluated for no others.
 pub struct Loading<'a> {
     body: &'a Body,
     case: &'a Case,
@@ -257,7 +262,7 @@ impl<'a> Loading<'a> {
     }
 }
 
-/// Values of the unknowns that the closed form prescribes; evaluated once per node and side.
+/// Values of the unknowns that the closed form prescribes; evaluated once per node.
 fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usize, f64)> {
     let dim = body.mesh.dim();
     let mut unknowns: Vec<(usize, usize)> = (body.prescribed.iter())
@@ -273,8 +278,13 @@ fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usi
             body.enrichment.functions[i / dim].kind != FunctionKind::Standard
         };
         let half_jump = if list.iter().any(jumps) {
-            let across = field.displacement(x, -side);
-            [0, 1, 2].map(|a| 0.5 * side * (own[a] - across[a]))
+            let foot = sides.foot(x);
+            let mirrored = add_scaled(&foot, 1.0, &sub(&foot, x));
+            let (near, far) = (
+                field.displacement(&foot, -side),
+                field.displacement(&mirrored, -side),
+            );
+            [0, 1, 2].map(|a| 0.5 * side * (own[a] - (2.0 * near[a] - far[a])))
         } else {
             [0.0; 3]
         };

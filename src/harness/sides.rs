@@ -2,7 +2,7 @@
 //!
 //! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
 
-use crate::fem::Point;
+use crate::fem::{Point, add_scaled, dot};
 use crate::harness::case::Case;
 use crate::xfem::basis::Region;
 use crate::xfem::cell_matrix::CellIntegrator;
@@ -43,6 +43,34 @@ impl Sides {
     /// The crack.
     pub fn crack(&self) -> &Crack {
         &self.crack
+    }
+
+    /// The point of the crack, or of its continuation, nearest to a given one.
+    pub fn foot(&self, x: &Point) -> Point {
+        /// Newton steps along the gradient of the level set; a signed distance needs one, rounding another.
+        const STEPS: usize = 4;
+        let mut foot = *x;
+        for _ in 0..STEPS {
+            let distance = self.crack.distance(&foot);
+            if distance == 0.0 {
+                break;
+            }
+            // Central differences over a part of the distance: far above rounding, far below any radius of curvature.
+            let step = 1e-3 * distance.abs();
+            let slope = [0, 1, 2].map(|a| {
+                let (mut ahead, mut behind) = (foot, foot);
+                ahead[a] += step;
+                behind[a] -= step;
+                (self.crack.distance(&ahead) - self.crack.distance(&behind))
+                    / (ahead[a] - behind[a])
+            });
+            let square = dot(&slope, &slope);
+            if !(square > 0.5 && square < 2.0) {
+                break; // the distance has sunk into rounding
+            }
+            foot = add_scaled(&foot, -distance / square, &slope);
+        }
+        foot
     }
 
     /// Side of a node; of one on a crack through cells side 1, as its shifted Heaviside function has it.

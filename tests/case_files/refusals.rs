@@ -385,3 +385,79 @@ fn errors_found_after_parsing_point_into_the_file() {
     let wanted = "plate.toml:21:12: crack[1].points_m: crack wholly outside: got x from 40 to 48, allowed: points in the box\n";
     assert!(error.to_string().starts_with(wanted), "{error}");
 }
+
+#[test]
+fn motions_of_the_grid_are_read_and_refused_at_their_place() {
+    let cells = "cells = [22, 23]";
+    let with = |tables: &str| PLANE.replace(cells, &format!("{cells}\n\n{tables}"));
+    let mesh = accepted(&with(
+        "[mesh.twist]\nangle_deg = -30\n\n[mesh.distort]\namplitude = 0.25\nseed = 7",
+    ))
+    .mesh;
+    let (twist, distort) = (mesh.twist.unwrap(), mesh.distort.unwrap());
+    assert_eq!(twist.angle, -30f64.to_radians());
+    assert_eq!((distort.amplitude, distort.seed), (0.25, 7));
+    let mesh = accepted(&with("[mesh.distort]\namplitude = 0.25")).mesh;
+    assert_eq!(mesh.distort.unwrap().seed, 1);
+    assert!(mesh.twist.is_none());
+    for (table, mark, allowed) in [
+        (
+            "[mesh.twist]\nangle_deg = 180",
+            "180",
+            "-180 < angle_deg < 180",
+        ),
+        (
+            "[mesh.twist]\nangle_deg = nan",
+            "nan",
+            "-180 < angle_deg < 180",
+        ),
+        ("[mesh.twist]\nangle = 20", "angle", "angle_deg"),
+        (
+            "[mesh.distort]\namplitude = 0.5",
+            "0.5",
+            "0 <= amplitude < 0.5",
+        ),
+        (
+            "[mesh.distort]\namplitude = -0.1",
+            "-0.1",
+            "0 <= amplitude < 0.5",
+        ),
+        (
+            "[mesh.distort]\namplitude = 0.1\nseed = -1",
+            "-1",
+            "integers from 0",
+        ),
+        (
+            "[mesh.distort]\namplitude = 0.1\nseed = 4294967296",
+            "4294967296",
+            "integers from 0",
+        ),
+        (
+            "[mesh.distort]\namplitude = 0.1\nseeds = 4",
+            "seeds",
+            "amplitude, seed",
+        ),
+    ] {
+        let to = format!("{cells}\n\n{table}");
+        assert_refused_at(PLANE, cells, &to, mark, mark, allowed);
+    }
+    for (table, key) in [
+        ("[mesh.twist]", "angle_deg"),
+        ("[mesh.distort]", "amplitude"),
+    ] {
+        let error = refused(&with(table));
+        assert_eq!(error.message(), format!("missing `{key}`"), "{error}");
+    }
+    for motion in ["twist = { angle_deg = 3 }", "distort = { amplitude = 0.1 }"] {
+        let error = refused(&SOLID.replace("[mesh]\n", &format!("[mesh]\n{motion}\n")));
+        assert_eq!(error.allowed(), "a 2D model", "{error}");
+    }
+    let document = include_str!("../../docs/case-format.md");
+    for key in refused(&PLANE.replace("[mesh.box]", "[mesh.bad]"))
+        .allowed()
+        .split(", ")
+    {
+        let named = document.contains(&format!("| `{key}` |"));
+        assert!(named || document.contains(&format!("| `{key}.")), "{key}");
+    }
+}

@@ -170,7 +170,7 @@ proptest! {
     fn random_toml_pieces_never_panic(
         pieces in proptest::collection::vec(
             prop::sample::select(vec![
-                "[", "]", "[[", "]]", "{", "}", "=", ".", ",", "\n", "\"", "'", "\"\"\"", "#", " ", "mesh", "crack",
+                "[", "]", "[[", "]]", "{", "}", "=", ".", ",", "\n", "\"", "'", "\"\"\"", "#", " ", "mesh", "crack", "arc", "ellipse", "exact", "twist", "tip",
                 "on", "box", "1", "-0", "1e999", "nan", "0x", "true", "1979-05-27", "é", "\\u", "\r", "\u{0}",
                 "title = \"t\"\n", "model = \"solid\"\n", "[mesh.box]\n", "[[expect]]\n", "x.y = 1\n",
             ]),

@@ -237,6 +237,13 @@ pub fn plane(min: [f64; 2], max: [f64; 2], cells: [usize; 2], rest: &str) -> Str
     )
 }
 
+/// The same 2D case on a mesh whose inner grid points are turned and moved at random.
+pub fn moved(text: &str) -> String {
+    let motion = "mesh = { twist = { angle_deg = 35 }, distort = { amplitude = 0.2, seed = 3 }, ";
+    assert_eq!(text.matches("mesh = { ").count(), 1);
+    text.replace("mesh = { ", motion)
+}
+
 /// A straight crack in 2D, with edge pairs.
 pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
     format!(

@@ -3,7 +3,7 @@
 use super::error::CaseError;
 use super::reader::{Table, Value};
 use super::schema::friction;
-use super::{Follow, MeshSpec, Sweep};
+use super::{Distort, Follow, MeshSpec, Sweep, Twist};
 
 /// Largest number of cells, also after refinement: beyond it the matrix does not fit the machines meant here.
 const MAX_CELLS: usize = 20_000_000;
@@ -16,6 +16,12 @@ const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
 
 /// Steepest line grid lines may follow [degrees]; cells are sheared by its tangent.
 const MAX_ANGLE: f64 = 80.0;
+
+/// Largest turn of grid lines [degrees].
+const MAX_TURN: f64 = 180.0;
+
+/// Largest seed: every integer up to it is written and read the same everywhere.
+const MAX_SEED: usize = u32::MAX as usize;
 
 impl MeshSpec {
     /// The same box with every interval of every axis divided into `factor` >= 1 equal parts.
@@ -44,6 +50,8 @@ impl MeshSpec {
             span: self.span.clone(),
             lines: self.lines.iter().map(divided).collect(),
             follow: self.follow.clone(),
+            twist: self.twist.clone(),
+            distort: self.distort.clone(),
         }
     }
 }
@@ -52,7 +60,7 @@ impl MeshSpec {
 pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> {
     let table = root
         .required("mesh")?
-        .table(&["box", "lines_m", "follow"])?;
+        .table(&["box", "lines_m", "follow", "twist", "distort"])?;
     let lines = match table.exactly_one(&["box", "lines_m"])? {
         ("box", value) => box_lines(value, dim)?,
         (_, value) => given_lines(value, dim)?,
@@ -65,6 +73,45 @@ pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> 
         span: table.span(),
         lines,
         follow,
+        twist: table.get("twist").map(|v| twist(v, dim)).transpose()?,
+        distort: table.get("distort").map(|v| distort(v, dim)).transpose()?,
+    })
+}
+
+/// `[mesh.twist]`.
+fn twist(value: Value<'_>, dim: usize) -> Result<Twist, CaseError> {
+    let table = value.table(&["angle_deg"])?;
+    if dim != 2 {
+        return Err(value.refuse("a 2D model", "grid lines are turned in the plane only"));
+    }
+    let degrees = table
+        .required("angle_deg")?
+        .number_if("-180 < angle_deg < 180", |a| a.abs() < MAX_TURN)?;
+    Ok(Twist {
+        span: table.span(),
+        angle: degrees.to_radians(),
+    })
+}
+
+/// `[mesh.distort]`.
+fn distort(value: Value<'_>, dim: usize) -> Result<Distort, CaseError> {
+    let table = value.table(&["amplitude", "seed"])?;
+    if dim != 2 {
+        return Err(value.refuse(
+            "a 2D model",
+            "hexahedra can be cut only while their faces are planar",
+        ));
+    }
+    let amplitude = table
+        .required("amplitude")?
+        .number_if("0 <= amplitude < 0.5", |a| (0.0..0.5).contains(&a))?;
+    let seed = table
+        .get("seed")
+        .map_or(Ok(1), |v| v.integer(0..=MAX_SEED))?;
+    Ok(Distort {
+        span: table.span(),
+        amplitude,
+        seed: seed as u64,
     })
 }
 
