@@ -5,6 +5,10 @@
 //! its own with its derivation, its source and a test of the field equations. Signs as everywhere: the crack normal n
 //! points from side 2 to side 1, jump = u₁ − u₂, contact traction is the force per area on side 1, pressure positive.
 
+pub mod elliptic_crack;
+pub mod elliptic_disc;
+pub mod elliptic_slip;
+
 use crate::fem::Point;
 use crate::harness::case::{CrackShape, Material, Model};
 
@@ -88,7 +92,7 @@ pub trait Field: Send + Sync {
 }
 
 /// All solutions, in the order of the documentation.
-pub static SOLUTIONS: &[SolutionSpec] = &[];
+pub static SOLUTIONS: &[SolutionSpec] = &[elliptic_crack::SPEC];
 
 /// The solution of a name.
 pub fn solution(name: &str) -> Option<&'static SolutionSpec> {
