@@ -5,9 +5,24 @@
 //! its own with its derivation, its source and a test of the field equations. Signs as everywhere: the crack normal n
 //! points from side 2 to side 1, jump = u₁ − u₂, contact traction is the force per area on side 1, pressure positive.
 
-pub mod elliptic_crack;
-pub mod elliptic_disc;
-pub mod elliptic_slip;
+#[cfg(test)]
+mod check;
+mod circular_interface;
+mod contact_zone;
+mod crack_field;
+mod elliptic_crack;
+mod elliptic_disc;
+mod elliptic_slip;
+mod face_load;
+mod line_crack;
+mod manufactured_slip;
+mod one_dof;
+mod partial_opening;
+mod partial_slip;
+mod plane_elasticity;
+mod sliding_block;
+mod uniform_slip;
+mod uniform_stress;
 
 use crate::fem::Point;
 use crate::harness::case::{CrackShape, Material, Model};
@@ -42,6 +57,7 @@ pub struct ParameterSpec {
 pub type Build = fn(&Setting<'_>, &[f64]) -> Result<Box<dyn Solution>, String>;
 
 /// A registered solution.
+#[derive(Debug)]
 pub struct SolutionSpec {
     /// Name in case files.
     pub name: &'static str,
@@ -92,9 +108,39 @@ pub trait Field: Send + Sync {
 }
 
 /// All solutions, in the order of the documentation.
-pub static SOLUTIONS: &[SolutionSpec] = &[elliptic_crack::SPEC];
+pub static SOLUTIONS: &[SolutionSpec] = &[
+    uniform_stress::SPEC,
+    uniform_slip::SPEC,
+    partial_slip::SPEC,
+    partial_opening::SPEC,
+    sliding_block::SPEC,
+    manufactured_slip::SPEC,
+    circular_interface::SPEC,
+    elliptic_crack::SPEC,
+];
 
 /// The solution of a name.
 pub fn solution(name: &str) -> Option<&'static SolutionSpec> {
     SOLUTIONS.iter().find(|s| s.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_solution_is_found_by_its_own_name_and_names_its_parameters_once() {
+        for (k, spec) in SOLUTIONS.iter().enumerate() {
+            assert!(SOLUTIONS[..k].iter().all(|s| s.name != spec.name));
+            assert!(solution(spec.name).is_some_and(|s| s.summary == spec.summary));
+            for (j, parameter) in spec.parameters.iter().enumerate() {
+                assert!(
+                    spec.parameters[..j]
+                        .iter()
+                        .all(|p| p.name != parameter.name)
+                );
+            }
+        }
+        assert!(solution("no-such-solution").is_none());
+    }
 }
