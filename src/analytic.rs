@@ -14,8 +14,10 @@ mod elliptic_crack;
 mod elliptic_disc;
 mod elliptic_slip;
 mod face_load;
+mod jet;
 mod line_crack;
 mod manufactured_slip;
+mod manufactured_slip_3d;
 mod one_dof;
 mod partial_opening;
 mod partial_slip;
@@ -115,6 +117,7 @@ pub static SOLUTIONS: &[SolutionSpec] = &[
     partial_opening::SPEC,
     sliding_block::SPEC,
     manufactured_slip::SPEC,
+    manufactured_slip_3d::SPEC,
     circular_interface::SPEC,
     elliptic_crack::SPEC,
 ];
