@@ -10,9 +10,14 @@ mod check;
 mod circular_interface;
 mod contact_zone;
 mod crack_field;
+mod elliptic_crack;
+mod elliptic_disc;
+mod elliptic_slip;
 mod face_load;
+mod jet;
 mod line_crack;
 mod manufactured_slip;
+mod manufactured_slip_3d;
 mod one_dof;
 mod partial_opening;
 mod partial_slip;
@@ -112,7 +117,9 @@ pub static SOLUTIONS: &[SolutionSpec] = &[
     partial_opening::SPEC,
     sliding_block::SPEC,
     manufactured_slip::SPEC,
+    manufactured_slip_3d::SPEC,
     circular_interface::SPEC,
+    elliptic_crack::SPEC,
 ];
 
 /// The solution of a name.

@@ -22,6 +22,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::jet::hump;
 use super::line_crack::LineCrack;
 use super::plane_elasticity::PlaneElasticity;
 use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
@@ -117,20 +118,6 @@ fn inside(crack: &LineCrack, body: &[Point; 2]) -> Option<[f64; 2]> {
         }
     }
     (from < to).then_some([from, to])
-}
-
-/// max(0, sin θ)³ with θ = kx + `phase`, and its first three derivatives with respect to x.
-fn hump(k: f64, x: f64, phase: f64) -> [f64; 4] {
-    let (s, c) = (k * x + phase).sin_cos();
-    if s <= 0.0 {
-        return [0.0; 4];
-    }
-    [
-        s.powi(3),
-        3.0 * k * s * s * c,
-        3.0 * k * k * (2.0 * s * c * c - s.powi(3)),
-        3.0 * k.powi(3) * (2.0 * c.powi(3) - 7.0 * s * s * c),
-    ]
 }
 
 #[derive(Debug, Clone)]
