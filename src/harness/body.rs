@@ -24,6 +24,7 @@ use crate::xfem::crack::{Crack, arms};
 use crate::xfem::edge_pairs::edge_pairs;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
 use crate::xfem::integrated::integrated_surface;
+use crate::xfem::orthonormal::SolverBasis;
 use crate::xfem::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use crate::xfem::pieces::free_motions;
 use crate::xfem::traction::{integrated_rows, traction_rows};
@@ -48,6 +49,10 @@ pub struct Body {
     pub stiffness: BlockMatrix,
     /// Number of every unknown among the free ones; `None`: prescribed.
     pub numbers: Vec<Option<u32>>,
+    /// Basis in which the solver works.
+    pub basis: SolverBasis,
+    /// Number of every unknown of that basis among the solver's; `None`: prescribed or dropped.
+    pub solver_numbers: Vec<Option<u32>>,
     /// Prescribed unknowns.
     pub prescribed: BTreeMap<usize, Prescribed>,
     /// The algebraic side: K and B over the free unknowns.
@@ -97,6 +102,19 @@ struct Matrices<'a> {
     users: &'a [Vec<u32>],
     distinct: Vec<CellMatrix>,
     of_cell: Vec<u32>,
+}
+
+impl Matrices<'_> {
+    /// Goes over to the basis of the solver.
+    fn transform(&mut self, basis: &SolverBasis, dim: usize) {
+        for cell in 0..self.of_cell.len() {
+            let functions = self.enrichment.cell(cell);
+            if let Some(k) = basis.matrix(dim, functions, self.matrix(cell)) {
+                // Cells with enriched functions have a matrix of their own.
+                self.distinct[self.of_cell[cell] as usize] = k;
+            }
+        }
+    }
 }
 
 impl Cells for Matrices<'_> {
@@ -178,11 +196,10 @@ impl Body {
         } else {
             Vec::new()
         };
-        let motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
+        let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
             .map_err(|e| motion_error(case, &e))?;
         let users = enrichment.users();
         let mut stiffness = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
-        let order = elimination_order(&mesh, &enrichment, &numbers);
         let mut matrices = Matrices {
             enrichment: &enrichment,
             users: &users,
@@ -195,21 +212,50 @@ impl Body {
         let clock = Instant::now();
         (matrices.distinct, matrices.of_cell) = cell_matrices(&integrator)?;
         scatter.assemble(&mut stiffness, &matrices);
+        let basis = SolverBasis::new(
+            &mesh,
+            &enrichment,
+            &users,
+            |cell| matrices.matrix(cell),
+            |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
+        );
+        let mut free = 0;
+        let solver_numbers: Vec<Option<u32>> = (0..numbers.len())
+            .map(|i| {
+                (numbers[i].is_some() && !basis.drops(i / dim)).then(|| {
+                    free += 1;
+                    free - 1
+                })
+            })
+            .collect();
+        let (col_ptr, row_idx, values) = if basis.is_identity() {
+            stiffness.restrict(&solver_numbers)
+        } else {
+            matrices.transform(&basis, dim);
+            let mut transformed = stiffness.clone();
+            scatter.assemble(&mut transformed, &matrices);
+            transformed.restrict(&solver_numbers)
+        };
+        let order = elimination_order(&mesh, &enrichment, &solver_numbers);
+        let rows = |rows: &[Vec<(usize, f64)>]| {
+            let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
+            free_rows(&rows, &solver_numbers, free as usize)
+        };
+        for mode in &mut motions.modes {
+            basis.solver_unknowns(dim, mode);
+            let kept = (0..mode.len()).filter(|&i| solver_numbers[i].is_some());
+            *mode = kept.map(|i| mode[i]).collect();
+        }
         let assembly_s = clock.elapsed().as_secs_f64();
-
-        let (col_ptr, row_idx, values) = stiffness.restrict(&numbers);
         let elastic = Elastic::new(ElasticParts {
             dim,
             stiffness: SymmetricMatrix::new(free as usize, col_ptr, row_idx, values)?,
-            jump: free_rows(&jump, &numbers, free as usize)?,
+            jump: rows(&jump)?,
             weight: points.iter().map(|p| p.weight).collect(),
             order,
             floating: motions.modes,
             frictionless: needs.frictionless,
-            traction: needs
-                .traction
-                .then(|| free_rows(&traction, &numbers, free as usize))
-                .transpose()?,
+            traction: needs.traction.then(|| rows(&traction)).transpose()?,
         })?;
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks);
@@ -220,6 +266,8 @@ impl Body {
             surface,
             stiffness,
             numbers,
+            basis,
+            solver_numbers,
             prescribed: fixed,
             elastic,
             label,

@@ -240,10 +240,12 @@ impl<'a> Loading<'a> {
                 *t += factor * v;
             }
         }
+        let mut force: Vec<f64> = external.iter().zip(&held).map(|(f, k)| f - k).collect();
+        body.basis.force(body.mesh.dim(), &mut force);
         Load {
-            force: (0..body.numbers.len())
-                .filter(|&i| body.numbers[i].is_some())
-                .map(|i| external[i] - held[i])
+            force: (0..force.len())
+                .filter(|&i| body.solver_numbers[i].is_some())
+                .map(|i| force[i])
                 .collect(),
             offset: body.jump(&prescribed),
             traction,
@@ -252,10 +254,17 @@ impl<'a> Loading<'a> {
 
     /// All unknowns at the end of an increment from the free ones [m].
     pub fn all_unknowns(&self, increment: usize, u: &[f64]) -> Vec<f64> {
-        let mut all = self.prescribed_displacement(increment);
-        for (value, number) in all.iter_mut().zip(&self.body.numbers) {
+        let mut all = vec![0.0; self.body.numbers.len()];
+        for (value, number) in all.iter_mut().zip(&self.body.solver_numbers) {
             if let Some(n) = number {
                 *value = u[*n as usize];
+            }
+        }
+        self.body.basis.unknowns(self.body.mesh.dim(), &mut all);
+        let prescribed = self.prescribed_displacement(increment);
+        for ((value, held), number) in all.iter_mut().zip(prescribed).zip(&self.body.numbers) {
+            if number.is_none() {
+                *value = held;
             }
         }
         all

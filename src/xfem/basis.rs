@@ -6,6 +6,10 @@
 //! ```
 //!
 //! Shifting makes ū_i the displacement of node i itself. Only H and g_1 jump: [[H]] = 2, [[g_1]] = 2 √r.
+//!
+//! Within a fixed radius of a tip the branch functions are multiplied by a ramp ρ = Σ N_i over the nodes inside the radius,
+//! and all nodes of their cells carry them: ρ is 1 inside, falls to 0 in the cells at the rim, and no cell is left with
+//! some of its nodes enriched, which would spoil the order (T.-P. Fries, Int. J. Numer. Meth. Engng 75 (2008) 503).
 
 use crate::fem::cell::CellKind;
 use crate::fem::{Point, cross, dot, norm, sub};
@@ -190,6 +194,8 @@ pub struct CellFunction {
     pub kind: FunctionKind,
     /// H(x_j) (Heaviside) or g_l(x_k) (branch) at the node.
     pub shift: f64,
+    /// Local nodes i of the cell over which the ramp ρ = Σ N_i of a branch function runs, one bit each; all: ρ = 1.
+    pub ramp: u8,
 }
 
 /// The functions of one cell, ready to be evaluated.
@@ -226,7 +232,7 @@ impl CellBasis<'_> {
     ) {
         let n = self.kind.shape(xi);
         let (dn, _) = self.kind.gradients(self.corners, xi);
-        let mut cached: Option<(u32, [f64; 4], [Point; 4])> = None;
+        let mut cached: Option<Branches> = None;
         let out = values.iter_mut().zip(gradients);
         for ((f, step), (value, gradient)) in self.functions.iter().zip(self.steps(region)).zip(out)
         {
@@ -237,25 +243,56 @@ impl CellBasis<'_> {
                     (*value, *gradient) = (ni * step, dni.map(|d| d * step));
                 }
                 FunctionKind::Branch { tip, order } => {
-                    let (g, dg) = match cached {
-                        Some((number, g, dg)) if number == tip => (g, dg),
+                    let branches = match cached {
+                        Some(known) if known.tip == tip => known,
                         _ => {
                             let side = (*step != 0.0).then_some(*step);
-                            let (g, dg) = self.tips[tip as usize].branch(x, side);
-                            cached = Some((tip, g, dg));
-                            (g, dg)
+                            let (values, gradients) = self.tips[tip as usize].branch(x, side);
+                            let count = self.kind.nodes();
+                            let (ramp, ramp_gradient) = ramp(f.ramp, &n[..count], &dn[..count]);
+                            Branches {
+                                tip,
+                                values,
+                                gradients,
+                                ramp,
+                                ramp_gradient,
+                            }
                         }
                     };
+                    cached = Some(branches);
                     let l = order as usize;
-                    let h = g[l] - f.shift;
-                    *value = ni * h;
+                    let (rho, h) = (branches.ramp, branches.values[l] - f.shift);
+                    *value = ni * h * rho;
                     for a in 0..3 {
-                        gradient[a] = dni[a] * h + ni * dg[l][a];
+                        let slope = branches.gradients[l][a] * rho + h * branches.ramp_gradient[a];
+                        gradient[a] = dni[a] * h * rho + ni * slope;
                     }
                 }
             }
         }
     }
+}
+
+/// Branch functions of one tip and their ramp at one point.
+#[derive(Clone, Copy)]
+struct Branches {
+    tip: u32,
+    values: [f64; 4],
+    gradients: [Point; 4],
+    ramp: f64,
+    ramp_gradient: Point,
+}
+
+/// ρ = Σ N_i over the nodes of a mask, and its gradient; exactly 1 over all of them.
+fn ramp(mask: u8, n: &[f64], dn: &[Point]) -> (f64, Point) {
+    let inside = |i: usize| mask & (1 << i) != 0;
+    if (0..n.len()).all(inside) {
+        return (1.0, [0.0; 3]);
+    }
+    let nodes = (0..n.len()).filter(|&i| inside(i));
+    nodes.fold((0.0, [0.0; 3]), |(rho, slope), i| {
+        (rho + n[i], [0, 1, 2].map(|a| slope[a] + dn[i][a]))
+    })
 }
 
 #[cfg(test)]

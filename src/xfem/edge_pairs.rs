@@ -108,7 +108,7 @@ fn jump_terms(
         vec![(i, fj / (fi + fj)), (j, fi / (fi + fj))]
     };
     let mut terms = Vec::new();
-    for (node, share) in shares {
+    for &(node, share) in &shares {
         for f in enrichment.enriched_of(node) {
             let coefficient = match enrichment.functions[f].kind {
                 FunctionKind::Heaviside { crack } => {
@@ -120,7 +120,15 @@ fn jump_terms(
                     // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
                     let r = enrichment.tips[tip as usize].distance(x);
                     if r > at_tip {
-                        2.0 * r.sqrt() * share
+                        // ρ on the edge, or at the node
+                        let ends = if i == j { &nodes[..1] } else { &nodes[..] };
+                        let mask = enrichment.ramp(tip as usize, ends);
+                        let inside = ends
+                            .iter()
+                            .enumerate()
+                            .filter(|(k, _)| mask & (1 << k) != 0);
+                        let rho: f64 = inside.map(|(k, _)| shares[k].1).sum();
+                        2.0 * r.sqrt() * share * rho
                     } else {
                         0.0
                     }

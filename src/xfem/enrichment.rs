@@ -83,6 +83,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// Nodes of the ramp of every tip's branch functions; empty: they have none.
+    cores: Vec<BTreeSet<u32>>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
     cell_ptr: Vec<usize>,
@@ -102,6 +104,7 @@ impl Enrichment {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut enriched: BTreeSet<Function> = BTreeSet::new();
         let mut tips = Vec::new();
+        let mut cores = Vec::new();
         let mut tip_cells = Vec::new();
         for (index, crack) in cracks.iter().enumerate() {
             let mut through = BTreeSet::new();
@@ -146,6 +149,11 @@ impl Enrichment {
                         },
                     })
                 };
+                // Nodes of the ramp; empty: no ramp.
+                let mut core: BTreeSet<u32> = BTreeSet::new();
+                if matches!(crack.tip, Tip::Radius(_)) {
+                    core.extend(cells.iter().flat_map(|&c| mesh.cell(c)));
+                }
                 for cell in cells {
                     if cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
                         let list = inside.entry(cell).or_default();
@@ -160,9 +168,15 @@ impl Enrichment {
                 if let Tip::Radius(radius) = crack.tip {
                     let reach = radius.min(undisturbed(crack, &frame));
                     let near = |&n: &usize| frame.distance(&mesh.nodes[n]) <= reach;
-                    let nodes = (0..mesh.nodes.len()).filter(near);
-                    enriched.extend(nodes.flat_map(|n| branch(n as u32)));
+                    core.extend((0..mesh.nodes.len()).filter(near).map(|n| n as u32));
+                    for cell in 0..mesh.cell_count() {
+                        let nodes = mesh.cell(cell);
+                        if nodes.iter().any(|n| core.contains(n)) {
+                            enriched.extend(nodes.iter().flat_map(|&n| branch(n)));
+                        }
+                    }
                 }
+                cores.push(core);
                 tips.push(frame);
             }
             for &cell in &through {
@@ -225,6 +239,7 @@ impl Enrichment {
             shifts,
             tips,
             tip_cells,
+            cores,
             partitions,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
@@ -369,9 +384,38 @@ impl Enrichment {
                     .unwrap_or_default(),
                 kind: function.kind,
                 shift: self.shifts[f as usize],
+                ramp: match function.kind {
+                    FunctionKind::Branch { tip, .. } => self.ramp(tip as usize, nodes),
+                    _ => u8::MAX,
+                },
             }
         };
         self.cell(cell).iter().map(of).collect()
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.standard
+    }
+
+    /// True if the branch functions of a tip reach beyond its cells, with a ramp.
+    pub fn is_ramped(&self, tip: usize) -> bool {
+        !self.cores[tip].is_empty()
+    }
+
+    /// True for a node of the ramp of a tip.
+    pub fn in_core(&self, tip: usize, node: u32) -> bool {
+        self.cores[tip].contains(&node)
+    }
+
+    /// Local nodes of a cell in the ramp of a tip, one bit each.
+    pub fn ramp(&self, tip: usize, nodes: &[u32]) -> u8 {
+        let core = &self.cores[tip];
+        if core.is_empty() {
+            return u8::MAX;
+        }
+        let inside = nodes.iter().enumerate().filter(|(_, n)| core.contains(n));
+        inside.fold(0, |mask, (i, _)| mask | 1 << i)
     }
 
     /// True if the cell carries standard functions only.

@@ -15,7 +15,7 @@ use super::enrichment::Enrichment;
 /// Rigid motions left free.
 #[derive(Debug, Clone)]
 pub struct FreeMotions {
-    /// Basis of ker K over the free unknowns; empty if the supports hold every piece.
+    /// Basis of the motions over all unknowns; empty if the supports hold every piece.
     pub modes: Vec<Vec<f64>>,
 }
 
@@ -240,16 +240,7 @@ pub fn free_motions(
             return Err(MotionError::Rigid { count: silent });
         }
     }
-    let modes = free
-        .into_iter()
-        .map(|mode| {
-            (0..numbers.len())
-                .filter(|&i| numbers[i].is_some())
-                .map(|i| mode[i])
-                .collect()
-        })
-        .collect();
-    Ok(FreeMotions { modes })
+    Ok(FreeMotions { modes: free })
 }
 
 /// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
