@@ -254,8 +254,8 @@ pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Vec<Crack> {
 fn curve_arms(crack: &Crack, curve: &Curve, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
     let length = curve.length();
     let size = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
-    // Closer than this to a crack is on it.
-    let slack = 1e-6 * size;
+    // Closer than this to a crack is on it: nobody gives a point on a slanted crack to all digits.
+    let slack = 1e-4 * size;
     let mut cuts: Vec<(f64, usize)> = Vec::new();
     for (index, other) in earlier.iter().enumerate() {
         for s in meetings(curve, other, 0.25 * size, slack) {
@@ -312,18 +312,8 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
             along >= other.range[0] - slack && along <= other.range[1] + slack
         }
     };
-    let mut found = Vec::new();
-    // An end on the other crack, whichever side rounding puts it on.
-    found.extend([0.0, length].into_iter().filter(|&s| on(s)));
-    for k in 0..count {
-        let (mut low, mut high) = (
-            length * k as f64 / count as f64,
-            length * (k + 1) as f64 / count as f64,
-        );
+    let root = |mut low: f64, mut high: f64| {
         let start = distance(low);
-        if start * distance(high) >= 0.0 {
-            continue;
-        }
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if distance(middle) * start > 0.0 {
@@ -332,9 +322,19 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
                 high = middle;
             }
         }
-        let s = 0.5 * (low + high);
-        if on(s) {
-            found.push(s);
+        0.5 * (low + high)
+    };
+    // An end on the other crack, whichever side rounding puts it on: the curve is followed to where they meet.
+    let ends = [0.0, length].into_iter().filter(|&s| on(s)).map(|s| {
+        let (before, after) = (s - 100.0 * slack, s + 100.0 * slack);
+        let crosses = distance(before) * distance(after) < 0.0;
+        if crosses { root(before, after) } else { s }
+    });
+    let mut found: Vec<f64> = ends.collect();
+    for k in 0..count {
+        let [low, high] = [k, k + 1].map(|k| length * k as f64 / count as f64);
+        if distance(low) * distance(high) < 0.0 {
+            found.extend(Some(root(low, high)).filter(|&s| on(s)));
         }
     }
     found

@@ -434,7 +434,7 @@ fn cut_at(face: Face, at: &[FaceCorner]) -> Vec<Face> {
             let from = sub(&x, &p.0);
             let t = dot(&from, &d) / (length * length);
             let off = norm(&cross(&from, &d)) / length;
-            (nodes.is_none() && off <= 1e-7 * length && t > 1e-9 && t < 1.0 - 1e-9)
+            (nodes.is_none() && off <= 1e-3 * length && t > 1e-9 && t < 1.0 - 1e-9)
                 .then_some((t, (x, None)))
         })
         .collect();
