@@ -194,8 +194,11 @@ impl Crack {
     pub fn jumps_at(&self, x: &Point, slack: f64) -> bool {
         match &self.geometry {
             Geometry::Curve(curve) => {
+                // Where another crack takes over, both sides still part.
+                let margin = [0, 1].map(|k| if self.free[k] { slack } else { -slack.abs() });
                 let s = curve.nearest(x).s;
-                curve.is_closed() || (s > self.range[0] + slack && s < self.range[1] - slack)
+                curve.is_closed()
+                    || (s > self.range[0] + margin[0] && s < self.range[1] - margin[1])
             }
             Geometry::Plane { .. } => true,
             Geometry::Ellipse(e) => e.nearest(x).psi < -slack,

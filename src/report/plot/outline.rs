@@ -95,7 +95,9 @@ pub fn outline(picture: &Picture, faces: &[Face], weld: &Weld<'_>) -> Vec<[usize
         match equal {
             [(_, edge, _)] => single.push(*edge),
             [a, b] => {
-                let crack = a.2 * b.2 < 0.0 || !weld.moves_with(&a.1, &b.1);
+                // The faces of a crack have points of their own, whether they move apart or not.
+                let same = a.1 == b.1 || a.1 == [b.1[1], b.1[0]];
+                let crack = !same && (a.2 * b.2 < 0.0 || !weld.moves_with(&a.1, &b.1));
                 kept.extend(crack.then_some([a.1, b.1]).into_iter().flatten());
             }
             more => kept.extend(more.iter().map(|(_, edge, _)| *edge)),
