@@ -18,7 +18,6 @@ pub mod quantities;
 pub mod random;
 pub mod record;
 pub mod refusals;
-pub mod richardson;
 pub mod run;
 pub mod shipped;
 pub mod sides;

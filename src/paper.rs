@@ -1,8 +1,9 @@
 //! The main job: the founding paper's plate and beam by every method, beside the printed tables.
 //!
-//! Also the penalty error against its parameter, both plate meshes under refinement, and every other shipped case
+//! Also the penalty error against its parameter, both plate meshes under refinement, the converged reactions of the plate, and every other shipped case
 //! against its expected numbers.
 
+mod converged;
 mod variants;
 
 use std::path::Path;
@@ -14,6 +15,7 @@ use crate::harness::record::{Results, RunKey};
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, run_case};
 use crate::harness::shipped;
 use crate::report::comparison::{VariantRow, variant_table};
+use crate::report::converged::{self as converged_report, ConvergedRow, SequenceRow};
 use crate::report::paper::{Digits, Table1Row, Table2Row, table1, table2};
 use crate::report::study::{
     LimitRow, PenaltyRow, RefinementRow, limit_table, penalty_table, refinement_table,
@@ -60,6 +62,10 @@ pub struct Paper {
     pub refinement: Vec<RefinementRow>,
     /// Their limits.
     pub limits: Vec<LimitRow>,
+    /// Reactions of the plate by star multipliers with a fixed tip radius, on three meshes under refinement.
+    pub converged_meshes: Vec<SequenceRow>,
+    /// Their limits beside the printed numbers.
+    pub converged: Vec<ConvergedRow>,
     /// Plate and beam by every method and variant.
     pub variants: Vec<VariantRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
@@ -106,6 +112,7 @@ pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperEr
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
     paper.refinement = refinement_rows(numbers_only, progress)?;
     paper.limits = limit_rows(&paper.refinement);
+    (paper.converged_meshes, paper.converged) = converged::rows(&paper.table1, progress)?;
     paper.variants = variants::rows(&paper.results, numbers_only, progress)?;
     Ok(paper)
 }
@@ -118,6 +125,12 @@ impl Paper {
         tables::add_table2(&mut bundle, &self.table2)?;
         study::add_penalty(&mut bundle, &self.penalty)?;
         study::add_refinement(&mut bundle, &self.refinement, &self.limits)?;
+        converged_report::add(
+            &mut bundle,
+            &self.converged_meshes,
+            &self.converged,
+            &self.refinement,
+        )?;
         comparison::add(&mut bundle, &self.results.runs, &self.variants)?;
         Ok(bundle)
     }
@@ -136,6 +149,7 @@ impl Paper {
             penalty_table(&self.penalty)?,
             refinement_table(&self.refinement)?,
             limit_table(&self.limits)?,
+            converged_report::converged_table(&self.converged)?,
             variant_table(&self.variants)?,
             standard::expectation_summary(&self.results.expectations)?,
         ] {
@@ -143,7 +157,8 @@ impl Paper {
             text.push('\n');
         }
         text.push_str(&format!(
-            "Model I with exact sub-cells against Model II: {:.1e} mm\n{}\n",
+            "{}\n\nModel I with exact sub-cells against Model II: {:.1e} mm\n{}\n",
+            converged_report::summary(&self.converged),
             self.beam_models_mm,
             summary(&self.results)
         ));

@@ -7,6 +7,7 @@
 pub mod bundle;
 pub mod comparison;
 pub mod converge;
+pub mod converged;
 pub mod csv;
 mod error;
 pub mod number;

@@ -11,6 +11,7 @@ pub mod edge_pairs;
 pub mod ellipse;
 pub mod enrichment;
 pub mod facet_rule;
+pub mod facet_samples;
 pub mod facets;
 pub mod front;
 pub mod front_facet;

@@ -23,10 +23,12 @@ use crate::xfem::conforming;
 use crate::xfem::crack::{Crack, arms};
 use crate::xfem::edge_pairs::edge_pairs;
 use crate::xfem::enrichment::{Enrichment, EnrichmentError};
+use crate::xfem::facet_samples::facet_samples;
 use crate::xfem::integrated::integrated_surface;
 use crate::xfem::orthonormal::SolverBasis;
 use crate::xfem::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use crate::xfem::pieces::free_motions;
+use crate::xfem::surface_point::SurfacePoint;
 use crate::xfem::traction::{integrated_rows, traction_rows};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
@@ -45,6 +47,8 @@ pub struct Body {
     pub points: Vec<ContactPoint>,
     /// Faces of the cracks.
     pub surface: CrackSurface,
+    /// Samples of the cracks through cells, much closer than the contact points.
+    pub samples: Vec<SurfacePoint>,
     /// Stiffness over all unknowns.
     pub stiffness: BlockMatrix,
     /// Number of every unknown among the free ones; `None`: prescribed.
@@ -190,6 +194,7 @@ impl Body {
             }
         }
         let ContactSurface { points, surface } = surface;
+        let samples = facet_samples(&integrator)?;
         let jump = jump_rows(dim, &points);
         let traction = if needs.traction {
             traction(case, &integrator, &points, &surface)?
@@ -264,6 +269,7 @@ impl Body {
             lame,
             points,
             surface,
+            samples,
             stiffness,
             numbers,
             basis,

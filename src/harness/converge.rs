@@ -235,6 +235,7 @@ fn run_one(
         mesh: key.mesh,
         refine,
         h: cell_size(&case.mesh.refined(refine)),
+        dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
         seconds: if now.is_some() {

@@ -42,7 +42,9 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
                 ),
                 "contact_force" => (cracks.clone(), local, force),
                 "points_open" | "points_stick" | "points_slip" => (body_or_crack(), &[""], "-"),
-                "max_gap" | "max_penetration" | "max_slip" => (body_or_crack(), &[""], "m"),
+                "max_gap" | "max_penetration" | "max_penetration_sampled" | "max_slip" => {
+                    (body_or_crack(), &[""], "m")
+                }
                 "dissipation" | "strain_energy" => (vec![String::new()], &[""], energy),
                 "energy_identity" => (vec![String::new()], &[""], "-"),
                 unknown => {

@@ -7,6 +7,7 @@ use crate::harness::boundary::region_name;
 use crate::harness::case::Case;
 use crate::harness::loading::Loading;
 use crate::harness::record::{PointRow, QuantityRow, RunKey};
+use crate::xfem::surface_point::max_penetration;
 
 /// The mechanics at the end of an increment, over all unknowns and points.
 #[derive(Debug, Clone)]
@@ -138,17 +139,22 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
             }
         }
     }
+    let sampled = sampled_penetration(case, body, now);
     // Every crack, and all of them together.
     let all: Vec<usize> = (0..body.points.len()).collect();
-    let places =
-        std::iter::once((String::new(), all.clone())).chain((0..case.cracks.len()).map(|crack| {
-            let own = all
-                .iter()
-                .copied()
-                .filter(|&i| body.points[i].crack == crack);
-            (format!("crack-{}", crack + 1), own.collect())
-        }));
-    for (at, own) in places {
+    let places = std::iter::once((
+        String::new(),
+        all.clone(),
+        sampled.iter().copied().fold(0.0, f64::max),
+    ))
+    .chain(sampled.iter().enumerate().map(|(crack, &deepest)| {
+        let own = all
+            .iter()
+            .copied()
+            .filter(|&i| body.points[i].crack == crack);
+        (format!("crack-{}", crack + 1), own.collect(), deepest)
+    }));
+    for (at, own, deepest) in places {
         if !at.is_empty() {
             for c in 0..dim {
                 let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
@@ -172,6 +178,7 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
             largest(&|i| -now.jump[i * dim]),
             "m",
         );
+        push("max_penetration_sampled", &at, "", deepest, "m");
         let slip = |i: usize| {
             now.jump[i * dim + 1..(i + 1) * dim]
                 .iter()
@@ -185,6 +192,22 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
     push("strain_energy", "", "", now.strain_energy, energy_unit);
     push("energy_identity", "", "", now.energy_identity, "-");
     rows
+}
+
+/// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
+/// linear between its points, which then hold its extremes.
+fn sampled_penetration(case: &Case, body: &Body, now: &Snapshot) -> Vec<f64> {
+    let (dim, integrator) = (body.mesh.dim(), body.integrator());
+    let deepest = |crack: usize| {
+        if body.cracks.iter().any(|c| c.number == crack) {
+            let own = body.samples.iter().filter(|s| s.crack == crack);
+            return max_penetration(&integrator, own, &now.u);
+        }
+        let points = body.points.iter().zip(now.jump.chunks_exact(dim));
+        let own = points.filter(|(point, _)| point.crack == crack);
+        own.map(|(_, jump)| -jump[0]).fold(0.0, f64::max)
+    };
+    (0..case.cracks.len()).map(deepest).collect()
 }
 
 /// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place

@@ -102,7 +102,7 @@ pub struct QuantityRow {
     #[serde(flatten)]
     pub key: RunKey,
     /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
-    /// dissipation, strain_energy, …
+    /// max_penetration_sampled, max_slip, dissipation, strain_energy, …
     pub quantity: String,
     /// Place: a side, a probe, a crack (`crack-1`), or empty.
     pub at: String,

@@ -1,16 +1,16 @@
-//! The convergence study: errors of every mesh, observed beside theoretical orders, errors against cell size and time.
+//! The convergence study: errors of every mesh, observed beside theoretical orders, errors against unknowns and time.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
-use super::number::{RESIDUAL_FLOOR, fixed, significant, time, value};
+use super::number::{fixed, significant, time, value};
 use super::plot::{Curve, CurvePlot, convergence_plot, error_plot};
 use super::standard::file_name;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, paper};
 use crate::harness::converge::Variant;
-use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow};
+use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
 /// Significant digits of errors: they are no better than the order of the method.
 const ERROR_DIGITS: usize = 4;
@@ -102,7 +102,7 @@ impl Row for ErrorRow {
             value(*found),
             value(*reference),
             significant(*error_bar, ERROR_DIGITS),
-            significant(above_round_off(*error, *kind), ERROR_DIGITS),
+            significant(above_round_off(*error), ERROR_DIGITS),
             kind.map_or("", Kind::name).to_owned(),
             significant(*order, ERROR_DIGITS),
             time(seconds.total()),
@@ -152,6 +152,7 @@ impl Row for OrderRow {
             error,
             order,
             theory,
+            dim: _,
         } = self;
         let mut cells = variant_cells(variant).to_vec();
         cells.extend([
@@ -162,7 +163,7 @@ impl Row for OrderRow {
             value(*finest_h),
             value(*reference),
             significant(*error_bar, ERROR_DIGITS),
-            significant(above_round_off(*error, Some(*kind)), ERROR_DIGITS),
+            significant(above_round_off(*error), ERROR_DIGITS),
             significant(*order, ERROR_DIGITS),
             value(theory.unwrap_or(f64::NAN)),
         ]);
@@ -189,13 +190,9 @@ fn scientific(error: f64) -> String {
     }
 }
 
-/// A relative error without round-off, which would differ between machines; those against closed forms may have units.
-fn above_round_off(error: f64, kind: Option<Kind>) -> f64 {
-    if kind != Some(Kind::Exact) && error < RESIDUAL_FLOOR {
-        0.0
-    } else {
-        error
-    }
+/// An error without round-off, which would differ between machines.
+fn above_round_off(error: f64) -> f64 {
+    if error < ROUND_OFF { 0.0 } else { error }
 }
 
 /// A quantity with its place.
@@ -259,7 +256,7 @@ pub fn error_table(rows: &[ErrorRow]) -> Result<Table, ReportError> {
             row.dofs.to_string(),
             row.points.to_string(),
             row.verdict.clone(),
-            shown(above_round_off(row.error, row.kind), scientific),
+            shown(above_round_off(row.error), scientific),
             shown(row.order, |p| fixed(p, 2)),
             row.kind.map_or("–", Kind::name).into(),
             shown(row.seconds.total(), |s| significant(s, 2)),
@@ -302,7 +299,7 @@ pub fn order_table(rows: &[OrderRow]) -> Result<Table, ReportError> {
             row.kind.name().into(),
             significant(row.reference, 7),
             shown(row.error_bar, |e| significant(e, 2)),
-            shown(above_round_off(row.error, Some(row.kind)), scientific),
+            shown(above_round_off(row.error), scientific),
             shown(row.order, |p| fixed(p, 2)),
             row.theory.map_or_else(|| "–".into(), |p| fixed(p, 1)),
         ])?;
@@ -337,9 +334,8 @@ fn add_figures(
             let own = errors.iter().filter(|row| {
                 row.variant == order.variant && (&row.quantity, &row.at) == (&quantity, &at)
             });
-            let mut own: Vec<&ErrorRow> = own
-                .filter(|row| above_round_off(row.error, row.kind) > 0.0)
-                .collect();
+            let mut own: Vec<&ErrorRow> =
+                own.filter(|row| above_round_off(row.error) > 0.0).collect();
             own.sort_by_key(|row| row.refine);
             Curve {
                 label,
@@ -362,10 +358,12 @@ fn add_figures(
         let known = theories.iter().flatten().next().is_some();
         let what = place(&quantity, &at);
         let note = if known {
-            "orders over the last two halvings, in brackets and dotted the theoretical ones"
+            "orders in h over the last two halvings, in brackets and dotted the theoretical ones"
         } else {
-            "orders over the last two halvings; triangle: order 1"
+            "orders in h over the last two halvings; triangle: order 1"
         };
+        // A figure belongs to one case.
+        let dim = sequences.iter().map(|row| row.dim).max().unwrap_or(2);
         let common = format!("{case}, {method}, μ = {friction}");
         let y_label = if sequences.iter().all(|row| row.kind == Kind::Exact) {
             format!("error: {what}")
@@ -374,11 +372,11 @@ fn add_figures(
         };
         let size = CurvePlot {
             caption: format!("{common}; {note}"),
-            x_label: "cell size h [m]".into(),
+            x_label: format!("unknowns N ∝ {}", if dim == 2 { "h⁻²" } else { "h⁻³" }),
             y_label: y_label.clone(),
             curves: sequences
                 .iter()
-                .map(|row| curve(row, |r| r.h, labelled(row)))
+                .map(|row| curve(row, |r| r.dofs as f64, labelled(row)))
                 .collect(),
         };
         let spent = CurvePlot {
@@ -399,7 +397,7 @@ fn add_figures(
         let stem = file_name(&[&case, &method, &format!("mu-{friction}"), &what]);
         // Errors that are all zero have no place on a logarithmic axis.
         if drawable(&size) {
-            let svg = convergence_plot(&size, &theories)?;
+            let svg = convergence_plot(&size, &theories, dim)?;
             bundle.add(format!("figures/{stem}.error.svg"), svg)?;
         }
         if drawable(&spent) {

@@ -12,6 +12,9 @@ use super::{Measured, Regularity, Sample, Seconds, Variant};
 /// Differences of a quantity below this fraction of its size are the tolerance of the runs, not the discretisation.
 const RESOLVED: f64 = 1e-8;
 
+/// Relative errors below are round-off: they neither fall nor say anything about an order.
+pub const ROUND_OFF: f64 = 1e-12;
+
 /// What an error is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -66,7 +69,7 @@ pub struct ErrorRow {
     pub error: f64,
     /// What the reference is; none where there is no error.
     pub kind: Option<Kind>,
-    /// Order over this mesh and the two before; NaN where one of the three has no error.
+    /// Order over this mesh and the two before; NaN where one of the three has no error, or none above [`ROUND_OFF`].
     pub order: f64,
     /// Times.
     pub seconds: Seconds,
@@ -97,6 +100,8 @@ pub struct OrderRow {
     pub order: f64,
     /// Order that theory promises; none where it is silent.
     pub theory: Option<f64>,
+    /// Dimension of the body: the unknowns grow like h^−dim.
+    pub dim: usize,
 }
 
 /// Order in h that theory promises; of contact tractions a lower bound.
@@ -233,10 +238,11 @@ fn sequence(quantity: &str, at: &str, points: &[Point<'_>]) -> (Vec<ErrorRow>, O
         .collect();
     for last in 2..rows.len() {
         let three = &rows[last - 2..=last];
-        let three: Vec<[f64; 2]> = three.iter().map(|row| [row.h, row.error]).collect();
         // Against its own finest mesh a sequence always seems to converge.
-        if rows[last].kind != Some(Kind::Finest) {
-            rows[last].order = slope(&three);
+        let measured = rows[last].kind != Some(Kind::Finest);
+        if measured && three.iter().all(|row| row.error >= ROUND_OFF) {
+            let points: Vec<[f64; 2]> = three.iter().map(|row| [row.h, row.error]).collect();
+            rows[last].order = slope(&points);
         }
     }
     let order = rows.last().and_then(|last| {
@@ -253,6 +259,7 @@ fn sequence(quantity: &str, at: &str, points: &[Point<'_>]) -> (Vec<ErrorRow>, O
             error: with_error.map_or(f64::NAN, |row| row.error),
             order: last.order,
             theory: theoretical_order(quantity, finest.sample.regularity),
+            dim: finest.sample.dim,
         })
     });
     (rows, order)
@@ -305,6 +312,7 @@ mod tests {
             mesh: format!("{refine}x{refine}"),
             refine,
             h: 1.0 / refine as f64,
+            dim: 2,
             dofs: 2 * refine * refine,
             points: refine,
             verdict: match measured {
@@ -433,6 +441,37 @@ mod tests {
         );
         assert!((found[0].1 - 1.0).abs() < 1e-12 && (found[1].1 - 2.0).abs() < 1e-12);
         assert_eq!([orders[0].theory, orders[1].theory], [Some(1.0), None]);
+    }
+
+    /// Goal: a patch test has no order, nor has a sequence that sinks into round-off.
+    #[test]
+    fn round_off_has_no_order() {
+        let orders_of = |errors: [f64; 4]| -> Vec<f64> {
+            let sample = |(i, error): (usize, f64)| {
+                let refine = 1 << i;
+                let deviation = Deviation {
+                    quantity: "energy",
+                    at: String::new(),
+                    found: 1.0,
+                    exact: 1.0,
+                    error,
+                };
+                sample(refine, Regularity::Smooth, Measured::Exact(vec![deviation]))
+            };
+            let samples: Vec<Sample> = errors.into_iter().enumerate().map(sample).collect();
+            let (found, orders) = rows(&samples);
+            assert_eq!(found[3].order.to_bits(), orders[0].order.to_bits());
+            found[2..].iter().map(|row| row.order).collect()
+        };
+        let patch = orders_of([1e-15, 4e-15, 1.6e-14, 6.4e-14]);
+        assert!(patch.iter().all(|order| order.is_nan()), "{patch:?}");
+        let sinking = orders_of([1e-6, 1e-8, 1e-10, 1e-13]);
+        assert!((sinking[0] - 100f64.log2()).abs() < 1e-9 && sinking[1].is_nan());
+        let fine = orders_of([8e-12, 4e-12, 2e-12, 1e-12]);
+        assert!(
+            fine.iter().all(|order| (order - 1.0).abs() < 1e-9),
+            "{fine:?}"
+        );
     }
 
     /// Source: Laborde, Pommier, Renard, Salaün (2005).

@@ -122,6 +122,8 @@ pub struct Sample {
     pub refine: usize,
     /// Largest distance of neighbouring grid lines [m].
     pub h: f64,
+    /// Dimension of the body.
+    pub dim: usize,
     /// Free displacement unknowns.
     pub dofs: usize,
     /// Contact points.

@@ -145,37 +145,43 @@ pub fn error_plot(plot: &CurvePlot, slope: Option<f64>) -> Result<String, Report
     logarithmic(plot, curves, Vec::new(), triangle.into_iter().collect())
 }
 
-/// Errors against the cell size, both axes logarithmic. `orders` holds one theoretical order per curve, where there is
-/// one: it is drawn as a dotted line through the finest point of the curve, and each different order as a triangle. Without
-/// any, a triangle of order 1 guides the eye.
+/// Errors against the number N of unknowns, both axes logarithmic. `orders` holds one theoretical order p in the cell size h
+/// per curve, where there is one. N ∝ h^−dim, so it is the slope −p/dim: drawn as a dotted line through the finest point of
+/// the curve, and each different order as a triangle. Without any, a triangle of order 1 guides the eye.
 ///
 /// # Errors
 /// [`ReportError::Figure`] when no point has two positive coordinates.
-pub fn convergence_plot(plot: &CurvePlot, orders: &[Option<f64>]) -> Result<String, ReportError> {
+pub fn convergence_plot(
+    plot: &CurvePlot,
+    orders: &[Option<f64>],
+    dim: usize,
+) -> Result<String, ReportError> {
+    let dim = dim as f64;
     let curves = positive(plot);
     let mut lines = Vec::new();
     let mut slopes: Vec<f64> = Vec::new();
     for (index, (curve, order)) in curves.iter().zip(orders).enumerate() {
-        let by_size = |a: &&[f64; 2], b: &&[f64; 2]| a[0].total_cmp(&b[0]);
+        let by_count = |a: &&[f64; 2], b: &&[f64; 2]| a[0].total_cmp(&b[0]);
         let ends = curve
             .iter()
-            .min_by(by_size)
-            .zip(curve.iter().max_by(by_size));
-        let (Some(slope), Some((finest, coarsest))) = (*order, ends) else {
+            .max_by(by_count)
+            .zip(curve.iter().min_by(by_count));
+        let (Some(order), Some((finest, coarsest))) = (*order, ends) else {
             continue;
         };
+        let slope = -order / dim;
         // A line for every curve would hide them.
         if slopes.contains(&slope) || finest[0] == coarsest[0] {
             continue;
         }
         slopes.push(slope);
         // Over the last two halvings.
-        let far = coarsest[0].min(4.0 * finest[0]);
+        let far = coarsest[0].max(finest[0] / 4f64.powf(dim));
         let height = finest[1] * (far / finest[0]).powf(slope);
         lines.push((index, vec![*finest, [far, height]]));
     }
     if slopes.is_empty() {
-        slopes.push(1.0);
+        slopes.push(-1.0 / dim);
     }
     slopes.sort_by(f64::total_cmp);
     let (low, high) =

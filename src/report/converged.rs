@@ -1,0 +1,398 @@
+//! Converged reactions of the paper's plate: every mesh, the limits of three meshes beside the printed numbers, figures.
+
+use std::cmp::Ordering;
+
+use super::csv::{self, Row};
+use super::number::{fixed, significant, value};
+use super::plot::{Curve, CurvePlot, error_plot};
+use super::study::RefinementRow;
+use super::tables::{Align, Column, Table};
+use super::{Bundle, ReportError, paper};
+
+/// Digits of orders, error bars and differences: they are estimates.
+const ORDER_DIGITS: usize = 3;
+const BAR_DIGITS: usize = 2;
+
+/// Order that the corners of the plate allow, drawn as a triangle.
+const CORNER_ORDER: f64 = 1.4;
+
+/// Reaction of the plate on one mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SequenceRow {
+    /// Mesh: `I`, `II` or `I turned`.
+    pub mesh: String,
+    /// Mesh label.
+    pub cells: String,
+    /// Largest distance of neighbouring grid lines [m].
+    pub h_m: f64,
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Free displacement unknowns.
+    pub dofs: usize,
+    /// Contact points.
+    pub points: usize,
+    /// Reaction at the top [MN/m]; NaN where the run is not solved.
+    pub reaction_mn_per_m: f64,
+    /// Observed order over the last two halvings; NaN where there is none.
+    pub order: f64,
+    /// Claim × check.
+    pub verdict: String,
+}
+
+impl Row for SequenceRow {
+    const FILE: &'static str = "converged_meshes.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "mesh",
+        "cells",
+        "h_m",
+        "friction",
+        "dofs",
+        "points",
+        "reaction_mn_per_m",
+        "order",
+        "verdict",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.mesh.clone(),
+            self.cells.clone(),
+            value(self.h_m),
+            value(self.friction),
+            self.dofs.to_string(),
+            self.points.to_string(),
+            value(self.reaction_mn_per_m),
+            significant(self.order, ORDER_DIGITS),
+            self.verdict.clone(),
+        ]
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let friction = self.friction.total_cmp(&other.friction);
+        friction
+            .then_with(|| self.mesh.cmp(&other.mesh))
+            .then(other.h_m.total_cmp(&self.h_m))
+    }
+}
+
+/// Limit of the reaction on one kind of mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvergedRow {
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Mesh: `I`, `II` or `I turned`.
+    pub mesh: String,
+    /// Cell size of the finest mesh [m].
+    pub finest_h_m: f64,
+    /// Observed order; NaN without a limit.
+    pub order: f64,
+    /// Limit for h → 0 [MN/m]; NaN where the meshes show none.
+    pub limit_mn_per_m: f64,
+    /// Its uncertainty [MN/m].
+    pub error_bar_mn_per_m: f64,
+    /// Reaction that Table 1 prints for this mesh [MN/m]; none where it has none.
+    pub printed_mn_per_m: Option<f64>,
+}
+
+impl ConvergedRow {
+    /// (printed − limit) / limit [-].
+    pub fn printed_difference(&self) -> Option<f64> {
+        self.printed_mn_per_m
+            .map(|printed| (printed - self.limit_mn_per_m) / self.limit_mn_per_m)
+    }
+}
+
+impl Row for ConvergedRow {
+    const FILE: &'static str = "converged.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "friction",
+        "mesh",
+        "finest_h_m",
+        "order",
+        "limit_mn_per_m",
+        "error_bar_mn_per_m",
+        "printed_mn_per_m",
+        "printed_difference",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let optional = |number: Option<f64>, digits| {
+            number.map_or_else(String::new, |x| significant(x, digits))
+        };
+        vec![
+            value(self.friction),
+            self.mesh.clone(),
+            value(self.finest_h_m),
+            significant(self.order, ORDER_DIGITS),
+            // One digit more than the error bar can use.
+            fixed(self.limit_mn_per_m, 3),
+            significant(self.error_bar_mn_per_m, BAR_DIGITS),
+            optional(self.printed_mn_per_m, 5),
+            optional(self.printed_difference(), ORDER_DIGITS),
+        ]
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let friction = self.friction.total_cmp(&other.friction);
+        friction.then_with(|| self.mesh.cmp(&other.mesh))
+    }
+}
+
+/// What the limits of all meshes say for one friction coefficient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Number of meshes.
+    pub meshes: usize,
+    /// Mean of the limits [MN/m].
+    pub mean_mn_per_m: f64,
+    /// Largest distance of two limits [MN/m].
+    pub spread_mn_per_m: f64,
+    /// Smallest error bar [MN/m].
+    pub smallest_bar_mn_per_m: f64,
+}
+
+impl Agreement {
+    /// Whether every limit lies within the error bar of every other.
+    pub fn holds(&self) -> bool {
+        self.spread_mn_per_m <= self.smallest_bar_mn_per_m
+    }
+}
+
+/// Agreement of the meshes, by rising friction coefficient. A limit that is missing makes all numbers NaN.
+pub fn agreements(rows: &[ConvergedRow]) -> Vec<Agreement> {
+    let mut frictions: Vec<f64> = rows.iter().map(|row| row.friction).collect();
+    frictions.sort_by(f64::total_cmp);
+    frictions.dedup();
+    let agreement = |friction: f64| {
+        let own: Vec<&ConvergedRow> = rows.iter().filter(|r| r.friction == friction).collect();
+        let limits = || own.iter().map(|row| row.limit_mn_per_m);
+        let bars = || own.iter().map(|row| row.error_bar_mn_per_m);
+        // `min` and `max` would drop a NaN.
+        let known = if limits().chain(bars()).all(f64::is_finite) {
+            1.0
+        } else {
+            f64::NAN
+        };
+        let highest = limits().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = limits().fold(f64::INFINITY, f64::min);
+        Agreement {
+            friction,
+            meshes: own.len(),
+            mean_mn_per_m: limits().sum::<f64>() / own.len() as f64,
+            spread_mn_per_m: known * (highest - lowest),
+            smallest_bar_mn_per_m: known * bars().fold(f64::INFINITY, f64::min),
+        }
+    };
+    frictions.into_iter().map(agreement).collect()
+}
+
+/// One paragraph on the agreement of the meshes.
+pub fn summary(rows: &[ConvergedRow]) -> String {
+    let lines = agreements(rows).into_iter().map(|found| {
+        format!(
+            "μ = {}: {} limits within {} MN/m of each other, {} their smallest error bar of {} MN/m",
+            value(found.friction),
+            found.meshes,
+            significant(found.spread_mn_per_m, BAR_DIGITS),
+            if found.holds() { "inside" } else { "NOT inside" },
+            significant(found.smallest_bar_mn_per_m, BAR_DIGITS),
+        )
+    });
+    let lines: Vec<String> = lines.collect();
+    format!("Converged reactions of the plate: {}", lines.join("; "))
+}
+
+/// A number for reading; a dash where there is none.
+fn shown(x: f64, text: impl Fn(f64) -> String) -> String {
+    if x.is_finite() { text(x) } else { "–".into() }
+}
+
+/// Limits beside the printed numbers for reading.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn converged_table(rows: &[ConvergedRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Plate, converged reactions beside Table 1: star multipliers, tips enriched within a fixed radius, limits for h → 0 \
+         from the three finest meshes",
+        vec![
+            Column::new("friction", "", Align::Decimal),
+            Column::new("mesh", "", Align::Left),
+            Column::new("finest h", "m", Align::Decimal),
+            Column::new("order", "", Align::Decimal),
+            Column::new("limit", "MN/m", Align::Decimal),
+            Column::new("error bar", "MN/m", Align::Decimal),
+            Column::new("printed", "MN/m", Align::Decimal),
+            Column::new("printed − limit", "%", Align::Decimal),
+        ],
+    );
+    let mut sorted: Vec<&ConvergedRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| Row::order(*a, *b));
+    for row in sorted {
+        let percent = row.printed_difference().map_or(f64::NAN, |d| 100.0 * d);
+        table.push(vec![
+            value(row.friction),
+            row.mesh.clone(),
+            shown(row.finest_h_m, |h| fixed(h, 4)),
+            shown(row.order, |p| fixed(p, 2)),
+            shown(row.limit_mn_per_m, |r| fixed(r, 3)),
+            shown(row.error_bar_mn_per_m, |e| fixed(e, 3)),
+            shown(row.printed_mn_per_m.unwrap_or(f64::NAN), |r| fixed(r, 1)),
+            shown(percent, |p| fixed(p, 2)),
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Every mesh for reading.
+///
+/// # Errors
+/// Those of [`Table::push`].
+pub fn sequence_table(rows: &[SequenceRow]) -> Result<Table, ReportError> {
+    let mut table = Table::new(
+        "Plate under refinement, star multipliers, tips enriched within a fixed radius: vertical reaction at the top",
+        vec![
+            Column::new("friction", "", Align::Decimal),
+            Column::new("mesh", "", Align::Left),
+            Column::new("cells", "", Align::Right),
+            Column::new("h", "m", Align::Decimal),
+            Column::new("unknowns", "", Align::Right),
+            Column::new("points", "", Align::Right),
+            Column::new("reaction", "MN/m", Align::Decimal),
+            Column::new("order", "", Align::Decimal),
+            Column::new("verdict", "", Align::Left),
+        ],
+    );
+    let mut sorted: Vec<&SequenceRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| Row::order(*a, *b));
+    for row in sorted {
+        table.push(vec![
+            value(row.friction),
+            row.mesh.clone(),
+            row.cells.clone(),
+            fixed(row.h_m, 4),
+            row.dofs.to_string(),
+            row.points.to_string(),
+            shown(row.reaction_mn_per_m, |r| fixed(r, 3)),
+            shown(row.order, |p| fixed(p, 2)),
+            row.verdict.clone(),
+        ])?;
+    }
+    Ok(table)
+}
+
+/// Adds `converged.*`, `converged_meshes.*` and a figure per friction coefficient: the distance from the mean of the limits,
+/// beside that of the same plate with edge pairs and enriched tip cells.
+///
+/// # Errors
+/// Those of [`Bundle::add`] and of the figures.
+pub fn add(
+    bundle: &mut Bundle,
+    sequences: &[SequenceRow],
+    limits: &[ConvergedRow],
+    edge_pairs: &[RefinementRow],
+) -> Result<(), ReportError> {
+    bundle.add(SequenceRow::FILE, csv::file(sequences)?)?;
+    paper::add_readable(bundle, "converged_meshes", &sequence_table(sequences)?)?;
+    bundle.add(ConvergedRow::FILE, csv::file(limits)?)?;
+    paper::add_readable(bundle, "converged", &converged_table(limits)?)?;
+    let mut sorted: Vec<&SequenceRow> = sequences.iter().collect();
+    sorted.sort_by(|a, b| Row::order(*a, *b));
+    for Agreement {
+        friction,
+        mean_mn_per_m: mean,
+        ..
+    } in agreements(limits)
+    {
+        let distance = |h: f64, reaction: f64| [h, ((reaction - mean) / mean).abs()];
+        let mut curves: Vec<Curve> = Vec::new();
+        let mut add = |label: String, point: [f64; 2]| match curves
+            .iter_mut()
+            .find(|curve| curve.label == label)
+        {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Curve {
+                label,
+                points: vec![point],
+            }),
+        };
+        for row in sorted.iter().filter(|row| row.friction == friction) {
+            let label = format!("star, Mesh {}", row.mesh);
+            add(label, distance(row.h_m, row.reaction_mn_per_m));
+        }
+        for row in edge_pairs.iter().filter(|row| row.friction == friction) {
+            let label = format!("edge pairs, Mesh {}", row.family);
+            add(label, distance(row.h_m, row.reaction_mn_per_m));
+        }
+        let plot = CurvePlot {
+            caption: format!(
+                "plate, μ = {}; triangle: order of the plate's corners",
+                value(friction)
+            ),
+            x_label: "cell width h [m]".into(),
+            y_label: "relative distance to limit".into(),
+            curves,
+        };
+        let name = format!("figures/converged.mu-{}.svg", value(friction));
+        bundle.add(name, error_plot(&plot, Some(CORNER_ORDER))?)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(mesh: &str, limit: f64, bar: f64) -> ConvergedRow {
+        ConvergedRow {
+            friction: 0.3,
+            mesh: mesh.into(),
+            finest_h_m: 0.1,
+            order: 1.4,
+            limit_mn_per_m: limit,
+            error_bar_mn_per_m: bar,
+            printed_mn_per_m: (mesh == "I").then_some(99.0),
+        }
+    }
+
+    /// Goal: meshes agree only if every limit lies within the smallest bar; without a limit they never do.
+    #[test]
+    fn meshes_agree_within_the_smallest_error_bar() {
+        let of = |limits: [f64; 3]| {
+            let rows = [
+                row("I", limits[0], 0.2),
+                row("II", limits[1], 0.5),
+                row("I turned", limits[2], 0.1),
+            ];
+            let found = agreements(&rows);
+            assert_eq!((found.len(), found[0].meshes), (1, 3));
+            assert_eq!(summary(&rows).contains("NOT"), !found[0].holds());
+            found[0].clone()
+        };
+        let close = of([100.0, 100.06, 99.97]);
+        assert!(close.holds() && (close.spread_mn_per_m - 0.09).abs() < 1e-12);
+        assert!((close.mean_mn_per_m - 100.01).abs() < 1e-12);
+        assert!(!of([100.0, 100.08, 99.97]).holds());
+        let missing = of([100.0, f64::NAN, 100.0]);
+        assert!(!missing.holds() && missing.spread_mn_per_m.is_nan());
+    }
+
+    #[test]
+    fn the_printed_number_stands_beside_the_limit_of_its_mesh_only() {
+        let table = converged_table(&[row("I turned", 100.0, 0.1), row("I", 100.0, 0.1)]);
+        let text = table.expect("a table").markdown();
+        let lines: Vec<&str> = text.lines().filter(|l| l.contains("100.000")).collect();
+        assert!(
+            lines[0].contains("99.0") && lines[0].contains("-1.00"),
+            "{text}"
+        );
+        assert!(
+            !lines[1].contains("99.0") && lines[1].contains('–'),
+            "{text}"
+        );
+    }
+}
