@@ -18,6 +18,7 @@ pub mod graded;
 pub mod integrated;
 pub mod intensity;
 pub mod interaction;
+pub mod mass;
 pub mod multipliers;
 pub mod pairs;
 pub mod partition;
