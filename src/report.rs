@@ -9,6 +9,7 @@ pub mod comparison;
 pub mod converge;
 pub mod csv;
 mod error;
+pub mod infsup;
 pub mod number;
 pub mod paper;
 pub mod plot;
