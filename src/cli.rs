@@ -4,6 +4,7 @@ mod converge;
 mod exchange;
 mod output;
 mod progress;
+mod spaces;
 mod stress;
 
 use std::collections::BTreeSet;
@@ -19,6 +20,7 @@ use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
 use crate::harness::export::ExportError;
+use crate::harness::infsup::InfSupError;
 use crate::harness::loading::Loading;
 use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
@@ -77,6 +79,8 @@ enum Verb {
     Stress(stress::Arguments),
     /// Measure errors and observed orders on sequences of meshes, by contact space and tip enrichment
     Converge(converge::Arguments),
+    /// Test the contact spaces: numerical inf-sup condition on cracks that lie in the grid in many ways
+    Spaces(spaces::Arguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
@@ -115,6 +119,9 @@ pub enum CliError {
     /// The robustness study.
     #[error(transparent)]
     Stress(#[from] StressError),
+    /// The study of the contact spaces.
+    #[error(transparent)]
+    InfSup(#[from] InfSupError),
     /// The main job.
     #[error(transparent)]
     Paper(#[from] PaperError),
@@ -206,6 +213,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         }
         Verb::Stress(arguments) => stress::run(arguments),
         Verb::Converge(arguments) => converge::run(arguments),
+        Verb::Spaces(arguments) => spaces::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),

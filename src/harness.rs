@@ -9,6 +9,7 @@ pub mod errors;
 pub mod exchange;
 pub mod expect;
 pub mod export;
+pub mod infsup;
 pub mod loading;
 pub mod nodal_forces;
 pub mod path;

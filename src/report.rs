@@ -10,6 +10,7 @@ pub mod converge;
 pub mod converged;
 pub mod csv;
 mod error;
+pub mod infsup;
 pub mod number;
 pub mod paper;
 pub mod plot;

@@ -19,6 +19,7 @@ pub mod graded;
 pub mod integrated;
 pub mod intensity;
 pub mod interaction;
+pub mod mass;
 pub mod multipliers;
 pub mod orthonormal;
 pub mod pairs;

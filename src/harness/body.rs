@@ -430,7 +430,11 @@ fn free_rows(
 }
 
 /// Nested dissection of the nodes, expanded to their free unknowns.
-fn elimination_order(mesh: &Mesh, enrichment: &Enrichment, numbers: &[Option<u32>]) -> Vec<usize> {
+pub(crate) fn elimination_order(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    numbers: &[Option<u32>],
+) -> Vec<usize> {
     let dim = mesh.dim();
     let mut order = Vec::new();
     for node in nested_dissection(&mesh.grid) {

@@ -17,6 +17,7 @@ mod colour;
 mod contour;
 mod cost;
 mod curves;
+mod lattice;
 mod legend;
 mod marks;
 mod methods;
@@ -34,6 +35,7 @@ pub use cost::method_cost;
 pub use curves::{
     Curve, CurvePlot, Tier, convergence_plot, error_plot, line_plot, residual_history,
 };
+pub use lattice::{Lattice, SmallPanel, lattice};
 pub use methods::rank as method_rank;
 pub use profile::{contact_slip, contact_traction};
 pub use rates::success_rates;

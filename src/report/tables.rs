@@ -280,6 +280,7 @@ pub fn escape_latex(text: &str) -> String {
             '^' => out += "\\textasciicircum{}",
             '<' | '>' | '|' => out += &format!("${c}$"),
             '\n' => out.push(' '),
+            'β' => out += "$\\beta$",
             'μ' | 'µ' => out += "$\\mu$",
             'ν' => out += "$\\nu$",
             'ρ' => out += "$\\rho$",

@@ -398,6 +398,18 @@ impl Elastic {
         Ok(factor)
     }
 
+    /// The Delassus operator W = B K⁻¹ Bᵀ, computed unless it exists: `dim` rows per point, in m/N (2D: m²/N); where the body
+    /// floats, that of the body held at the pinned unknowns.
+    ///
+    /// # Errors
+    /// Those of the first factorisation and condensation; a body set up without friction, which has only normal rows.
+    pub fn delassus(&self) -> Result<SymmetricMatrix, MethodError> {
+        if self.frictionless {
+            return Err(MethodError::NoTangentialRows);
+        }
+        delassus::lower(&self.condensed()?.w)
+    }
+
     /// Rows that are condensed.
     pub(crate) fn rows(&self) -> RowSet {
         let components = if self.frictionless { 1 } else { self.dim };

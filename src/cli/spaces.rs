@@ -1,0 +1,66 @@
+//! The verb `spaces`: what the contact spaces are worth, whatever method works on them.
+
+use std::path::PathBuf;
+
+use super::CliError;
+use super::output::{say, warn};
+use super::progress::Bar;
+use crate::harness::case::ContactSpace;
+use crate::harness::infsup::{self, SCENES, Scene};
+use crate::report::{Bundle, Provenance, prepare_output};
+
+/// Arguments of the verb.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Meshes of every sequence, from the coarsest: a slope needs three
+    #[arg(long, default_value_t = most_meshes() as u8, value_parser = clap::value_parser!(u8).range(3..=most_meshes() as i64))]
+    meshes: u8,
+    /// Folder for the results
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+}
+
+/// Meshes of the longest sequence.
+fn most_meshes() -> usize {
+    SCENES.iter().map(|s| s.cells.len()).max().unwrap_or(0)
+}
+
+/// Runs the study; false if `star`, which is stable by construction, is not found to be.
+pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+    prepare_output(&arguments.out)?;
+    let bar = Bar::new();
+    let meshes = usize::from(arguments.meshes);
+    let cells = |scene: &Scene| scene.cells.iter().copied().take(meshes).collect();
+    let sequences = infsup::run(cells, &bar)?;
+    bar.finish();
+
+    let mut bundle = Bundle::new();
+    crate::report::infsup::add_to(&mut bundle, &sequences)?;
+    Provenance::collect(rayon::current_num_threads())
+        .with_option("meshes", meshes.to_string())
+        .add_to(&mut bundle)?;
+    bundle.commit(&arguments.out)?;
+    let table = crate::report::infsup::table(&sequences)?;
+    say(format_args!("{}", table.terminal()));
+    let failed = || {
+        let star = |s: &&infsup::Sequence| s.space == ContactSpace::Star && !s.is_stable();
+        sequences.iter().filter(star)
+    };
+    let stable = sequences.iter().filter(|s| s.is_stable()).count();
+    say(format_args!(
+        "{} sequences: {stable} stable, {} not\nResults: {}",
+        sequences.len(),
+        sequences.len() - stable,
+        arguments.out.display()
+    ));
+    for s in failed() {
+        warn(format_args!(
+            "not stable: {} on {}: slope {:.2}, share {:.2}",
+            s.space.name(),
+            s.scene.name,
+            s.slope,
+            s.share
+        ));
+    }
+    Ok(failed().next().is_none())
+}
