@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::case::{Case, ContactSpace, CrackShape, Tip};
 use stickslip::harness::converge::{self, Measured, Study, slope};
 use stickslip::harness::errors::Deviation;
@@ -252,4 +253,28 @@ fn a_sloping_interface_passes_the_patch_test() {
             errors.within(quantity, 1e-10);
         }
     }
+}
+
+/// Source: formulas in the heads of the case files. Goal: the dissipation they expect at every increment is that of the
+/// program's closed form, to the digits of quadrature.
+#[test]
+fn expected_dissipation_is_that_of_the_closed_form() {
+    let mut count = 0;
+    for (name, _) in shipped::CASES {
+        let case = shipped(name);
+        if case.exact.is_none() {
+            continue;
+        }
+        let body = Body::new(&case, 1, Needs::default()).unwrap();
+        let loading = loading(&body, &case);
+        for expect in case.expects.iter().filter(|e| e.quantity == "dissipation") {
+            let field = loading.exact(expect.increment.unwrap_or(case.path.increments));
+            let exact = field.unwrap().dissipation().unwrap();
+            let error = (expect.value - exact).abs();
+            assert!(error <= 1e-9 * exact, "{name}: {} {exact}", expect.value);
+            count += 1;
+        }
+    }
+    println!("{count} expectations");
+    assert!(count >= 18);
 }
