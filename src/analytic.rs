@@ -103,6 +103,12 @@ pub trait Field: Send + Sync {
         None
     }
 
+    /// Place inside a 2D crack where slip ends and stick begins, if there is one and all slip of the path ends there,
+    /// with the 3/2 power of the distance as where a slip zone grows.
+    fn stick_boundary(&self) -> Option<Point> {
+        None
+    }
+
     /// Frictional dissipation since the start of the path [J, in 2D J/m].
     fn dissipation(&self) -> Option<f64> {
         None

@@ -22,7 +22,7 @@ use nalgebra::{Matrix6, Vector6};
 use super::line_crack::{apply, axes, resolve};
 use super::plane_elasticity::PlaneElasticity;
 use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
-use crate::fem::{Point, sub};
+use crate::fem::{Point, add_scaled, norm, sub};
 use crate::harness::case::CrackShape;
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
@@ -142,6 +142,13 @@ impl CircularInterface {
         )
     }
 
+    /// The point of the circle nearest to a point of the discrete interface, whose pieces may be chords: off the circle
+    /// both sides would be in the same part.
+    fn foot(&self, x: &Point) -> Point {
+        let from = sub(x, &self.centre);
+        add_scaled(&self.centre, self.radius / norm(&from), &from)
+    }
+
     /// (u_r, u_θ) of the second harmonic [m].
     fn polar_displacement(&self, r: f64, theta: f64, [a, b, c, d]: &[f64; 4]) -> [f64; 2] {
         let k = self.elastic.kappa;
@@ -205,13 +212,15 @@ impl Field for CircularInterface {
     }
 
     fn traction(&self, x: &Point) -> [f64; 3] {
-        let axes = axes(&self.crack, x);
-        resolve(&axes, &apply(&self.stress(x, 1.0), &axes[0])).map(|t| -t)
+        let x = self.foot(x);
+        let axes = axes(&self.crack, &x);
+        resolve(&axes, &apply(&self.stress(&x, 1.0), &axes[0])).map(|t| -t)
     }
 
     fn jump(&self, x: &Point) -> [f64; 3] {
-        let apart = sub(&self.displacement(x, 1.0), &self.displacement(x, -1.0));
-        resolve(&axes(&self.crack, x), &apart)
+        let x = self.foot(x);
+        let apart = sub(&self.displacement(&x, 1.0), &self.displacement(&x, -1.0));
+        resolve(&axes(&self.crack, &x), &apart)
     }
 
     fn dissipation(&self) -> Option<f64> {
@@ -264,6 +273,29 @@ mod tests {
             }
         }
         assert_eq!(field.displacement(&[0.0; 3], 1.0), [0.0; 3]);
+    }
+
+    /// Goal: traction and jump at a point of a chord are those of the circle there.
+    #[test]
+    fn points_of_chords_are_taken_to_the_circle() {
+        let shape = CrackShape::Arc {
+            centre: [0.1, -0.2],
+            radius: 0.6,
+            from: 0.0,
+            to: FRAC_PI_2,
+        };
+        let mut of = setting(&shape);
+        of.friction = 0.0;
+        let field = build(&of, &[1.0, 1e-3, 1e-5]).unwrap().at(&[1.0]).unwrap();
+        for theta in [0.2, FRAC_PI_2 / 2.0, 1.3] {
+            let [on, off] = [0.6, 0.599].map(|r| at([0.1, -0.2], r, theta));
+            let slip = field.jump(&on)[1];
+            assert!(slip.abs() > 1e-7);
+            for k in 0..3 {
+                assert!((field.jump(&off)[k] - field.jump(&on)[k]).abs() < 1e-10 * slip.abs());
+                assert!((field.traction(&off)[k] - field.traction(&on)[k]).abs() < 1e-15);
+            }
+        }
     }
 
     #[test]

@@ -110,6 +110,16 @@ impl Field for CrackField {
         Some(k)
     }
 
+    /// After a reversal slip has several zones, and the last one ends before all slip does.
+    fn stick_boundary(&self) -> Option<Point> {
+        let [(_, zone)] = self.zones[..] else {
+            return None;
+        };
+        let end = zone.centre + zone.half_length;
+        let inside = end < self.crack.half_length * (1.0 - 1e-12);
+        (zone.mode == Mode::Shear && inside).then(|| self.crack.point(end, 0.0))
+    }
+
     fn dissipation(&self) -> Option<f64> {
         Some(self.dissipation)
     }

@@ -227,6 +227,8 @@ mod tests {
         // b = 5/9: slip on [−1, 1/9].
         assert!(field.jump(&[0.11, 0.0, 0.0])[1] > 0.0);
         assert_eq!(field.jump(&[0.1112, 0.0, 0.0])[1], 0.0);
+        let boundary = field.stick_boundary().unwrap();
+        assert!((boundary[0] - 1.0 / 9.0).abs() < 1e-14 && boundary[1] == 0.0);
         let b = 5.0 / 9.0;
         let k = field.intensity(&[-1.0, 0.0, 0.0]).unwrap();
         assert!((k[1] + (PI * b).sqrt() * 0.3 * b).abs() < 1e-14);
@@ -235,6 +237,9 @@ mod tests {
         // One increment or many.
         let many = at(solution.as_ref(), &[0.2, 0.7, 0.75, 1.0]);
         assert!((field.dissipation().unwrap() - many.dissipation().unwrap()).abs() < 1e-16);
+        // None where slip has several zones, or reaches both ends.
+        assert_eq!(at(solution.as_ref(), &[1.0, -0.5]).stick_boundary(), None);
+        assert_eq!(at(solution.as_ref(), &[2.0]).stick_boundary(), None);
         // A full cycle.
         let cycle = at(solution.as_ref(), &[1.0, -1.0, 1.0])
             .dissipation()

@@ -17,6 +17,7 @@
 
 mod bulk;
 mod front;
+mod stick_boundary;
 mod surface;
 
 use crate::analytic::Field;
@@ -125,6 +126,7 @@ pub fn errors(
     let nodes = bulk::nodal_displacement(body, field, &now.u);
     rows.push(norm_row("displacement_rms", nodes, scales.displacement));
     rows.extend(surface::rows(body, surface, field, now, &scales));
+    rows.extend(stick_boundary::row(body, field, now));
     if let Some(exact) = field.dissipation() {
         let difference = (now.dissipation - exact).abs();
         rows.push(Deviation::new(
