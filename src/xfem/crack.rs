@@ -19,8 +19,9 @@ use super::ellipse::Ellipse;
 
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
-/// Far above rounding of coordinates (1e-16 of the body, about 1e-13 h), far below any cut that matters to stiffness.
-pub const ON_CRACK: f64 = 1e-10;
+/// Above rounding of coordinates (1e-16 of the body, about 1e-14 h). The crack is bent by so much at the node, and the contact
+/// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
+pub const ON_CRACK: f64 = 1e-12;
 
 /// Geometry of a crack.
 #[derive(Debug, Clone, PartialEq)]
@@ -320,13 +321,15 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
             length * k as f64 / count as f64,
             length * (k + 1) as f64 / count as f64,
         );
-        let start = distance(low);
-        if start * distance(high) >= 0.0 {
+        // Zero is a side too: a meeting at a sample must not fall between two intervals.
+        let above = |s: f64| distance(s) >= 0.0;
+        let start = above(low);
+        if above(high) == start {
             continue;
         }
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if distance(middle) * start > 0.0 {
+            if above(middle) == start {
                 low = middle;
             } else {
                 high = middle;
