@@ -11,6 +11,7 @@ pub mod expect;
 pub mod export;
 pub mod loading;
 pub mod nodal_forces;
+pub mod patch;
 pub mod path;
 pub mod picture;
 pub mod problem_file;

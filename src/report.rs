@@ -11,6 +11,7 @@ pub mod csv;
 mod error;
 pub mod number;
 pub mod paper;
+pub mod patch;
 pub mod plot;
 pub mod provenance;
 pub mod robustness;
