@@ -12,6 +12,7 @@ pub mod export;
 pub mod infsup;
 pub mod loading;
 pub mod nodal_forces;
+pub mod patch;
 pub mod path;
 pub mod picture;
 pub mod problem_file;

@@ -13,6 +13,7 @@ mod error;
 pub mod infsup;
 pub mod number;
 pub mod paper;
+pub mod patch;
 pub mod plot;
 pub mod provenance;
 pub mod robustness;

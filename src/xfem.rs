@@ -27,6 +27,7 @@ pub mod partition;
 pub mod pieces;
 pub mod placement;
 pub mod polygon;
+pub mod rational;
 pub mod sampling;
 pub mod slice;
 pub mod star_forest;

@@ -142,7 +142,12 @@ fn parts_fill_their_cells() {
         let mut area = 0.0;
         let mut parts = 0;
         for cell in 0..body.mesh.cell_count() {
-            area += integrator.points(cell).unwrap().iter().map(|p| p.weight).sum::<f64>();
+            area += integrator
+                .points(cell)
+                .unwrap()
+                .iter()
+                .map(|p| p.weight)
+                .sum::<f64>();
             parts = parts.max(body.enrichment.regions(cell));
         }
         assert!((area - 4.0).abs() < 1e-6, "{name}: {area}");

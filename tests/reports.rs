@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use stickslip::harness::converge::orders::{ErrorRow, OrderRow};
+use stickslip::harness::patch::PatchRow;
 use stickslip::harness::record::RunRow;
 use stickslip::report::comparison::{ComparisonRow, VariantRow};
 use stickslip::report::csv::Row;
@@ -39,6 +40,7 @@ fn csv_bundle() -> Bundle {
         file(VariantRow::FILE, csv::file::<VariantRow>(&[])),
         file(ErrorRow::FILE, csv::file::<ErrorRow>(&[])),
         file(OrderRow::FILE, csv::file::<OrderRow>(&[])),
+        file(PatchRow::FILE, csv::file::<PatchRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }

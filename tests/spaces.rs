@@ -1,269 +1,149 @@
-//! The contact spaces: which of them are stable, by the numbers; that the numbers are right; what the verb writes.
+//! Contact spaces in uniform stress: the patch tests of all of them, and continuity as the crack comes to a node.
 
-use std::path::Path;
-use std::process::Output;
-use std::sync::LazyLock;
+mod common;
 
-use assert_cmd::Command;
-use nalgebra::DMatrix;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::ContactSpace;
-use stickslip::harness::infsup::{
-    self, LENGTH, SCENES, SPACES, Sample, Scene, Sequence, YOUNG, multiplier_norm,
-};
+use common::{choices, parse, run as run_case, value};
+use stickslip::harness::case::ContactSpace::{self, EdgePairs, Facet, P0, Star};
+use stickslip::harness::patch::{DISTANCES, PASSED, Patch, PatchRow, State, flat, run, solid};
 use stickslip::harness::run::Quiet;
-use stickslip::report::{csv, infsup as report};
-use stickslip::xfem::mass::mass;
 
-/// All scenes and spaces without the finest meshes.
-static COARSE: LazyLock<Vec<Sequence>> = LazyLock::new(|| {
-    let cells = |scene: &Scene| scene.cells[..3].to_vec();
-    infsup::run(cells, &Quiet).unwrap()
-});
+/// Distances of the crack from a node for the meshes that cost most, in cell sizes.
+const FEW: [f64; 9] = [3e-1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-11, -1e-8, -1e-1];
 
-fn scene(name: &str) -> &'static Scene {
-    SCENES.iter().find(|s| s.name == name).unwrap()
+/// Rows of patch tests by a method that takes whatever contact state comes.
+fn rows(patches: &[Patch], spaces: &[ContactSpace]) -> Vec<PatchRow> {
+    assert!(!patches.is_empty());
+    run(patches, spaces, &choices(&["hybrid"])[0], &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn sequence(name: &str, space: ContactSpace) -> &'static Sequence {
-    let mut all = COARSE.iter();
-    all.find(|s| s.scene.name == name && s.space == space)
-        .unwrap()
+fn meets(patch: &Patch) -> bool {
+    patch.crack == "T" || patch.crack == "X"
 }
 
-/// β on the three meshes.
-fn betas(name: &str, space: ContactSpace) -> [f64; 3] {
-    let samples = &sequence(name, space).samples;
-    [0, 1, 2].map(|k| samples[k].beta)
+fn assert_passed(rows: &[PatchRow]) {
+    let failed: Vec<&PatchRow> = rows.iter().filter(|row| !row.passed()).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// Source: Béchet, Moës & Wohlmuth 2009 prove it for spaces of this kind in 2D. Goal: `star` has β > 0.5 for every crack
-/// through a body, offset and angle, in 2D and 3D, and β > 0.25 for cracks inside, where 2 to 8 multipliers see both tips;
-/// every sequence passes.
+/// Source: elasticity, uniform stress (Taylor et al. 1986). Goal: with star multipliers no crack is felt, whatever its
+/// angle, bend and distance from a node, closed, sticking, open or sliding, through held and through free sides.
+/// Tolerance: [`PASSED`].
 #[test]
-fn star_is_bounded_below_for_every_angle_and_offset() {
-    for s in COARSE.iter().filter(|s| s.space == ContactSpace::Star) {
-        let inside = s.scene.name.starts_with("inside");
-        let least = if inside { 0.25 } else { 0.5 };
-        for p in &s.samples {
-            assert!(p.beta > least && p.kernel == 0, "{}: {p:?}", s.scene.name);
-        }
-        assert!(s.is_stable(), "{}: {} {}", s.scene.name, s.slope, s.share);
-    }
+fn star_passes_every_patch_test_in_the_plane() {
+    let mut patches = flat(&DISTANCES).unwrap();
+    patches.retain(|p| p.mesh == "regular" && !meets(p));
+    assert_eq!(patches.len(), 52 * DISTANCES.len());
+    assert_passed(&rows(&patches, &[Star]));
 }
 
-/// Source: Moës, Béchet & Tourbier 2006. Goal: point pairs at every crossed edge lose β like h off the grid lines, and all of
-/// it with the offset.
+/// As above on a mesh whose inner nodes are moved by up to a quarter of a cell.
 #[test]
-fn edge_pairs_are_stable_along_the_grid_only() {
-    let pairs = ContactSpace::EdgePairs;
-    for name in [
-        "horizontal, offset 0.3h",
-        "horizontal, offset 1e-4h",
-        "normal (0, 0, 1)",
-    ] {
-        assert!(sequence(name, pairs).is_stable(), "{name}");
-    }
-    for name in [
-        "45°, offset 0.3h",
-        "45°, offset 1e-3h",
-        "normal (1, 0, 1), offset 0.3h",
-    ] {
-        let s = sequence(name, pairs);
-        assert!(s.slope > 0.9 && s.slope < 1.3, "{name}: {}", s.slope);
-        assert!(!s.is_stable(), "{name}");
-    }
-    let [far, near] = ["45°, offset 0.3h", "45°, offset 1e-3h"].map(|name| betas(name, pairs));
-    for (far, near) in far.iter().zip(near) {
-        assert!(near < 0.01 * far, "{far} {near}");
-    }
-    // 30 pairs on 24 nodes: at least 3 (30 − 24) tractions have no effect at all.
-    let s = sequence("normal (1, 1, 1)", pairs);
-    assert_eq!(s.samples[0].points, 30);
-    assert!(s.samples[0].kernel >= 18, "{:?}", s.samples[0]);
-    assert!(s.samples.iter().all(|p| p.beta == 0.0) && !s.is_stable());
+fn star_passes_every_patch_test_on_distorted_meshes() {
+    let mut patches = flat(&FEW).unwrap();
+    patches.retain(|p| p.mesh != "regular" && !meets(p));
+    assert_eq!(patches.len(), 52 * FEW.len());
+    assert_passed(&rows(&patches, &[Star]));
 }
 
-/// Goal: constants per cell fail along the grid, where they outnumber what the jump can do by far; integrated functions of
-/// all pairs fail on the diagonal; both like h.
+/// As above in solids: planes along and across the grid, through nodes and edges.
 #[test]
-fn p0_and_facet_lose_their_bound_like_h() {
-    for (name, space) in [
-        ("horizontal, offset 0.3h", ContactSpace::P0),
-        ("45°, offset 0.3h", ContactSpace::Facet),
-        ("normal (1, 0, 1), offset 1e-3h", ContactSpace::Facet),
-    ] {
-        let s = sequence(name, space);
-        assert!(s.slope > 0.85 && s.slope < 1.2, "{name}: {}", s.slope);
-        assert!(!s.is_stable(), "{name}");
-    }
+fn star_passes_every_patch_test_in_solids() {
+    let patches = solid(&FEW).unwrap();
+    assert_passed(&rows(&patches, &[Star]));
 }
 
-/// Source: an independent program, two digits. Goal: the same numbers within 5 % for pairs on the same meshes, within 10 % for
-/// P0 and facets, known at n = 10, 20 where they go like 1/n.
+/// Goal: cracks that branch and cross pass too. Where the meeting is closer to a node than 1e-2 of a cell, functions of
+/// one node differ on a sliver only, and the stiffness may be refused; an answer that is given must be right, to the
+/// length of an arm that is too short to be kept (1e-9 of a cell).
 #[test]
-fn numbers_agree_with_an_independent_program() {
-    let pairs = ContactSpace::EdgePairs;
-    for (name, expected) in [
-        ("horizontal, offset 0.3h", [1.34, 1.33, 1.33]),
-        ("45°, offset 0.3h", [0.23, 0.09, 0.047]),
-        ("normal (0, 0, 1)", [1.33, 1.33, 1.33]),
-        ("normal (1, 0, 1), offset 0.3h", [0.42, 0.23, 0.15]),
-    ] {
-        for (beta, expected) in betas(name, pairs).into_iter().zip(expected) {
-            let error = beta / expected - 1.0;
-            println!("{name}: {beta:.4}, {expected}");
-            assert!(error.abs() < 0.05, "{name}: {beta} {expected}");
+fn star_passes_where_cracks_meet_unless_the_stiffness_is_refused() {
+    let mut patches = flat(&DISTANCES).unwrap();
+    patches.retain(meets);
+    let found = rows(&patches, &[Star]);
+    assert_eq!(found.len(), 4 * DISTANCES.len());
+    for row in &found {
+        let refused =
+            row.distance.abs() < 2e-3 && row.verdict.contains("stiffness is not positive definite");
+        let short = (1e-10..1e-8).contains(&row.distance.abs())
+            && row.traction.max(row.displacement) < 1e-8;
+        assert!(row.passed() || refused || short, "{row:#?}");
+    }
+    let passed = found.iter().filter(|row| row.passed());
+    assert!(passed.count() >= 4 * 8, "far from nodes and through them");
+}
+
+/// Goal: the other spaces as they are. Edge pairs are exact for level cracks and for those alone; facet multipliers keep
+/// the displacement but lose the traction where there are too many of them; so do constant ones between held ends.
+#[test]
+fn what_other_spaces_cannot_do_is_seen() {
+    let mut patches = flat(&[3e-1, 1e-9]).unwrap();
+    patches.retain(|p| p.mesh == "regular" && !meets(p));
+    let found = rows(&patches, &[EdgePairs, Facet, P0]);
+    let of = |space: &str, crack: &str, distance: f64| -> Vec<&PatchRow> {
+        let own = found
+            .iter()
+            .filter(|row| row.space == space && row.crack == crack && row.distance == distance);
+        own.collect()
+    };
+    for row in of("edge-pairs", "0°", 3e-1) {
+        assert!(row.passed(), "{row:#?}");
+    }
+    for crack in ["10°", "27°", "45°"] {
+        for row in of("edge-pairs", crack, 3e-1) {
+            assert!(row.state == State::Open || row.traction > 1e-2, "{row:#?}");
         }
     }
-    let near = betas("45°, offset 1e-3h", pairs)[0];
-    assert!((near / 1.7e-3 - 1.0).abs() < 0.05, "{near}");
-    for (name, space, coarse, fine) in [
-        ("horizontal, offset 0.3h", ContactSpace::P0, 0.21, 0.11),
-        ("45°, offset 0.3h", ContactSpace::Facet, 0.11, 0.054),
-    ] {
-        let [_, eleven, twenty_one] = betas(name, space);
-        println!("{name} {}: {eleven:.4}, {twenty_one:.4}", space.name());
-        assert!(
-            (1.1 * eleven / coarse - 1.0).abs() < 0.1,
-            "{name}: {eleven}"
-        );
-        assert!(
-            (1.05 * twenty_one / fine - 1.0).abs() < 0.1,
-            "{name}: {twenty_one}"
-        );
-    }
-}
-
-/// Source: β² is the least eigenvalue of C⁻¹ G A⁻¹ Gᵀ, here with dense matrices, an unsymmetric eigenproblem and A by its
-/// columns. Goal: agreement to 1e-8 with the sparse factor and the symmetric pencil, in 2D with branch functions and in 3D.
-#[test]
-fn dense_matrices_give_the_same_beta() {
-    for (name, cells) in [("inside, 27°, tips branch", 5), ("normal (1, 0.3, 2)", 3)] {
-        for space in SPACES {
-            let scene = scene(name);
-            let case = scene.case(space, cells).unwrap();
-            let body = Body::new(&case, 1, Needs::default()).unwrap();
-            let m = mass(&body.integrator()).unwrap();
-            let n = body.numbers.len();
-            let column = |j: usize| -> Vec<f64> {
-                let mut unit = vec![0.0; n];
-                unit[j] = 1.0;
-                let (k, m) = (body.stiffness.mul(&unit), m.mul(&unit));
-                k.iter()
-                    .zip(m)
-                    .map(|(k, m)| k / YOUNG + m / (LENGTH * LENGTH))
-                    .collect()
-            };
-            let a = DMatrix::from_columns(
-                &(0..n)
-                    .map(|j| nalgebra::DVector::from_vec(column(j)))
-                    .collect::<Vec<_>>(),
-            );
-            let rows = body.jump_rows.len();
-            let dim = body.mesh.dim();
-            let mut g = DMatrix::zeros(rows, n);
-            for (i, row) in body.jump_rows.iter().enumerate() {
-                for &(j, v) in row {
-                    g[(i, j)] = v * body.points[i / dim].weight;
-                }
-            }
-            let h = LENGTH / cells as f64;
-            let c = DMatrix::from_row_slice(rows, rows, &multiplier_norm(&body, space, h));
-            let s = &g * a.lu().solve(&g.transpose()).unwrap();
-            let values = c.lu().solve(&s).unwrap().complex_eigenvalues();
-            let least = values.iter().map(|v| v.re).fold(f64::INFINITY, f64::min);
-            let found = infsup::sample(scene, space, cells).unwrap().beta;
-            let error = found / least.sqrt() - 1.0;
-            println!("{name} {}: {found} {error:.1e}", space.name());
-            assert!(error.abs() < 1e-8, "{name} {}: {error:e}", space.name());
+    let straight = |row: &&PatchRow| row.crack.ends_with('°');
+    for row in found.iter().filter(straight) {
+        if row.space == "facet" || row.space == "p0" {
+            assert!(row.displacement < PASSED, "{row:#?}");
         }
     }
+    assert!(of("facet", "45°", 1e-9).iter().any(|r| r.traction > PASSED));
+    assert!(of("p0", "0°", 3e-1).iter().any(|r| r.traction > 1e-2));
 }
 
-/// Goal: a space passes if both rules hold, and a single mesh, a vanishing β or a missing reference never pass.
-#[test]
-fn verdicts_follow_slope_and_share() {
-    let judged = |slope: f64, share: f64| {
-        let sequence = Sequence {
-            scene: &SCENES[0],
-            space: ContactSpace::Star,
-            samples: Vec::new(),
-            slope,
-            share,
-        };
-        sequence.is_stable()
+/// Force on the top of a block that is pushed down and aside, cut from side to side at a distance from a node.
+fn top_force(space: &str, degrees: f64, distance: f64) -> [f64; 2] {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let h = 1.0 / 6.0;
+    let x = [0.5 - distance * h * s, 1.0 + distance * h * c];
+    let [p, q] = [-3.0, 3.0].map(|l| [x[0] + l * c, x[1] + l * s]);
+    let case = parse(&format!(
+        "title = \"t\"\nmodel = \"plane-strain\"\ntolerance = 1e-13\n\
+         material = {{ young_pa = 1e10, poisson = 0.3 }}\n\
+         mesh = {{ box = {{ min_m = [0, 0], max_m = [1, 2], cells = [6, 12] }} }}\n\
+         [[crack]]\npoints_m = [{p:?}, {q:?}]\nfriction = 0.3\ntip = \"none\"\ncontact = \"{space}\"\n\
+         [[support]]\non = \"bottom\"\ndisplacement_m = [0, 0]\n\
+         [[support]]\non = \"top\"\ndisplacement_m = [5e-4, -1e-3]\n"
+    ));
+    let results = run_case(&case, &["hybrid"]);
+    ["x", "y"].map(|axis| value(&results, |_| true, ["reaction", "top", axis]))
+}
+
+/// |R(ε) − R(0)|/|R(0)| for all distances but 0.
+fn departures(space: &str, degrees: f64) -> Vec<(f64, f64)> {
+    let through = top_force(space, degrees, 0.0);
+    let off = |distance: f64| {
+        let force = top_force(space, degrees, distance);
+        (force[0] - through[0]).hypot(force[1] - through[1]) / through[0].hypot(through[1])
     };
-    assert!(judged(0.25, 0.1) && judged(-3.0, 7.0));
-    assert!(!judged(0.26, 1.0) && !judged(0.0, 0.09));
-    assert!(!judged(f64::NAN, 1.0) && !judged(f64::INFINITY, 1.0) && !judged(0.0, f64::NAN));
+    let distances = DISTANCES.iter().filter(|d| **d != 0.0);
+    distances.map(|&d| (d, off(d))).collect()
 }
 
-fn stickslip(arguments: &[&str], dir: &Path) -> Output {
-    let mut program = Command::cargo_bin("stickslip").unwrap();
-    let program = program.env("RAYON_NUM_THREADS", "1");
-    program.args(arguments).current_dir(dir).output().unwrap()
-}
-
-/// Goal: the verb writes its files with exit code 0, and the same numbers with one thread as the library with all.
+/// Source: the crack moves by ε h. Goal: the answer under friction and bending goes to that of the crack through the node,
+/// from both sides, with ε² (its first order is the shift, which a body symmetric about the node does not feel), down to
+/// rounding however ill-shaped the cut cells are. Facet multipliers leave a jump where all edges of the node are cut.
+/// Tolerance: measured 1.8e-2 ε² at most; rounding of a stiffness of condition 1e3.
 #[test]
-fn the_verb_writes_what_the_library_finds() {
-    let dir = tempfile::tempdir().unwrap();
-    let run = stickslip(&["spaces", "--meshes", "3", "--out", "out"], dir.path());
-    let text = String::from_utf8_lossy(&run.stdout);
-    assert_eq!(run.status.code(), Some(0), "{text}");
-    assert!(text.contains("60 sequences"), "{text}");
-    let read = |name: &str| std::fs::read_to_string(dir.path().join("out").join(name)).unwrap();
-    let table = csv::file(&report::rows(&COARSE)).unwrap();
-    assert_eq!(read("infsup.csv"), String::from_utf8(table).unwrap());
-    let header = "dimension,crack,space,cells,h_m,dofs,points,beta,kernel,slope,share,verdict\n";
-    assert!(read("infsup.csv").starts_with(header));
-    assert!(read("infsup.tex").contains("$\\beta$"));
-    for name in ["infsup.md", "provenance.toml", "figures/infsup.svg"] {
-        assert!(!read(name).is_empty(), "{name}");
+fn the_answer_is_continuous_as_the_crack_comes_to_a_node() {
+    for degrees in [10.0, 27.0, 45.0] {
+        for (distance, off) in departures("star", degrees) {
+            let bound = 0.03 * distance * distance + 1e-12;
+            assert!(off < bound, "{degrees}° at {distance:e}: {off:e}");
+        }
     }
-    let schema = include_str!("../docs/schema.md");
-    for column in header.trim_end().split(',') {
-        assert!(schema.contains(&format!("| `{column}` |")), "{column}");
-    }
-}
-
-/// Goal: bad input and unwritable folders are exit code 2, before any computing.
-#[test]
-fn bad_input_ends_with_code_two() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("file"), "").unwrap();
-    for arguments in [
-        &["spaces", "--out", "file"][..],
-        &["spaces", "--meshes", "2"],
-        &["spaces", "--meshes", "5"],
-    ] {
-        assert_eq!(stickslip(arguments, dir.path()).status.code(), Some(2));
-    }
-}
-
-/// Goal: a β that vanishes is shown as such: no slope in the table, the lower edge in the figure.
-#[test]
-fn vanishing_numbers_can_be_shown() {
-    let zero = |cells: usize| Sample {
-        cells,
-        h: LENGTH / cells as f64,
-        unknowns: 1,
-        points: 1,
-        beta: 0.0,
-        kernel: 1,
-    };
-    let mut sequence = Sequence {
-        scene: &SCENES[0],
-        space: ContactSpace::P0,
-        samples: vec![zero(5), zero(11)],
-        slope: f64::INFINITY,
-        share: 0.0,
-    };
-    assert!(report::figure(std::slice::from_ref(&sequence)).is_ok());
-    let table = report::table(std::slice::from_ref(&sequence)).unwrap();
-    let cells = ["0", "0", "1", "–", "0", "not stable"];
-    assert_eq!(table.rows()[0][2..], cells);
-    sequence.samples.clear();
-    assert!(report::figure(&[sequence]).is_err());
+    let facet = departures("facet", 45.0);
+    assert!(facet.iter().all(|(_, off)| *off > 1e-4), "{facet:?}");
 }

@@ -8,6 +8,9 @@
 //! σ = −p I that is so for a crack of any shape and without friction; with σ n = 0 the faces are free and about to open. Where
 //! it is not so the solution is refused. The load factor scales the stress.
 //!
+//! A straight crack or a plane that is free of traction may also stand open: side 1 moved by δ along n, jump (δ, 0, 0).
+//! The load factor scales δ too.
+//!
 //! In 2D the stress is that of the plane; in plane strain σ_zz follows. Rigid motion: none at x_c, the middle between the
 //! ends of a chain of segments, the centre of an arc or ellipse, the stated point of a plane.
 
@@ -16,11 +19,14 @@ use std::f64::consts::PI;
 use super::line_crack::{apply, axes, resolve};
 use super::plane_elasticity::PlaneElasticity;
 use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
-use crate::fem::{Point, sub};
+use crate::fem::{Point, add_scaled, dot, norm, sub};
 use crate::harness::case::{CrackShape, Model};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;
+
+/// A point closer to an open crack than this, in units of the body's diagonal, lies on it: its side is asked for.
+const ON_CRACK: f64 = 1e-10;
 
 const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
     ParameterSpec {
@@ -41,14 +47,26 @@ pub const SPEC: SolutionSpec = SolutionSpec {
         component("stress_xy_pa", "stress σ_xy"),
         component("stress_yz_pa", "stress σ_yz, solids only"),
         component("stress_xz_pa", "stress σ_xz, solids only"),
+        component(
+            "opening_m",
+            "opening δ >= 0 of a straight crack or plane without traction",
+        ),
     ],
     build,
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[xx, yy, zz, xy, yz, xz] = values else {
-        return Err("six stress components are needed".into());
+    let &[xx, yy, zz, xy, yz, xz, opening] = values else {
+        return Err("six stress components and an opening are needed".into());
     };
+    let flat = match setting.crack {
+        CrackShape::Plane { .. } => true,
+        CrackShape::Polyline(points) => points.len() == 2,
+        _ => false,
+    };
+    if opening < 0.0 || (opening > 0.0 && !flat) {
+        return Err("only a straight crack or a plane can stand open, by opening_m >= 0".into());
+    }
     let mut strain = [[0.0; 3]; 3];
     if setting.model == Model::Solid {
         let trace = xx + yy + zz;
@@ -75,6 +93,8 @@ fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, Str
         centre: centre(setting.crack),
         stress: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
         strain,
+        opening,
+        near: ON_CRACK * norm(&sub(&setting.body[1], &setting.body[0])),
     }))
 }
 
@@ -99,6 +119,10 @@ struct UniformStress {
     /// [Pa], at factor 1 or at the present one.
     stress: [Point; 3],
     strain: [Point; 3],
+    /// δ [m], at factor 1 or at the present one.
+    opening: f64,
+    /// Distance from the crack below which a point lies on it [m].
+    near: f64,
 }
 
 impl UniformStress {
@@ -157,6 +181,14 @@ impl UniformStress {
             if p < -rounding {
                 return Err(format!("the crack is under tension of {} Pa at {x:?}", -p));
             }
+            if self.opening > 0.0 && p.hypot(a).hypot(b) > rounding {
+                return Err(format!(
+                    "an open crack carries traction ({p}, {a}, {b}) Pa at {x:?}"
+                ));
+            }
+            if self.opening < 0.0 {
+                return Err("the faces overlap".into());
+            }
             let (shear, bound) = (a.hypot(b), self.friction * p.max(0.0));
             if shear > bound + rounding {
                 return Err(format!(
@@ -176,6 +208,7 @@ impl Solution for UniformStress {
             let scaled = |t: &[Point; 3]| t.map(|row| row.map(|v| factor * v));
             state.stress = scaled(&self.stress);
             state.strain = scaled(&self.strain);
+            state.opening = factor * self.opening;
             state.admissible()?;
         }
         Ok(Box::new(state))
@@ -183,8 +216,21 @@ impl Solution for UniformStress {
 }
 
 impl Field for UniformStress {
-    fn displacement(&self, x: &Point, _side: f64) -> Point {
-        apply(&self.strain, &sub(x, &self.centre))
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let u = apply(&self.strain, &sub(x, &self.centre));
+        if self.opening == 0.0 {
+            return u;
+        }
+        // The centre of a straight crack or plane lies on it.
+        let normal = axes(&self.crack, x)[0];
+        let distance = dot(&normal, &sub(x, &self.centre));
+        let side = if distance.abs() <= self.near {
+            side
+        } else {
+            distance
+        };
+        let moved = if side > 0.0 { self.opening } else { 0.0 };
+        add_scaled(&u, moved, &normal)
     }
 
     fn stress(&self, _x: &Point, _side: f64) -> [Point; 3] {
@@ -197,7 +243,7 @@ impl Field for UniformStress {
     }
 
     fn jump(&self, _x: &Point) -> [f64; 3] {
-        [0.0; 3]
+        [self.opening, 0.0, 0.0]
     }
 
     fn intensity(&self, _front: &Point) -> Option<[f64; 3]> {
@@ -215,6 +261,10 @@ mod tests {
     use crate::analytic::check::{check_contact, check_elasticity, setting};
     use crate::fem::{norm, unit};
     use crate::harness::case::Material;
+
+    fn held(of: &Setting<'_>, stress: &[f64; 6]) -> Result<Box<dyn Solution>, String> {
+        build(of, &[stress.as_slice(), &[0.0]].concat())
+    }
 
     fn plane(normal: Point) -> CrackShape {
         CrackShape::Plane {
@@ -236,7 +286,7 @@ mod tests {
                 young: 1e8,
                 poisson,
             };
-            let solution = build(&of, &[0.0, 0.0, -5.0, 0.0, 0.0, 0.0]).unwrap();
+            let solution = held(&of, &[0.0, 0.0, -5.0, 0.0, 0.0, 0.0]).unwrap();
             let field = solution.at(&[0.5, 1.0]).unwrap();
             let [p, a, b] = field.traction(&[0.0, 0.0, 0.1]);
             assert!((p - 4.0).abs() < 1e-14 && (a.hypot(b) - 2.0).abs() < 1e-14);
@@ -257,13 +307,13 @@ mod tests {
         let mut of = setting(&shape);
         of.model = Model::PlaneStress;
         of.friction = 0.5;
-        let solution = build(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+        let solution = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
         let field = solution.at(&[1.0]).unwrap();
         let [p, a, _] = field.traction(&[0.0; 3]);
         assert!((p - 4.0).abs() < 1e-14 && (a.abs() - 2.0).abs() < 1e-14);
         // The bound itself is admissible, less friction is not.
         of.friction = 0.4999;
-        let steep = build(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+        let steep = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
         assert!(steep.at(&[1.0]).is_err());
     }
 
@@ -279,7 +329,7 @@ mod tests {
         for (shape, x) in [(&arc, [0.1, 0.8, 0.0]), (&chain, [0.55, -0.05, 0.0])] {
             let mut of = setting(shape);
             of.friction = 0.0;
-            let solution = build(&of, &[-3.0, -3.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+            let solution = held(&of, &[-3.0, -3.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
             let field = solution.at(&[1.0]).unwrap();
             check_contact(field.as_ref(), None, &of, &[x], [1e-14, 1e-15]);
             assert!((field.traction(&x)[0] - 3.0).abs() < 1e-14);
@@ -304,7 +354,7 @@ mod tests {
         let mut of = setting(&shape);
         of.model = Model::Solid;
         let stress = [-1.0, -1.2, -0.9, 0.1, -0.15, 0.05];
-        let field = build(&of, &stress).unwrap().at(&[1.0]).unwrap();
+        let field = held(&of, &stress).unwrap().at(&[1.0]).unwrap();
         check_contact(
             field.as_ref(),
             None,
@@ -314,7 +364,7 @@ mod tests {
         );
         check_elasticity(field.as_ref(), &of, &[[0.4, 0.3, 0.2]], 1e-2, 1e-12);
         of.friction = 0.05;
-        assert!(build(&of, &stress).unwrap().at(&[1.0]).is_err());
+        assert!(held(&of, &stress).unwrap().at(&[1.0]).is_err());
     }
 
     #[test]
@@ -323,18 +373,18 @@ mod tests {
         let mut of = setting(&shape);
         of.friction = 0.0;
         assert!(
-            build(&of, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+            held(&of, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
                 .unwrap()
                 .at(&[1.0])
                 .is_ok()
         );
         assert!(
-            build(&of, &[1.0, 1e-9, 0.0, 0.0, 0.0, 0.0])
+            held(&of, &[1.0, 1e-9, 0.0, 0.0, 0.0, 0.0])
                 .unwrap()
                 .at(&[1.0])
                 .is_err()
         );
-        assert!(build(&of, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).is_err());
+        assert!(held(&of, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).is_err());
     }
 
     /// The verdict on an arc agrees with a fine sampling of it.
@@ -353,7 +403,7 @@ mod tests {
             let mut of = setting(&arc);
             of.friction = r(7);
             let stress = [-1.0 - r(3), -1.0 - r(5), 0.0, r(11) - 0.5, 0.0, 0.0];
-            let accepted = build(&of, &stress).unwrap().at(&[1.0]).is_ok();
+            let accepted = held(&of, &stress).unwrap().at(&[1.0]).is_ok();
             let CrackShape::Arc { to, .. } = arc else {
                 unreachable!()
             };
@@ -382,7 +432,7 @@ mod tests {
         let shape = plane([1.0, 0.3, 2.0]);
         let mut of = setting(&shape);
         of.model = Model::Solid;
-        let field = build(&of, &[-1.0, -1.1, -0.9, 0.1, 0.0, 0.1])
+        let field = held(&of, &[-1.0, -1.1, -0.9, 0.1, 0.0, 0.1])
             .unwrap()
             .at(&[2.0])
             .unwrap();
@@ -395,5 +445,46 @@ mod tests {
             }
         }
         assert!(norm(&sum) < 1e-14);
+    }
+
+    #[test]
+    fn a_crack_free_of_traction_may_stand_open_and_no_other() {
+        let line = CrackShape::Polyline(vec![[-1.0, 0.5], [3.0, 0.5]]);
+        let arc = CrackShape::Arc {
+            centre: [0.0, 0.0],
+            radius: 1.0,
+            from: 0.0,
+            to: 1.0,
+        };
+        let mut of = setting(&line);
+        of.body = [[0.0; 3], [1.0, 1.0, 0.0]];
+        let open = |of: &Setting<'_>, yy: f64, opening: f64| {
+            build(of, &[2.0, yy, 0.0, 0.0, 0.0, 0.0, opening])
+        };
+        let field = open(&of, 0.0, 0.1).unwrap().at(&[0.5]).unwrap();
+        let closed = open(&of, 0.0, 0.0).unwrap().at(&[0.5]).unwrap();
+        for (x, side, moved) in [
+            ([0.3, 0.7, 0.0], -1.0, 0.05),
+            ([0.3, 0.3, 0.0], 1.0, 0.0),
+            ([0.3, 0.5, 0.0], 1.0, 0.05),
+            ([0.3, 0.5, 0.0], -1.0, 0.0),
+        ] {
+            let d = sub(
+                &field.displacement(&x, side),
+                &closed.displacement(&x, side),
+            );
+            assert!(norm(&sub(&d, &[0.0, moved, 0.0])) < 1e-16);
+        }
+        check_contact(
+            field.as_ref(),
+            None,
+            &of,
+            &[[0.2, 0.5, 0.0]],
+            [1e-15, 1e-15],
+        );
+        assert!(open(&of, -1.0, 0.1).unwrap().at(&[1.0]).is_err());
+        assert!(open(&of, 0.0, 0.1).unwrap().at(&[-1.0]).is_err());
+        assert!(open(&of, 0.0, -0.1).is_err());
+        assert!(open(&setting(&arc), 0.0, 0.1).is_err());
     }
 }

@@ -208,7 +208,7 @@ fn body_points(
             .iter()
             .enumerate()
             .flat_map(|(region, part)| {
-                let points = part.sub_cells().fine_points();
+                let points = part.sub_cells().fine_points(mesh.kind, corners);
                 points.into_iter().map(move |p| (p, region))
             });
         return Ok(parts.collect());

@@ -237,7 +237,7 @@ impl CellIntegrator<'_> {
                 }
                 (true, _, CellKind::Hex8) => self.graded(&part.tetrahedra),
                 (false, ..) if affine => part.sub_cells().points(),
-                (false, ..) => part.sub_cells().fine_points(),
+                (false, ..) => part.sub_cells().fine_points(kind, corners),
             };
             for WeightedPoint { x, weight } in rule {
                 let Some(xi) = kind.inverse_map(corners, &x) else {

@@ -19,8 +19,9 @@ use super::ellipse::Ellipse;
 
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
-/// Far above rounding of coordinates (1e-16 of the body, about 1e-13 h), far below any cut that matters to stiffness.
-pub const ON_CRACK: f64 = 1e-10;
+/// Above rounding of coordinates (1e-16 of the body, about 1e-14 h). The crack is bent by so much at the node, and the contact
+/// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
+pub const ON_CRACK: f64 = 1e-12;
 
 /// Geometry of a crack.
 #[derive(Debug, Clone, PartialEq)]
@@ -315,11 +316,13 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
             along >= other.range[0] - slack && along <= other.range[1] + slack
         }
     };
+    // Zero is a side too: a meeting at a sample must not fall between two intervals.
+    let above = |s: f64| distance(s) >= 0.0;
     let root = |mut low: f64, mut high: f64| {
-        let start = distance(low);
+        let start = above(low);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if distance(middle) * start > 0.0 {
+            if above(middle) == start {
                 low = middle;
             } else {
                 high = middle;
@@ -336,7 +339,7 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
     let mut found: Vec<f64> = ends.collect();
     for k in 0..count {
         let [low, high] = [k, k + 1].map(|k| length * k as f64 / count as f64);
-        if distance(low) * distance(high) < 0.0 {
+        if above(low) != above(high) {
             found.extend(Some(root(low, high)).filter(|&s| on(s)));
         }
     }

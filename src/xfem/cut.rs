@@ -9,6 +9,8 @@ use crate::fem::quadrature::{
 };
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 
+use super::rational::rational_points;
+
 /// Side of a crack: +1 (side 1) or −1.
 pub type Side = f64;
 
@@ -146,16 +148,20 @@ impl SubCells {
         flat.chain(solid).collect()
     }
 
-    /// Degree-8 points, for non-affine maps whose integrand is not polynomial.
-    pub fn fine_points(&self) -> Vec<WeightedPoint> {
-        let flat = self.triangles.iter().flat_map(|t| triangle_collapsed(t, 5));
+    /// Points for the non-affine map of the cell with these corners, whose integrand is not polynomial.
+    pub fn fine_points(&self, kind: CellKind, corners: &[Point]) -> Vec<WeightedPoint> {
+        let mut points = Vec::new();
+        for t in &self.triangles {
+            rational_points(kind, corners, t, &mut points);
+        }
         let solid = self.tetrahedra.iter().flat_map(|t| {
             // Each tetrahedron in eight by its edge midpoints: the error of the degree-5 rule falls by 2⁻⁶.
             halve_tetrahedron(t)
                 .into_iter()
                 .flat_map(|t| tetrahedron(&t))
         });
-        flat.chain(solid).collect()
+        points.extend(solid);
+        points
     }
 }
 
@@ -311,8 +317,9 @@ mod tests {
                 let volume: f64 = gauss_cell(kind.dim(), 2).iter().map(|(xi, w)| w * kind.gradients(&corners, xi).1).sum();
                 let sum: f64 = parts.iter().map(|p| measure(&p.points())).sum();
                 prop_assert!((sum - volume).abs() < 1e-13 * volume);
-                for points in [SubCells::points, SubCells::fine_points] {
-                    let total: f64 = parts.iter().flat_map(points).map(|p| p.weight * f(&p.x)).sum();
+                for fine in [false, true] {
+                    let rule = |part: &SubCells| if fine { part.fine_points(kind, &corners) } else { part.points() };
+                    let total: f64 = parts.iter().flat_map(rule).map(|p| p.weight * f(&p.x)).sum();
                     prop_assert!((total - whole).abs() < 1e-12 * volume);
                 }
                 for (part, side) in parts.iter().zip([1.0, -1.0]) {

@@ -26,8 +26,8 @@ pub struct FacetPoint {
 pub enum Integrand<'a> {
     /// Polynomial: the cell is affine and carries no branch function.
     Polynomial,
-    /// Rational: the cell is distorted.
-    Rational,
+    /// Rational, the cell is distorted: takes so many points.
+    Rational(usize),
     /// Like √r from one of the tips (2D).
     Root(&'a [Point]),
 }
@@ -38,8 +38,6 @@ pub enum Integrand<'a> {
 ///   jump × hat is cubic on an affine cell: 2 points;    with branch functions: x = tip + ρ² e, a polynomial in ρ
 /// ```
 pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
-    /// Points on distorted cells: the error of a rational function falls like ratio^−2n, below rounding at 25 % distortion.
-    const RATIONAL: usize = 12;
     /// Points in ρ: exact for √r × quartics, and with slack for the √r of the other tip.
     const ROOT: usize = 10;
     let d = sub(&ends[1], &ends[0]);
@@ -56,9 +54,7 @@ pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetP
     };
     let nearest = match integrand {
         Integrand::Polynomial => return unit(2).map(|(t, w)| point(t, w * length)).collect(),
-        Integrand::Rational => {
-            return unit(RATIONAL).map(|(t, w)| point(t, w * length)).collect();
-        }
+        Integrand::Rational(n) => return unit(n).map(|(t, w)| point(t, w * length)).collect(),
         Integrand::Root(tips) => tips.iter().min_by(|a, b| {
             let distance = |x: &Point| {
                 (0..2)
@@ -69,7 +65,7 @@ pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetP
         }),
     };
     let Some(tip) = nearest else {
-        return unit(RATIONAL).map(|(t, w)| point(t, w * length)).collect();
+        return unit(ROOT).map(|(t, w)| point(t, w * length)).collect();
     };
     // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
     let r = [0, 1].map(|i| dot(&sub(&ends[i], tip), &d).abs() / length);
@@ -182,13 +178,17 @@ fn fans(polygon: &[Point]) -> Vec<FanTriangle> {
 }
 
 /// Barycentric coordinates in the plane of a triangle; `None` if it has no area.
+///
+/// By areas, not by scalar products: their determinant is the square of the area, lost in rounding on a sliver.
 fn barycentric(t: &[Point; 3], x: &Point) -> Option<[f64; 3]> {
     let (e1, e2, d) = (sub(&t[1], &t[0]), sub(&t[2], &t[0]), sub(x, &t[0]));
-    let (a, b, c) = (dot(&e1, &e1), dot(&e1, &e2), dot(&e2, &e2));
-    let determinant = a * c - b * b;
-    let (f, g) = (dot(&d, &e1), dot(&d, &e2));
-    let (u, v) = ((c * f - b * g) / determinant, (a * g - b * f) / determinant);
-    (determinant > 0.0).then_some([1.0 - u - v, u, v])
+    let normal = cross(&e1, &e2);
+    let square = dot(&normal, &normal);
+    let (u, v) = (
+        dot(&cross(&d, &e2), &normal) / square,
+        dot(&cross(&e1, &d), &normal) / square,
+    );
+    (square > 0.0).then_some([1.0 - u - v, u, v])
 }
 
 fn with_hats(
@@ -261,6 +261,29 @@ mod tests {
             let fine = polygon_points(polygon, false);
             let linear = |p: &FacetPoint| p.hats[1] * (1.0 + p.x[0]);
             assert!((sum(&points, linear) - sum(&fine, linear)).abs() < 1e-14);
+        }
+    }
+
+    /// Σ hat x = x holds on every triangle of the fan, however thin: rounding of coordinates over the width at most.
+    #[test]
+    fn slivers_keep_their_points_and_hats() {
+        for width in [1e-2, 1e-6, 1e-9, 1e-12] {
+            let polygon = [
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, width, 0.0],
+                [0.4, 0.7, 0.2],
+            ];
+            let points = polygon_points(&polygon, true);
+            assert_eq!(points.len(), 4 * polygon_points(&polygon[..3], true).len());
+            for p in &points {
+                let mut x = [0.0; 3];
+                for (hat, corner) in p.hats.iter().zip(&polygon) {
+                    x = add_scaled(&x, *hat, corner);
+                }
+                let off = p.weight * norm(&sub(&x, &p.x));
+                assert!(off < 1e-15, "{width}: {off:e}");
+            }
         }
     }
 }

@@ -86,7 +86,8 @@ impl CrackFacets {
             };
             let nodes = mesh.cell(cell);
             let corners = mesh.corners(cell);
-            let tolerance = 1e-9 * norm(&sub(&corners[0], &corners[2]));
+            // What is cut off or merged by it is missing from the crack, and so from the forces on it.
+            let tolerance = 1e-12 * norm(&sub(&corners[0], &corners[2]));
             // Corners inside the cell that its own faces share.
             let mut inner: Vec<usize> = Vec::new();
             for face in partition.faces.iter().filter(|f| f.crack == index) {

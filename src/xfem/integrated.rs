@@ -22,6 +22,7 @@ use super::facet_rule::{
 use super::facets::{CrackFacets, Facet};
 use super::multipliers::{Crossing, Multipliers, constant_space, facet_space, star_space};
 use super::pairs::{ContactPoint, ContactSurface, CrackSurface, SurfaceCorner};
+use super::rational::rational_order;
 use super::surface_point::SurfacePoint;
 
 /// A facet smaller than this, in units of its cell's size to the power of its dimension, has no multiplier of its own.
@@ -198,7 +199,10 @@ fn facet_points(
         let integrand = match (branch, affine) {
             (true, _) => Integrand::Root(&tips),
             (false, true) => Integrand::Polynomial,
-            (false, false) => Integrand::Rational,
+            (false, false) => {
+                let corners = &corners[..mesh.kind.nodes()];
+                Integrand::Rational(rational_order(mesh.kind, corners, [&p, &q]))
+            }
         };
         return segment_points(&[p, q], integrand);
     }

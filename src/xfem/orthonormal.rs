@@ -1,4 +1,4 @@
-//! Orthonormal enriched functions, node by node, where branch functions reach beyond the cells of their tip.
+//! Orthonormal enriched functions, node by node, where branch functions reach beyond the cells of their tip, or cracks meet.
 //!
 //! ```text
 //!   A_fg = ∫ ∇φ_f · ∇φ_g over the enriched functions of a node,   A = D L Lᵀ D,   φ' = T φ,   T = (D L)⁻¹
@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Far from the tip the four branch functions of a node, and its Heaviside function, are nearly the same: the condition of
-//! K grows like a high power of radius over cell size (1e12 instead of 1e3). Scaled Cholesky factors of the node blocks
+//! K grows like a high power of radius over cell size (1e12 instead of 1e3). Close to a junction the steps of two cracks
+//! may differ on a sliver only. Scaled Cholesky factors of the node blocks
 //! bring it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part
 //! outside the span of those before it is too small to be told from rounding is dropped. Functions keep their numbers;
 //! only what the solver sees is transformed.
@@ -57,7 +58,7 @@ pub struct SolverBasis {
 }
 
 impl SolverBasis {
-    /// Orthonormalises the nodes of ramped branch functions. `matrix`: stiffness of a cell over its functions; `held`: whether
+    /// Orthonormalises the nodes of ramped branch functions and of several cracks. `matrix`: stiffness of a cell over its functions; `held`: whether
     /// a function has a prescribed component, which keeps its node as it is.
     pub fn new<'a>(
         mesh: &Mesh,
@@ -71,11 +72,14 @@ impl SolverBasis {
         let surplus = surplus(mesh, enrichment, &held);
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
-            let ramped = |f: usize| match enrichment.functions[f].kind {
+            let kind = |f: usize| enrichment.functions[f].kind;
+            let ramped = |f: usize| match kind(f) {
                 FunctionKind::Branch { tip, .. } => enrichment.is_ramped(tip as usize),
                 _ => false,
             };
-            if !own.clone().any(ramped) || own.clone().any(&held) {
+            let step = |f: &usize| matches!(kind(*f), FunctionKind::Heaviside { .. });
+            let dependent = own.clone().any(ramped) || own.clone().filter(step).count() > 1;
+            if !dependent || own.clone().any(&held) {
                 continue;
             }
             if basis.block_of.is_empty() {

@@ -381,7 +381,7 @@ fn chain_in(
     for (k, end) in ends.iter_mut().enumerate() {
         let bound = crack.range[k];
         let beyond = if k == 0 { bound - end.0 } else { end.0 - bound };
-        if !crack.free[k] && beyond > 1e-9 * size {
+        if !crack.free[k] && beyond > 1e-12 * size {
             *end = (bound, (curve.at(bound).0, None));
         }
     }
@@ -434,7 +434,7 @@ fn cut_at(face: Face, at: &[FaceCorner]) -> Vec<Face> {
             let from = sub(&x, &p.0);
             let t = dot(&from, &d) / (length * length);
             let off = norm(&cross(&from, &d)) / length;
-            (nodes.is_none() && off <= 1e-3 * length && t > 1e-9 && t < 1.0 - 1e-9)
+            (nodes.is_none() && off <= 1e-3 * length && t > 1e-12 && t < 1.0 - 1e-12)
                 .then_some((t, (x, None)))
         })
         .collect();
