@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
+use super::{CliError, parse_choice};
 use crate::harness::case::ContactSpace;
 use crate::harness::infsup::{self, SCENES, Scene};
+use crate::harness::patch::{self, PatchRow};
 use crate::report::{Bundle, Provenance, prepare_output};
 
 /// Arguments of the verb.
@@ -33,15 +34,26 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let cells = |scene: &Scene| scene.cells.iter().copied().take(meshes).collect();
     let sequences = infsup::run(cells, &bar)?;
     bar.finish();
+    let bar = Bar::new();
+    // A method that takes whatever contact state comes.
+    let choice = parse_choice("hybrid")?;
+    let patches = patch::catalogue(&patch::DISTANCES)?;
+    let rows = patch::run(&patches, &SPACES, &choice, &bar)?;
+    bar.finish();
 
     let mut bundle = Bundle::new();
     crate::report::infsup::add_to(&mut bundle, &sequences)?;
+    crate::report::patch::add_to(&mut bundle, &rows)?;
     Provenance::collect(rayon::current_num_threads())
         .with_option("meshes", meshes.to_string())
         .add_to(&mut bundle)?;
     bundle.commit(&arguments.out)?;
-    let table = crate::report::infsup::table(&sequences)?;
-    say(format_args!("{}", table.terminal()));
+    for table in [
+        crate::report::infsup::table(&sequences)?,
+        crate::report::patch::table(&rows)?,
+    ] {
+        say(format_args!("{}", table.terminal()));
+    }
     let failed = || {
         let star = |s: &&infsup::Sequence| s.space == ContactSpace::Star && !s.is_stable();
         sequences.iter().filter(star)
@@ -62,5 +74,29 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
             s.share
         ));
     }
-    Ok(failed().next().is_none())
+    let missed: Vec<&PatchRow> = rows
+        .iter()
+        .filter(|row| row.space == ContactSpace::Star.name() && !row.passed())
+        .collect();
+    for row in &missed {
+        warn(format_args!(
+            "patch test missed: star on {} of {}, {}, at {:e} of a cell: {}, traction {:.1e}, displacement {:.1e}",
+            row.crack,
+            row.mesh,
+            row.state.name(),
+            row.distance,
+            row.verdict,
+            row.traction,
+            row.displacement
+        ));
+    }
+    Ok(failed().next().is_none() && missed.is_empty())
 }
+
+/// All spaces.
+const SPACES: [ContactSpace; 4] = [
+    ContactSpace::Star,
+    ContactSpace::Facet,
+    ContactSpace::P0,
+    ContactSpace::EdgePairs,
+];

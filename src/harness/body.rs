@@ -410,7 +410,7 @@ fn products(rows: &[Vec<(usize, f64)>], x: &[f64]) -> Vec<f64> {
 }
 
 /// Sparse rows over the free unknowns.
-fn free_rows(
+pub(crate) fn free_rows(
     rows: &[Vec<(usize, f64)>],
     numbers: &[Option<u32>],
     free: usize,

@@ -24,9 +24,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
+use stickslip_methods::{Elastic, ElasticParts, MethodError, SymmetricMatrix};
 
-use crate::harness::body::{Body, BodyError, Needs, elimination_order};
+use crate::harness::body::{Body, BodyError, Needs, elimination_order, free_rows};
 use crate::harness::case::{CaseError, ContactSpace};
 use crate::harness::run::Progress;
 use crate::xfem::basis::FunctionKind;
@@ -280,22 +280,54 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
     for (value, mass) in values.iter_mut().zip(masses) {
         *value = *value / YOUNG + mass / (LENGTH * LENGTH);
     }
-    let mut row_ptr = vec![0];
-    let (mut col_idx, mut entries) = (Vec::new(), Vec::new());
-    for row in &body.jump_rows {
-        for &(i, v) in row {
-            col_idx.push(i);
-            entries.push(v);
+    // In the basis of the solver: branch functions within a radius are not independent as they stand.
+    let dim = body.mesh.dim();
+    let kept: Vec<Option<u32>> = {
+        let mut count = 0;
+        let number = |i: usize| {
+            (!body.basis.drops(i / dim)).then(|| {
+                count += 1;
+                count - 1
+            })
+        };
+        (0..all.len()).map(number).collect()
+    };
+    let n = kept.iter().flatten().count();
+    let columns: Vec<Vec<(usize, f64)>> =
+        (0..all.len()).map(|i| body.basis.column(dim, i)).collect();
+    let mut sum: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); n];
+    for j in 0..all.len() {
+        for k in col_ptr[j]..col_ptr[j + 1] {
+            let (i, value) = (row_idx[k], values[k]);
+            let mirror = (i != j).then_some((j, i));
+            for (i, j) in std::iter::once((i, j)).chain(mirror) {
+                for &(p, s) in &columns[i] {
+                    for &(q, t) in &columns[j] {
+                        // The lower triangle, column by column.
+                        if let (Some(p), Some(q)) = (kept[p], kept[q])
+                            && p >= q
+                        {
+                            *sum[q as usize].entry(p as usize).or_default() += s * t * value;
+                        }
+                    }
+                }
+            }
         }
-        row_ptr.push(col_idx.len());
     }
-    let n = all.len();
+    let mut ptr = vec![0];
+    let (mut rows, mut entries) = (Vec::new(), Vec::new());
+    for column in &sum {
+        rows.extend(column.keys());
+        entries.extend(column.values());
+        ptr.push(rows.len());
+    }
+    let jump: Vec<_> = (body.jump_rows.iter().map(|row| body.basis.row(dim, row))).collect();
     let parts = ElasticParts {
-        dim: body.mesh.dim(),
-        stiffness: SymmetricMatrix::new(n, col_ptr, row_idx, values)?,
-        jump: JumpOperator::new(body.jump_rows.len(), n, row_ptr, col_idx, entries)?,
+        dim,
+        stiffness: SymmetricMatrix::new(n, ptr, rows, entries)?,
+        jump: free_rows(&jump, &kept, n)?,
         weight: body.points.iter().map(|p| p.weight).collect(),
-        order: elimination_order(&body.mesh, &body.enrichment, &all),
+        order: elimination_order(&body.mesh, &body.enrichment, &kept),
         floating: Vec::new(),
         frictionless: false,
         traction: None,

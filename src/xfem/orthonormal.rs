@@ -160,24 +160,29 @@ impl SolverBasis {
         }
     }
 
+    /// Column of T: the unknowns of the solver to which one unknown contributes, with the factors.
+    pub fn column(&self, dim: usize, unknown: usize) -> Vec<(usize, f64)> {
+        let (function, a) = (unknown / dim, unknown % dim);
+        match self.block_of.get(function).copied().flatten() {
+            None => vec![(unknown, 1.0)],
+            Some(b) => {
+                let block = &self.blocks[b as usize];
+                let j = function - block.first;
+                let rows = (j..block.count).map(|i| ((block.first + i) * dim + a, block.t(i, j)));
+                rows.filter(|(_, t)| *t != 0.0).collect()
+            }
+        }
+    }
+
     /// A sparse row of B over all unknowns, times Tᵀ.
     pub fn row(&self, dim: usize, row: &[(usize, f64)]) -> Vec<(usize, f64)> {
         if self.is_identity() {
             return row.to_vec();
         }
-        let mut found = BTreeMap::new();
+        let mut found: BTreeMap<usize, f64> = BTreeMap::new();
         for &(unknown, value) in row {
-            let (function, a) = (unknown / dim, unknown % dim);
-            match self.block_of[function] {
-                None => *found.entry(unknown).or_default() += value,
-                Some(b) => {
-                    let block = &self.blocks[b as usize];
-                    let j = function - block.first;
-                    for i in j..block.count {
-                        *found.entry((block.first + i) * dim + a).or_default() +=
-                            block.t(i, j) * value;
-                    }
-                }
+            for (i, t) in self.column(dim, unknown) {
+                *found.entry(i).or_default() += t * value;
             }
         }
         found.into_iter().filter(|(_, v)| *v != 0.0).collect()

@@ -12,6 +12,9 @@ use super::partition::crossings;
 /// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
 const ON_EDGE: f64 = 1e-9;
 
+/// Shortest arm in a cell, in units of the cell's diagonal: above rounding.
+const SHORTEST_ARM: f64 = 1e-12;
+
 /// How a cell that the crack's curve or plane splits lies along the crack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
@@ -68,7 +71,11 @@ pub fn along(mesh: &Mesh, crack: &Crack, cell: usize) -> Along {
                 (l.min(s), h.max(s))
             });
             let [first, last] = crack.range;
-            if high <= first + tolerance || low >= last - tolerance {
+            // A tip this close to an edge is on it; an arm that another crack ends exists however short it is.
+            let [at_first, at_last] = crack
+                .free
+                .map(|f| if f { tolerance } else { SHORTEST_ARM * size });
+            if high <= first + at_first || low >= last - at_last {
                 Along::Away
             } else if (low < first - tolerance && crack.free[0])
                 || (high > last + tolerance && crack.free[1])
