@@ -19,6 +19,7 @@ pub mod integrated;
 pub mod intensity;
 pub mod interaction;
 pub mod multipliers;
+pub mod near_front;
 pub mod pairs;
 pub mod partition;
 pub mod pieces;
