@@ -21,6 +21,7 @@ pub mod intensity;
 pub mod interaction;
 pub mod mass;
 pub mod multipliers;
+pub mod near_front;
 pub mod orthonormal;
 pub mod pairs;
 pub mod partition;

@@ -157,6 +157,26 @@ pub fn tetrahedron_volume(t: &[Point; 4]) -> f64 {
     dot(&a, &cross(&b, &c)).abs() / 6.0
 }
 
+/// Points of a crack-tip fan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FanRule {
+    /// Points in ρ = √r; five are exact on affine cells.
+    pub radial: usize,
+    /// Points in angle where the farther end of the edge lies at most 2, 4, 12 and more than 12 times its distance from
+    /// the tip away from the tip's foot on it.
+    pub angular: [usize; 4],
+}
+
+impl FanRule {
+    /// Errors of 1e-8 and below.
+    pub const fn fine(affine: bool) -> Self {
+        FanRule {
+            radial: if affine { 5 } else { 10 },
+            angular: [12, 20, 24, 36],
+        }
+    }
+}
+
 /// Crack-tip rule on the triangle (tip, a, b): x = tip + ρ² (y − tip) with y on the edge a b, placed by the sinh map.
 ///
 /// ```text
@@ -167,6 +187,11 @@ pub fn tetrahedron_volume(t: &[Point; 4]) -> f64 {
 /// map follows the nearly singular angular factor (Johnston and Elliott 2005). Five radial points are exact on affine
 /// cells. Degenerate triangles return no points.
 pub fn tip_triangle(tip: &Point, a: &Point, b: &Point, affine: bool) -> Vec<WeightedPoint> {
+    fan_triangle(tip, a, b, FanRule::fine(affine))
+}
+
+/// The same with a number of points of its own.
+pub fn fan_triangle(tip: &Point, a: &Point, b: &Point, rule: FanRule) -> Vec<WeightedPoint> {
     let edge = sub(b, a);
     let length = norm(&edge);
     let along = [edge[0] / length, edge[1] / length, edge[2] / length];
@@ -178,12 +203,12 @@ pub fn tip_triangle(tip: &Point, a: &Point, b: &Point, affine: bool) -> Vec<Weig
     }
     let q = s0.abs().max(s1.abs()) / h;
     let angular = match q {
-        q if q <= 2.0 => 12,
-        q if q <= 4.0 => 20,
-        q if q <= 12.0 => 24,
-        _ => 36,
+        q if q <= 2.0 => rule.angular[0],
+        q if q <= 4.0 => rule.angular[1],
+        q if q <= 12.0 => rule.angular[2],
+        _ => rule.angular[3],
     };
-    let radial = gauss(if affine { 5 } else { 10 });
+    let radial = gauss(rule.radial);
     let (m0, m1) = ((s0 / h).asinh(), (s1 / h).asinh());
     let mut points = Vec::with_capacity(radial.len() * angular);
     for (m, wm) in gauss(angular) {

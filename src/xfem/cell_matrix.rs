@@ -15,16 +15,15 @@ use crate::fem::cell::CellKind;
 use crate::fem::elasticity::{CellMatrix, Gram, Lame, cell_stiffness, flatten};
 use crate::fem::mesh::Mesh;
 use crate::fem::quadrature::{WeightedPoint, gauss_cell};
-use crate::fem::{Point, cross, sub, unit};
+use crate::fem::{Point, sub};
 use crate::harness::case::Quadrature;
 
-use super::basis::{CellBasis, CellFunction, FrontShape, Region};
+use super::basis::{CellBasis, CellFunction, Region};
 use super::crack::Crack;
 use super::cut::{self, Side};
 use super::enrichment::Enrichment;
 use super::facets::CrackFacets;
-use super::front::{FrontPiece, FrontRule, front_cell_points};
-use super::graded::graded_tetrahedra;
+use super::near_front::{Effort, NearFront};
 use super::partition::{Part, Partition};
 
 /// A quadrature point of a cell.
@@ -212,107 +211,94 @@ impl CellIntegrator<'_> {
         let affine = kind.is_affine(corners);
         let whole = Partition::whole(kind, corners);
         let parts = &partition.unwrap_or(&whole).parts;
-        let tip = self
-            .enrichment
-            .tip_cells
-            .iter()
-            .find(|&&(c, _)| c == cell)
-            .map(|&(_, tip)| tip);
+        if branch && kind == CellKind::Hex8 {
+            return self.near_front_points(cell, corners, parts, Effort::WORKING);
+        }
+        let tip = self.tip_in(cell);
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
-            let side = tip
-                .and_then(|tip| part.side(self.enrichment.tips[tip].crack))
-                .unwrap_or(1.0);
-            let rule = match (branch, tip, kind) {
-                (true, Some(tip), CellKind::Quad4) => {
+            let rule = match (branch, tip) {
+                (true, Some(tip)) => {
                     cut::tip_points(&part.polygon, &self.enrichment.tips[tip].position, affine)
                 }
-                (true, Some(tip), CellKind::Hex8) if partition.is_some() => {
-                    self.front_points(cell, corners, tip, part, side)?
-                }
-                (true, _, CellKind::Quad4) => {
+                (true, None) => {
                     let tips: Vec<Point> =
                         self.enrichment.tips.iter().map(|t| t.position).collect();
                     cut::graded_points(&part.sub_cells().triangles, &tips)
                 }
-                (true, _, CellKind::Hex8) => self.graded(&part.tetrahedra),
-                (false, ..) if affine => part.sub_cells().points(),
-                (false, ..) => part.sub_cells().fine_points(kind, corners),
+                (false, _) if affine => part.sub_cells().points(),
+                (false, _) => part.sub_cells().fine_points(kind, corners),
             };
-            for WeightedPoint { x, weight } in rule {
-                let Some(xi) = kind.inverse_map(corners, &x) else {
-                    return Err(
-                        self.error(cell, "a sub-cell point has no reference position".into())
-                    );
-                };
-                points.push(SidedPoint {
-                    xi,
-                    x,
-                    weight,
-                    region,
-                });
-            }
+            points.extend(rule.into_iter().map(|p| (p, region)));
         }
+        // The sinh rule of a tip fan integrates constants to its own accuracy, not to rounding.
+        let tolerance = if tip.is_some() { 1e-6 } else { 1e-12 };
+        self.located(cell, corners, points, tolerance)
+    }
+
+    /// The tip or front in a cell.
+    fn tip_in(&self, cell: usize) -> Option<usize> {
+        let own = self.enrichment.tip_cells.iter().find(|&&(c, _)| c == cell);
+        own.map(|&(_, tip)| tip)
+    }
+
+    /// Points of a 3D cell with branch functions.
+    pub fn near_front_points(
+        &self,
+        cell: usize,
+        corners: &[Point],
+        parts: &[Part],
+        effort: Effort,
+    ) -> Result<Vec<SidedPoint>, CellError> {
+        let near = NearFront {
+            corners,
+            parts,
+            fronts: &self.enrichment.tips,
+            chord: self.tip_in(cell).and_then(|tip| {
+                let index = self.enrichment.tips[tip].crack;
+                let crack = &self.cracks[index];
+                let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
+                facets
+                    .facets
+                    .iter()
+                    .find_map(|f| f.front.as_ref().map(|cut| cut.chord))
+            }),
+        };
+        let points = near.points(|crack| self.cracks[crack].cell_phi(self.mesh, cell), effort);
+        self.located(cell, corners, points, 1e-6)
+    }
+
+    /// Reference positions of points that must fill the cell up to a relative tolerance.
+    fn located(
+        &self,
+        cell: usize,
+        corners: &[Point],
+        points: Vec<(WeightedPoint, Region)>,
+        tolerance: f64,
+    ) -> Result<Vec<SidedPoint>, CellError> {
+        let kind = self.mesh.kind;
         // A slip in the geometry shows as a wrong measure: never integrate over it.
         let measure: f64 = gauss_cell(kind.dim(), 2)
             .iter()
             .map(|(xi, w)| w * kind.gradients(corners, xi).1)
             .sum();
-        let sum: f64 = points.iter().map(|p| p.weight).sum();
-        // The sinh rule of a tip fan integrates constants to its own accuracy, not to rounding.
-        let tolerance = if tip.is_some() { 1e-6 } else { 1e-12 };
+        let sum: f64 = points.iter().map(|(p, _)| p.weight).sum();
         if (sum - measure).abs() > tolerance * measure {
             let reason = format!("sub-cells measure {sum:e} instead of {measure:e}");
             return Err(self.error(cell, reason));
         }
-        Ok(points)
-    }
-
-    /// Points of one side of a 3D cell that the front runs through.
-    fn front_points(
-        &self,
-        cell: usize,
-        corners: &[Point],
-        tip: usize,
-        part: &Part,
-        side: Side,
-    ) -> Result<Vec<WeightedPoint>, CellError> {
-        let frame = &self.enrichment.tips[tip];
-        let FrontShape::Ellipse(ellipse) = &frame.shape else {
-            return Err(self.error(cell, "a tip in a solid without a front".into()));
+        let place = |(WeightedPoint { x, weight }, region)| {
+            let xi = kind.inverse_map(corners, &x).ok_or_else(|| {
+                self.error(cell, "a sub-cell point has no reference position".into())
+            })?;
+            Ok(SidedPoint {
+                xi,
+                x,
+                weight,
+                region,
+            })
         };
-        let crack = &self.cracks[frame.crack];
-        let facets = CrackFacets::of_cell(self.mesh, cell, frame.crack, crack, self.enrichment);
-        let Some(cut) = facets.facets.iter().find_map(|f| f.front.as_ref()) else {
-            // The front only grazes the cell.
-            return Ok(self.graded(&part.tetrahedra));
-        };
-        let along = unit(&sub(&cut.chord[1], &cut.chord[0]));
-        let across = cross(&ellipse.normal, &along);
-        let piece = FrontPiece {
-            chord: cut.chord,
-            normal: ellipse.normal,
-            at: |x: &Point| ellipse.meet(x, &across),
-        };
-        let rule = FrontRule {
-            along: 5,
-            affine: false,
-        };
-        let phi = crack.cell_phi(self.mesh, cell);
-        Ok(front_cell_points(corners, &phi, side, &piece, rule))
-    }
-
-    /// Points of tetrahedra near a front.
-    fn graded(&self, tetrahedra: &[[Point; 4]]) -> Vec<WeightedPoint> {
-        /// Halvings; a cell that the front grazes needs the most.
-        const DEPTH: usize = 8;
-        let tips = &self.enrichment.tips;
-        let distance = |x: &Point| {
-            tips.iter()
-                .map(|t| t.distance(x))
-                .fold(f64::INFINITY, f64::min)
-        };
-        graded_tetrahedra(tetrahedra, distance, DEPTH)
+        points.into_iter().map(place).collect()
     }
 
     fn error(&self, cell: usize, reason: String) -> CellError {

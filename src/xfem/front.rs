@@ -14,7 +14,7 @@
 use super::cut::{Side, clip, crossing};
 use super::slice::slice_points;
 use crate::fem::cell::CellKind;
-use crate::fem::quadrature::{WeightedPoint, gauss};
+use crate::fem::quadrature::{FanRule, WeightedPoint, gauss};
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub, unit};
 
 /// A piece of crack front inside a cell.
@@ -30,13 +30,13 @@ pub struct FrontPiece<F> {
 }
 
 /// How finely a front cell is integrated.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrontRule {
     /// Gauss points along the chord between two vertices. 5: relative error 1e-6 for r^−1 and r^−½ times polynomials,
     /// 5e-6 where the front cuts off a corner; 3: 1e-4; a straight front perpendicular to two faces needs 2 or 3.
     pub along: usize,
-    /// True if the cell's map is affine and the front straight (five radial points are then exact).
-    pub affine: bool,
+    /// Points in the slices.
+    pub fan: FanRule,
 }
 
 /// Points along the chord, n between neighbouring `breaks` (abscissae of vertices) and `ends` of the chord.
@@ -163,7 +163,7 @@ pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
         if slice.len() < 3 {
             continue;
         }
-        let in_slice = slice_points(&slice, &along, (piece.at)(&on_chord), size, rule.affine);
+        let in_slice = slice_points(&slice, &along, (piece.at)(&on_chord), size, rule.fan);
         points.extend(in_slice.into_iter().map(|p| WeightedPoint {
             x: p.x,
             weight: p.weight * ds,
@@ -331,7 +331,7 @@ mod tests {
                 &piece,
                 FrontRule {
                     along: along_points,
-                    affine: true,
+                    fan: FanRule::fine(true),
                 },
             );
             let volume: f64 = SubCells::of(CellKind::Hex8, corners, &phi, side)
@@ -459,7 +459,8 @@ mod tests {
                 }
             };
             let piece = FrontPiece { chord, normal, at };
-            front_cell_points(&corners, &phi, 1.0, &piece, FrontRule { along: n, affine })
+            let fan = FanRule::fine(affine);
+            front_cell_points(&corners, &phi, 1.0, &piece, FrontRule { along: n, fan })
                 .iter()
                 .map(|p| {
                     let r = disc.nearest(&p.x).psi.hypot(p.x[1] - 0.1);

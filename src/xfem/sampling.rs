@@ -6,14 +6,13 @@
 
 use crate::fem::cell::CellKind;
 use crate::fem::elasticity::Lame;
-use crate::fem::quadrature::{
-    WeightedPoint, gauss_cell, tetrahedron, tip_triangle, triangle_collapsed,
-};
+use crate::fem::quadrature::{WeightedPoint, gauss_cell, tip_triangle, triangle_collapsed};
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 
 use super::basis::{CellFunction, Region, TipFrame};
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 use super::cut::{self, Side};
+use super::near_front::{Effort, NearFront};
 use super::partition::Partition;
 use super::placement::reference_position;
 use super::polygon::{self, segment_distance};
@@ -165,35 +164,51 @@ pub fn comparison_points(
     };
     let whole = Partition::whole(kind, corners);
     let parts = &partition.or(divided.as_ref()).unwrap_or(&whole).parts;
-    let mut points = Vec::new();
-    for (number, part) in parts.iter().enumerate() {
-        let region = if partition.is_some() { number } else { 0 };
-        let side = part.sides.first().map(|s| s.1);
-        let rule = match kind {
-            CellKind::Quad4 => flat_points(&part.polygon, fronts, n, kind.is_affine(corners)),
-            CellKind::Hex8 => part
-                .tetrahedra
-                .iter()
-                .flat_map(|t| solid_points(t, fronts, n))
-                .collect(),
-        };
-        for WeightedPoint { x, weight } in rule {
-            let Some(xi) = kind.inverse_map(corners, &x) else {
-                return Err(CellError {
-                    at: x,
-                    reason: "a point of a sub-cell has no reference position".into(),
-                });
+    // The region of a part, and its side.
+    let region = |number: usize| if partition.is_some() { number } else { 0 };
+    let side = |number: usize| parts[number].sides.first().map(|s| s.1);
+    let rule: Vec<(WeightedPoint, usize)> = match kind {
+        CellKind::Quad4 => (parts.iter().enumerate())
+            .flat_map(|(number, part)| {
+                let points = flat_points(&part.polygon, fronts, n, kind.is_affine(corners));
+                points.into_iter().map(move |p| (p, number))
+            })
+            .collect(),
+        CellKind::Hex8 => {
+            let effort = if n > 4 {
+                Effort::REFERENCE
+            } else {
+                Effort::WORKING
             };
-            let point = SidedPoint {
-                xi,
-                x,
-                weight,
-                region,
+            let near = NearFront {
+                corners,
+                parts,
+                fronts,
+                chord: None,
             };
-            points.push(ComparisonPoint { point, side });
+            near.points(
+                |crack| integrator.cracks[crack].cell_phi(mesh, cell),
+                effort,
+            )
         }
-    }
-    Ok(points)
+    };
+    let located = |(WeightedPoint { x, weight }, number)| {
+        let xi = kind.inverse_map(corners, &x).ok_or_else(|| CellError {
+            at: x,
+            reason: "a point of a sub-cell has no reference position".into(),
+        })?;
+        let point = SidedPoint {
+            xi,
+            x,
+            weight,
+            region: region(number),
+        };
+        Ok(ComparisonPoint {
+            point,
+            side: side(number),
+        })
+    };
+    rule.into_iter().map(located).collect()
 }
 
 /// Points of a polygon: a fan about the tip in its closure, or triangles halved towards the tips outside.
@@ -256,33 +271,6 @@ fn flat_points(
         let (a, b, c) = (mid(0, 1), mid(1, 2), mid(2, 0));
         for part in [[t[0], a, c], [a, t[1], b], [c, b, t[2]], [a, b, c]] {
             stack.push((part, depth + 1));
-        }
-    }
-    points
-}
-
-/// Points of a tetrahedron, halved towards the fronts; more than 4 points per direction asked for: halved once more.
-///
-/// Three halvings leave an eighth of the neighbourhood of a front unresolved, where the rule still finds most of the energy.
-fn solid_points(t: &[Point; 4], fronts: &[TipFrame], n: usize) -> Vec<WeightedPoint> {
-    let depth = if n > 4 { 4 } else { 3 };
-    let mut stack = vec![(*t, 0)];
-    let mut points = Vec::new();
-    while let Some((t, level)) = stack.pop() {
-        let mut centre = [0.0; 3];
-        for x in &t {
-            centre = add_scaled(&centre, 0.25, x);
-        }
-        let size = diameter(&t);
-        let near = fronts.iter().any(|f| f.distance(&centre) < size);
-        if (near && level < depth) || (n > 4 && level == 0) {
-            stack.extend(
-                cut::halve_tetrahedron(&t)
-                    .into_iter()
-                    .map(|t| (t, level + 1)),
-            );
-        } else {
-            points.extend(tetrahedron(&t));
         }
     }
     points

@@ -4,17 +4,18 @@
 //! ρ = √r. All weights are positive.
 
 use super::cut::fan;
-use crate::fem::quadrature::{WeightedPoint, gauss, tip_triangle, triangle};
+use crate::fem::quadrature::{FanRule, WeightedPoint, fan_triangle, gauss, triangle};
 use crate::fem::{Point, add_scaled, cross, dot, norm, sub, unit};
 
 /// Points of a convex polygon with normal ± `along` that has the front's point `tip` in its plane; `size`: of the
-/// cell [m]; `affine`: five radial points, else ten. Without a tip the degree-4 rule.
+/// cell [m]; `rule`: of the fan around the tip; half as many points in angle on the intervals of a tip outside. Without a
+/// tip the degree-4 rule.
 pub fn slice_points(
     slice: &[Point],
     along: &Point,
     tip: Option<Point>,
     size: f64,
-    affine: bool,
+    rule: FanRule,
 ) -> Vec<WeightedPoint> {
     let Some(tip) = tip else {
         return fan(slice).iter().flat_map(triangle).collect();
@@ -31,10 +32,10 @@ pub fn slice_points(
     });
     if inside {
         edges
-            .flat_map(|(p, q)| tip_triangle(&tip, p, q, affine))
+            .flat_map(|(p, q)| fan_triangle(&tip, p, q, rule))
             .collect()
     } else {
-        outside_points(slice, along, &tip, affine)
+        outside_points(slice, along, &tip, rule)
     }
 }
 
@@ -44,16 +45,14 @@ pub fn slice_points(
 ///   dA = r dr dθ = 2 ρ³ dρ dθ,   r = ρ² between the near edge and the far edge in direction θ
 /// ```
 ///
-/// Exact in ρ as [`tip_triangle`] is. An edge's r(θ) = h / cos(θ − foot) has its poles along the edge: intervals of θ,
+/// Exact in ρ as [`fan_triangle`] is. An edge's r(θ) = h / cos(θ − foot) has its poles along the edge: intervals of θ,
 /// first those between vertices, are halved until they are no wider than their distance to both edges' poles.
 fn outside_points(
     polygon: &[Point],
     along: &Point,
     tip: &Point,
-    affine: bool,
+    rule: FanRule,
 ) -> Vec<WeightedPoint> {
-    /// Points in angle per interval: error (3 + √8)^−2n = 7e-10 for simple poles.
-    const ANGULAR: usize = 6;
     /// Halvings; a tip 1e-9 edges away needs 30.
     const DEPTH: usize = 40;
     let mut middle = [0.0; 3];
@@ -71,8 +70,9 @@ fn outside_points(
     let angles: Vec<f64> = flat.iter().map(|d| d[1].atan2(d[0])).collect();
     let mut breaks = angles.clone();
     breaks.sort_by(f64::total_cmp);
-    let angular = gauss(ANGULAR);
-    let radial = gauss(if affine { 5 } else { 10 });
+    // Error (3 + √8)^−2n for simple poles, n points: 7e-10 for 6.
+    let angular = gauss(rule.angular[0] / 2);
+    let radial = gauss(rule.radial);
     let mut points = Vec::new();
     let mut stack = Vec::new();
     for pair in breaks.windows(2) {
@@ -161,7 +161,13 @@ mod tests {
             [2.0, 0.0, 0.0],
             [-4.0, 1.0, 0.0],
         ] {
-            let points = slice_points(&square, &[0.0, 0.0, 1.0], Some(tip), 1.0, true);
+            let points = slice_points(
+                &square,
+                &[0.0, 0.0, 1.0],
+                Some(tip),
+                1.0,
+                FanRule::fine(true),
+            );
             assert!(points.iter().all(|p| p.weight >= 0.0));
             let area: f64 = points.iter().map(|p| p.weight).sum();
             assert!((area - 1.15).abs() < 1e-8, "{tip:?}: {area}");
