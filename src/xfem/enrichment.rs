@@ -154,7 +154,7 @@ impl Enrichment {
                 if matches!(crack.tip, Tip::Radius(_)) {
                     core.extend(cells.iter().flat_map(|&c| mesh.cell(c)));
                 }
-                for cell in cells {
+                for &cell in &cells {
                     if cut::is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
                         let list = inside.entry(cell).or_default();
                         if !list.contains(&index) {
@@ -169,11 +169,22 @@ impl Enrichment {
                     let reach = radius.min(undisturbed(crack, &frame));
                     let near = |&n: &usize| frame.distance(&mesh.nodes[n]) <= reach;
                     core.extend((0..mesh.nodes.len()).filter(near).map(|n| n as u32));
-                    for cell in 0..mesh.cell_count() {
-                        let nodes = mesh.cell(cell);
-                        if nodes.iter().any(|n| core.contains(n)) {
-                            enriched.extend(nodes.iter().flat_map(|&n| branch(n)));
+                    // The nodes of the tip's cells have no Heaviside function: their cells need ρ = 1.
+                    let at_tip: BTreeSet<u32> =
+                        cells.iter().flat_map(|&c| mesh.cell(c)).copied().collect();
+                    let ramped = (0..mesh.cell_count())
+                        .map(|cell| mesh.cell(cell))
+                        .filter(|nodes| nodes.iter().any(|n| at_tip.contains(n)))
+                        .all(|nodes| nodes.iter().all(|n| core.contains(n)));
+                    enriched.extend(core.iter().flat_map(|&n| branch(n)));
+                    if ramped {
+                        for nodes in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
+                            if nodes.iter().any(|n| core.contains(n)) {
+                                enriched.extend(nodes.iter().flat_map(|&n| branch(n)));
+                            }
                         }
+                    } else {
+                        core.clear();
                     }
                 }
                 cores.push(core);
