@@ -209,7 +209,16 @@ fn stickslip(arguments: &[&str], dir: &Path) -> Output {
 #[test]
 fn the_verb_writes_what_the_library_finds() {
     let dir = tempfile::tempdir().unwrap();
-    let run = stickslip(&["spaces", "--meshes", "3", "--out", "out"], dir.path());
+    let few = [
+        "spaces",
+        "--meshes",
+        "3",
+        "--distances",
+        "1",
+        "--out",
+        "out",
+    ];
+    let run = stickslip(&few, dir.path());
     let text = String::from_utf8_lossy(&run.stdout);
     assert_eq!(run.status.code(), Some(0), "{text}");
     assert!(text.contains("60 sequences"), "{text}");
@@ -219,7 +228,13 @@ fn the_verb_writes_what_the_library_finds() {
     let header = "dimension,crack,space,cells,h_m,dofs,points,beta,kernel,slope,share,verdict\n";
     assert!(read("infsup.csv").starts_with(header));
     assert!(read("infsup.tex").contains("$\\beta$"));
-    for name in ["infsup.md", "provenance.toml", "figures/infsup.svg"] {
+    for name in [
+        "infsup.md",
+        "patch.csv",
+        "patch.md",
+        "provenance.toml",
+        "figures/infsup.svg",
+    ] {
         assert!(!read(name).is_empty(), "{name}");
     }
     let schema = include_str!("../docs/schema.md");

@@ -16,6 +16,9 @@ pub struct Arguments {
     /// Meshes of every sequence, from the coarsest: a slope needs three
     #[arg(long, default_value_t = most_meshes() as u8, value_parser = clap::value_parser!(u8).range(3..=most_meshes() as i64))]
     meshes: u8,
+    /// Distances of the crack from a node in the patch tests, of 27 from 0.3 cells down to 0
+    #[arg(long, default_value_t = patch::DISTANCES.len() as u8, value_parser = clap::value_parser!(u8).range(1..=patch::DISTANCES.len() as i64))]
+    distances: u8,
     /// Folder for the results
     #[arg(long, default_value = "results")]
     out: PathBuf,
@@ -37,7 +40,8 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let bar = Bar::new();
     // A method that takes whatever contact state comes.
     let choice = parse_choice("hybrid")?;
-    let patches = patch::catalogue(&patch::DISTANCES)?;
+    let distances = usize::from(arguments.distances);
+    let patches = patch::catalogue(&patch::DISTANCES[..distances])?;
     let rows = patch::run(&patches, &SPACES, &choice, &bar)?;
     bar.finish();
 
@@ -46,6 +50,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     crate::report::patch::add_to(&mut bundle, &rows)?;
     Provenance::collect(rayon::current_num_threads())
         .with_option("meshes", meshes.to_string())
+        .with_option("distances", distances.to_string())
         .add_to(&mut bundle)?;
     bundle.commit(&arguments.out)?;
     for table in [
