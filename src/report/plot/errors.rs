@@ -281,8 +281,8 @@ fn laws(
             slope,
             run: guide.run,
         };
-        // A line steeper than all curves would leave the panel.
-        let floor = upwards.0 / apart;
+        // A line steeper than all curves would leave the panel; it spans its triangle in any case.
+        let floor = (upwards.0 / apart).min(y(x[0])).min(y(x[1]));
         let inside = |x: f64| x * (floor / y(x)).max(1.0).powf(1.0 / slope);
         let line = match guide.label {
             Some(_) => [first, last].map(|x| [inside(x), y(inside(x))]).to_vec(),
@@ -334,11 +334,11 @@ mod tests {
             }
             let on_line = a[1] * (law.triangle.x[0] / a[0]).powf(slope);
             assert!(law.triangle.y < on_line && law.triangle.slope == rise / 2.0);
-            assert!(
-                [a, b]
-                    .iter()
-                    .all(|p| p[1] > 0.1 && p[0] >= 9.99 && p[0] <= 1000.1)
-            );
+            let lowest = law.triangle.y.min(law.triangle.end()).min(0.1);
+            for p in [a, b] {
+                assert!(p[1] > lowest && p[0] >= 9.99 && p[0] <= 1000.1, "{p:?}");
+            }
+            assert!(b[0] > 2.0 * a[0], "{rise}: a line, not a point");
         }
     }
 
