@@ -115,7 +115,15 @@ fn closed_forms_give_observed_beside_theoretical_orders() {
         .get("figures/test.hybrid.mu-0.3.energy.error.svg")
         .unwrap();
     let svg = std::str::from_utf8(svg).unwrap();
-    assert!(svg.contains("tips branch: 0.50 (0.5)"), "{svg}");
+    for text in [
+        "tips not enriched",
+        "tip cells enriched",
+        ">edge-pairs: 0.50<",
+    ] {
+        assert!(svg.contains(text), "{text}: {svg}");
+    }
+    // Both panels have the same orders: one legend is enough.
+    assert_eq!(svg.matches(">theory: 0.5<").count(), 1, "{svg}");
 }
 
 /// Goal: without a tip inside there is nothing to enrich, and the smooth orders hold.

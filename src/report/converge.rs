@@ -1,14 +1,11 @@
 //! The convergence study: errors of every mesh, observed beside theoretical orders, errors against unknowns and time.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{fixed, significant, time, value};
-use super::plot::{Curve, CurvePlot, convergence_plot, error_plot};
-use super::standard::file_name;
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, paper};
+use super::{Bundle, Provenance, ReportError, error_figures, paper};
 use crate::harness::converge::Variant;
 use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
@@ -307,107 +304,6 @@ pub fn order_table(rows: &[OrderRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// What a figure shows: one case, method, friction coefficient and quantity.
-type Figure = (String, String, String, String, String);
-
-/// `figures/<case>.<method>.mu-<friction>.<quantity>.error.svg` and `….error-time.svg`.
-fn add_figures(
-    bundle: &mut Bundle,
-    errors: &[ErrorRow],
-    orders: &[OrderRow],
-) -> Result<(), ReportError> {
-    let mut figures: BTreeMap<Figure, Vec<&OrderRow>> = BTreeMap::new();
-    for row in orders {
-        let variant = &row.variant;
-        let figure = (
-            variant.case.clone(),
-            variant.method.clone(),
-            value(variant.friction),
-            row.quantity.clone(),
-            row.at.clone(),
-        );
-        figures.entry(figure).or_default().push(row);
-    }
-    for ((case, method, friction, quantity, at), mut sequences) in figures {
-        sequences.sort_by(|a, b| Row::order(*a, *b));
-        let curve = |order: &OrderRow, x: fn(&ErrorRow) -> f64, label: String| {
-            let own = errors.iter().filter(|row| {
-                row.variant == order.variant && (&row.quantity, &row.at) == (&quantity, &at)
-            });
-            let mut own: Vec<&ErrorRow> =
-                own.filter(|row| above_round_off(row.error) > 0.0).collect();
-            own.sort_by_key(|row| row.refine);
-            Curve {
-                label,
-                points: own.iter().map(|row| [x(row), row.error]).collect(),
-            }
-        };
-        let name = |row: &OrderRow| match row.variant.tip.as_str() {
-            "no-tips" => row.variant.space.clone(),
-            tip => format!("{}, tips {tip}", row.variant.space),
-        };
-        let labelled = |row: &&OrderRow| match (row.order.is_finite(), row.theory) {
-            (true, Some(theory)) => {
-                format!("{}: {} ({})", name(row), fixed(row.order, 2), value(theory))
-            }
-            (true, None) => format!("{}: {}", name(row), fixed(row.order, 2)),
-            (false, _) if row.kind == Kind::Finest => format!("{}: no power law", name(row)),
-            (false, _) => name(row),
-        };
-        let theories: Vec<Option<f64>> = sequences.iter().map(|row| row.theory).collect();
-        let known = theories.iter().flatten().next().is_some();
-        let what = place(&quantity, &at);
-        let note = if known {
-            "orders in h over the last two halvings, in brackets and dotted the theoretical ones"
-        } else {
-            "orders in h over the last two halvings; triangle: order 1"
-        };
-        // A figure belongs to one case.
-        let dim = sequences.iter().map(|row| row.dim).max().unwrap_or(2);
-        let common = format!("{case}, {method}, μ = {friction}");
-        let y_label = if sequences.iter().all(|row| row.kind == Kind::Exact) {
-            format!("error: {what}")
-        } else {
-            format!("relative error: {what}")
-        };
-        let size = CurvePlot {
-            caption: format!("{common}; {note}"),
-            x_label: format!("unknowns N ∝ {}", if dim == 2 { "h⁻²" } else { "h⁻³" }),
-            y_label: y_label.clone(),
-            curves: sequences
-                .iter()
-                .map(|row| curve(row, |r| r.dofs as f64, labelled(row)))
-                .collect(),
-        };
-        let spent = CurvePlot {
-            caption: common,
-            x_label: "total time [s]".into(),
-            y_label,
-            curves: sequences
-                .iter()
-                .map(|row| curve(row, |r| r.seconds.total(), name(row)))
-                .collect(),
-        };
-        let drawable = |plot: &CurvePlot| {
-            let points = plot.curves.iter().flat_map(|curve| &curve.points);
-            points
-                .into_iter()
-                .any(|p| p.iter().all(|c| c.is_finite() && *c > 0.0))
-        };
-        let stem = file_name(&[&case, &method, &format!("mu-{friction}"), &what]);
-        // Errors that are all zero have no place on a logarithmic axis.
-        if drawable(&size) {
-            let svg = convergence_plot(&size, &theories, dim)?;
-            bundle.add(format!("figures/{stem}.error.svg"), svg)?;
-        }
-        if drawable(&spent) {
-            let svg = error_plot(&spent, None)?;
-            bundle.add(format!("figures/{stem}.error-time.svg"), svg)?;
-        }
-    }
-    Ok(())
-}
-
 /// Files of the study: `convergence.*`, `orders.*`, figures, provenance.
 ///
 /// # Errors
@@ -422,7 +318,7 @@ pub fn bundle(
     bundle.add(OrderRow::FILE, csv::file(orders)?)?;
     paper::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
     paper::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
-    add_figures(&mut bundle, errors, orders)?;
+    error_figures::add(&mut bundle, errors, orders)?;
     provenance.add_to(&mut bundle)?;
     Ok(bundle)
 }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
-use super::plot::{Curve, CurvePlot, error_plot};
+use super::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
 use super::study::RefinementRow;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
@@ -309,36 +309,60 @@ pub fn add(
     } in agreements(limits)
     {
         let distance = |h: f64, reaction: f64| [h, ((reaction - mean) / mean).abs()];
-        let mut curves: Vec<Curve> = Vec::new();
-        let mut add = |label: String, point: [f64; 2]| match curves
-            .iter_mut()
-            .find(|curve| curve.label == label)
-        {
-            Some(curve) => curve.points.push(point),
-            None => curves.push(Curve {
-                label,
-                points: vec![point],
-            }),
+        // The same mesh looks the same in both panels.
+        let mut looks: Vec<String> = Vec::new();
+        let mut panel = |heading: &str, points: Vec<(String, [f64; 2])>| {
+            let mut curves: Vec<ErrorCurve> = Vec::new();
+            for (mesh, point) in points {
+                let label = format!("Mesh {mesh}");
+                if let Some(curve) = curves.iter_mut().find(|curve| curve.label == label) {
+                    curve.points.push(point);
+                    continue;
+                }
+                let known = looks.iter().position(|look| *look == mesh);
+                let look = known.unwrap_or(looks.len());
+                if known.is_none() {
+                    looks.push(mesh);
+                }
+                curves.push(ErrorCurve {
+                    label,
+                    look,
+                    points: vec![point],
+                });
+            }
+            ErrorPanel {
+                heading: heading.to_owned(),
+                curves,
+                guides: vec![Guide {
+                    rise: CORNER_ORDER,
+                    run: 1.0,
+                    label: Some(format!("order {CORNER_ORDER} of the corners")),
+                }],
+            }
         };
-        for row in sorted.iter().filter(|row| row.friction == friction) {
-            let label = format!("star, Mesh {}", row.mesh);
-            add(label, distance(row.h_m, row.reaction_mn_per_m));
-        }
-        for row in edge_pairs.iter().filter(|row| row.friction == friction) {
-            let label = format!("edge pairs, Mesh {}", row.family);
-            add(label, distance(row.h_m, row.reaction_mn_per_m));
-        }
-        let plot = CurvePlot {
-            caption: format!(
-                "plate, μ = {}; triangle: order of the plate's corners",
-                value(friction)
-            ),
-            x_label: "cell width h [m]".into(),
-            y_label: "relative distance to limit".into(),
-            curves,
+        let star = sorted.iter().filter(|row| row.friction == friction);
+        let star = star.map(|row| (row.mesh.clone(), distance(row.h_m, row.reaction_mn_per_m)));
+        let pairs = edge_pairs.iter().filter(|row| row.friction == friction);
+        let pairs = pairs.map(|row| {
+            let point = distance(row.h_m, row.reaction_mn_per_m);
+            (row.family.to_string(), point)
+        });
+        let panels = vec![
+            panel("star, tips enriched within a fixed radius", star.collect()),
+            panel("edge pairs, tip cells enriched", pairs.collect()),
+        ];
+        let y_label = "relative distance to limit";
+        let figure = ErrorFigure {
+            title: format!("Plate: {y_label} against cell width"),
+            caption: format!("plate, {} = {}", italic("μ"), value(friction)),
+            x_label: format!("cell width {} [m]", italic("h")),
+            y_label: y_label.into(),
+            columns: 2,
+            panels,
         };
-        let name = format!("figures/converged.mu-{}.svg", value(friction));
-        bundle.add(name, error_plot(&plot, Some(CORNER_ORDER))?)?;
+        if let Some(svg) = error_figure(&figure)? {
+            bundle.add(format!("figures/converged.mu-{}.svg", value(friction)), svg)?;
+        }
     }
     Ok(())
 }

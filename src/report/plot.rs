@@ -17,6 +17,7 @@ mod colour;
 mod contour;
 mod cost;
 mod curves;
+mod errors;
 mod lattice;
 mod legend;
 mod marks;
@@ -32,9 +33,8 @@ mod surface;
 pub use canvas::{Width, italic, subscript};
 pub use contour::{Magnification, displacement_contours};
 pub use cost::method_cost;
-pub use curves::{
-    Curve, CurvePlot, Tier, convergence_plot, error_plot, line_plot, residual_history,
-};
+pub use curves::{Curve, CurvePlot, Tier, error_plot, line_plot, residual_history};
+pub use errors::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure};
 pub use lattice::{Lattice, SmallPanel, lattice};
 pub use methods::rank as method_rank;
 pub use profile::{contact_slip, contact_traction};

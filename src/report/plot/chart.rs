@@ -7,7 +7,7 @@ use super::canvas::{
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::marks;
-use super::style::{Marker, Style, draw_marker};
+use super::style::{Marker, Style, draw_mark, draw_marker};
 use crate::report::ReportError;
 
 /// Sizes of text [pt].
@@ -38,6 +38,8 @@ pub struct SlopeTriangle {
     /// y at `x[0]` on the sloped side.
     pub y: f64,
     pub slope: f64,
+    /// Number at the horizontal leg; the upright leg has `run` times the slope.
+    pub run: f64,
 }
 
 impl SlopeTriangle {
@@ -56,8 +58,18 @@ pub struct Panel {
     /// Horizontal lines in [`Style::level`].
     pub levels: Vec<f64>,
     pub slopes: Vec<SlopeTriangle>,
-    /// Whether curves get few markers, away from those of the others.
-    pub spread: bool,
+    pub markers: Markers,
+}
+
+/// Where markers stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Markers {
+    /// At points that are not crowded.
+    Sparse,
+    /// Few on each curve, away from those of the others.
+    Spread,
+    /// At every point, those of later curves on top.
+    Every,
 }
 
 /// A whole figure.
@@ -77,13 +89,8 @@ impl Chart {
     /// The SVG text.
     pub fn svg(&self) -> Result<String, ReportError> {
         let width = self.width.mm();
-        let label_width = self
-            .panels
-            .iter()
-            .flat_map(|panel| &panel.y.major)
-            .map(|(_, label)| text_width(label, TICK_PT))
-            .fold(0.0, f64::max);
-        let left = MARGIN_MM + 4.5 + label_width + TICK_MM;
+        let axes = self.panels.iter().map(|panel| room_for_labels(&panel.y));
+        let left = axes.fold(0.0, f64::max);
         let right = width - 4.0;
         let caption = wrapped(&self.caption, CAPTION_PT, width - 2.0 * MARGIN_MM);
         let gap = 5.0;
@@ -109,8 +116,10 @@ impl Chart {
                 right,
                 top: y,
                 bottom: y + self.height,
+                y_labels: true,
+                x_labels: index + 1 == self.panels.len(),
             };
-            draw_panel(&mut canvas, panel, &frame, index + 1 == self.panels.len());
+            draw_panel(&mut canvas, panel, &frame);
         }
         let mut y = legend_top;
         for grid in &grids {
@@ -121,11 +130,16 @@ impl Chart {
     }
 }
 
-struct Frame {
-    left: f64,
-    right: f64,
-    top: f64,
-    bottom: f64,
+/// Where a panel is drawn [mm].
+pub struct Frame {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+    /// Whether the y axis has labels.
+    pub y_labels: bool,
+    /// Whether the x axis has labels.
+    pub x_labels: bool,
 }
 
 impl Frame {
@@ -137,8 +151,15 @@ impl Frame {
     }
 }
 
-fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
-    draw_axes(canvas, panel, frame, last);
+/// Room to the left of a frame for the labels of its y axis and the margin [mm].
+pub fn room_for_labels(y: &Axis) -> f64 {
+    let labels = y.major.iter().map(|(_, label)| text_width(label, TICK_PT));
+    MARGIN_MM + 4.5 + labels.fold(0.0, f64::max) + TICK_MM
+}
+
+/// Draws axes and curves; labels of the y axis stand at the left margin of the canvas.
+pub fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
+    draw_axes(canvas, panel, frame);
     for value in &panel.levels {
         let [_, y] = frame.at(panel, [0.0, *value]);
         let Style {
@@ -158,16 +179,25 @@ fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
         .iter()
         .map(|series| draw_line(canvas, panel, frame, series))
         .collect();
-    if panel.spread {
-        for (series, chosen) in panel.series.iter().zip(marks::spread(&places)) {
-            let style = &series.style;
-            for (at, marker) in chosen.into_iter().zip(style.marker.iter().cycle()) {
-                draw_marker(canvas, at, *marker, style.filled, style.colour);
+    match panel.markers {
+        Markers::Spread => {
+            for (series, chosen) in panel.series.iter().zip(marks::spread(&places)) {
+                for at in chosen {
+                    draw_mark(canvas, at, &series.style);
+                }
             }
         }
-    } else {
-        for (series, places) in panel.series.iter().zip(&places) {
-            draw_markers(canvas, series, places);
+        Markers::Every => {
+            for (series, places) in panel.series.iter().zip(&places) {
+                for at in places.iter().flatten() {
+                    draw_mark(canvas, *at, &series.style);
+                }
+            }
+        }
+        Markers::Sparse => {
+            for (series, places) in panel.series.iter().zip(&places) {
+                draw_markers(canvas, series, places);
+            }
         }
     }
 }
@@ -175,12 +205,14 @@ fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
 /// Points of a curve on paper; none where the axes have no place for one.
 type Places = Vec<Option<[f64; 2]>>;
 
-fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
+fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
     let Frame {
         left,
         right,
         top,
         bottom,
+        y_labels,
+        x_labels,
     } = *frame;
     for (value, _) in &panel.y.major {
         let [_, y] = frame.at(panel, [0.0, *value]);
@@ -212,11 +244,11 @@ fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
         [left, top],
     ];
     canvas.line(&corners, BLACK, FRAME_MM);
-    for (value, label) in &panel.y.major {
+    for (value, label) in panel.y.major.iter().filter(|_| y_labels) {
         let [_, y] = frame.at(panel, [0.0, *value]);
         canvas.text(label, [left - 1.0, y], TICK_PT, Anchor::End, BLACK);
     }
-    if last {
+    if x_labels {
         for (value, label) in &panel.x.major {
             let x = left + panel.x.place(*value) * (right - left);
             canvas.text(label, [x, bottom + 2.2], TICK_PT, Anchor::Middle, BLACK);
@@ -224,6 +256,9 @@ fn draw_axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame, last: bool) {
         let middle = [0.5 * (left + right), bottom + 6.3];
         let size = fitting_size(&panel.x.label, LABEL_PT, right - left);
         canvas.text(&panel.x.label, middle, size, Anchor::Middle, BLACK);
+    }
+    if !y_labels {
+        return;
     }
     let middle = [MARGIN_MM + 1.5, 0.5 * (top + bottom)];
     // A long label may stand a little above and below its panel.
@@ -285,13 +320,14 @@ fn draw_slope(canvas: &mut Canvas, panel: &Panel, frame: &Frame, slope: &SlopeTr
     canvas.line(&[start, end, corner, start], BLACK, 0.2);
     let low = start[1].max(end[1]);
     let middle = [0.5 * (start[0] + end[0]), low + 1.7];
-    canvas.text("1", middle, SMALL_PT, Anchor::Middle, BLACK);
+    let number = |x: f64| crate::report::number::significant(x, 3);
+    canvas.text(&number(slope.run), middle, SMALL_PT, Anchor::Middle, BLACK);
     let (x, anchor) = if rising {
         (corner[0] + 0.8, Anchor::Start)
     } else {
         (corner[0] - 0.8, Anchor::End)
     };
-    let text = crate::report::number::significant(slope.slope.abs(), 3);
+    let text = number((slope.slope * slope.run).abs());
     canvas.text(
         &text,
         [x, 0.5 * (start[1] + end[1])],

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::{Width, plain};
-use super::chart::{Chart, Panel, Series, SlopeTriangle};
+use super::chart::{Chart, Markers, Panel, Series, SlopeTriangle};
 use super::legend::Entry;
 use super::methods;
 use super::names::{Names, by_run};
@@ -94,7 +94,7 @@ pub fn residual_history(rows: &[HistoryRow], tier: Option<&Tier>) -> Result<Stri
         series: Vec::new(),
         levels,
         slopes: Vec::new(),
-        spread: true,
+        markers: Markers::Spread,
     };
     let methods: Vec<&str> = keys.iter().map(|key| key.method.as_str()).collect();
     let figure = Figure {
@@ -142,57 +142,7 @@ pub fn error_plot(plot: &CurvePlot, slope: Option<f64>) -> Result<String, Report
         let middle = steadiest(curves.first()?, slope)?;
         triangle_below(&curves, slope, middle)
     });
-    logarithmic(plot, curves, Vec::new(), triangle.into_iter().collect())
-}
-
-/// Errors against the number N of unknowns, both axes logarithmic. `orders` holds one theoretical order p in the cell size h
-/// per curve, where there is one. N ∝ h^−dim, so it is the slope −p/dim: drawn as a dotted line through the finest point of
-/// the curve, and each different order as a triangle. Without any, a triangle of order 1 guides the eye.
-///
-/// # Errors
-/// [`ReportError::Figure`] when no point has two positive coordinates.
-pub fn convergence_plot(
-    plot: &CurvePlot,
-    orders: &[Option<f64>],
-    dim: usize,
-) -> Result<String, ReportError> {
-    let dim = dim as f64;
-    let curves = positive(plot);
-    let mut lines = Vec::new();
-    let mut slopes: Vec<f64> = Vec::new();
-    for (index, (curve, order)) in curves.iter().zip(orders).enumerate() {
-        let by_count = |a: &&[f64; 2], b: &&[f64; 2]| a[0].total_cmp(&b[0]);
-        let ends = curve
-            .iter()
-            .max_by(by_count)
-            .zip(curve.iter().min_by(by_count));
-        let (Some(order), Some((finest, coarsest))) = (*order, ends) else {
-            continue;
-        };
-        let slope = -order / dim;
-        // A line for every curve would hide them.
-        if slopes.contains(&slope) || finest[0] == coarsest[0] {
-            continue;
-        }
-        slopes.push(slope);
-        // Over the last two halvings.
-        let far = coarsest[0].max(finest[0] / 4f64.powf(dim));
-        let height = finest[1] * (far / finest[0]).powf(slope);
-        lines.push((index, vec![*finest, [far, height]]));
-    }
-    if slopes.is_empty() {
-        slopes.push(-1.0 / dim);
-    }
-    slopes.sort_by(f64::total_cmp);
-    let (low, high) =
-        super::axis::range(curves.iter().flatten().map(|p| p[0])).unwrap_or((1.0, 1.0));
-    let count = slopes.len() as f64;
-    let triangles = slopes.iter().enumerate().filter_map(|(index, &slope)| {
-        let middle = low * (high / low).powf((index as f64 + 0.5) / count);
-        triangle_below(&curves, slope, middle)
-    });
-    let triangles = triangles.collect();
-    logarithmic(plot, curves, lines, triangles)
+    logarithmic(plot, curves, triangle.into_iter().collect())
 }
 
 /// Points with two positive coordinates, by curve.
@@ -204,26 +154,24 @@ fn positive(plot: &CurvePlot) -> Vec<Vec<[f64; 2]>> {
         .collect()
 }
 
-/// Both axes logarithmic; `lines` are dotted, each in the colour of the curve with its number.
+/// Both axes logarithmic.
 fn logarithmic(
     plot: &CurvePlot,
     curves: Vec<Vec<[f64; 2]>>,
-    lines: Vec<(usize, Vec<[f64; 2]>)>,
     slopes: Vec<SlopeTriangle>,
 ) -> Result<String, ReportError> {
     let points = || curves.iter().flatten();
     // The factor leaves room for the number below the triangle.
     let lowest = slopes.iter().map(|t| t.y.min(t.end()) / 2.0);
-    let guides = lines.iter().flat_map(|(_, line)| line).map(|p| p[1]);
     let x = Axis::log(&plot.x_label, points().map(|p| p[0]));
-    let y = points().map(|p| p[1]).chain(lowest).chain(guides);
+    let y = points().map(|p| p[1]).chain(lowest);
     let (Some(x), Some(y)) = (x, Axis::log(&plot.y_label, y)) else {
         return Err(ReportError::figure(
             "error plot",
             "no point with two positive coordinates",
         ));
     };
-    generic(plot, curves, lines, x, y, slopes)
+    generic(plot, curves, x, y, slopes)
 }
 
 /// Both axes linear, points joined in their order, e.g. force against displacement over a cycle.
@@ -248,24 +196,23 @@ pub fn line_plot(plot: &CurvePlot) -> Result<String, ReportError> {
         .iter()
         .map(|curve| curve.points.clone())
         .collect();
-    generic(plot, curves, Vec::new(), x, y, Vec::new())
+    generic(plot, curves, x, y, Vec::new())
 }
 
 fn generic(
     plot: &CurvePlot,
     curves: Vec<Vec<[f64; 2]>>,
-    lines: Vec<(usize, Vec<[f64; 2]>)>,
     x: Axis,
     y: Axis,
     slopes: Vec<SlopeTriangle>,
 ) -> Result<String, ReportError> {
-    let mut panel = Panel {
+    let panel = Panel {
         x,
         y,
         series: Vec::new(),
         levels: Vec::new(),
         slopes,
-        spread: false,
+        markers: Markers::Sparse,
     };
     let labels = plot
         .curves
@@ -277,14 +224,6 @@ fn generic(
         curve.iter().flat_map(at).collect()
     };
     let styles = Style::of_curves(&curves.iter().map(places).collect::<Vec<_>>());
-    panel.series = lines
-        .into_iter()
-        .map(|(index, points)| Series {
-            points,
-            style: Style::limit(styles[index].colour),
-            markers: Vec::new(),
-        })
-        .collect();
     let figure = Figure {
         title: format!("{} against {}", plot.y_label, plot.x_label),
         caption: plain(&plot.caption),
@@ -377,6 +316,7 @@ fn triangle_below(curves: &[Vec<[f64; 2]>], slope: f64, middle: f64) -> Option<S
         x,
         y: lowest / below,
         slope,
+        run: 1.0,
     })
 }
 

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, fitted, text_width};
 use super::chart::{SMALL_PT, TICK_PT};
 use super::colour::BLACK;
-use super::style::{Style, draw_marker};
+use super::style::{Style, draw_mark};
 
 /// Distance of rows [mm].
 pub const ROW_MM: f64 = 3.7;
@@ -40,6 +40,17 @@ impl<'a> LegendGrid<'a> {
             small
         } else {
             large
+        }
+    }
+
+    /// All entries in one column, whatever their length.
+    pub fn column(entries: &'a [Entry], available: f64) -> Self {
+        Self {
+            entries,
+            rows: entries.len().max(1),
+            starts: vec![0.0],
+            size_pt: TICK_PT,
+            available,
         }
     }
 
@@ -96,10 +107,7 @@ impl<'a> LegendGrid<'a> {
                     style.dashes,
                 );
             }
-            if let Some(marker) = style.marker {
-                let middle = [0.5 * (from + to), y];
-                draw_marker(canvas, middle, marker, style.filled, style.colour);
-            }
+            draw_mark(canvas, [0.5 * (from + to), y], style);
             let room = self.available - start - SAMPLE_MM;
             let label = fitted(&entry.label, self.size_pt, room);
             let at = [x + SAMPLE_MM, y];

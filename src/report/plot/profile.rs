@@ -3,7 +3,7 @@
 use super::agreement::{at_most, difference, groups};
 use super::axis::{Axis, prefixed};
 use super::canvas::{Width, italic, plain, subscript};
-use super::chart::{Chart, Panel, Series};
+use super::chart::{Chart, Markers, Panel, Series};
 use super::colour::{BLACK, GREY, Rgb};
 use super::legend::Entry;
 use super::methods;
@@ -290,7 +290,7 @@ impl<'a> Profile<'a> {
             series: Vec::new(),
             levels: Vec::new(),
             slopes: Vec::new(),
-            spread: false,
+            markers: Markers::Sparse,
         };
         ProfilePanel { panel, factor }
     }

@@ -62,6 +62,14 @@ const DASHES: [&[f64]; 7] = [
     &[2.0, 0.6, 0.6, 0.6, 0.6, 0.6],
 ];
 
+/// Dashes [mm], marker, its size [mm] and filling of curves that may lie on each other.
+const OVER: [(&[f64], Marker, f64, bool); 4] = [
+    (&[], Marker::Disc, 1.35, false),
+    (&[4.0, 0.8], Marker::Square, 0.95, false),
+    (&[1.6, 0.8], Marker::Diamond, 0.65, false),
+    (&[0.8, 1.6], Marker::Disc, 0.55, true),
+];
+
 /// Every n-th point of a curve, from the given one on.
 #[derive(Debug, Clone, Copy)]
 pub struct Stagger {
@@ -85,6 +93,8 @@ pub struct Style {
     pub dashes: &'static [f64],
     pub width: f64,
     pub marker: Option<Marker>,
+    /// Radius of the marker, about [mm].
+    pub size: f64,
     pub filled: bool,
     /// Which points get markers.
     pub stagger: Stagger,
@@ -98,7 +108,34 @@ impl Style {
             dashes: DASHES[index % DASHES.len()],
             width: (CURVE_MM + 0.25 - 0.08 * index as f64).max(CURVE_MM - 0.05),
             marker: Some(MARKERS[index % 7]),
+            size: MARKER_MM,
             filled: index.is_multiple_of(2),
+            stagger: Stagger::EVERY_POINT,
+        }
+    }
+
+    /// Look of the n-th curve over common points. Where the first four lie on each other all of them stay visible: markers
+    /// are smaller one after the other, and so are the parts of a common period that the dashes fill.
+    pub fn over_common_points(index: usize) -> Self {
+        let look = OVER.get(index);
+        let (dashes, marker, size, filled) = look.copied().unwrap_or((
+            DASHES[index % DASHES.len()],
+            MARKERS[index % MARKERS.len()],
+            MARKER_MM,
+            true,
+        ));
+        // Black as the fourth: the lightest of the first four colours is lost in grey.
+        let colour = match index {
+            3 => colour::BLACK,
+            _ => colour::curve(index - usize::from(index > 3)),
+        };
+        Self {
+            colour,
+            dashes,
+            width: METHOD_MM,
+            marker: Some(marker),
+            size,
+            filled,
             stagger: Stagger::EVERY_POINT,
         }
     }
@@ -111,6 +148,7 @@ impl Style {
             dashes: ROUNDS[index / METHOD_COLOURS % ROUNDS.len()],
             width: METHOD_MM,
             marker: Some(MARKERS[index % MARKERS.len()]),
+            size: MARKER_MM,
             filled: true,
             stagger: Stagger::EVERY_POINT,
         }
@@ -200,6 +238,7 @@ impl Style {
             dashes: &[0.5, 0.5],
             width: 0.2,
             marker: None,
+            size: 0.0,
             filled: false,
             stagger: Stagger::EVERY_POINT,
         }
@@ -208,7 +247,24 @@ impl Style {
 
 /// A marker centred at `at`; an unfilled one is white inside.
 pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bool, colour: Rgb) {
-    let r = MARKER_MM;
+    draw_sized(canvas, at, MARKER_MM, marker, filled, colour);
+}
+
+/// The marker of a style in its size, if it has one.
+pub fn draw_mark(canvas: &mut Canvas, at: [f64; 2], style: &Style) {
+    if let Some(marker) = style.marker {
+        draw_sized(canvas, at, style.size, marker, style.filled, style.colour);
+    }
+}
+
+fn draw_sized(
+    canvas: &mut Canvas,
+    at: [f64; 2],
+    r: f64,
+    marker: Marker,
+    filled: bool,
+    colour: Rgb,
+) {
     let around = |offsets: &[[f64; 2]]| -> Vec<[f64; 2]> {
         offsets
             .iter()
@@ -219,7 +275,7 @@ pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bo
         Marker::Disc => {
             canvas.disc(at, r, colour);
             if !filled {
-                canvas.disc(at, 0.65 * r, WHITE);
+                canvas.disc(at, r - 0.3, WHITE);
             }
             return;
         }
