@@ -16,6 +16,7 @@ use stickslip_methods::{METHODS, Method, OptionError, Tier};
 use self::output::say;
 pub use self::output::warn;
 use self::progress::Bar;
+use crate::analytic::SOLUTIONS;
 use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
 use crate::harness::expect;
@@ -432,6 +433,19 @@ fn list_text() -> String {
             _ => "does not parse".into(),
         };
         text += &format!("  {name:<32} {title}\n");
+    }
+    text += "\nClosed forms for [exact]\n";
+    for solution in SOLUTIONS {
+        text += &format!("  {:<22} {}\n", solution.name, solution.summary);
+        for parameter in solution.parameters {
+            let default = parameter
+                .default
+                .map_or_else(String::new, |v| format!(" (default {v})"));
+            text += &format!(
+                "  {:<22}   {}: {}{default}\n",
+                "", parameter.name, parameter.summary
+            );
+        }
     }
     text
 }
