@@ -50,6 +50,15 @@ impl Errors {
         assert!(found.error <= bound, "{found:?}");
     }
 
+    /// The same at one place.
+    fn within_at(&self, quantity: &str, at: &str, bound: f64) {
+        let (_, rows) = self.0.last().unwrap();
+        let found = rows.iter().find(|r| r.quantity == quantity && r.at == at);
+        let error = found.unwrap().error;
+        println!("{quantity} at {at} {error:.2e}, at most {bound}");
+        assert!(error <= bound, "{found:?}");
+    }
+
     /// The largest value of a field on the finest mesh is that of the closed form within a relative bound.
     fn largest_within(&self, quantity: &str, bound: f64) {
         let Deviation { found, exact, .. } = self.finest(quantity);
@@ -74,48 +83,67 @@ fn shipped(name: &str) -> Case {
     shipped::find(name).unwrap().unwrap()
 }
 
-/// Source: closed form. Goal: on 40 x 40 cells with branch functions within 0.2 m, traction within 0.4 %, slip within 2 %,
-/// displacement within 4e-4, K_II within 0.5 %; energy of order 0.95 or more with a fixed radius, of order 1/2 (within 0.15)
-/// with the tip cell alone.
+/// A plate of the shipped cases with its crack of half length 0.45 m at another place and angle, none of them special: the
+/// shipped place first, then angles of 27 degrees and of 10 to 45 degrees in turn.
+fn placed(name: &str, k: usize) -> Case {
+    let mut case = shipped(name);
+    if k > 0 {
+        let degrees = if k.is_multiple_of(3) {
+            27.0
+        } else {
+            10.0 + (37 * k % 36) as f64
+        };
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        // The fractional parts of multiples of these numbers fill a square evenly.
+        let offset = |step: f64| 0.19 * ((k as f64 * step).fract() - 0.5);
+        let centre = [-0.05 + offset(0.618034), 0.02 + offset(0.7548776662)];
+        let end = |s: f64| [centre[0] + s * cos, centre[1] + s * sin];
+        case.cracks[0].geometry = CrackShape::Polyline(vec![end(-0.45), end(0.45)]);
+    }
+    case
+}
+
+/// Bounds of a crack that slides over its whole length, on 40 x 40 cells with branch functions within 0.2 m.
+const SLIDING: [(&str, f64); 6] = [
+    ("traction", 4e-3),
+    ("traction_rms", 4e-3),
+    ("slip", 0.02),
+    ("slip_points", 0.02),
+    ("displacement", 4e-4),
+    ("k2_interaction", 5e-3),
+];
+
+/// Source: closed form, Laborde et al. (2005). Goal: energy of order 0.95 or more with a fixed radius, of order 1/2 (within
+/// 0.15) with the tip cell alone.
 #[test]
-fn a_sliding_crack_has_its_traction_slip_and_intensity() {
+fn a_sliding_crack_has_the_orders_of_its_tip_functions() {
     let case = shipped("inclined_crack");
-    let errors = Errors::of(&case, &[1, 2, 4], Some(Tip::Radius(0.2)));
-    errors.within("traction", 4e-3);
-    errors.within("traction_rms", 4e-3);
-    errors.within("slip", 0.02);
-    errors.within("displacement", 4e-4);
-    errors.within("k2_interaction", 5e-3);
-    assert!(errors.order("energy") >= 0.95);
+    let radius = Errors::of(&case, &[1, 2, 4], Some(Tip::Radius(0.2)));
+    assert!(radius.order("energy") >= 0.95);
     let topological = Errors::of(&case, &[1, 2, 4], Some(Tip::Branch));
     assert!((topological.order("energy") - 0.5).abs() <= 0.15);
 }
 
-/// Goal: those bounds do not belong to one place of the crack on the grid. Single places exceed them: a tip just inside a
-/// cell leaves a short star whose traction is less certain. Half of all places must meet each of them.
+/// Source: closed form. Goal: traction within 0.4 %, slip within 2 %, displacement within 4e-4, K_II within 0.5 % on 40 x 40
+/// cells wherever the crack lies on the grid.
 #[test]
-fn a_sliding_crack_has_them_at_most_places_on_the_grid() {
-    let (sin, cos) = 27f64.to_radians().sin_cos();
-    let found: Vec<Errors> = (0..7)
-        .map(|k| {
-            let mut case = shipped("inclined_crack");
-            let shift = [0.0137 * k as f64, 0.0071 * k as f64];
-            let centre = [-0.05 + shift[0], 0.02 - shift[1]];
-            let end = |s: f64| [centre[0] + s * cos, centre[1] + s * sin];
-            case.cracks[0].geometry = CrackShape::Polyline(vec![end(-0.45), end(0.45)]);
-            Errors::of(&case, &[4], None)
-        })
-        .collect();
-    for (quantity, bound) in [
-        ("traction", 4e-3),
-        ("slip", 0.02),
-        ("displacement", 4e-4),
-        ("k2_interaction", 5e-3),
-    ] {
-        let mut all: Vec<f64> = found.iter().map(|e| e.finest(quantity).error).collect();
-        println!("{quantity} {all:?}, median at most {bound}");
-        all.sort_by(f64::total_cmp);
-        assert!(all[all.len() / 2] <= bound, "{quantity} {all:?}");
+fn a_sliding_crack_has_its_traction_slip_and_intensity_at_any_place() {
+    for k in 0..25 {
+        let errors = Errors::of(&placed("inclined_crack", k), &[4], None);
+        for (quantity, bound) in SLIDING {
+            errors.within(quantity, bound);
+        }
+    }
+}
+
+/// Source: closed form. Goal: half of those bounds, or less, with cells of half the size.
+#[test]
+fn a_sliding_crack_has_half_the_errors_on_cells_of_half_the_size() {
+    for k in 0..6 {
+        let errors = Errors::of(&placed("inclined_crack", k), &[8], None);
+        for (quantity, bound) in SLIDING {
+            errors.within(quantity, bound / 2.0);
+        }
     }
 }
 
@@ -129,23 +157,37 @@ fn an_open_crack_is_the_linear_problem() {
     assert!(errors.order("energy") >= 0.95);
 }
 
-/// Source: closed form. Goal: on 40 x 40 cells the largest slip and the dissipation of first loading within 1 %, the stick
-/// boundary within one cell of its place, energy of order 1.
+/// Source: closed form. Goal: on 40 x 40 cells the largest slip and the dissipation of first loading within 1 %, energy of
+/// order 1.
 #[test]
 fn partial_slip_ends_where_it_should() {
     let errors = Errors::shipped("partial_slip", &[1, 2, 4]);
     errors.largest_within("slip", 0.01);
     errors.within("dissipation", 0.01);
-    errors.within("stick_boundary", 0.05 / 0.9);
     assert!(errors.order("energy") >= 0.95);
 }
 
+/// Source: closed form. Goal: on 80 x 80 cells the stick boundary within 1 % of the length of the crack, the largest slip and
+/// the dissipation within 1 %, wherever the crack lies on the grid; the boundary converges.
+#[test]
+fn the_stick_boundary_is_found_at_any_place() {
+    for k in 0..12 {
+        let errors = Errors::of(&placed("partial_slip", k), &[8], None);
+        errors.within("stick_boundary", 0.01);
+        errors.largest_within("slip", 0.01);
+        errors.within("dissipation", 0.01);
+    }
+    let errors = Errors::shipped("partial_slip", &[2, 4, 8, 16]);
+    errors.within("stick_boundary", 0.005);
+    assert!(errors.order("stick_boundary") >= 1.0);
+}
+
 /// Dissipation at the end of every increment [J/m].
-fn dissipation(name: &str) -> Vec<f64> {
+fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     let mut case = shipped(name);
     // The numbers expected of the coarse mesh are not those of the fine one.
     case.expects.clear();
-    case.sweep.refine = vec![4];
+    case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
     assert!(results.runs.iter().all(|r| r.verdict == "solved"));
     let rows = results.quantities.iter();
@@ -154,25 +196,24 @@ fn dissipation(name: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Source: closed form, W₁ in the first loading and 4 W₁ per cycle. Goal: both within 1 % on 40 x 40 cells.
+/// Source: closed form, W₁ in the first loading and 4 W₁ per cycle. Goal: both within 1 % on 40 x 40 and 80 x 80 cells.
 #[test]
 fn a_load_cycle_dissipates_its_loop() {
-    let w = dissipation("partial_slip_cycle");
-    assert_eq!(w.len(), 5);
     let exact = 96.78396117699806;
-    println!(
-        "first loading {}, cycle {}",
-        w[0] / exact,
-        (w[4] - w[0]) / (4.0 * exact)
-    );
-    assert!(((w[4] - w[0]) / (4.0 * exact) - 1.0).abs() <= 0.01, "{w:?}");
-    assert!((w[0] / exact - 1.0).abs() <= 0.01, "{w:?}");
+    for refine in [4, 8] {
+        let w = dissipation("partial_slip_cycle", refine);
+        assert_eq!(w.len(), 5);
+        let (first, cycle) = (w[0] / exact, (w[4] - w[0]) / (4.0 * exact));
+        println!("{refine}: first loading {first}, cycle {cycle}");
+        assert!((cycle - 1.0).abs() <= 0.01, "{w:?}");
+        assert!((first - 1.0).abs() <= 0.01, "{w:?}");
+    }
 }
 
 /// Source: closed form, W₁. Goal: after the first loading the cycles dissipate less than 1e-12 of it.
 #[test]
 fn small_cycles_shake_down() {
-    let w = dissipation("partial_slip_shakedown");
+    let w = dissipation("partial_slip_shakedown", 4);
     println!("{:e}", (w[4] - w[0]) / w[0]);
     assert!(w[0] > 90.0 && w.len() == 5);
     for later in &w[1..] {
@@ -180,13 +221,21 @@ fn small_cycles_shake_down() {
     }
 }
 
-/// Source: closed form. Goal: largest opening within 1 %, K_I within 0.5 % at both tips, energy of order 1.
+/// Source: closed form. Goal: on 40 x 40 cells the largest opening within 1 %, K_I within 0.5 % at the open tip, energy of
+/// order 1; on 80 x 80 cells K_I within 0.5 % at both tips wherever the crack lies on the grid. At the closed tip K_I is zero
+/// and the error measured against Σ √(πL/2); it is that of the contact pressure, which ends like a square root in the middle
+/// of the crack.
 #[test]
 fn a_partly_open_crack_has_its_opening_and_intensity() {
     let errors = Errors::shipped("partial_opening", &[1, 2, 4]);
     errors.largest_within("gap", 0.01);
-    errors.within("k1_interaction", 5e-3);
+    errors.within_at("k1_interaction", "crack-1 tip-1", 5e-3);
     assert!(errors.order("energy") >= 0.95);
+    for k in 0..12 {
+        let errors = Errors::of(&placed("partial_opening", k), &[8], None);
+        errors.largest_within("gap", 0.01);
+        errors.within("k1_interaction", 5e-3);
+    }
 }
 
 /// Source: closed form, 0.9648017 with contact, 0.8862269 with faces free to overlap. Goal: K_I within 0.5 % of the first at

@@ -65,6 +65,8 @@ pub struct Body {
     pub label: String,
     /// Contact space with its marks, e.g. `edge-pairs/gauss-6`.
     pub space: String,
+    /// By crack of the case file: its contact points are means over multiplier functions, not places.
+    pub integrated: Vec<bool>,
     /// Seconds for mesh, cutting, pattern and ordering.
     pub setup_s: f64,
     /// Seconds for cell matrices and their sum.
@@ -196,8 +198,14 @@ impl Body {
         let ContactSurface { points, surface } = surface;
         let samples = facet_samples(&integrator)?;
         let jump = jump_rows(dim, &points);
+        let integrated: Vec<bool> = (case.cracks.iter().enumerate())
+            .map(|(number, spec)| {
+                let through = cracks.iter().any(|c| c.number == number);
+                through && spec.contact != ContactSpace::EdgePairs
+            })
+            .collect();
         let traction = if needs.traction {
-            traction(case, &integrator, &points, &surface)?
+            traction(&integrated, &integrator, &points, &surface)?
         } else {
             Vec::new()
         };
@@ -278,6 +286,7 @@ impl Body {
             elastic,
             label,
             space,
+            integrated,
             setup_s,
             assembly_s,
             jump_rows: jump,
@@ -327,26 +336,22 @@ impl Body {
 
 /// Traction operator: by the stress at the points, or integrated where the jump is.
 fn traction(
-    case: &Case,
+    integrated: &[bool],
     integrator: &CellIntegrator<'_>,
     points: &[ContactPoint],
     surface: &CrackSurface,
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
-    let integrated = |crack: usize| {
-        case.cracks[crack].contact != ContactSpace::EdgePairs
-            && integrator.cracks.iter().any(|c| c.number == crack)
-    };
     let inside = surface
         .quadrature
         .iter()
-        .filter(|q| integrated(q.crack))
+        .filter(|q| integrated[q.crack])
         .cloned();
     let mut rows = integrated_rows(integrator, points.len(), &inside.collect::<Vec<_>>());
     let at_places = points
         .iter()
         .enumerate()
-        .filter(|(_, p)| !integrated(p.crack));
+        .filter(|(_, p)| !integrated[p.crack]);
     let (numbers, own): (Vec<usize>, Vec<ContactPoint>) =
         at_places.map(|(i, p)| (i, p.clone())).unzip();
     for (i, block) in numbers

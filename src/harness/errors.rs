@@ -3,12 +3,14 @@
 //! ```text
 //!   energy              ( ∫ (σ_h − σ):C⁻¹:(σ_h − σ) / ∫ σ:C⁻¹:σ )^½
 //!   displacement        ( ∫ |u_h − u|² / ∫ |u|² )^½                      displacement_rms   the same over the nodes
-//!   traction            ( ∫_Γ |λ_h − λ|² / ∫_Γ |λ|² )^½                  traction_rms       P/w against λ(x), over the points
+//!   traction            ( ∫_Γ |λ_h − λ|² / ∫_Γ |λ|² )^½                  traction_rms       P/w against λ, over the points
 //!   slip, gap           max |[[u_h]] − [[u]]|, tangential and normal, over max |[[u]]|, on the crack surface
 //!   slip_points, gap_points                                               the same over the contact points
 //!   dissipation         relative
 //!   k1_jump …           K found by the jump fit, over |K|                k1_interaction …   by the interaction integral
 //! ```
+//!
+//! A contact point of an integrated space is compared with the mean of the exact field over its function.
 //!
 //! Where the exact value is zero (below 1e-9 of the natural scale of the field) the error is measured against that scale
 //! instead: the root mean square of the exact displacement for jumps, that of the exact stress Σ for tractions, Σ √(π L/2)
@@ -91,7 +93,7 @@ impl Deviation {
 }
 
 /// Errors of a state against the exact field at the same time. `surface`: quadrature points of all crack surfaces; without
-/// any there are no rows for `traction`, `slip`, `gap` and the intensities.
+/// any there are no rows for `traction`, `slip`, `gap`, the stick boundary and the intensities.
 ///
 /// # Errors
 /// [`CellError`] of a cell that cannot be integrated.
@@ -126,7 +128,7 @@ pub fn errors(
     let nodes = bulk::nodal_displacement(body, field, &now.u);
     rows.push(norm_row("displacement_rms", nodes, scales.displacement));
     rows.extend(surface::rows(body, surface, field, now, &scales));
-    rows.extend(stick_boundary::row(body, field, now));
+    rows.extend(stick_boundary::row(body, surface, field, now));
     if let Some(exact) = field.dissipation() {
         let difference = (now.dissipation - exact).abs();
         rows.push(Deviation::new(
