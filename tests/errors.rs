@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::f64::consts::TAU;
+
 use common::fields::*;
 use common::*;
 use stickslip::fem::elasticity::Lame;
@@ -303,6 +305,49 @@ fn uniform_jumps_and_tractions_have_their_known_errors() {
     let length: f64 = surface.iter().map(|p| p.weight).sum();
     check(&zero, "traction", 26f64.sqrt() / 2.0);
     assert!((row(&zero, "traction").found - 26f64.sqrt() * length.sqrt()).abs() < 1e-12);
+}
+
+/// Source: definition. Goal: a uniform slip on an oblique plane in a solid lies off exact slips by the angles they are turned
+/// by, also across ±180°, whatever their sizes; no row without exact slip. Tolerance: rounding.
+#[test]
+fn the_direction_of_slip_is_off_by_the_angle_between_means() {
+    let body = body(&solid(
+        [1.0, 1.0, 1.0],
+        [3, 3, 3],
+        &[([0.4, 0.5, 0.55], [0.2, 0.3, 1.0], 0.3)],
+        &clamped(3),
+    ));
+    let [_, a, b] = body.cracks[0].frame(&body.points[0].x);
+    let found: f64 = 3.0;
+    let slip = add_scaled(&a.map(|v| 0.2 * found.cos() * v), 0.2 * found.sin(), &b);
+    let mut now = Snapshot::virgin(&body);
+    for (f, function) in body.enrichment.functions.iter().enumerate() {
+        let side = body.cracks[0].side_of(function.node as usize);
+        let share = match function.kind {
+            FunctionKind::Standard => 0.5 * side,
+            _ => 0.5,
+        };
+        for k in 0..3 {
+            now.u[3 * f + k] = share * slip[k];
+        }
+    }
+    now.jump = body.jump(&now.u);
+    let rows = |size: f64, angle: f64| {
+        let field = Uniform {
+            jump: [0.1, size * angle.cos(), size * angle.sin()],
+            traction: [0.0; 3],
+            displacement: [0.0, 1.0, 0.0],
+        };
+        errors(&body, &body.surface.quadrature, &field, &now).unwrap()
+    };
+    for (exact, off) in [(3.0, 0.0), (2.9, 0.1), (-3.0, TAU - 6.0), (1.0, 2.0)] {
+        let rows = rows(0.7, exact);
+        let row = row(&rows, "slip_direction");
+        assert!((row.error - off).abs() < 1e-12, "{exact}: {row:?}");
+        assert!((row.found - found).abs() < 1e-12 && (row.exact - exact).abs() < 1e-12);
+    }
+    let without = rows(0.0, 1.0);
+    assert!(without.iter().all(|r| r.quantity != "slip_direction"));
 }
 
 /// Source: definition. Goal: the deepest overlap of sample points; none of an open crack.

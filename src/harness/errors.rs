@@ -5,6 +5,7 @@
 //!   displacement        ( ∫ |u_h − u|² / ∫ |u|² )^½                      displacement_rms   the same over the nodes
 //!   traction            ( ∫_Γ |λ_h − λ|² / ∫_Γ |λ|² )^½                  traction_rms       P/w against λ, over the points
 //!   slip, gap           max |[[u_h]] − [[u]]|, tangential and normal, over max |[[u]]|, on the crack surface
+//!   slip_direction      angle between ∫ [[u_h]]_t and ∫ [[u]]_t over the crack [rad], in 3D; its values: angles from a towards b
 //!   slip_points, gap_points                                               the same over the contact points
 //!   dissipation         relative
 //!   k1_jump …           K found by the jump fit, over |K|                k1_interaction …   by the interaction integral
@@ -51,7 +52,7 @@ pub struct Deviation {
     pub found: f64,
     /// Exact value; for a field its norm.
     pub exact: f64,
-    /// Relative error; where the exact value is zero, relative to the natural scale.
+    /// Relative error; where the exact value is zero, relative to the natural scale; of a direction the angle [rad].
     pub error: f64,
 }
 

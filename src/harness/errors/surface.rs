@@ -1,4 +1,4 @@
-//! Norms over the crack surface: contact traction and jump.
+//! Norms over the crack surface: contact traction and jump, and the direction of the slip.
 //!
 //! ```text
 //!   point k at a place x_k:            exact values λ(x_k), [[u]](x_k)
@@ -14,7 +14,7 @@ use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::xfem::surface_point::SurfacePoint;
 
-use super::{Deviation, Scales, norm_row};
+use super::{Deviation, Scales, ZERO, norm_row};
 
 /// Found and exact values at one place, in the local frame, with a weight.
 struct Sample {
@@ -55,6 +55,7 @@ pub(super) fn rows(
             })
             .collect();
         rows.extend(largest(["slip", "gap"], &jumps, scales.displacement));
+        rows.extend(direction(&jumps, scales.displacement).filter(|_| dim == 3));
     }
     if body.points.is_empty() {
         return rows;
@@ -115,6 +116,34 @@ fn exact_at_points(body: &Body, field: &dyn Fn(&Point) -> [f64; 3]) -> Vec<[f64;
             }
         })
         .collect()
+}
+
+/// Angle between the found and the exact mean slip [rad]; `None` where the exact one is zero and has no direction.
+///
+/// Sums in local frames are means only where the crack is flat: closed forms in 3D are those of plane cracks.
+fn direction(samples: &[Sample], scale: f64) -> Option<Deviation> {
+    let mean = |of: &dyn Fn(&Sample) -> [f64; 3]| {
+        samples.iter().fold([0.0; 2], |sum, s| {
+            let [_, a, b] = of(s);
+            [sum[0] + s.weight * a, sum[1] + s.weight * b]
+        })
+    };
+    let (found, exact) = (mean(&|s| s.found), mean(&|s| s.exact));
+    let area: f64 = samples.iter().map(|s| s.weight).sum();
+    if square(&exact).sqrt() <= ZERO * scale * area {
+        return None;
+    }
+    // Sine and cosine, both by the product of the lengths: no branch at ±π.
+    let sine = exact[0] * found[1] - exact[1] * found[0];
+    let cosine = exact[0] * found[0] + exact[1] * found[1];
+    let angle = |[a, b]: [f64; 2]| b.atan2(a);
+    Some(Deviation {
+        quantity: "slip_direction",
+        at: String::new(),
+        found: angle(found),
+        exact: angle(exact),
+        error: sine.atan2(cosine).abs(),
+    })
 }
 
 fn square(v: &[f64]) -> f64 {
