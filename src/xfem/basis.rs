@@ -9,8 +9,9 @@
 //!
 //! Within a fixed radius of a tip the branch functions are multiplied by a ramp ρ = Σ N_i over the nodes inside the radius,
 //! and all nodes of their cells carry them: ρ is 1 inside, falls to 0 in the cells at the rim, and no cell is left with
-//! some of its nodes enriched, which would spoil the order (T.-P. Fries, Int. J. Numer. Meth. Engng 75 (2008) 503). A radius
-//! that does not reach a cell beyond the tip's own cells leaves no room for it: then ρ = 1 throughout.
+//! some of its nodes enriched, which would spoil the order (T.-P. Fries, Int. J. Numer. Meth. Engng 75 (2008) 503). The
+//! cells of the tip have no Heaviside functions: the inside holds at least the cells around them, whatever the radius. Where
+//! a kink or another end of the crack is nearer than those, there is no ramp.
 
 use crate::fem::cell::CellKind;
 use crate::fem::{Point, cross, dot, norm, sub};

@@ -169,13 +169,22 @@ impl Enrichment {
                     let reach = radius.min(undisturbed(crack, &frame));
                     let near = |&n: &usize| frame.distance(&mesh.nodes[n]) <= reach;
                     core.extend((0..mesh.nodes.len()).filter(near).map(|n| n as u32));
-                    // The nodes of the tip's cells have no Heaviside function: their cells need ρ = 1.
+                    // The nodes of the tip's cells have no Heaviside function: their cells need ρ = 1, which no kink may hinder.
                     let at_tip: BTreeSet<u32> =
                         cells.iter().flat_map(|&c| mesh.cell(c)).copied().collect();
-                    let ramped = (0..mesh.cell_count())
+                    let ring: BTreeSet<u32> = (0..mesh.cell_count())
                         .map(|cell| mesh.cell(cell))
                         .filter(|nodes| nodes.iter().any(|n| at_tip.contains(n)))
-                        .all(|nodes| nodes.iter().all(|n| core.contains(n)));
+                        .flatten()
+                        .copied()
+                        .collect();
+                    let room = undisturbed(crack, &frame);
+                    let ramped = ring
+                        .iter()
+                        .all(|&n| frame.distance(&mesh.nodes[n as usize]) <= room);
+                    if ramped {
+                        core.extend(ring);
+                    }
                     enriched.extend(core.iter().flat_map(|&n| branch(n)));
                     if ramped {
                         for nodes in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
