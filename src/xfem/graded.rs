@@ -62,7 +62,8 @@ pub fn graded_tetrahedra(
 /// Points of a whole hex8 cell near a front; `distance` as for tetrahedra.
 ///
 /// Boxes of the reference cell, halved until the front is no nearer than a quarter of their longest edge, with n points per
-/// direction so that (1 + 2d + √((1 + 2d)² − 1))^−2n, d the distance in edges, is below 2e-5. `depth`: most halvings.
+/// direction so that (1 + 2d + √((1 + 2d)² − 1))^−2n, d the distance in edges, is below 2e-5, and one point more for the ramp,
+/// which raises the degree in every direction. `depth`: most halvings.
 pub fn graded_cell(
     corners: &[Point],
     distance: impl Fn(&Point) -> f64,
@@ -73,7 +74,7 @@ pub fn graded_cell(
     let longest = edges
         .map(|&[i, j]| norm(&sub(&corners[i], &corners[j])))
         .fold(0.0, f64::max);
-    let rules = [3, 4, 5, 6].map(|n| gauss_cell(3, n));
+    let rules = [4, 5, 6, 7].map(|n| gauss_cell(3, n));
     let mut stack = vec![([0.0; 3], 0)];
     let mut points = Vec::new();
     while let Some((centre, level)) = stack.pop() {
