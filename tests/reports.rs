@@ -10,7 +10,9 @@ use stickslip::harness::converge::orders::{ErrorRow, OrderRow};
 use stickslip::harness::patch::PatchRow;
 use stickslip::harness::record::RunRow;
 use stickslip::report::comparison::{ComparisonRow, VariantRow};
+use stickslip::report::converged::{ConvergedRow, SequenceRow};
 use stickslip::report::csv::Row;
+use stickslip::report::infsup::InfSupRow;
 use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
 use stickslip::report::robustness::{FailureRow, RobustnessRow};
 use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
@@ -41,6 +43,9 @@ fn csv_bundle() -> Bundle {
         file(ErrorRow::FILE, csv::file::<ErrorRow>(&[])),
         file(OrderRow::FILE, csv::file::<OrderRow>(&[])),
         file(PatchRow::FILE, csv::file::<PatchRow>(&[])),
+        file(InfSupRow::FILE, csv::file::<InfSupRow>(&[])),
+        file(SequenceRow::FILE, csv::file::<SequenceRow>(&[])),
+        file(ConvergedRow::FILE, csv::file::<ConvergedRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }

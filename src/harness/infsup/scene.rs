@@ -86,9 +86,9 @@ pub static SCENES: [Scene; 15] = [
         Cut::Interior { tip: "\"branch\"" },
     ),
     plate(
-        "inside, 27°, tips radius 0.1",
+        "inside, 27°, tips radius 0.3",
         Cut::Interior {
-            tip: "{ branch_radius_m = 0.1 }",
+            tip: "{ branch_radius_m = 0.3 }",
         },
     ),
     Scene {
