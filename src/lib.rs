@@ -15,4 +15,5 @@ pub mod interchange;
 pub mod pages;
 pub mod paper;
 pub mod report;
+pub mod sweep;
 pub mod xfem;

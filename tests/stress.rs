@@ -255,7 +255,7 @@ fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
     )
     .swap_remove(0);
     for (verdict, expected) in [
-        (Verdict::Solved(Tier::High), true),
+        (Verdict::Solved, true),
         (Verdict::GaveUp(Status::Stalled), true),
         (Verdict::Refused("no".into()), true),
         (Verdict::FalseClaim, false),
@@ -298,7 +298,7 @@ fn exact_methods_are_rated_by_solutions_and_approximate_ones_by_kept_claims() {
         ..study()
     };
     let verdicts = [
-        Verdict::Solved(Tier::High),
+        Verdict::Solved,
         Verdict::Approximate(Some(Tier::Mid)),
         Verdict::Approximate(Some(Tier::Low)),
         Verdict::Approximate(None),

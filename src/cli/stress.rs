@@ -119,7 +119,7 @@ fn summary(trials: &[Trial]) -> String {
     format!(
         "{} runs: {} solved, {} approximate, {} gave up, {} refused, {} false claims, {} crashed",
         trials.len(),
-        count(&|v| matches!(v, Verdict::Solved(_))),
+        count(&|v| matches!(v, Verdict::Solved)),
         count(&|v| matches!(v, Verdict::Approximate(_))),
         count(&|v| matches!(v, Verdict::GaveUp(_))),
         count(&|v| matches!(v, Verdict::Refused(_))),

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
-    Tier, consistency, point_status, residuals_of,
+    consistency, point_status, residuals_of,
 };
 
 use super::run::Choice;
@@ -61,8 +61,8 @@ pub fn prepare(
     Ok((method, seconds))
 }
 
-/// Solves an increment and judges the outcome.
-pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, tier: Tier) -> Attempt {
+/// Solves an increment and judges the outcome against the natural map accepted.
+pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, accepted: f64) -> Attempt {
     let (solved, solve_s) = timed(increment.system, || method.solve(increment, &mut Silent));
     let judged = solved.and_then(|outcome| {
         let found = residuals_of(increment, &outcome.state, outcome.claim)?;
@@ -77,7 +77,7 @@ pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, tier: Ti
     });
     match judged {
         Ok(judged) => Attempt {
-            verdict: Verdict::of(&judged.outcome, &judged.found, tier),
+            verdict: Verdict::of(&judged.outcome, &judged.found, accepted),
             solve_s,
             judged: Some(judged),
         },

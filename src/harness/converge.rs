@@ -25,7 +25,7 @@ use super::path::Path;
 use super::quantities::{Snapshot, quantity_rows};
 use super::record::RunKey;
 use super::run::{Choice, Progress, RunError, friction_values};
-use super::verdict::Verdict;
+use super::verdict::{Accuracy, Verdict};
 
 /// Refinement factors where neither the study nor the case names several.
 const REFINE: [usize; 4] = [1, 2, 4, 8];
@@ -204,7 +204,7 @@ fn run_one(
         loading: &loading,
         system: &system,
         choice,
-        tier: case.tier,
+        accuracy: Accuracy::of(case, case.tier),
     };
     let mut rows = Vec::new();
     let mut last: Option<(Verdict, Option<Snapshot>)> = None;

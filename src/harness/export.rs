@@ -10,9 +10,9 @@ use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
 use crate::harness::loading::Loading;
 use crate::harness::record::RunKey;
-use crate::harness::run::{Choice, RunError, friction_values, tolerance};
+use crate::harness::run::{Choice, RunError, friction_values};
 use crate::harness::step::Solver;
-use crate::harness::verdict::Verdict;
+use crate::harness::verdict::{Accuracy, Verdict};
 use crate::interchange::{Info, InterchangeError, matrix_market};
 use crate::report::standard::problem_name;
 use crate::report::{Bundle, ReportError};
@@ -123,8 +123,8 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         method: request.choice.label.clone(),
         verdict,
     };
-    let tier = Tier::High;
-    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), tier, &key)
+    let accuracy = Accuracy::of(case, Tier::High);
+    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), accuracy, &key)
         .map_err(|step| unsolved(1, step.verdict))?;
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);
@@ -136,12 +136,10 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
             start_load: &start_load,
             start: &state,
             index: key.increment - 1,
-            tolerance: tolerance(case, tier),
+            tolerance: accuracy.asked,
         };
         let step = solver.solve(&key, &increment);
-        let solved = step
-            .answer
-            .filter(|_| step.verdict == Verdict::Solved(tier));
+        let solved = step.answer.filter(|_| step.verdict == Verdict::Solved);
         let Some(Judged { outcome, .. }) = solved else {
             return Err(unsolved(key.increment, step.verdict));
         };

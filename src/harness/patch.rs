@@ -27,6 +27,7 @@ use super::quantities::Snapshot;
 use super::record::RunKey;
 use super::run::{Choice, Progress, RunError};
 use super::sides::Sides;
+use super::verdict::Accuracy;
 use crate::analytic::{Field, Setting, solution};
 use crate::fem::{dot, norm, sub};
 
@@ -146,7 +147,7 @@ fn run_one(
         loading: &loading,
         system: &system,
         choice,
-        tier: Tier::High,
+        accuracy: Accuracy::of(case, Tier::High),
     };
     let mut last = None;
     path.follow(&mut key, &mut |_, ended| {

@@ -1,15 +1,15 @@
 //! The load path of one run: increment after increment, each from the state in which the one before ended.
 
-use stickslip_methods::{ContactState, ContactSystem, Increment, Load, Tier};
+use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
 
 use super::attempt::Judged;
 use super::case::Case;
 use super::loading::Loading;
 use super::quantities::Snapshot;
 use super::record::{HistoryRow, RunKey, RunRow};
-use super::run::{Choice, tolerance};
+use super::run::Choice;
 use super::step::Solver;
-use super::verdict::Verdict;
+use super::verdict::{Accuracy, Verdict};
 
 /// One run before it starts.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ pub struct Path<'a> {
     /// Method.
     pub choice: &'a Choice,
     /// Accuracy asked for.
-    pub tier: Tier,
+    pub accuracy: Accuracy,
 }
 
 /// What one increment left behind.
@@ -48,11 +48,11 @@ impl Path<'_> {
             loading,
             system,
             choice,
-            tier,
+            accuracy,
         } = *self;
         let body = loading.body();
         key.increment = 1;
-        let mut solver = match Solver::prepare(choice, system, body.setup(), tier, key) {
+        let mut solver = match Solver::prepare(choice, system, body.setup(), accuracy, key) {
             Ok(solver) => solver,
             Err(refused) => {
                 let ended = Ended {
@@ -78,7 +78,7 @@ impl Path<'_> {
                 start_load: &start_load,
                 start: &state,
                 index: increment - 1,
-                tolerance: tolerance(case, tier),
+                tolerance: accuracy.asked,
             };
             let step = solver.solve(key, &problem);
             let answer = step.answer.filter(|_| step.verdict.is_honest());

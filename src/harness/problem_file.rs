@@ -11,6 +11,7 @@ use crate::harness::exchange::{System, global_system, local_system, local_veloci
 use crate::harness::record::{Results, RunKey};
 use crate::harness::run::{Choice, Progress};
 use crate::harness::step::{Setup, Solver};
+use crate::harness::verdict::Accuracy;
 use crate::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::report::{Bundle, ReportError, standard};
 
@@ -174,7 +175,8 @@ impl ProblemFile {
         solutions: &mut Bundle,
     ) -> Result<Results, ReportError> {
         let mut results = Results::default();
-        let increment = self.increment(tier.tolerance());
+        let accuracy = Accuracy::exactly(tier.tolerance());
+        let increment = self.increment(accuracy.asked);
         for choice in choices {
             let key = RunKey {
                 case: self.name.clone(),
@@ -184,7 +186,7 @@ impl ProblemFile {
                 friction: self.system.friction().first().copied().unwrap_or(0.0),
                 increment: 1,
             };
-            let prepared = Solver::prepare(choice, &self.system, self.setup, tier, &key);
+            let prepared = Solver::prepare(choice, &self.system, self.setup, accuracy, &key);
             let step = match prepared {
                 Ok(mut solver) => solver.solve(&key, &increment),
                 Err(refused) => *refused,

@@ -13,6 +13,7 @@ use crate::harness::path::Path;
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{point_rows, quantity_rows};
 use crate::harness::record::{Results, RunFields, RunKey, RunRow};
+use crate::harness::verdict::Accuracy;
 
 /// A method with its options.
 #[derive(Debug, Clone)]
@@ -169,7 +170,7 @@ pub fn run_case(
 ) -> Result<Results, RunError> {
     let choices = choices(case, given)?;
     expect::check(case)?;
-    let tier = settings.tier.unwrap_or(case.tier);
+    let accuracy = Accuracy::of(case, settings.tier.unwrap_or(case.tier));
     let frictions = friction_values(case);
     progress.plan(case.sweep.refine.len() * frictions.len() * choices.len());
     let pool = rayon::ThreadPoolBuilder::new()
@@ -211,7 +212,7 @@ pub fn run_case(
             }
         }
         let run = |cell: &Cell<'_>| {
-            let results = run_cell(case, cell, tier);
+            let results = run_cell(case, cell, accuracy);
             progress.done(&format!(
                 "{} {} mu={} {}",
                 case.name, body.label, cell.friction, cell.choice.label
@@ -234,15 +235,6 @@ pub fn run_case(
     Ok(results)
 }
 
-/// Natural map asked of a run: a tier of the command line replaces the case's own tolerance.
-pub(crate) fn tolerance(case: &Case, tier: Tier) -> f64 {
-    if tier == case.tier {
-        case.tolerance
-    } else {
-        tier.tolerance()
-    }
-}
-
 /// Friction coefficients per run and crack.
 pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
     if case.sweep.friction.is_empty() {
@@ -256,7 +248,7 @@ pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 }
 
 /// The load path of one run.
-fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
+fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
     let Cell {
         body,
         loading,
@@ -279,7 +271,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, tier: Tier) -> Results {
         loading,
         system,
         choice,
-        tier,
+        accuracy,
     };
     let started = path.follow(&mut key, &mut |key, ended| {
         results.runs.push(ended.run);

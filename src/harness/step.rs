@@ -1,11 +1,11 @@
 //! One increment of one run: solved by a method, checked by the judge, written into the rows of the tables.
 
-use stickslip_methods::{ContactSystem, Enforcement, Increment, Iteration, Tier};
+use stickslip_methods::{ContactSystem, Enforcement, Increment, Iteration};
 
 use crate::harness::attempt::{Judged, attempt, prepare};
 use crate::harness::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
 use crate::harness::run::Choice;
-use crate::harness::verdict::Verdict;
+use crate::harness::verdict::{Accuracy, Verdict};
 
 /// Where the system of a run comes from: times shared by all runs on it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,7 +20,7 @@ pub struct Setup {
 pub struct Solver<'a> {
     system: &'a ContactSystem,
     setup: Setup,
-    tier: Tier,
+    accuracy: Accuracy,
     method: Box<dyn Enforcement>,
     prepare_s: f64,
 }
@@ -43,19 +43,19 @@ impl<'a> Solver<'a> {
         choice: &Choice,
         system: &'a ContactSystem,
         setup: Setup,
-        tier: Tier,
+        accuracy: Accuracy,
         key: &RunKey,
     ) -> Result<Self, Box<Step>> {
         prepare(choice, system)
             .map(|(method, prepare_s)| Self {
                 system,
                 setup,
-                tier,
+                accuracy,
                 method,
                 prepare_s,
             })
             .map_err(|verdict| {
-                let mut run = row(key, system, setup, tier);
+                let mut run = row(key, system, setup, accuracy);
                 run.prepare_s = f64::NAN;
                 run.verdict = verdict.to_string();
                 Box::new(Step {
@@ -70,8 +70,8 @@ impl<'a> Solver<'a> {
     /// Solves and judges one increment.
     pub fn solve(&mut self, key: &RunKey, increment: &Increment<'_>) -> Step {
         let system = self.system;
-        let tried = attempt(self.method.as_mut(), increment, self.tier);
-        let mut run = row(key, system, self.setup, self.tier);
+        let tried = attempt(self.method.as_mut(), increment, self.accuracy.accepted);
+        let mut run = row(key, system, self.setup, self.accuracy);
         // Paid once, so counted with the first increment.
         run.prepare_s = std::mem::take(&mut self.prepare_s);
         let shared = system.elastic().timings();
@@ -115,10 +115,10 @@ fn history_rows(key: &RunKey, history: &[Iteration]) -> Vec<HistoryRow> {
     recorded_iterations(last).into_iter().map(row).collect()
 }
 
-fn row(key: &RunKey, system: &ContactSystem, setup: Setup, tier: Tier) -> RunRow {
+fn row(key: &RunKey, system: &ContactSystem, setup: Setup, accuracy: Accuracy) -> RunRow {
     RunRow {
         key: key.clone(),
-        tier: tier.to_string(),
+        tier: accuracy.to_string(),
         verdict: String::new(),
         natural_map: f64::NAN,
         iterations: 0,

@@ -100,7 +100,7 @@ impl Trial {
     /// Whether the run gave what its method is for: an exact one the contact laws, another one the laws it claims.
     pub fn succeeded(&self) -> bool {
         match self.verdict {
-            Verdict::Solved(_) => true,
+            Verdict::Solved => true,
             Verdict::Approximate(_) => !self.exact,
             _ => false,
         }
@@ -311,7 +311,7 @@ fn run_body(
                     tolerance: study.tier.tolerance(),
                 };
                 let tried = match &mut method {
-                    Ok((method, _)) => attempt(method.as_mut(), &increment, study.tier),
+                    Ok((method, _)) => attempt(method.as_mut(), &increment, study.tier.tolerance()),
                     Err(verdict) => Attempt::unsolved(verdict.clone()),
                 };
                 let count = |of: PointStatus| {

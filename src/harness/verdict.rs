@@ -4,14 +4,59 @@ use std::fmt;
 
 use stickslip_methods::{Claim, Outcome, Residuals, Status, Tier};
 
+use super::case::Case;
+
 /// Largest backward error of equilibrium after a direct solve; above it the natural map does not measure contact alone.
 pub const EQUILIBRIUM: f64 = 1e-12;
+
+/// Accuracy of a run, as bounds on the natural map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Asked of the method.
+    pub asked: f64,
+    /// Accepted by the judge; not below what was asked.
+    pub accepted: f64,
+}
+
+impl Accuracy {
+    /// What is asked for is what is accepted.
+    pub fn exactly(tolerance: f64) -> Self {
+        Self {
+            asked: tolerance,
+            accepted: tolerance,
+        }
+    }
+
+    /// A tier on a case: its own tier asks for its own tolerance, any other replaces that.
+    pub fn of(case: &Case, tier: Tier) -> Self {
+        let asked = if tier == case.tier {
+            case.tolerance
+        } else {
+            tier.tolerance()
+        };
+        Self {
+            asked,
+            accepted: tier.tolerance(),
+        }
+    }
+}
+
+impl fmt::Display for Accuracy {
+    /// The name of a tier, or the bound.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let tiers = Tier::ALL.into_iter();
+        match tiers.into_iter().find(|t| t.tolerance() == self.accepted) {
+            Some(tier) => write!(f, "{tier}"),
+            None => write!(f, "{:e}", self.accepted),
+        }
+    }
+}
 
 /// What a run is worth.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// Claimed the contact laws and the judge agrees.
-    Solved(Tier),
+    Solved,
     /// Solved its own laws, as the judge agrees; it found the contact laws held to this tier, or to none.
     Approximate(Option<Tier>),
     /// Claimed the contact laws and the judge disagrees.
@@ -22,22 +67,25 @@ pub enum Verdict {
     Refused(String),
     /// Failed with an error.
     Crashed(String),
+    /// Stopped from outside at the time limit.
+    TimedOut,
+    /// Ended at the memory limit.
+    OutOfMemory,
 }
 
 impl Verdict {
-    /// Judges an outcome against the tier asked for.
-    pub fn of(outcome: &Outcome, found: &Residuals, tier: Tier) -> Self {
+    /// Judges an outcome against the natural map accepted.
+    pub fn of(outcome: &Outcome, found: &Residuals, accepted: f64) -> Self {
         // NaN passes no comparison.
-        let as_claimed =
-            found.claimed_equilibrium <= EQUILIBRIUM && found.claimed <= tier.tolerance();
-        let solved = found.equilibrium <= EQUILIBRIUM && found.natural_map <= tier.tolerance();
+        let as_claimed = found.claimed_equilibrium <= EQUILIBRIUM && found.claimed <= accepted;
+        let solved = found.equilibrium <= EQUILIBRIUM && found.natural_map <= accepted;
         // Own laws may leave a residual in equilibrium too; it counts like that of the contact laws.
         let holds = |tier: &Tier| {
             let tolerance = tier.tolerance();
             found.equilibrium <= tolerance && found.natural_map <= tolerance
         };
         match (outcome.status, outcome.claim) {
-            (Status::Converged, _) if as_claimed && solved => Verdict::Solved(tier),
+            (Status::Converged, _) if as_claimed && solved => Verdict::Solved,
             (Status::Converged, Claim::Exact) => Verdict::FalseClaim,
             (Status::Converged, _) if as_claimed => {
                 Verdict::Approximate(Tier::ALL.into_iter().rev().find(holds))
@@ -49,14 +97,18 @@ impl Verdict {
 
     /// True if the run did what it said: its times may be published.
     pub fn is_honest(&self) -> bool {
-        matches!(self, Verdict::Solved(_) | Verdict::Approximate(_))
+        matches!(self, Verdict::Solved | Verdict::Approximate(_))
     }
 
     /// True if the command must report failure.
     pub fn is_failure(&self) -> bool {
         matches!(
             self,
-            Verdict::FalseClaim | Verdict::GaveUp(_) | Verdict::Crashed(_)
+            Verdict::FalseClaim
+                | Verdict::GaveUp(_)
+                | Verdict::Crashed(_)
+                | Verdict::TimedOut
+                | Verdict::OutOfMemory
         )
     }
 }
@@ -64,13 +116,15 @@ impl Verdict {
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Verdict::Solved(_) => write!(f, "solved"),
+            Verdict::Solved => write!(f, "solved"),
             Verdict::Approximate(Some(tier)) => write!(f, "approximate: {tier}"),
             Verdict::Approximate(None) => write!(f, "approximate: none"),
             Verdict::FalseClaim => write!(f, "false-claim"),
             Verdict::GaveUp(status) => write!(f, "gave-up: {status}"),
             Verdict::Refused(reason) => write!(f, "refused: {reason}"),
             Verdict::Crashed(error) => write!(f, "crashed: {error}"),
+            Verdict::TimedOut => write!(f, "timed-out"),
+            Verdict::OutOfMemory => write!(f, "out-of-memory"),
         }
     }
 }
@@ -111,8 +165,8 @@ mod tests {
     fn a_claim_counts_only_if_the_judge_agrees() {
         let converged = outcome(Status::Converged, Claim::Exact);
         assert_eq!(
-            Verdict::of(&converged, &found(1e-10, 1e-14), Tier::High),
-            Verdict::Solved(Tier::High)
+            Verdict::of(&converged, &found(1e-10, 1e-14), 1e-9),
+            Verdict::Solved
         );
         for (map, equilibrium) in [
             (1e-8, 1e-14),
@@ -120,13 +174,13 @@ mod tests {
             (f64::NAN, 1e-14),
             (1e-10, f64::NAN),
         ] {
-            let verdict = Verdict::of(&converged, &found(map, equilibrium), Tier::High);
+            let verdict = Verdict::of(&converged, &found(map, equilibrium), 1e-9);
             assert_eq!(verdict, Verdict::FalseClaim);
             assert!(!verdict.is_honest() && verdict.is_failure());
         }
         let stalled = outcome(Status::Stalled, Claim::Exact);
         assert_eq!(
-            Verdict::of(&stalled, &found(1e-15, 0.0), Tier::Low),
+            Verdict::of(&stalled, &found(1e-15, 0.0), 1e-3),
             Verdict::GaveUp(Status::Stalled)
         );
     }
@@ -143,24 +197,22 @@ mod tests {
             claimed_equilibrium: 1e-14,
             ..found(map, equilibrium)
         };
-        let grade = |map| Verdict::of(&converged, &held(map, 1e-14), Tier::High);
+        let grade = |map| Verdict::of(&converged, &held(map, 1e-14), 1e-9);
         // A consistency term that equilibrium does not know is graded like a violated law, and never solved.
-        let of = |map, equilibrium, tier| Verdict::of(&converged, &held(map, equilibrium), tier);
-        assert_eq!(
-            of(1e-10, 1e-5, Tier::Low),
-            Verdict::Approximate(Some(Tier::Low))
-        );
-        assert_eq!(of(1e-5, 1e-2, Tier::Low), Verdict::Approximate(None));
+        let of =
+            |map, equilibrium, accepted| Verdict::of(&converged, &held(map, equilibrium), accepted);
+        assert_eq!(of(1e-10, 1e-5, 1e-3), Verdict::Approximate(Some(Tier::Low)));
+        assert_eq!(of(1e-5, 1e-2, 1e-3), Verdict::Approximate(None));
         assert_eq!(grade(1e-4), Verdict::Approximate(Some(Tier::Low)));
         assert_eq!(grade(1e-2), Verdict::Approximate(None));
-        assert_eq!(grade(1e-10), Verdict::Solved(Tier::High));
+        assert_eq!(grade(1e-10), Verdict::Solved);
         for (own_law, equilibrium) in [(1e-10, 1e-3), (1e-8, 1e-14), (f64::NAN, 1e-14)] {
             let broken = Residuals {
                 claimed: own_law,
                 claimed_equilibrium: equilibrium,
                 ..found(1e-4, equilibrium)
             };
-            let verdict = Verdict::of(&converged, &broken, Tier::High);
+            let verdict = Verdict::of(&converged, &broken, 1e-9);
             assert_eq!(verdict, Verdict::FalseClaim);
         }
     }

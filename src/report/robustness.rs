@@ -144,7 +144,7 @@ impl RobustnessRow {
             exact: first.exact,
             tier,
             problems: trials.len(),
-            solved: count(&|v| matches!(v, Verdict::Solved(_))),
+            solved: count(&|v| matches!(v, Verdict::Solved)),
             approximate: GRADES.map(|grade| count(&|v| *v == Verdict::Approximate(grade))),
             gave_up: count(&|v| matches!(v, Verdict::GaveUp(_))),
             gave_up_by: GIVE_UPS.map(|status| count(&|v| *v == Verdict::GaveUp(status))),

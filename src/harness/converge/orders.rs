@@ -297,7 +297,7 @@ mod tests {
     use super::super::{Deviation, Value};
     use super::*;
     use crate::harness::verdict::Verdict;
-    use stickslip_methods::{Status, Tier};
+    use stickslip_methods::Status;
 
     fn sample(refine: usize, regularity: Regularity, measured: Measured) -> Sample {
         Sample {
@@ -317,7 +317,7 @@ mod tests {
             points: refine,
             verdict: match measured {
                 Measured::Nothing => Verdict::GaveUp(Status::Stalled),
-                _ => Verdict::Solved(Tier::High),
+                _ => Verdict::Solved,
             },
             seconds: Seconds::NONE,
             measured,

@@ -1,0 +1,145 @@
+//! What is measured: one case on one mesh, with one contact space, friction, method and tolerance.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// One cell of a sweep. Everything that decides about its numbers is in here, and nothing else.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Name of the case.
+    pub case: String,
+    /// SHA-256 of the case file, the first 16 hexadecimal digits.
+    pub digest: String,
+    /// Refinement factor of the mesh, from 1.
+    pub refine: usize,
+    /// Contact space of all cracks; `None`: the case's own.
+    pub space: Option<String>,
+    /// Friction coefficient of every crack.
+    pub friction: Vec<f64>,
+    /// Method as on the command line: `name` or `name:option=value,…`.
+    pub method: String,
+    /// Natural map asked of the method and accepted by the judge.
+    pub tolerance: f64,
+}
+
+impl Cell {
+    /// Friction coefficient of the first crack; 0 without cracks.
+    pub fn mu(&self) -> f64 {
+        self.friction.first().copied().unwrap_or(0.0)
+    }
+
+    /// Stable name, also of the record's file: what a reader wants to know, then 8 hexadecimal digits of the SHA-256 of
+    /// the cell, which tell apart what the readable part does not (the case file, the coefficients of further cracks).
+    pub fn id(&self) -> String {
+        let Cell {
+            case,
+            digest,
+            refine,
+            space,
+            friction,
+            method,
+            tolerance,
+        } = self;
+        let space = space.as_deref().unwrap_or("own");
+        let mu = self.mu();
+        let readable = format!("{case}.r{refine}.{space}.mu-{mu}.{method}.tol-{tolerance:e}");
+        let exact = format!("{readable} {digest} {friction:?}");
+        let safe = |c: char| match c {
+            'a'..='z' | 'A'..='Z' | '0'..='9' | '.' | '-' | '_' | '=' => c,
+            _ => '-',
+        };
+        let name: String = readable.chars().map(safe).collect();
+        format!("{name}.{}", &hexadecimal(&exact)[..8])
+    }
+
+    /// What is solved, apart from how: the id without method and tolerance.
+    pub fn problem(&self) -> Problem {
+        Problem {
+            case: self.case.clone(),
+            digest: self.digest.clone(),
+            refine: self.refine,
+            space: self.space.clone(),
+            friction: self.friction.clone(),
+        }
+    }
+}
+
+/// What several cells solve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// As in [`Cell`].
+    pub case: String,
+    /// As in [`Cell`].
+    pub digest: String,
+    /// As in [`Cell`].
+    pub refine: usize,
+    /// As in [`Cell`].
+    pub space: Option<String>,
+    /// As in [`Cell`].
+    pub friction: Vec<f64>,
+}
+
+/// Digest of a case file, as in [`Cell::digest`].
+pub fn digest(text: &str) -> String {
+    hexadecimal(text)[..16].to_owned()
+}
+
+fn hexadecimal(text: &str) -> String {
+    let bytes = Sha256::digest(text.as_bytes());
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell() -> Cell {
+        Cell {
+            case: "plate".into(),
+            digest: digest("text"),
+            refine: 2,
+            space: None,
+            friction: vec![0.1, 0.2],
+            method: "penalty:normal=1e2".into(),
+            tolerance: 1e-6,
+        }
+    }
+
+    #[test]
+    fn the_digest_is_sha_256() {
+        // FIPS 180-2, appendix B.1: SHA-256 of "abc".
+        assert_eq!(digest("abc"), "ba7816bf8f01cfea");
+    }
+
+    #[test]
+    fn an_id_can_be_read_and_is_a_file_name() {
+        let id = cell().id();
+        let readable = "plate.r2.own.mu-0.1.penalty-normal=1e2.tol-1e-6.";
+        assert!(id.starts_with(readable), "{id}");
+        assert_eq!(id.len(), readable.len() + 8);
+    }
+
+    #[test]
+    fn whatever_changes_a_cell_changes_its_id() {
+        let changes: [fn(&mut Cell); 8] = [
+            |c| c.case.push('x'),
+            |c| c.digest = digest("other"),
+            |c| c.refine = 3,
+            |c| c.space = Some("star".into()),
+            |c| c.friction[1] = 0.3,
+            |c| c.friction[0] = 0.3,
+            |c| c.method = "penalty,normal=1e2".into(),
+            |c| c.tolerance = 1e-7,
+        ];
+        let mut ids = vec![cell().id()];
+        for change in changes {
+            let mut changed = cell();
+            change(&mut changed);
+            ids.push(changed.id());
+        }
+        ids.sort();
+        ids.dedup();
+        assert_eq!(ids.len(), 9);
+        assert_eq!(cell().id(), cell().id());
+    }
+}
