@@ -1,5 +1,16 @@
 //! Sweeps: many cells (case × mesh × space × friction × method × tolerance), each measured by itself and kept as a record.
 
 pub mod cell;
+pub mod conduct;
+pub mod measure;
+mod memory;
+pub mod merge;
+pub mod plan;
 pub mod record;
+mod reference;
+mod setup;
 pub mod statistics;
+pub mod store;
+pub mod worker;
+
+pub use setup::Bench;
