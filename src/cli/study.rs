@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use super::CliError;
 use super::output::{say, warn};
@@ -103,16 +104,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     prepare_output(&arguments.out)?;
     let store = Store::create(&arguments.out, plan.contents())?;
     let program = std::env::current_exe().map_err(CliError::Program)?;
-    // The first one lets the cell end, the second one does not.
-    let interrupted = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
-        }
-        warn(format_args!(
-            "Interrupted: finishing the cells that are being measured"
-        ));
-    });
-    interrupted.map_err(CliError::Interrupt)?;
+    watch_for_interruption()?;
     let how = Conduct {
         program: &program,
         jobs: usize::from(arguments.jobs),
@@ -145,6 +137,24 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         return Ok(conducted.complete());
     }
     report(&store, &records)
+}
+
+/// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
+/// group: what comes within a second is the same one.
+fn watch_for_interruption() -> Result<(), CliError> {
+    let mut first: Option<Instant> = None;
+    ctrlc::set_handler(move || match first {
+        None => {
+            first = Some(Instant::now());
+            STOP.store(true, Ordering::SeqCst);
+            warn(format_args!(
+                "Interrupted: finishing the cells that are being measured"
+            ));
+        }
+        Some(before) if before.elapsed() > Duration::from_secs(1) => std::process::exit(130),
+        Some(_) => {}
+    })
+    .map_err(CliError::Interrupt)
 }
 
 /// Runs the verb `merge`; false if cells are missing.
