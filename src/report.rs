@@ -21,6 +21,7 @@ mod quantity_name;
 pub mod robustness;
 pub mod standard;
 pub mod study;
+pub mod sweep;
 pub mod tables;
 pub mod vtu;
 

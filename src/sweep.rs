@@ -1,6 +1,12 @@
 //! Sweeps: many cells (case × mesh × space × friction × method × tolerance), each measured by itself and kept as a record.
+//!
+//! ```text
+//! sweep file -> plan -> conduct -> (worker: setup -> measure -> record) -> store -> merge -> analysis, compare -> report
+//! ```
 
+pub mod analysis;
 pub mod cell;
+pub mod compare;
 pub mod conduct;
 pub mod measure;
 mod memory;

@@ -12,6 +12,7 @@ use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, paper};
 use crate::harness::stress::{Study, Trial};
 use crate::harness::verdict::Verdict;
+use crate::sweep::analysis::proportion::wilson;
 
 /// Ends without a claim that have a column of their own.
 const GIVE_UPS: [Status; 5] = [
@@ -24,9 +25,6 @@ const GIVE_UPS: [Status; 5] = [
 
 /// Tiers that contact laws held to beside an approximate method's own laws; none comes last.
 const GRADES: [Option<Tier>; 4] = [Some(Tier::High), Some(Tier::Mid), Some(Tier::Low), None];
-
-/// Two-sided 95 % quantile of the normal distribution.
-const Z: f64 = 1.959_963_984_540_054;
 
 /// One method on all problems of one dimension and friction coefficient.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,22 +93,6 @@ pub struct FailureRow {
     pub unique: bool,
     /// Contact points.
     pub points: usize,
-}
-
-/// Rate of `hits` among `count` and Wilson's 95 % interval (J. Am. Stat. Assoc. 22 (1927) 209); NaN if nothing was tried.
-pub fn wilson(hits: usize, count: usize) -> [f64; 3] {
-    if count == 0 {
-        return [f64::NAN; 3];
-    }
-    let (n, p) = (count as f64, hits as f64 / count as f64);
-    let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
-    let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();
-    // Rounding may leave the ends just outside of what a rate can be.
-    [
-        p,
-        (centre - half).clamp(0.0, p),
-        (centre + half).clamp(p, 1.0),
-    ]
 }
 
 /// The smallest value that a fraction `q` of the values does not exceed; NaN of nothing.
@@ -392,22 +374,6 @@ pub fn bundle(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Source: Newcombe, Stat. Med. 17 (1998) 857, Table I, method 3 (Wilson without continuity correction).
-    #[test]
-    fn intervals_agree_with_newcombe() {
-        for (hits, count, low, high) in [
-            (81, 263, 0.2553, 0.3662),
-            (15, 148, 0.0624, 0.1605),
-            (0, 20, 0.0, 0.1611),
-            (1, 29, 0.0061, 0.1718),
-        ] {
-            let [rate, found_low, found_high] = wilson(hits, count);
-            assert_eq!(rate, hits as f64 / count as f64);
-            assert!((found_low - low).abs() < 5e-5 && (found_high - high).abs() < 5e-5);
-        }
-        assert!(wilson(0, 0).iter().all(|x| x.is_nan()));
-    }
 
     #[test]
     fn quantiles_are_values_of_the_sample() {

@@ -143,7 +143,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    fn at(&self, panel: &Panel, point: [f64; 2]) -> [f64; 2] {
+    /// Place of a point of a panel.
+    pub fn at(&self, panel: &Panel, point: [f64; 2]) -> [f64; 2] {
         [
             self.left + panel.x.place(point[0]) * (self.right - self.left),
             self.bottom - panel.y.place(point[1]) * (self.bottom - self.top),

@@ -242,14 +242,14 @@ fn positive(panel: &ErrorPanel) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// A power law below the curves of a panel.
-struct Law {
+pub struct Law {
     /// Empty where it has no label.
-    line: Vec<[f64; 2]>,
-    triangle: SlopeTriangle,
+    pub line: Vec<[f64; 2]>,
+    pub triangle: SlopeTriangle,
 }
 
 /// Power laws below all curves, each further one below those before.
-fn laws(
+pub fn laws(
     guides: &[Guide],
     curves: &[Vec<[f64; 2]>],
     across: (f64, f64),

@@ -1,0 +1,146 @@
+//! Time to accuracy: the error of the discretisation beside what it takes to have the answer, mesh by mesh.
+
+use super::Study;
+use crate::harness::converge::orders::{ErrorRow, Kind, ROUND_OFF};
+use crate::report::csv::{self, Row};
+use crate::report::number::value;
+use crate::report::plot::{Guide, MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
+use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError, quantity_name};
+use crate::sweep::analysis::accuracy::{Refinement, refinements};
+use crate::sweep::analysis::problem_names;
+use crate::sweep::cell::Problem;
+
+/// Orders that a triangle may show.
+const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
+
+/// Adds `time_to_accuracy.csv` and a figure per case, contact space and friction.
+pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+    let all = refinements(study.records);
+    let coarsest: Vec<Problem> = all.iter().map(|one| one.coarsest.clone()).collect();
+    let mut rows = Vec::new();
+    for (one, name) in all.iter().zip(problem_names(&coarsest)) {
+        // The name tells everything but the mesh.
+        let name = name.replacen(&format!(".r{}.", one.coarsest.refine), ".", 1);
+        if let Some(svg) = method_panels(&figure(one, &study.caveat()))? {
+            let stem = file_name(&["time_to_accuracy", &name]);
+            bundle.add(format!("figures/{stem}.svg"), svg)?;
+        }
+        rows.extend(one.errors.iter().map(AccuracyRow));
+    }
+    bundle.add(AccuracyRow::FILE, csv::file(&rows)?)
+}
+
+/// A row of `convergence.csv` without the enrichment of the tips, which the records do not know.
+struct AccuracyRow<'a>(&'a ErrorRow);
+
+impl Row for AccuracyRow<'_> {
+    const FILE: &'static str = "time_to_accuracy.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "case",
+        "space",
+        "method",
+        "friction",
+        "mesh",
+        "refine",
+        "h_m",
+        "dofs",
+        "points",
+        "verdict",
+        "quantity",
+        "at",
+        "found",
+        "reference",
+        "error_bar",
+        "error",
+        "kind",
+        "order",
+        "total_s",
+        "setup_s",
+        "assembly_s",
+        "factorisation_s",
+        "condensation_s",
+        "prepare_s",
+        "solve_s",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let mut cells = self.0.cells();
+        let tip = ErrorRow::COLUMNS.iter().position(|name| *name == "tip");
+        if let Some(tip) = tip {
+            cells.remove(tip);
+        }
+        cells
+    }
+
+    fn order(&self, other: &Self) -> std::cmp::Ordering {
+        Row::order(self.0, other.0)
+    }
+}
+
+fn figure(one: &Refinement, caveat: &str) -> MethodPanels {
+    let mut methods: Vec<&str> = Vec::new();
+    for row in &one.errors {
+        if !methods.contains(&row.variant.method.as_str()) {
+            methods.push(&row.variant.method);
+        }
+    }
+    let curve = |method: &&str| MethodCurve {
+        method: (*method).to_owned(),
+        points: one
+            .errors
+            .iter()
+            .filter(|row| row.variant.method == *method && row.error >= ROUND_OFF)
+            .map(|row| [row.seconds.total(), row.error])
+            .collect(),
+        whiskers: Vec::new(),
+    };
+    let first = one.orders.first();
+    let observed = first.map_or(f64::NAN, |row| row.order);
+    let off = |order: &f64| (order - observed).abs();
+    let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let nearest = nearest.filter(|order| off(order) < 0.5 * order);
+    let guide = nearest.map(|order| Guide {
+        rise: -order,
+        run: one.dim as f64,
+        label: None,
+    });
+    let name = first.map_or_else(String::new, |row| {
+        quantity_name::name(&row.quantity, &row.at)
+    });
+    let against = match first.map(|row| row.kind) {
+        Some(Kind::Exact) => "against the closed form",
+        Some(Kind::Richardson) => "against the extrapolated limit",
+        _ => "against the finest mesh",
+    };
+    let space = first.map_or("", |row| row.variant.space.as_str());
+    let friction = one.coarsest.friction.first().copied().unwrap_or(0.0);
+    let triangle = match &guide {
+        Some(guide) => format!(
+            "\ntriangle: order {} in h, time proportional to the unknowns",
+            value(-guide.rise)
+        ),
+        None => String::new(),
+    };
+    MethodPanels {
+        title: format!("Time to accuracy: {}", one.coarsest.case),
+        caption: format!(
+            "{}, {space}, {} = {}, {against}{caveat}{triangle}",
+            one.coarsest.case,
+            italic("μ"),
+            value(friction)
+        ),
+        y_label: format!("error: {name}"),
+        logarithmic: true,
+        every_point: true,
+        columns: 1,
+        height: 56.0,
+        panels: vec![MethodPanel {
+            heading: String::new(),
+            x_label: "total time [s]".into(),
+            curves: methods.iter().map(curve).collect(),
+            guides: guide.into_iter().collect(),
+        }],
+    }
+}

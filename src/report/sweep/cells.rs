@@ -1,0 +1,259 @@
+//! What was found: one row per cell, increment and quantity. No times.
+
+use std::cmp::Ordering;
+
+use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
+use crate::report::csv::{self, Row};
+use crate::report::number::{residual, significant, value};
+use crate::report::{Bundle, ReportError};
+use crate::sweep::record::{IncrementFound, Record};
+
+/// Significant digits of discretisation errors.
+const ERROR_DIGITS: usize = 4;
+
+/// Adds `cells.csv`, `increments.csv` and `deviations.csv`.
+pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+    let records = study.sorted();
+    let cells: Vec<CellRow> = records.iter().map(|record| CellRow(record)).collect();
+    bundle.add(CellRow::FILE, csv::file(&cells)?)?;
+    let increments = records.iter().flat_map(|record| {
+        let all = record.found.increments.iter().enumerate();
+        all.map(|(index, found)| IncrementRow {
+            record,
+            number: index + 1,
+            found,
+        })
+    });
+    let increments: Vec<IncrementRow> = increments.collect();
+    bundle.add(IncrementRow::FILE, csv::file(&increments)?)?;
+    let deviations: Vec<DeviationRow> = records
+        .iter()
+        .flat_map(|record| DeviationRow::all(record))
+        .collect();
+    bundle.add(DeviationRow::FILE, csv::file(&deviations)?)
+}
+
+fn optional(number: Option<f64>, text: impl Fn(f64) -> String) -> String {
+    text(number.unwrap_or(f64::NAN))
+}
+
+fn counters(of: impl Fn(fn(&IncrementFound) -> usize) -> usize) -> Vec<String> {
+    let all: [fn(&IncrementFound) -> usize; 7] = [
+        |i| i.iterations,
+        |i| i.solves,
+        |i| i.tangent_factorisations,
+        |i| i.global_factorisations,
+        |i| i.local_solves,
+        |i| i.state_changes,
+        |i| i.final_changes,
+    ];
+    all.into_iter().map(|c| of(c).to_string()).collect()
+}
+
+struct CellRow<'a>(&'a Record);
+
+impl Row for CellRow<'_> {
+    const FILE: &'static str = "cells.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        CELL_COLUMNS[0],
+        CELL_COLUMNS[1],
+        CELL_COLUMNS[2],
+        CELL_COLUMNS[3],
+        CELL_COLUMNS[4],
+        CELL_COLUMNS[5],
+        CELL_COLUMNS[6],
+        CELL_COLUMNS[7],
+        "digest",
+        "exact",
+        "verdict",
+        "natural_map",
+        "error_energy",
+        "error_force",
+        "error_jump",
+        "reference",
+        "reference_natural_map",
+        "discretisation_error",
+        "dim",
+        "dofs",
+        "points",
+        "unknowns",
+        "h_m",
+        "increments",
+        "iterations",
+        "solves",
+        "tangent_factorisations",
+        "global_factorisations",
+        "local_solves",
+        "state_changes",
+        "final_changes",
+        "schema",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let record = self.0;
+        let found = &record.found;
+        let error = found.solver_error.as_ref();
+        let energy =
+            |d: &&crate::sweep::record::DeviationFound| d.quantity == "energy" && d.at.is_empty();
+        let energy = found.deviations.iter().find(energy).and_then(|d| d.error);
+        let natural_map = match found.increments.is_empty() {
+            true => f64::NAN,
+            false => found.natural_map(),
+        };
+        let mut cells = cell_columns(record);
+        cells.extend([
+            record.cell.digest.clone(),
+            found.exact.to_string(),
+            found.verdict.clone(),
+            residual(natural_map),
+            optional(error.map(|e| e.energy), residual),
+            optional(error.map(|e| e.force), residual),
+            optional(error.map(|e| e.jump), residual),
+            error.map_or_else(String::new, |e| e.reference.clone()),
+            optional(error.map(|e| e.reference_natural_map), residual),
+            optional(energy, |e| significant(e, ERROR_DIGITS)),
+        ]);
+        let size = found.problem.as_ref();
+        let counts = [
+            size.map(|s| s.dim),
+            size.map(|s| s.dofs),
+            size.map(|s| s.points),
+            size.map(|s| s.unknowns),
+        ];
+        cells.extend(counts.map(|n| n.map_or_else(|| "NaN".into(), |n| n.to_string())));
+        cells.push(optional(size.map(|s| s.h_m), value));
+        cells.push(found.increments.len().to_string());
+        cells.extend(counters(|counter| found.sum(counter)));
+        cells.push(record.schema.to_string());
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        compare_cells(self.0, other.0)
+    }
+}
+
+struct IncrementRow<'a> {
+    record: &'a Record,
+    number: usize,
+    found: &'a IncrementFound,
+}
+
+impl Row for IncrementRow<'_> {
+    const FILE: &'static str = "increments.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        CELL_COLUMNS[0],
+        CELL_COLUMNS[1],
+        CELL_COLUMNS[2],
+        CELL_COLUMNS[3],
+        CELL_COLUMNS[4],
+        CELL_COLUMNS[5],
+        CELL_COLUMNS[6],
+        CELL_COLUMNS[7],
+        "increment",
+        "verdict",
+        "natural_map",
+        "iterations",
+        "solves",
+        "tangent_factorisations",
+        "global_factorisations",
+        "local_solves",
+        "state_changes",
+        "final_changes",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let mut cells = cell_columns(self.record);
+        cells.extend([
+            self.number.to_string(),
+            self.found.verdict.clone(),
+            optional(self.found.natural_map, residual),
+        ]);
+        cells.extend(counters(|counter| counter(self.found)));
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        compare_cells(self.record, other.record).then(self.number.cmp(&other.number))
+    }
+}
+
+struct DeviationRow<'a> {
+    record: &'a Record,
+    kind: &'static str,
+    quantity: &'a str,
+    at: &'a str,
+    found: f64,
+    reference: f64,
+    error: f64,
+    norm: f64,
+}
+
+impl<'a> DeviationRow<'a> {
+    fn all(record: &'a Record) -> Vec<Self> {
+        let deviations = record.found.deviations.iter().map(|d| Self {
+            record,
+            kind: "exact",
+            quantity: &d.quantity,
+            at: &d.at,
+            found: d.found.unwrap_or(f64::NAN),
+            reference: d.exact,
+            error: d.error.unwrap_or(f64::NAN),
+            norm: f64::NAN,
+        });
+        let values = record.found.values.iter().map(|v| Self {
+            record,
+            kind: "followed",
+            quantity: &v.quantity,
+            at: &v.at,
+            found: v.value,
+            reference: f64::NAN,
+            error: f64::NAN,
+            norm: v.norm,
+        });
+        deviations.chain(values).collect()
+    }
+}
+
+impl Row for DeviationRow<'_> {
+    const FILE: &'static str = "deviations.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        CELL_COLUMNS[0],
+        CELL_COLUMNS[1],
+        CELL_COLUMNS[2],
+        CELL_COLUMNS[3],
+        CELL_COLUMNS[4],
+        CELL_COLUMNS[5],
+        CELL_COLUMNS[6],
+        CELL_COLUMNS[7],
+        "kind",
+        "quantity",
+        "at",
+        "found",
+        "reference",
+        "error",
+        "norm",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let mut cells = cell_columns(self.record);
+        cells.extend([
+            self.kind.into(),
+            self.quantity.into(),
+            self.at.into(),
+            value(self.found),
+            value(self.reference),
+            significant(self.error, ERROR_DIGITS),
+            value(self.norm),
+        ]);
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        compare_cells(self.record, other.record)
+            .then_with(|| (self.quantity, self.at).cmp(&(other.quantity, other.at)))
+    }
+}

@@ -1,0 +1,305 @@
+use std::collections::BTreeMap;
+
+use stickslip_methods::METHODS;
+
+use super::*;
+use crate::sweep::analysis::support::{lying, record, timed};
+use crate::sweep::record::{DeviationFound, ValueFound};
+
+/// Files that must not depend on times.
+const TIMELESS: [&str; 7] = [
+    "cells.csv",
+    "increments.csv",
+    "deviations.csv",
+    "study.csv",
+    "success.csv",
+    "profiles.csv",
+    "data_profiles.csv",
+];
+
+/// Three meshes of a plate with closed form and two of a beam without, with and without friction, by all methods at five
+/// tolerances; nsgs fails on the finest plate, barrier is refused on the beam.
+pub fn study() -> Vec<Record> {
+    let problems = [("plate", [1, 2, 4].as_slice(), 2), ("beam", &[1, 2, 3], 3)];
+    let mut records = Vec::new();
+    for (case, meshes, dim) in problems {
+        for refine in meshes {
+            for mu in [0.0, 0.3] {
+                for (index, method) in METHODS.iter().enumerate() {
+                    for exponent in [2, 3, 6, 9, 10] {
+                        let tolerance = 10f64.powi(-exponent);
+                        let cell = cell(case, *refine, dim, mu, method.name, tolerance, index);
+                        records.push(cell);
+                    }
+                }
+                for exponent in [2, 3, 5, 6] {
+                    let options = format!("penalty:normal=1e{exponent},tangential=1e{exponent}");
+                    let mut cell = cell(case, *refine, dim, mu, &options, 1e-9, 13);
+                    approximate(&mut cell, 10f64.powi(-exponent));
+                    records.push(cell);
+                }
+            }
+        }
+    }
+    records
+}
+
+fn cell(
+    case: &str,
+    refine: usize,
+    dim: usize,
+    mu: f64,
+    method: &str,
+    tolerance: f64,
+    index: usize,
+) -> Record {
+    let digits = -tolerance.log10();
+    // Newton methods come first in the registry; the rest gain a fixed factor per step.
+    let newton = index < 5;
+    let steps = if newton { 4 + index } else { 8 * (index - 3) };
+    let iterations = if newton {
+        steps
+    } else {
+        (steps as f64 * digits) as usize
+    };
+    let points = 10 * refine.pow(dim as u32 - 1);
+    let wobble = 1.0 + 0.3 * ((7 * index + 3 * refine + case.len()) as f64).sin();
+    let seconds = 2e-5 * wobble * points as f64 * iterations as f64;
+    let mut cell = timed(record(case, method, tolerance), seconds);
+    cell.cell.refine = refine;
+    cell.cell.friction = vec![mu];
+    cell.id = cell.cell.id();
+    let size = cell.found.problem.as_mut().unwrap();
+    size.mesh = format!("{0}x{0}", 10 * refine);
+    size.h_m = 1.0 / refine as f64;
+    size.dim = dim;
+    size.points = points;
+    size.unknowns = points * if mu > 0.0 { dim } else { 1 };
+    size.dofs = dim * (10 * refine).pow(dim as u32);
+    let scale = size.dofs as f64;
+    let increment = &mut cell.found.increments[0];
+    increment.iterations = iterations;
+    increment.local_solves = iterations * points;
+    increment.tangent_factorisations = if newton {
+        steps
+    } else {
+        usize::from(index < 9)
+    };
+    if case == "beam" {
+        let second = cell.found.increments[0].clone();
+        cell.found.increments.push(second);
+        let h = cell.found.problem.as_ref().unwrap().h_m;
+        cell.found.values.push(ValueFound {
+            quantity: "strain_energy".into(),
+            at: String::new(),
+            value: 5.0 - 0.2 * h * h,
+            norm: 5.0,
+            scale: 5.0,
+        });
+    } else {
+        cell.found.deviations.push(DeviationFound {
+            quantity: "energy".into(),
+            at: String::new(),
+            found: Some(1.0),
+            exact: 1.0,
+            error: Some(0.1 / refine as f64),
+        });
+    }
+    let spent = cell.spent.as_mut().unwrap();
+    spent.setup_s = 1e-6 * scale;
+    spent.assembly_s = 4e-6 * scale;
+    spent.factorisation_s = 2e-6 * scale.powf(1.2);
+    spent.condensation_s = 1e-5 * points as f64;
+    spent.output_s = 5e-7 * scale;
+    let newton_error = if newton {
+        tolerance * tolerance
+    } else {
+        0.3 * tolerance
+    };
+    cell.found.solver_error.as_mut().unwrap().energy = newton_error;
+    match method {
+        "penalty" => approximate(&mut cell, 1e-4),
+        "nitsche" => approximate(&mut cell, 3e-5),
+        "barrier" if case == "beam" => fail(&mut cell, "refused: no reason"),
+        "barrier" => approximate(&mut cell, 1e-4),
+        "nsgs" if refine == 4 => fail(&mut cell, "gave-up: max-iterations"),
+        _ => {}
+    }
+    cell
+}
+
+/// Laws of its own with this natural map.
+fn approximate(cell: &mut Record, map: f64) {
+    let verdict = match map {
+        _ if map <= cell.cell.tolerance => "solved",
+        _ if map <= 1e-6 => "approximate: mid",
+        _ if map <= 1e-3 => "approximate: low",
+        _ => "approximate: none",
+    };
+    for increment in &mut cell.found.increments {
+        increment.natural_map = Some(map);
+        increment.verdict = verdict.into();
+    }
+    cell.found.verdict = verdict.into();
+    cell.found.solver_error.as_mut().unwrap().energy = 0.1 * map;
+}
+
+fn fail(cell: &mut Record, verdict: &str) {
+    cell.found.verdict = verdict.into();
+    cell.found.increments[0].verdict = verdict.into();
+    cell.found.solver_error = None;
+    cell.found.deviations.clear();
+    cell.found.values.clear();
+}
+
+fn files(records: &[Record]) -> BTreeMap<String, Vec<u8>> {
+    let bundle = bundle(records, records.len(), &Provenance::collect(1)).unwrap();
+    let file = |path: &str| (path.to_owned(), bundle.get(path).unwrap().to_vec());
+    bundle.paths().map(file).collect()
+}
+
+#[test]
+fn a_liar_leaves_no_time_in_any_file() {
+    let mut records = study();
+    let verdicts = [
+        "false-claim",
+        "gave-up: stalled",
+        "crashed: no",
+        "timed-out",
+    ];
+    for (record, verdict) in records
+        .iter_mut()
+        .skip(2)
+        .step_by(11)
+        .zip(verdicts.iter().cycle())
+    {
+        let mut liar = lying(verdict);
+        liar.cell = record.cell.clone();
+        liar.id = record.id.clone();
+        liar.found.problem = record.found.problem.clone();
+        liar.found.method = record.found.method.clone();
+        *record = liar;
+    }
+    let with = files(&records);
+    let honest = ["solved", "approximate"];
+    let mut stripped = 0;
+    for record in &mut records {
+        if !honest
+            .iter()
+            .any(|start| record.found.verdict.starts_with(start))
+        {
+            assert!(record.spent.take().is_some());
+            stripped += 1;
+        }
+    }
+    assert!(stripped > 80, "{stripped}");
+    let without = files(&records);
+    assert!(with.keys().eq(without.keys()));
+    for (path, contents) in &with {
+        assert!(*contents == without[path], "{path}");
+    }
+    let times = String::from_utf8(with["times.csv"].clone()).unwrap();
+    assert!(times.lines().count() > 100 && !times.contains("false-claim"));
+}
+
+#[test]
+fn counters_and_errors_stand_in_files_without_times() {
+    let mut records = study();
+    let before = files(&records);
+    for (index, record) in records.iter_mut().enumerate() {
+        *record = timed(record.clone(), 1.0 + (index % 7) as f64);
+    }
+    let after = files(&records);
+    for path in TIMELESS {
+        assert_eq!(before[path], after[path], "{path}");
+    }
+    assert_ne!(before["ranking.csv"], after["ranking.csv"]);
+    for figure in [
+        "profile.iterations",
+        "profile.local_solves",
+        "data_profile.passes",
+    ] {
+        let path = format!("figures/{figure}.svg");
+        assert_eq!(before[&path], after[&path], "{path}");
+    }
+}
+
+#[test]
+fn the_order_of_the_records_does_not_matter() {
+    let mut records = study();
+    let before = files(&records);
+    records.reverse();
+    let after = files(&records);
+    assert!(before.keys().eq(after.keys()));
+    for (path, contents) in before {
+        assert!(contents == after[&path], "{path}");
+    }
+}
+
+#[test]
+fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
+    let records = study();
+    let files = files(&records);
+    let lines = |path: &str| {
+        let text = String::from_utf8(files[path].clone()).unwrap();
+        text.lines().count() - 1
+    };
+    assert_eq!(lines("cells.csv"), records.len());
+    let increments = records.iter().map(|r| r.found.increments.len());
+    assert_eq!(lines("increments.csv"), increments.sum::<usize>());
+    let count = |start: &str| files.keys().filter(|path| path.starts_with(start)).count();
+    assert_eq!(count("figures/work_precision."), 12);
+    assert_eq!(count("figures/time_to_accuracy."), 4);
+    assert_eq!(count("figures/stages."), 4);
+    assert_eq!(count("figures/profile."), 4);
+    assert_eq!(count("figures/data_profile."), 2);
+    assert_eq!(count("figures/pairwise"), 6);
+}
+
+#[test]
+fn without_times_there_are_no_rankings_and_no_errors() {
+    let mut records = study();
+    records.iter_mut().for_each(|record| record.spent = None);
+    let files = files(&records);
+    assert!(!files.contains_key("figures/profile.time.svg"));
+    assert!(files.contains_key("figures/profile.iterations.svg"));
+    for path in ["ranking.csv", "times.csv", "pairwise.csv"] {
+        let text = String::from_utf8(files[path].clone()).unwrap();
+        assert_eq!(text.lines().count(), 1, "{path}");
+    }
+    assert!(
+        bundle(&[], 0, &Provenance::collect(1)).is_ok(),
+        "no cell yet"
+    );
+}
+
+#[test]
+fn an_incomplete_sweep_says_so() {
+    let records = study();
+    let text = |total: usize| {
+        let bundle = bundle(&records, total, &Provenance::collect(1)).unwrap();
+        String::from_utf8(bundle.get("success.md").unwrap().to_vec()).unwrap()
+    };
+    let count = records.len();
+    let told = format!("incomplete, {count} of {} cells", count + 5);
+    assert!(text(count + 5).contains(&told));
+    assert!(!text(count).contains("incomplete"));
+}
+
+#[test]
+fn a_comparison_lists_what_changed() {
+    let a = study();
+    let mut b = a.clone();
+    b[0].found.verdict = "false-claim".into();
+    let comparison = crate::sweep::compare::compare(&a, &b);
+    assert!(comparison.worse());
+    let bundle = comparison_bundle(&comparison).unwrap();
+    let text = |path: &str| String::from_utf8(bundle.get(path).unwrap().to_vec()).unwrap();
+    let row = format!("{},verdict,worse,solved,false-claim,NaN", a[0].id);
+    assert!(
+        text("compare.csv").contains(&row),
+        "{}",
+        text("compare.csv")
+    );
+    assert!(text("compare.md").contains("found the same bit by bit"));
+}

@@ -1,0 +1,238 @@
+//! What was spent: the stages of every cell whose times may be shown, and their shares as bars.
+
+use std::cmp::Ordering;
+
+use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
+use crate::report::csv::{self, Row};
+use crate::report::number::{significant, time, value};
+use crate::report::plot::{Bar, Stacked, italic, stacked};
+use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
+use crate::sweep::analysis::{
+    compare_methods, compare_problems, has_defaults, method_time, published_times,
+};
+use crate::sweep::cell::Problem;
+use crate::sweep::record::{Record, Spent};
+use crate::sweep::statistics::Timing;
+
+/// Stages in the order in which they come.
+const STAGES: [&str; 7] = [
+    "setup",
+    "assembly",
+    "factorisation",
+    "condensation",
+    "prepare",
+    "solve",
+    "output",
+];
+
+/// Adds `times.csv` and the figures of the stages.
+pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+    let rows: Vec<TimeRow> = study.sorted().into_iter().filter_map(TimeRow::of).collect();
+    bundle.add(TimeRow::FILE, csv::file(&rows)?)?;
+    add_figures(bundle, &rows, study)
+}
+
+struct TimeRow<'a> {
+    record: &'a Record,
+    spent: &'a Spent,
+}
+
+impl<'a> TimeRow<'a> {
+    fn of(record: &'a Record) -> Option<Self> {
+        let spent = published_times(record)?;
+        Some(Self { record, spent })
+    }
+
+    /// Medians of all stages.
+    fn stages(&self) -> [f64; 7] {
+        let Spent {
+            setup_s,
+            assembly_s,
+            factorisation_s,
+            condensation_s,
+            prepare,
+            solve,
+            output_s,
+            peak_mb: _,
+        } = self.spent;
+        [
+            *setup_s,
+            *assembly_s,
+            *factorisation_s,
+            *condensation_s,
+            prepare.median_s,
+            solve.median_s,
+            *output_s,
+        ]
+    }
+
+    /// Without output: what it takes to have the answer.
+    fn total(&self) -> f64 {
+        self.stages()[..6].iter().sum()
+    }
+}
+
+fn timing_cells(timing: &Timing) -> [String; 5] {
+    let Timing {
+        median_s,
+        min_s,
+        low_s,
+        high_s,
+        samples,
+    } = *timing;
+    let [median, min, low, high] = [median_s, min_s, low_s, high_s].map(time);
+    [median, min, low, high, samples.to_string()]
+}
+
+impl Row for TimeRow<'_> {
+    const FILE: &'static str = "times.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        CELL_COLUMNS[0],
+        CELL_COLUMNS[1],
+        CELL_COLUMNS[2],
+        CELL_COLUMNS[3],
+        CELL_COLUMNS[4],
+        CELL_COLUMNS[5],
+        CELL_COLUMNS[6],
+        CELL_COLUMNS[7],
+        "verdict",
+        "setup_s",
+        "assembly_s",
+        "factorisation_s",
+        "condensation_s",
+        "prepare_median_s",
+        "prepare_min_s",
+        "prepare_low_s",
+        "prepare_high_s",
+        "prepare_samples",
+        "solve_median_s",
+        "solve_min_s",
+        "solve_low_s",
+        "solve_high_s",
+        "solve_samples",
+        "method_median_s",
+        "method_low_s",
+        "method_high_s",
+        "output_s",
+        "total_s",
+        "peak_mb",
+        "machine",
+        "profile",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let Spent { prepare, solve, .. } = self.spent;
+        let method = method_time(self.spent);
+        let mut cells = cell_columns(self.record);
+        cells.push(self.record.found.verdict.clone());
+        cells.extend(self.stages()[..4].iter().map(|t| time(*t)));
+        cells.extend(timing_cells(prepare));
+        cells.extend(timing_cells(solve));
+        cells.extend([method.median_s, method.low_s, method.high_s].map(time));
+        cells.extend([self.spent.output_s, self.total()].map(time));
+        cells.push(significant(self.spent.peak_mb.unwrap_or(f64::NAN), 4));
+        cells.push(self.record.origin.machine.clone());
+        cells.push(self.record.origin.profile.clone());
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        compare_cells(self.record, other.record)
+    }
+}
+
+/// The problem apart from its mesh.
+fn without_mesh(problem: &Problem) -> Problem {
+    Problem {
+        refine: 0,
+        ..problem.clone()
+    }
+}
+
+/// A figure per case, contact space and friction: a bar per mesh by the fastest right method, then a bar per method on the
+/// finest mesh, all to the finest tolerance.
+fn add_figures(
+    bundle: &mut Bundle,
+    rows: &[TimeRow<'_>],
+    study: &Study<'_>,
+) -> Result<(), ReportError> {
+    let solved =
+        |row: &&TimeRow| row.record.found.verdict == "solved" && has_defaults(&row.record.cell);
+    let mut own: Vec<&TimeRow> = rows.iter().filter(solved).collect();
+    let problem = |row: &TimeRow| without_mesh(&row.record.cell.problem());
+    own.sort_by(|a, b| {
+        compare_problems(&problem(a), &problem(b))
+            .then(a.record.cell.refine.cmp(&b.record.cell.refine))
+            .then_with(|| compare_methods(&a.record.cell.method, &b.record.cell.method))
+            .then(a.record.cell.tolerance.total_cmp(&b.record.cell.tolerance))
+    });
+    // The finest tolerance of each method on each mesh.
+    own.dedup_by(|b, a| {
+        a.record.cell.problem() == b.record.cell.problem()
+            && a.record.cell.method == b.record.cell.method
+    });
+    let mut names: Vec<String> = Vec::new();
+    for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
+        let first = group[0];
+        let cell = &first.record.cell;
+        let space = cell.space.as_deref().unwrap_or("own");
+        let friction = value(cell.mu());
+        let mut stem = file_name(&["stages", &cell.case, space, &format!("mu-{friction}")]);
+        if names.contains(&stem) {
+            stem = format!("{stem}-{}", names.len());
+        }
+        names.push(stem.clone());
+        let svg = stacked(&figure(group, study))?;
+        bundle.add(format!("figures/{stem}.svg"), svg)?;
+    }
+    Ok(())
+}
+
+fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
+    let cell = &group[0].record.cell;
+    let same_mesh =
+        |a: &&TimeRow<'_>, b: &&TimeRow<'_>| a.record.cell.refine == b.record.cell.refine;
+    let meshes: Vec<&[&TimeRow]> = group.chunk_by(same_mesh).collect();
+    let own = |row: &TimeRow| method_time(row.spent).median_s;
+    let fastest = meshes.iter().filter_map(|rows| {
+        let best = rows.iter().min_by(|a, b| own(a).total_cmp(&own(b)))?;
+        let mesh = best.record.found.problem.as_ref().map(|p| p.mesh.as_str());
+        let label = format!("{}, {}", mesh.unwrap_or("?"), best.record.found.method);
+        Some(bar(best, label))
+    });
+    let mut groups = vec![(
+        "each mesh, least median of all methods".to_owned(),
+        fastest.collect(),
+    )];
+    if let Some(finest) = meshes.last() {
+        let bars = finest
+            .iter()
+            .map(|row| bar(row, row.record.found.method.clone()));
+        groups.push(("finest mesh, each method".to_owned(), bars.collect()));
+    }
+    let space = group[0].record.found.problem.as_ref();
+    let space = space.map_or("", |p| p.space.as_str());
+    Stacked {
+        title: format!("Stages of a run: {}", cell.case),
+        caption: format!(
+            "{}, {space}, {} = {}, solved to the finest tolerance asked for{}\nat the right: total time in s, stages from 8 % on are printed",
+            cell.case,
+            italic("μ"),
+            value(cell.mu()),
+            study.caveat(),
+        ),
+        scale: "share of the total time [%]".into(),
+        parts: STAGES.map(str::to_owned).into(),
+        groups,
+    }
+}
+
+fn bar(row: &TimeRow<'_>, label: String) -> Bar {
+    Bar {
+        label,
+        values: row.stages().into(),
+        note: significant(row.stages().iter().sum(), 3),
+    }
+}

@@ -1,0 +1,164 @@
+//! Work against precision: rows, and a figure per problem with time and iterations side by side.
+
+use std::cmp::Ordering;
+
+use super::Study;
+use crate::report::csv::{self, Row};
+use crate::report::number::{RESIDUAL_FLOOR, residual, time, value};
+use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
+use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
+use crate::sweep::analysis::series::{Point, Series, Swept, series};
+use crate::sweep::analysis::{problem_names, problems};
+use crate::sweep::cell::Problem;
+
+/// Adds `work_precision.csv` and a figure per problem.
+pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+    let all = problems(study.records);
+    let mut rows = Vec::new();
+    for (problem, name) in all.iter().zip(problem_names(&all)) {
+        let series = series(study.records, problem);
+        if let Some(svg) = method_panels(&figure(problem, &series, &study.caveat()))? {
+            let stem = file_name(&["work_precision", &name]);
+            bundle.add(format!("figures/{stem}.svg"), svg)?;
+        }
+        for own in series {
+            let Series { label, swept, .. } = own;
+            rows.extend(own.points.into_iter().map(|point| PointRow {
+                problem: name.clone(),
+                label: label.clone(),
+                swept: swept.clone(),
+                exact: own.exact,
+                point,
+            }));
+        }
+    }
+    bundle.add(PointRow::FILE, csv::file(&rows)?)
+}
+
+struct PointRow<'a> {
+    problem: String,
+    label: String,
+    swept: Swept,
+    exact: bool,
+    point: Point<'a>,
+}
+
+impl Row for PointRow<'_> {
+    const FILE: &'static str = "work_precision.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "problem",
+        "series",
+        "swept",
+        "value",
+        "exact",
+        "id",
+        "verdict",
+        "error_energy",
+        "iterations",
+        "local_solves",
+        "tangent_factorisations",
+        "method_median_s",
+        "method_low_s",
+        "method_high_s",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let Point {
+            record,
+            value: swept_value,
+            error,
+            time: spent,
+        } = &self.point;
+        let found = &record.found;
+        let seconds = |t: Option<f64>| time(t.unwrap_or(f64::NAN));
+        vec![
+            self.problem.clone(),
+            self.label.clone(),
+            self.swept.name().to_owned(),
+            value(*swept_value),
+            self.exact.to_string(),
+            record.id.clone(),
+            found.verdict.clone(),
+            residual(*error),
+            found.sum(|i| i.iterations).to_string(),
+            found.sum(|i| i.local_solves).to_string(),
+            found.sum(|i| i.tangent_factorisations).to_string(),
+            seconds(spent.map(|t| t.median_s)),
+            seconds(spent.map(|t| t.low_s)),
+            seconds(spent.map(|t| t.high_s)),
+        ]
+    }
+
+    fn order(&self, _: &Self) -> Ordering {
+        // They come by problem, series and value, which the stable sort keeps.
+        Ordering::Equal
+    }
+}
+
+fn figure(problem: &Problem, series: &[Series<'_>], caveat: &str) -> MethodPanels {
+    // A curve along options replaces the one along the tolerance, which ends at the modelling error at once.
+    let name = |label: &str| label.split('[').next().unwrap_or(label).to_owned();
+    let replaced = |own: &&Series<'_>| {
+        own.swept == Swept::Tolerance
+            && !own.exact
+            && series
+                .iter()
+                .any(|other| other.swept != Swept::Tolerance && name(&other.label) == own.label)
+    };
+    let shown: Vec<&Series> = series.iter().filter(|own| !replaced(own)).collect();
+    let error = |point: &Point<'_>| point.error.max(RESIDUAL_FLOOR);
+    let by_time = |own: &&Series<'_>| {
+        let timed = own.points.iter().filter_map(|p| Some((p, p.time?)));
+        let (points, whiskers) = timed
+            .map(|(p, t)| ([t.median_s, error(p)], [t.low_s, t.high_s]))
+            .unzip();
+        MethodCurve {
+            method: own.label.clone(),
+            points,
+            whiskers,
+        }
+    };
+    let by_iterations = |own: &&Series<'_>| MethodCurve {
+        method: own.label.clone(),
+        points: own
+            .points
+            .iter()
+            .map(|p| [p.record.found.sum(|i| i.iterations) as f64, error(p)])
+            .collect(),
+        whiskers: Vec::new(),
+    };
+    let panel = |x_label: &str, curves| MethodPanel {
+        heading: String::new(),
+        x_label: x_label.to_owned(),
+        curves,
+        guides: Vec::new(),
+    };
+    let first = series.iter().flat_map(|own| &own.points).next();
+    let size = first.and_then(|point| point.record.found.problem.as_ref());
+    let (mesh, space) = size.map_or(("", ""), |size| (&size.mesh, &size.space));
+    let friction = problem.friction.first().copied().unwrap_or(0.0);
+    MethodPanels {
+        title: format!("Work against precision: {}", problem.case),
+        caption: format!(
+            "{}, {mesh}, {space}, {} = {}{caveat}\ndistance from the converged solution of the same discrete problem, at the lower edge: below {}, hollow: laws of their own, along their parameter",
+            problem.case,
+            italic("μ"),
+            value(friction),
+            value(RESIDUAL_FLOOR),
+        ),
+        y_label: format!("solver error, energy norm of {} [-]", italic("u")),
+        logarithmic: true,
+        every_point: true,
+        columns: 2,
+        height: 70.0,
+        panels: vec![
+            panel(
+                "time of the method [s]",
+                shown.iter().map(by_time).collect(),
+            ),
+            panel("iterations [-]", shown.iter().map(by_iterations).collect()),
+        ],
+    }
+}

@@ -1,0 +1,257 @@
+//! What a set of records says about the methods: pure functions of the records, no files, no clock.
+//!
+//! Two questions are kept apart, as qpbenchmark does: *success* is what a method says of itself, *correct* is what the judge
+//! says of it. Only right answers are compared, and times stand beside honest verdicts only: [`published_times`] is the one
+//! place that decides about it.
+
+pub mod accuracy;
+pub mod costs;
+pub mod pairwise;
+pub mod profile;
+pub mod proportion;
+pub mod ranking;
+pub mod recommendation;
+pub mod series;
+pub mod success;
+#[cfg(test)]
+pub mod support;
+pub mod test_set;
+
+use std::cmp::Ordering;
+
+use stickslip_methods::{METHODS, Tier};
+
+use super::cell::{Cell, Problem};
+use super::record::{Record, Spent};
+use super::statistics::Timing;
+
+/// Times of a cell, if they may be shown: beside an honest verdict on every increment, and a natural map that agrees with it.
+pub fn published_times(record: &Record) -> Option<&Spent> {
+    record.spent.as_ref().filter(|_| is_honest(record))
+}
+
+/// Whether the method did what it claims, on every increment and as far as the record itself can tell.
+pub fn is_honest(record: &Record) -> bool {
+    let found = &record.found;
+    let verdicts = found.increments.iter().map(|i| i.verdict.as_str());
+    let mut all = verdicts.chain([found.verdict.as_str()]);
+    // NaN passes no comparison.
+    let agrees = |verdict: &str| match grade(verdict) {
+        Some(Grade::Solved) => found.natural_map() <= record.cell.tolerance,
+        Some(_) => found.natural_map().is_finite(),
+        None => false,
+    };
+    !found.increments.is_empty() && all.all(agrees)
+}
+
+/// Whether the method says of itself that it succeeded: it ended with a claim, right or wrong.
+pub fn claims(record: &Record) -> bool {
+    let verdict = record.found.verdict.as_str();
+    grade(verdict).is_some() || verdict == "false-claim"
+}
+
+/// Whether the answer is right to a tier: an honest verdict, contact laws that hold to the tier on every increment, and for
+/// methods with laws of their own equilibrium too, which their grade says.
+pub fn is_correct(record: &Record, tier: Tier) -> bool {
+    let graded = |verdict: &str| match grade(verdict) {
+        Some(Grade::Solved) => true,
+        Some(Grade::Approximate(Some(reached))) => reached.tolerance() <= tier.tolerance(),
+        Some(Grade::Approximate(None)) | None => false,
+    };
+    let found = &record.found;
+    is_honest(record)
+        && found.increments.iter().all(|i| graded(&i.verdict))
+        && found.natural_map() <= tier.tolerance()
+}
+
+/// Time of the method alone, preparation and all increments: what methods differ in, K being factored and condensed for all
+/// of them. The intervals of the two are added, which is on the safe side.
+pub fn method_time(spent: &Spent) -> Timing {
+    let Spent { prepare, solve, .. } = spent;
+    Timing {
+        median_s: prepare.median_s + solve.median_s,
+        min_s: prepare.min_s + solve.min_s,
+        low_s: prepare.low_s + solve.low_s,
+        high_s: prepare.high_s + solve.high_s,
+        samples: prepare.samples.min(solve.samples),
+    }
+}
+
+/// Honest verdicts.
+enum Grade {
+    Solved,
+    Approximate(Option<Tier>),
+}
+
+fn grade(verdict: &str) -> Option<Grade> {
+    if verdict == "solved" {
+        return Some(Grade::Solved);
+    }
+    let reached = verdict.strip_prefix("approximate: ")?;
+    let tier = Tier::ALL.into_iter().find(|tier| tier.as_str() == reached);
+    Some(Grade::Approximate(tier))
+}
+
+/// Whether the options of a cell's method are the defaults.
+pub fn has_defaults(cell: &Cell) -> bool {
+    !cell.method.contains(':')
+}
+
+/// Name of a cell's method in the registry.
+pub fn method_name(cell: &Cell) -> &str {
+    cell.method.split(':').next().unwrap_or(&cell.method)
+}
+
+/// Order of methods: that of the registry, then by name with options.
+pub fn compare_methods(a: &str, b: &str) -> Ordering {
+    let place = |label: &str| {
+        let name = label.split([':', '[']).next().unwrap_or(label);
+        let known = METHODS.iter().position(|method| method.name == name);
+        known.unwrap_or(METHODS.len())
+    };
+    place(a).cmp(&place(b)).then_with(|| a.cmp(b))
+}
+
+/// Order of problems: case, refinement, contact space, friction.
+pub fn compare_problems(a: &Problem, b: &Problem) -> Ordering {
+    let key = |p: &Problem| (p.case.clone(), p.refine, p.space.clone(), p.digest.clone());
+    let friction = || {
+        let pairs = a.friction.iter().zip(&b.friction);
+        let differences = pairs.map(|(x, y)| x.total_cmp(y));
+        let lengths = a.friction.len().cmp(&b.friction.len());
+        differences
+            .fold(Ordering::Equal, Ordering::then)
+            .then(lengths)
+    };
+    key(a).cmp(&key(b)).then_with(friction)
+}
+
+/// All problems of some records, in order.
+pub fn problems(records: &[Record]) -> Vec<Problem> {
+    let mut all: Vec<Problem> = records.iter().map(|r| r.cell.problem()).collect();
+    all.sort_by(compare_problems);
+    all.dedup();
+    all
+}
+
+/// A problem in words that are also a file name: `case.r2.star.mu-0.3`. Where two problems of the list share them, the
+/// digest of the case and all coefficients of friction follow.
+pub fn problem_names(problems: &[Problem]) -> Vec<String> {
+    let short = |p: &Problem| {
+        let space = p.space.as_deref().unwrap_or("own");
+        let mu = p.friction.first().copied().unwrap_or(0.0);
+        format!("{}.r{}.{space}.mu-{mu}", p.case, p.refine)
+    };
+    let name = |problem: &Problem| {
+        let name = short(problem);
+        let alike = problems.iter().filter(|other| short(other) == name).count();
+        if alike == 1 {
+            return name;
+        }
+        let rest: Vec<String> = problem
+            .friction
+            .iter()
+            .skip(1)
+            .map(f64::to_string)
+            .collect();
+        let end = [vec![name], rest, vec![problem.digest.clone()]].concat();
+        end.join("-")
+    };
+    problems.iter().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::support::{lying, record, timed};
+    use super::*;
+
+    #[test]
+    fn only_honest_verdicts_have_times() {
+        for verdict in ["solved", "approximate: low", "approximate: none"] {
+            let mut kept = timed(record("plate", "latin", 1e-3), 1.0);
+            kept.found.verdict = verdict.into();
+            kept.found.increments[0].verdict = verdict.into();
+            assert!(published_times(&kept).is_some(), "{verdict}");
+        }
+        for verdict in [
+            "false-claim",
+            "gave-up: stalled",
+            "refused: friction",
+            "crashed: no",
+            "timed-out",
+            "out-of-memory",
+            "",
+        ] {
+            let record = lying(verdict);
+            assert!(record.spent.is_some(), "it does carry times");
+            assert_eq!(published_times(&record), None, "{verdict}");
+        }
+    }
+
+    #[test]
+    fn a_record_that_contradicts_itself_has_no_times() {
+        let good = || timed(record("plate", "latin", 1e-6), 1.0);
+        let spoilt: [fn(&mut Record); 4] = [
+            |r| r.found.increments[0].verdict = "false-claim".into(),
+            |r| r.found.increments[0].natural_map = Some(1e-3),
+            |r| r.found.increments[0].natural_map = None,
+            |r| r.found.increments.clear(),
+        ];
+        assert!(published_times(&good()).is_some());
+        for spoil in spoilt {
+            let mut record = good();
+            spoil(&mut record);
+            assert_eq!(published_times(&record), None);
+            assert!(!is_correct(&record, Tier::Low));
+        }
+    }
+
+    #[test]
+    fn success_is_a_claim_and_correct_is_its_proof() {
+        let mut wrong = lying("false-claim");
+        assert!(claims(&wrong) && !is_correct(&wrong, Tier::Low));
+        wrong.found.verdict = "gave-up: stalled".into();
+        assert!(!claims(&wrong));
+        let solved = record("plate", "latin", 1e-6);
+        assert!(is_correct(&solved, Tier::Low) && is_correct(&solved, Tier::Mid));
+        assert!(!is_correct(&solved, Tier::High));
+    }
+
+    /// Goal: where equilibrium fails, as it may for laws of their own, a small natural map proves nothing; the grade knows.
+    #[test]
+    fn an_approximate_answer_is_as_right_as_its_worst_grade() {
+        let mut path = record("plate", "nitsche", 1e-9);
+        path.found.increments.push(path.found.increments[0].clone());
+        for (verdict, map) in [("approximate: mid", 1e-7), ("approximate: low", 1e-8)] {
+            path.found.increments[0].verdict = "approximate: mid".into();
+            path.found.increments[1].verdict = verdict.into();
+            path.found.increments[1].natural_map = Some(map);
+            path.found.verdict = verdict.into();
+            assert_eq!(is_correct(&path, Tier::Mid), verdict.ends_with("mid"));
+            assert!(is_correct(&path, Tier::Low) && !is_correct(&path, Tier::High));
+        }
+    }
+
+    #[test]
+    fn the_time_of_a_method_is_preparation_and_solution() {
+        let record = timed(record("plate", "latin", 1e-6), 2.0);
+        let spent = record.spent.as_ref().unwrap();
+        let time = method_time(spent);
+        // See `timed`: prepare 10 %, solve 90 % of the time, intervals of ±10 %.
+        assert!((time.median_s - 2.0).abs() < 1e-12);
+        assert!((time.low_s - 1.8).abs() < 1e-12 && (time.high_s - 2.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn problems_with_the_same_words_have_different_names() {
+        let mut other = record("plate", "latin", 1e-6).cell.problem();
+        let one = other.clone();
+        assert_eq!(problem_names(&[one.clone()]), ["plate.r1.own.mu-0.3"]);
+        other.friction.push(0.5);
+        let names = problem_names(&[one, other]);
+        assert!(
+            names[0] != names[1] && names[1].contains("-0.5-"),
+            "{names:?}"
+        );
+    }
+}
