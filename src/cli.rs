@@ -92,6 +92,8 @@ enum Verb {
     Study(study::Arguments),
     /// Join the records of a sweep that ran in several folders
     Merge(study::MergeArguments),
+    /// Show what changed between two runs of a sweep beyond noise
+    Compare(study::CompareArguments),
     /// Measure the cells that come in on standard input, as `study` starts it
     #[command(hide = true)]
     Work(study::WorkArguments),
@@ -235,6 +237,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Spaces(arguments) => spaces::run(arguments),
         Verb::Study(arguments) => study::run(arguments),
         Verb::Merge(arguments) => study::run_merge(arguments),
+        Verb::Compare(arguments) => study::run_compare(&arguments),
         Verb::Work(arguments) => study::run_work(&arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
