@@ -59,7 +59,7 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         ),
         (
             "traction of all methods",
-            plot::contact_traction(&all.points, 1).expect("traction"),
+            plot::contact_traction(&all.points, &[], 1).expect("traction"),
             vec![
                 "12 exact methods, apart by at most 0.002",
                 "penalty, off by at most 0.002",
@@ -67,7 +67,7 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         ),
         (
             "slip of all methods",
-            plot::contact_slip(&all.points, 1).expect("slip"),
+            plot::contact_slip(&all.points, &[], 1).expect("slip"),
             vec!["12 exact methods", "barrier, off by less than 1e-12"],
         ),
         (
@@ -106,7 +106,7 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         ),
         (
             "traction",
-            plot::contact_traction(&by_method, 1).expect("traction"),
+            plot::contact_traction(&by_method, &[], 1).expect("traction"),
             vec![
                 "[MPa]",
                 "distance along the crack [m]",
@@ -117,7 +117,7 @@ fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         ),
         (
             "slip",
-            plot::contact_slip(&by_method, 1).expect("slip"),
+            plot::contact_slip(&by_method, &[], 1).expect("slip"),
             vec!["slip [mm]", "normal gap [µm]", "b-newton"],
         ),
         (
@@ -373,13 +373,13 @@ fn contour_bands_cover_the_body_without_holes() {
 fn figures_refuse_what_they_cannot_show() {
     let nothing = plot::residual_history(&[], None).expect_err("no rows");
     assert!(matches!(nothing, ReportError::Figure { .. }), "{nothing}");
-    let other = plot::contact_slip(&points(&key("latin", 0.1)), 2).expect_err("no crack 2");
+    let other = plot::contact_slip(&points(&key("latin", 0.1)), &[], 2).expect_err("no crack 2");
     assert!(other.to_string().contains("crack 2"), "{other}");
     let mut solid = points(&key("latin", 0.1));
     for row in &mut solid {
         row.force_unit = "N".into();
     }
-    assert!(plot::contact_traction(&solid, 1).is_err());
+    assert!(plot::contact_traction(&solid, &[], 1).is_err());
     let wrong = plot::displacement_contours(&beam(), Magnification::Auto, "").expect_err("3D");
     assert!(wrong.to_string().contains("3 dimensions"), "{wrong}");
     let mut bare = plate();
@@ -418,12 +418,12 @@ fn figures_survive_sparse_and_flat_data() {
     for row in &mut rows {
         (row.slip_a_m, row.gap_m, row.status) = (1e-19, 0.0, "stick".into());
     }
-    let svg = plot::contact_slip(&rows, 1).expect("round-off slips");
+    let svg = plot::contact_slip(&rows, &[], 1).expect("round-off slips");
     assert!(
         svg.contains("slip [m]"),
         "round-off is not enlarged to an axis of its own"
     );
-    plot::contact_traction(&rows[..1], 1).expect("a single point");
+    plot::contact_traction(&rows[..1], &[], 1).expect("a single point");
 
     let mut flat = plate();
     for u in &mut flat.point_vectors[0].1 {

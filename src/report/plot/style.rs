@@ -174,6 +174,32 @@ impl Style {
         }
     }
 
+    /// The same where a closed form is drawn over it: a band on which a thin black line is seen.
+    pub fn shared_below_exact() -> Self {
+        Self {
+            colour: colour::MIDDLE,
+            ..Self::shared()
+        }
+    }
+
+    /// A closed form: thin, black, without markers.
+    pub fn exact() -> Self {
+        Self {
+            dashes: &[],
+            ..Self::reference(colour::BLACK)
+        }
+    }
+
+    /// A marker alone, black.
+    pub fn mark(marker: Marker, filled: bool) -> Self {
+        Self {
+            marker: Some(marker),
+            size: MARKER_MM,
+            filled,
+            ..Self::reference(colour::BLACK)
+        }
+    }
+
     /// The n-th of the curves drawn on a [`shared`](Self::shared) one: narrower, the dashes taking turns.
     pub fn on_shared(self, index: usize) -> Self {
         Self {
@@ -242,6 +268,15 @@ impl Style {
             filled: false,
             stagger: Stagger::EVERY_POINT,
         }
+    }
+}
+
+/// Marker of a contact status and whether it is filled.
+pub fn status_marker(status: &str) -> (Marker, bool) {
+    match status {
+        "stick" => (Marker::Disc, true),
+        "slip" => (Marker::Triangle, false),
+        _ => (Marker::Cross, false),
     }
 }
 
