@@ -89,8 +89,7 @@ pub fn file<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
         .map_err(|e| ReportError::Csv(e.into_error().into()))
 }
 
-/// Adds `runs.csv`, `quantities.csv`, `history.csv`, `points.csv` and `expectations.csv`, and `exact.csv` if there is a
-/// closed form.
+/// Adds `runs.csv`, `quantities.csv`, `history.csv`, `points.csv`, `exact.csv` and `expectations.csv`.
 ///
 /// # Errors
 /// Those of [`Bundle::add`].
@@ -99,13 +98,11 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
     bundle.add(QuantityRow::FILE, file(&results.quantities)?)?;
     bundle.add(HistoryRow::FILE, file(&results.history)?)?;
     bundle.add(PointRow::FILE, file(&results.points)?)?;
-    if !results.exact.is_empty() {
-        bundle.add(ExactRow::FILE, file(&results.exact)?)?;
-    }
+    bundle.add(ExactRow::FILE, file(&results.exact)?)?;
     bundle.add(ExpectRow::FILE, file(&results.expectations)?)
 }
 
-/// Writes these CSV files into `dir`, all or none.
+/// Writes these six files into `dir`, all or none.
 ///
 /// # Errors
 /// [`ReportError::Io`] naming the path that could not be written.

@@ -6,7 +6,7 @@
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, paper, vtu};
+use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
 use crate::harness::expect;
 use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,6 +26,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
     }
     add_residuals(&mut bundle, results)?;
     add_profiles(&mut bundle, results)?;
+    loops::add_to(&mut bundle, results)?;
     for fields in &results.fields {
         add_fields(&mut bundle, fields, provenance)?;
     }

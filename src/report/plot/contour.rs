@@ -5,7 +5,7 @@ use super::bands::{self, Pixel, Triangle, chains};
 use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
 use super::chart::{LABEL_PT, TICK_PT};
 use super::colour::{BLACK, LIGHT};
-use super::field::{DISPLACEMENT, Field, Magnification, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
 use crate::harness::record::{Picture, PictureShape};
@@ -45,13 +45,8 @@ pub fn von_mises_contours(
     caption: &str,
 ) -> Result<String, ReportError> {
     let field = Field::von_mises(picture)?;
-    contours(
-        picture,
-        &[field],
-        magnification,
-        "von Mises stress",
-        caption,
-    )
+    let caption = format!("{caption}, {STRESS}");
+    contours(picture, &[field], magnification, "Stress", &caption)
 }
 
 /// One or two fields as panels.

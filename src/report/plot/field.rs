@@ -12,6 +12,9 @@ pub const DISPLACEMENT: &str = "displacement_m";
 /// Name of the cell scalar with von Mises' equivalent stress.
 pub const VON_MISES: &str = "von_mises_pa";
 
+/// What a figure of it says in its caption.
+pub const STRESS: &str = "von Mises stress";
+
 /// Part of the body that a colour bar covers for certain: the stress at a tip has no bound.
 const COVERED: f64 = 0.98;
 /// A largest value up to this factor above that part is covered too.
@@ -98,7 +101,7 @@ impl Field {
         Ok(Self {
             values: means.iter().map(|(value, _)| value * factor).collect(),
             levels: Levels::new(low * factor, end * factor).reaching(high * factor),
-            label: format!("{}{} [{unit}]", italic("σ"), subscript("von Mises")),
+            label: format!("{}{} [{unit}]", italic("σ"), subscript("vM")),
         })
     }
 }

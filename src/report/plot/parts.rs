@@ -89,9 +89,7 @@ impl<'a> Parts<'a> {
         let is_body = |patch: &Patch| apart && behind[patch.faces[0][0]];
         let outer = Outer::of(picture);
         let open = shape.patches.iter().filter(|patch| !is_body(patch));
-        let open: Vec<&Patch> = open
-            .filter(|patch| apart || outer.holds(picture, patch))
-            .collect();
+        let open: Vec<&Patch> = open.filter(|patch| outer.holds(picture, patch)).collect();
         let body = shape.visible().into_iter().filter(|patch| is_body(patch));
         Self {
             body: body.collect(),

@@ -9,7 +9,7 @@ use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, p
 use super::chart::TICK_PT;
 use super::colour::BLACK;
 use super::contour::{Box2, split, stroke};
-use super::field::{DISPLACEMENT, Field, Magnification, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::Weld;
 use super::surface::{self, Patch};
 use crate::harness::record::Picture;
@@ -70,7 +70,8 @@ pub fn solid_von_mises(
     caption: &str,
 ) -> Result<String, ReportError> {
     let field = Field::von_mises(picture)?;
-    solid(picture, &field, magnification, "von Mises stress", caption)
+    let caption = format!("{caption}, {STRESS}");
+    solid(picture, &field, magnification, "Stress", &caption)
 }
 
 /// A field on the deformed boundary.

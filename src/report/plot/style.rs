@@ -182,6 +182,15 @@ impl Style {
         }
     }
 
+    /// Markers on a band are black, or they would be lost on it.
+    pub fn marker_colour(&self) -> Rgb {
+        if self.colour == colour::MIDDLE {
+            colour::BLACK
+        } else {
+            self.colour
+        }
+    }
+
     /// A closed form: thin, black, without markers.
     pub fn exact() -> Self {
         Self {
@@ -288,7 +297,8 @@ pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bo
 /// The marker of a style in its size, if it has one.
 pub fn draw_mark(canvas: &mut Canvas, at: [f64; 2], style: &Style) {
     if let Some(marker) = style.marker {
-        draw_sized(canvas, at, style.size, marker, style.filled, style.colour);
+        let colour = style.marker_colour();
+        draw_sized(canvas, at, style.size, marker, style.filled, colour);
     }
 }
 
