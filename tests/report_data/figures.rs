@@ -141,7 +141,7 @@ pub fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         (
             "stress of a solid",
             plot::solid_von_mises(&beam(), Magnification::Auto, "beam").expect("stress"),
-            // The last fiftieth of the beam is under far more stress than the rest.
+            // One cell in a thousand is under far more stress than the rest.
             vec!["[kPa]", ">to 2000<", ">300<"],
         ),
         (

@@ -371,14 +371,12 @@ pub fn beam() -> Picture {
         }
     }
     picture.point_vectors.push(("displacement_m".into(), u));
-    // 100 to 350 kPa along the beam, 2 MPa in one of its 1080 cells.
+    // 100 to 400 kPa along the beam, 2 MPa in one of its 1080 cells, at a corner.
     let stress = picture.cells.iter().map(|cell| {
         let x = picture.points[cell.points[0]];
         1e5 + 5e4 * x[1]
     });
     let mut stress: Vec<f64> = stress.collect();
-    let last = picture.points[picture.cells[0].points[0]];
-    assert_eq!(last, [0.0; 3], "a corner of the beam");
     stress[0] = 2e6;
     picture.cell_scalars.push(("von_mises_pa".into(), stress));
     picture

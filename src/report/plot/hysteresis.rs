@@ -66,7 +66,7 @@ pub fn friction_loop(
     let shown = |c: usize, factor: f64| {
         let values = runs.iter().flat_map(|run| &run.path).map(|p| p[c] * factor);
         let (low, high) = range(values).unwrap_or((0.0, 0.0));
-        let room = 0.05 * (high - low);
+        let room = [0.12, 0.08][c] * (high - low);
         [low - room, high + room]
     };
     let y_label = format!(

@@ -13,6 +13,8 @@ const FEW: usize = 8;
 const SAME_MM: f64 = 2.5;
 /// Distance of a label from its point [mm].
 const OFF_MM: f64 = 2.6;
+/// Distance of a label from the frame, which has ticks inside [mm].
+const CLEAR_MM: f64 = 1.6;
 /// Changes below this fraction of the range are no turn.
 pub const NO_CHANGE: f64 = 1e-6;
 
@@ -76,10 +78,18 @@ pub fn draw(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]]) {
         let away = [at[0] - middle[0], at[1] - middle[1]];
         let length = away[0].hypot(away[1]).max(f64::MIN_POSITIVE);
         let wanted = [0, 1].map(|c| at[c] + (OFF_MM + half[c] - 1.1) * away[c] / length);
-        let place = [
-            wanted[0].clamp(frame.left + half[0] + 0.5, frame.right - half[0] - 0.5),
-            wanted[1].clamp(frame.top + half[1] + 0.5, frame.bottom - half[1] - 0.5),
-        ];
+        let low = [frame.left, frame.top];
+        let high = [frame.right, frame.bottom];
+        let place = [0, 1].map(|c| {
+            let inside = [low[c] + half[c] + CLEAR_MM, high[c] - half[c] - CLEAR_MM];
+            // On the other side of the point where the frame leaves no room.
+            let place = if (inside[0]..=inside[1]).contains(&wanted[c]) {
+                wanted[c]
+            } else {
+                2.0 * at[c] - wanted[c]
+            };
+            place.clamp(inside[0], inside[1].max(inside[0]))
+        });
         let corner = |x: f64, y: f64| [place[0] + x * half[0], place[1] + y * half[1]];
         let box_around = [
             corner(-1.0, -1.0),
