@@ -12,6 +12,7 @@ pub mod csv;
 mod error;
 mod error_figures;
 pub mod infsup;
+mod loops;
 pub mod number;
 pub mod paper;
 pub mod patch;
