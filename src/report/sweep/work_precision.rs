@@ -142,7 +142,7 @@ fn figure(problem: &Problem, series: &[Series<'_>], caveat: &str) -> MethodPanel
     MethodPanels {
         title: format!("Work against precision: {}", problem.case),
         caption: format!(
-            "{}, {mesh}, {space}, {} = {}{caveat}\ndistance from the converged solution of the same discrete problem, at the lower edge: below {}, hollow: laws of their own, along their parameter",
+            "{}, {mesh}, {space}, {} = {}{caveat}\nerror: distance from the converged solution of the same discrete problem, at {} also what is smaller\nhollow markers: laws of their own, with options in brackets along the first of these",
             problem.case,
             italic("μ"),
             value(friction),
