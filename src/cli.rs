@@ -6,12 +6,13 @@ mod output;
 mod progress;
 mod spaces;
 mod stress;
+mod study;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
-use stickslip_methods::{METHODS, Method, OptionError, Tier};
+use stickslip_methods::{METHODS, Tier};
 
 use self::output::say;
 pub use self::output::warn;
@@ -25,12 +26,17 @@ use crate::harness::infsup::InfSupError;
 use crate::harness::loading::Loading;
 use crate::harness::problem_file::ProblemFileError;
 use crate::harness::record::Results;
-use crate::harness::run::{Choice, Fields, RunError, Settings, choices, friction_values, run_case};
+use crate::harness::run::{
+    Choice, ChoiceError, Fields, RunError, Settings, choices, friction_values, run_case,
+};
 use crate::harness::shipped;
 use crate::harness::stress::StressError;
 use crate::pages;
 use crate::paper::{self, PaperError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
+use crate::sweep::conduct::ConductError;
+use crate::sweep::plan::PlanError;
+use crate::sweep::store::StoreError;
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
 #[derive(Debug, Parser)]
@@ -82,6 +88,13 @@ enum Verb {
     Converge(converge::Arguments),
     /// Test the contact spaces: numerical inf-sup condition on cracks that lie in the grid in many ways
     Spaces(spaces::Arguments),
+    /// Sweep over cases, meshes, methods and tolerances: work against precision, a record per cell
+    Study(study::Arguments),
+    /// Join the records of a sweep that ran in several folders
+    Merge(study::MergeArguments),
+    /// Measure the cells that come in on standard input, as `study` starts it
+    #[command(hide = true)]
+    Work(study::WorkArguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
@@ -161,22 +174,27 @@ pub enum CliError {
         /// The method.
         name: &'static str,
     },
-    /// A method option.
-    #[error("--method {argument}: {source}")]
-    Option {
-        /// As given.
-        argument: String,
-        /// What is wrong.
-        source: OptionError,
-    },
-    /// An option that is no `key=value`.
-    #[error("--method {argument}: `{part}` is not key=value with a number")]
-    Syntax {
-        /// As given.
-        argument: String,
-        /// The part in question.
-        part: String,
-    },
+    /// A sweep file.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A folder of records.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A sweep that ended early.
+    #[error(transparent)]
+    Conduct(#[from] ConductError),
+    /// This program cannot be found to start it again.
+    #[error("cannot find this program to measure cells in a process of its own: {0}")]
+    Program(std::io::Error),
+    /// Interruptions cannot be caught.
+    #[error("cannot watch for interruptions: {0}")]
+    Interrupt(ctrlc::Error),
+    /// A worker that lost its conductor, or was refused its memory limit.
+    #[error("cannot measure cells: {0}")]
+    Work(std::io::Error),
+    /// A method with options.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
 }
 
 impl From<case::CaseError> for CliError {
@@ -215,6 +233,9 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Stress(arguments) => stress::run(arguments),
         Verb::Converge(arguments) => converge::run(arguments),
         Verb::Spaces(arguments) => spaces::run(arguments),
+        Verb::Study(arguments) => study::run(arguments),
+        Verb::Merge(arguments) => study::run_merge(arguments),
+        Verb::Work(arguments) => study::run_work(&arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),
@@ -259,7 +280,7 @@ fn run_verb(
         .collect::<Result<Vec<_>, _>>()?;
     let given = methods
         .iter()
-        .map(|m| parse_choice(m))
+        .map(|m| Choice::parse(m))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     for case in &cases {
@@ -388,39 +409,6 @@ fn find_case(name: &str) -> Result<Case, CliError> {
     Ok(case::read(name)?)
 }
 
-fn find_method(name: &str) -> Result<&'static Method, CliError> {
-    stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
-        what: "method",
-        name: name.into(),
-        known: METHODS
-            .iter()
-            .map(|m| m.name)
-            .collect::<Vec<_>>()
-            .join(", "),
-    })
-}
-
-/// NAME or NAME:key=value,key=value.
-fn parse_choice(argument: &str) -> Result<Choice, CliError> {
-    let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
-    let method = find_method(name)?;
-    let mut options = Vec::new();
-    for part in list.split(',').filter(|part| !part.is_empty()) {
-        let pair = part.split_once('=');
-        let Some((key, Ok(value))) = pair.map(|(k, v)| (k, v.parse::<f64>())) else {
-            return Err(CliError::Syntax {
-                argument: argument.into(),
-                part: part.into(),
-            });
-        };
-        options.push((key.to_owned(), value));
-    }
-    Choice::new(method, &options).map_err(|source| CliError::Option {
-        argument: argument.into(),
-        source,
-    })
-}
-
 fn list_text() -> String {
     let mut text = String::from("Methods\n");
     for method in METHODS {
@@ -460,7 +448,7 @@ fn show_text(name: &str) -> Result<String, CliError> {
     if Path::new(name).exists() {
         return Ok(case::read(name)?.source);
     }
-    let method = find_method(name).map_err(|_| CliError::Unknown {
+    let method = stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
         what: "method or case",
         name: name.into(),
         known: METHODS

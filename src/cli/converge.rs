@@ -4,18 +4,11 @@ use std::path::PathBuf;
 
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, find_case, parse_choice, refuse_twins};
+use super::{CliError, find_case, refuse_twins};
 use crate::harness::case::{ContactSpace, Tip};
 use crate::harness::converge::{self, Study, orders};
+use crate::harness::run::Choice;
 use crate::report::{Provenance, prepare_output};
-
-/// Contact spaces by name.
-const SPACES: [ContactSpace; 4] = [
-    ContactSpace::Star,
-    ContactSpace::Facet,
-    ContactSpace::P0,
-    ContactSpace::EdgePairs,
-];
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -41,9 +34,8 @@ pub struct Arguments {
 }
 
 fn space(text: &str) -> Result<ContactSpace, String> {
-    let known = SPACES.map(ContactSpace::name).join(", ");
-    let found = SPACES.into_iter().find(|space| space.name() == text);
-    found.ok_or_else(|| format!("one of {known}"))
+    let known = || ContactSpace::ALL.map(ContactSpace::name).join(", ");
+    ContactSpace::named(text).ok_or_else(|| format!("one of {}", known()))
 }
 
 fn tip(text: &str) -> Result<Tip, String> {
@@ -68,7 +60,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         .map(|name| find_case(name))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
-    let choice = parse_choice(&arguments.method)?;
+    let choice = Choice::parse(&arguments.method)?;
     if !choice.method.exact {
         return Err(CliError::Inexact {
             name: choice.method.name,

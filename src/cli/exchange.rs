@@ -6,10 +6,11 @@ use clap::Args;
 use stickslip_methods::{METHODS, Residuals, Tier};
 
 use super::output::say;
-use super::{Bar, CliError, find_case, parse_choice, provenance, refuse_twins};
+use super::{Bar, CliError, find_case, provenance, refuse_twins};
 use crate::harness::export::{Request, export};
 use crate::harness::problem_file::ProblemFile;
 use crate::harness::record::Results;
+use crate::harness::run::Choice;
 use crate::harness::run::{Fields, Progress, Settings};
 use crate::harness::verdict::EQUILIBRIUM;
 use crate::paper;
@@ -75,7 +76,7 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
         increment: args.increment,
         friction: args.friction,
         refine: args.refine.map(usize::from),
-        choice: parse_choice(&args.method)?,
+        choice: Choice::parse(&args.method)?,
     };
     prepare_output(&args.out)?;
     let (name, bundle) = export(&case, &request)?;
@@ -95,7 +96,7 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     };
     let chosen = given
         .iter()
-        .map(|m| parse_choice(m))
+        .map(|m| Choice::parse(m))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
     let problems = (args.files.iter())

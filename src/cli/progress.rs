@@ -1,42 +1,70 @@
 //! Progress of a command.
 
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::output::warn;
 use crate::harness::run::Progress;
 
-/// A progress bar on a terminal, nothing in a pipe.
-pub struct Bar(ProgressBar);
+/// A progress bar with the remaining time on a terminal; in a pipe nothing, or a line per run.
+pub struct Bar {
+    bar: ProgressBar,
+    lines: bool,
+    planned: AtomicUsize,
+    done: AtomicUsize,
+}
 
 impl Bar {
-    /// An empty bar.
+    /// An empty bar, silent in a pipe.
     pub fn new() -> Self {
-        if !std::io::stderr().is_terminal() {
-            return Bar(ProgressBar::hidden());
-        }
-        let bar = ProgressBar::new(0);
+        let terminal = std::io::stderr().is_terminal();
+        let bar = if terminal {
+            ProgressBar::new(0)
+        } else {
+            ProgressBar::hidden()
+        };
         if let Ok(style) =
             ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {msg}")
         {
             bar.set_style(style);
         }
-        Bar(bar)
+        Self {
+            bar,
+            lines: false,
+            planned: AtomicUsize::new(0),
+            done: AtomicUsize::new(0),
+        }
+    }
+
+    /// An empty bar that prints a line per run on standard error where that is a pipe.
+    pub fn with_lines() -> Self {
+        Self {
+            lines: !std::io::stderr().is_terminal(),
+            ..Self::new()
+        }
     }
 
     /// Clears the bar.
     pub fn finish(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
 impl Progress for Bar {
     fn plan(&self, runs: usize) {
-        self.0.inc_length(runs as u64);
+        self.planned.fetch_add(runs, Ordering::Relaxed);
+        self.bar.inc_length(runs as u64);
     }
 
     fn done(&self, label: &str) {
-        self.0.set_message(label.to_owned());
-        self.0.inc(1);
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if self.lines {
+            let planned = self.planned.load(Ordering::Relaxed);
+            warn(format_args!("[{done}/{planned}] {label}"));
+        }
+        self.bar.set_message(label.to_owned());
+        self.bar.inc(1);
     }
 }

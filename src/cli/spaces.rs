@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, parse_choice};
 use crate::harness::case::ContactSpace;
 use crate::harness::infsup::{self, SCENES, Scene};
 use crate::harness::patch::{self, PatchRow};
+use crate::harness::run::Choice;
 use crate::report::{Bundle, Provenance, prepare_output};
 
 /// Arguments of the verb.
@@ -39,7 +40,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     bar.finish();
     let bar = Bar::new();
     // A method that takes whatever contact state comes.
-    let choice = parse_choice("hybrid")?;
+    let choice = Choice::parse("hybrid")?;
     let distances = usize::from(arguments.distances);
     let patches = patch::catalogue(&patch::DISTANCES[..distances])?;
     let rows = patch::run(&patches, &SPACES, &choice, &bar)?;

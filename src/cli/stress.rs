@@ -6,7 +6,8 @@ use stickslip_methods::{METHODS, Tier};
 
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, parse_choice, refuse_twins};
+use super::{CliError, refuse_twins};
+use crate::harness::run::Choice;
 use crate::harness::stress::{self, Study, Trial};
 use crate::harness::verdict::Verdict;
 use crate::report::{Provenance, prepare_output, robustness};
@@ -59,7 +60,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     };
     let choices = given
         .iter()
-        .map(|m| parse_choice(m))
+        .map(|m| Choice::parse(m))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("method", choices.iter().map(|c| c.label.as_str()))?;
     let sorted = |mut values: Vec<f64>| {

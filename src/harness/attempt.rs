@@ -63,7 +63,7 @@ pub fn prepare(
 
 /// Solves an increment and judges the outcome against the natural map accepted.
 pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, accepted: f64) -> Attempt {
-    let (solved, solve_s) = timed(increment.system, || method.solve(increment, &mut Silent));
+    let (solved, solve_s) = solve(method, increment);
     let judged = solved.and_then(|outcome| {
         let found = residuals_of(increment, &outcome.state, outcome.claim)?;
         let status = point_status(increment, &outcome.state)?;
@@ -83,6 +83,14 @@ pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, accepted
         },
         Err(error) => Attempt::unsolved(Verdict::Crashed(error.to_string())),
     }
+}
+
+/// Solves an increment, unjudged: what the method returned and its seconds.
+pub fn solve(
+    method: &mut dyn Enforcement,
+    increment: &Increment<'_>,
+) -> (Result<Outcome, MethodError>, f64) {
+    timed(increment.system, || method.solve(increment, &mut Silent))
 }
 
 /// Seconds a call took, less the time the shared factorisation and condensation took inside it.

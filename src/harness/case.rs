@@ -6,13 +6,13 @@
 
 mod condition;
 mod crack;
-mod error;
+pub(crate) mod error;
 mod exact;
 mod expect;
 mod load;
 mod mesh;
-mod parse;
-mod reader;
+pub(crate) mod parse;
+pub(crate) mod reader;
 mod schema;
 
 pub use condition::Condition;
@@ -262,6 +262,14 @@ pub enum ContactSpace {
 }
 
 impl ContactSpace {
+    /// All spaces.
+    pub const ALL: [Self; 4] = [Self::EdgePairs, Self::Facet, Self::Star, Self::P0];
+
+    /// The space of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|space| space.name() == name)
+    }
+
     /// Name in case files and tables.
     pub fn name(self) -> &'static str {
         match self {

@@ -249,7 +249,7 @@ fn run_one(
 }
 
 /// The quantities of interest that are followed under refinement.
-fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value> {
+pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value> {
     let rows = quantity_rows(case, body, key, now);
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -283,7 +283,7 @@ fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value
 }
 
 /// Largest distance of neighbouring grid lines [m].
-fn cell_size(mesh: &MeshSpec) -> f64 {
+pub(crate) fn cell_size(mesh: &MeshSpec) -> f64 {
     let lines = mesh.lines.iter().flat_map(|line| line.windows(2));
     lines.map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
 }

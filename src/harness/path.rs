@@ -34,6 +34,8 @@ pub struct Ended<'a> {
     pub history: Vec<HistoryRow>,
     /// The judgement.
     pub verdict: Verdict,
+    /// The answer of the method, judged; `None` if it failed with an error.
+    pub answer: Option<&'a Judged>,
     /// The mechanics, of an honest verdict only.
     pub now: Option<&'a Snapshot>,
 }
@@ -59,6 +61,7 @@ impl Path<'_> {
                     run: refused.run,
                     history: refused.history,
                     verdict: refused.verdict,
+                    answer: None,
                     now: None,
                 };
                 each(key, ended);
@@ -81,35 +84,28 @@ impl Path<'_> {
                 tolerance: accuracy.asked,
             };
             let step = solver.solve(key, &problem);
-            let answer = step.answer.filter(|_| step.verdict.is_honest());
-            let honest = answer.is_some();
-            if let Some(Judged {
-                outcome,
-                status,
-                consistency,
-                ..
-            }) = answer
-            {
-                let consistency = consistency.as_deref();
+            let honest = step.answer.as_ref().filter(|_| step.verdict.is_honest());
+            if let Some(judged) = honest {
                 now = Snapshot::new(
                     loading,
                     increment,
-                    &outcome.state,
-                    consistency,
-                    status,
+                    &judged.outcome.state,
+                    judged.consistency.as_deref(),
+                    judged.status.clone(),
                     &now,
                 );
-                state = outcome.state;
             }
             let ended = Ended {
+                now: honest.is_some().then_some(&now),
                 run: step.run,
                 history: step.history,
-                verdict: step.verdict,
-                now: honest.then_some(&now),
+                answer: step.answer.as_ref(),
+                verdict: step.verdict.clone(),
             };
             each(key, ended);
-            if !honest {
-                break;
+            match step.answer.filter(|_| step.verdict.is_honest()) {
+                Some(judged) => state = judged.outcome.state,
+                None => break,
             }
             start_load = load;
         }

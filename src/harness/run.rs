@@ -30,21 +30,50 @@ impl Choice {
     /// A method with some of its options changed.
     pub fn new(method: &'static Method, given: &[(String, f64)]) -> Result<Self, OptionError> {
         let options = Options::new(method.options, given)?;
-        // In the order of the method, and only what differs: the same settings have the same name.
-        let changed: Vec<String> = options
-            .iter()
-            .filter(|(spec, value)| *value != spec.default)
-            .map(|(spec, value)| format!("{}={value:e}", spec.name))
-            .collect();
-        let label = match changed.as_slice() {
-            [] => method.name.to_owned(),
-            list => format!("{}[{}]", method.name, list.join(",")),
+        let label = match changed(&options).as_str() {
+            "" => method.name.to_owned(),
+            list => format!("{}[{list}]", method.name),
         };
         Ok(Choice {
             method,
             options,
             label,
         })
+    }
+
+    /// A method as on the command line: `name` or `name:option=value,option=value`.
+    ///
+    /// # Errors
+    /// [`ChoiceError`].
+    pub fn parse(argument: &str) -> Result<Self, ChoiceError> {
+        let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
+        let method = stickslip_methods::method(name).ok_or_else(|| ChoiceError::Unknown {
+            name: name.into(),
+            known: method_names(),
+        })?;
+        let mut options = Vec::new();
+        for part in list.split(',').filter(|part| !part.is_empty()) {
+            let pair = part.split_once('=');
+            let Some((key, Ok(value))) = pair.map(|(k, v)| (k, v.parse::<f64>())) else {
+                return Err(ChoiceError::Syntax {
+                    argument: argument.into(),
+                    part: part.into(),
+                });
+            };
+            options.push((key.to_owned(), value));
+        }
+        Choice::new(method, &options).map_err(|source| ChoiceError::Option {
+            argument: argument.into(),
+            source,
+        })
+    }
+
+    /// As [`parse`](Self::parse) reads it, without options that have their defaults.
+    pub fn argument(&self) -> String {
+        match changed(&self.options).as_str() {
+            "" => self.method.name.to_owned(),
+            list => format!("{}:{list}", self.method.name),
+        }
     }
 
     /// Whether the method asks for the traction operator.
@@ -58,6 +87,50 @@ impl Choice {
         let all = stickslip_methods::METHODS.iter();
         all.map(|method| Choice::new(method, &[])).collect()
     }
+}
+
+/// The options that differ from their defaults, in the order of the method: the same settings give the same text.
+fn changed(options: &Options) -> String {
+    let changed = options.iter().filter(|(spec, v)| *v != spec.default);
+    let changed: Vec<String> = changed
+        .map(|(spec, value)| format!("{}={value:e}", spec.name))
+        .collect();
+    changed.join(",")
+}
+
+/// Names of all methods, separated by commas.
+pub fn method_names() -> String {
+    let names = stickslip_methods::METHODS.iter().map(|m| m.name);
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// Why a text names no method with options.
+#[derive(Debug, thiserror::Error)]
+pub enum ChoiceError {
+    /// A name nobody knows.
+    #[error("unknown method `{name}`, known: {known}")]
+    Unknown {
+        /// As given.
+        name: String,
+        /// The choices.
+        known: String,
+    },
+    /// An option the method does not have or does not accept.
+    #[error("method {argument}: {source}")]
+    Option {
+        /// As given.
+        argument: String,
+        /// What is wrong.
+        source: OptionError,
+    },
+    /// An option that is no `key=value`.
+    #[error("method {argument}: `{part}` is not key=value with a number")]
+    Syntax {
+        /// As given.
+        argument: String,
+        /// The part in question.
+        part: String,
+    },
 }
 
 /// How to run cases.
@@ -130,8 +203,7 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
         .iter()
         .map(|spec| {
             let Some(method) = stickslip_methods::method(&spec.name) else {
-                let names: Vec<&str> = stickslip_methods::METHODS.iter().map(|m| m.name).collect();
-                return Err(case.error(&spec.span, &spec.name, names.join(", "), "unknown method"));
+                return Err(case.error(&spec.span, &spec.name, method_names(), "unknown method"));
             };
             Choice::new(method, &spec.options).map_err(|e| option_error(case, spec, &e))
         })

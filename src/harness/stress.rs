@@ -240,8 +240,22 @@ pub fn case_of(
     dim: usize,
     problem: usize,
 ) -> Result<String, StressError> {
-    let sample = Sample::new(study.seed, dim, problem / LOADS, needs(choices))?;
-    Ok(sample.case(problem % LOADS, &study.friction))
+    case_numbered(study.seed, dim, problem, &study.friction, needs(choices))
+}
+
+/// The case file of a problem by its numbers alone.
+///
+/// # Errors
+/// Those of [`Sample::new`].
+pub fn case_numbered(
+    seed: u64,
+    dim: usize,
+    problem: usize,
+    friction: &[f64],
+    needs: Needs,
+) -> Result<String, StressError> {
+    let sample = Sample::new(seed, dim, problem / LOADS, needs)?;
+    Ok(sample.case(problem % LOADS, friction))
 }
 
 /// Runs the study: trials by dimension, problem, friction and method.

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
 use super::statistics::Timing;
+use crate::harness::converge::Value;
+use crate::harness::errors::Deviation;
 use crate::report::Provenance;
 
 /// Version of the record files and of the tables made from them.
@@ -67,6 +69,28 @@ impl Origin {
             profile,
             machine: format!("{os}, {cpu}"),
         }
+    }
+
+    /// The first difference from another origin: what, here, there.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let Self {
+            version,
+            commit,
+            dirty,
+            rustc,
+            profile,
+            machine,
+        } = self;
+        let pairs = [
+            ("version", version, &other.version),
+            ("commit", commit, &other.commit),
+            ("uncommitted changes", dirty, &other.dirty),
+            ("compiler", rustc, &other.rustc),
+            ("profile", profile, &other.profile),
+            ("machine", machine, &other.machine),
+        ];
+        let different = pairs.into_iter().find(|(_, own, others)| own != others);
+        different.map(|(what, own, others)| (what, own.clone(), others.clone()))
     }
 }
 
@@ -141,7 +165,7 @@ pub struct SolverError {
     pub reference: String,
     /// Its natural map, the largest over the increments [-].
     pub reference_natural_map: f64,
-    /// ‖u − u*‖_K / ‖K⁻¹BᵀP*‖_K [-].
+    /// ‖u − u*‖_K / ‖u*‖_K [-].
     pub energy: f64,
     /// |P − P*| / |P*| [-].
     pub force: f64,
@@ -196,7 +220,8 @@ pub struct Spent {
     pub solve: Timing,
     /// Tables and fields of the last increment, in memory [s].
     pub output_s: f64,
-    /// Largest resident memory of the process up to the end of the repeats [MB]; absent where the system does not tell.
+    /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
+    /// not tell.
     pub peak_mb: Option<f64>,
 }
 
@@ -224,4 +249,34 @@ impl Found {
     pub fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
         self.increments.iter().map(counter).sum()
     }
+}
+
+impl DeviationFound {
+    /// As it is written: numbers that do not exist are absent.
+    pub fn of(deviation: &Deviation) -> Self {
+        Self {
+            quantity: deviation.quantity.to_owned(),
+            at: deviation.at.clone(),
+            found: finite(deviation.found),
+            exact: deviation.exact,
+            error: finite(deviation.error),
+        }
+    }
+}
+
+impl ValueFound {
+    /// As it is written.
+    pub fn of(value: &Value) -> Self {
+        Self {
+            quantity: value.quantity.clone(),
+            at: value.at.clone(),
+            value: value.value,
+            norm: value.norm,
+            scale: value.scale,
+        }
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|v| v.is_finite())
 }

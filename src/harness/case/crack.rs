@@ -89,13 +89,7 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
 
 /// `contact`.
 fn contact(table: &Table<'_>) -> Result<ContactSpace, CaseError> {
-    let spaces = [
-        ContactSpace::EdgePairs,
-        ContactSpace::Facet,
-        ContactSpace::Star,
-        ContactSpace::P0,
-    ];
-    let named = spaces.map(|space| (space.name(), space));
+    let named = ContactSpace::ALL.map(|space| (space.name(), space));
     table
         .get("contact")
         .map_or(Ok(ContactSpace::Star), |v| v.one_of(&named))

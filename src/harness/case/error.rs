@@ -77,7 +77,7 @@ impl CaseError {
     }
 
     /// A file that cannot be opened or read: no position, no source line.
-    pub(super) fn unreadable(
+    pub(crate) fn unreadable(
         file: &Path,
         value: impl fmt::Display,
         allowed: &str,
@@ -117,16 +117,16 @@ impl fmt::Display for CaseError {
 
 /// The text of a case file, which turns byte ranges into positions.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     /// File as given by the caller.
-    pub(super) file: &'a Path,
+    pub(crate) file: &'a Path,
     /// Its text.
-    pub(super) text: &'a str,
+    pub(crate) text: &'a str,
 }
 
 impl Source<'_> {
     /// Error about the value at `span`; the key is found from the position.
-    pub(super) fn error(
+    pub(crate) fn error(
         &self,
         span: &Span,
         value: impl fmt::Display,
@@ -163,7 +163,7 @@ impl Source<'_> {
     }
 
     /// Text at `span`, for messages.
-    pub(super) fn slice(&self, span: &Span) -> &str {
+    pub(crate) fn slice(&self, span: &Span) -> &str {
         let start = self.boundary(span.start);
         &self.text[start..self.boundary(span.end).max(start)]
     }
@@ -179,7 +179,7 @@ impl Source<'_> {
 }
 
 /// Escapes control characters and cuts to one printable line.
-pub(super) fn clip(text: &str) -> String {
+pub(crate) fn clip(text: &str) -> String {
     clip_to(text, WIDTH)
 }
 

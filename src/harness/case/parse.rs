@@ -44,6 +44,11 @@ const KEYS: [&str; 16] = [
 /// not TOML, unknown or missing keys, wrong types, numbers that are not finite or out of range, contradictions.
 pub fn read(path: impl AsRef<Path>) -> Result<Case, CaseError> {
     let path = path.as_ref();
+    parse(path, read_text(path)?)
+}
+
+/// The text of a file.
+pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
     let unreadable = |e: std::io::Error| {
         CaseError::unreadable(path, e, "a readable TOML file", "cannot be read")
     };
@@ -68,20 +73,17 @@ pub fn read(path: impl AsRef<Path>) -> Result<Case, CaseError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(path, &format!("more than {MAX_BYTES} bytes")));
     }
-    match String::from_utf8(bytes) {
-        Ok(text) => parse(path, text),
-        Err(e) => {
-            let at = e.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(e.as_bytes());
-            let value = format!("byte 0x{:02X}", e.as_bytes()[at]);
-            // The text before the first bad byte is unchanged, so its place is the same in the repaired text.
-            let source = Source {
-                file: path,
-                text: &text,
-            };
-            Err(source.error(&(at..at + 1), value, "UTF-8 text", "not a text file"))
-        }
-    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(e.as_bytes());
+        let value = format!("byte 0x{:02X}", e.as_bytes()[at]);
+        // The text before the first bad byte is unchanged, so its place is the same in the repaired text.
+        let source = Source {
+            file: path,
+            text: &text,
+        };
+        source.error(&(at..at + 1), value, "UTF-8 text", "not a text file")
+    })
 }
 
 fn too_large(path: &Path, size: &str) -> CaseError {
@@ -118,14 +120,7 @@ pub fn parse_with(
     if text.len() as u64 > MAX_BYTES {
         return Err(too_large(&file, &format!("{} bytes", text.len())));
     }
-    let document = {
-        let source = Source {
-            file: &file,
-            text: &text,
-        };
-        let parsed = DeTable::parse(&text).map_err(|e| syntax_error(source, &e))?;
-        read_document(&Table::root(source, parsed.get_ref(), &KEYS)?, solutions)?
-    };
+    let document = document(&file, &text, &KEYS, |root| read_document(root, solutions))?;
     let name = file
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned())
@@ -136,6 +131,21 @@ pub fn parse_with(
         source: text,
         ..document
     })
+}
+
+/// Reads a TOML document with the given top-level keys.
+///
+/// # Errors
+/// Text that is not TOML, other keys, and those of `read`.
+pub(crate) fn document<T>(
+    file: &Path,
+    text: &str,
+    keys: &[&str],
+    read: impl FnOnce(&Table<'_>) -> Result<T, CaseError>,
+) -> Result<T, CaseError> {
+    let source = Source { file, text };
+    let parsed = DeTable::parse(text).map_err(|e| syntax_error(source, &e))?;
+    read(&Table::root(source, parsed.get_ref(), keys)?)
 }
 
 /// Everything the document says; name, file and source are filled in by the caller.

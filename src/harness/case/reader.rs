@@ -14,14 +14,14 @@ use super::error::{CaseError, Source, clip};
 
 /// A value of the document with its place.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
+pub(crate) struct Value<'a> {
     source: Source<'a>,
     item: &'a Spanned<DeValue<'a>>,
 }
 
 /// A table whose keys have been checked against the allowed ones.
 #[derive(Clone)]
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     source: Source<'a>,
     span: Span,
     map: &'a DeTable<'a>,
@@ -29,19 +29,19 @@ pub(super) struct Table<'a> {
 
 impl<'a> Value<'a> {
     /// Place of the value.
-    pub(super) fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         self.item.span()
     }
 
     /// Error about this value, shown as written.
-    pub(super) fn refuse(&self, allowed: impl Display, message: impl Display) -> CaseError {
+    pub(crate) fn refuse(&self, allowed: impl Display, message: impl Display) -> CaseError {
         let span = self.span();
         self.source
             .error(&span, self.source.slice(&span), allowed, message)
     }
 
     /// Error about a byte range inside this string, whose decoded text is `text`.
-    pub(super) fn refuse_part(
+    pub(crate) fn refuse_part(
         &self,
         text: &str,
         part: Span,
@@ -75,12 +75,12 @@ impl<'a> Value<'a> {
     }
 
     /// A finite number, written as integer or float.
-    pub(super) fn number(&self) -> Result<f64, CaseError> {
+    pub(crate) fn number(&self) -> Result<f64, CaseError> {
         self.number_if("finite numbers", |_| true)
     }
 
     /// A finite number that passes a test; `allowed` says which do.
-    pub(super) fn number_if(
+    pub(crate) fn number_if(
         &self,
         allowed: &str,
         test: impl Fn(f64) -> bool,
@@ -103,7 +103,7 @@ impl<'a> Value<'a> {
     }
 
     /// An integer in a range.
-    pub(super) fn integer(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
+    pub(crate) fn integer(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
         let allowed = format!("integers from {} to {}", range.start(), range.end());
         let DeValue::Integer(integer) = self.item.get_ref() else {
             return Err(self.wrong_type(&allowed));
@@ -115,7 +115,7 @@ impl<'a> Value<'a> {
     }
 
     /// A string.
-    pub(super) fn string(&self) -> Result<&'a str, CaseError> {
+    pub(crate) fn string(&self) -> Result<&'a str, CaseError> {
         self.item
             .get_ref()
             .as_str()
@@ -123,7 +123,7 @@ impl<'a> Value<'a> {
     }
 
     /// A non-empty string of one line: it ends up in tables.
-    pub(super) fn line(&self) -> Result<String, CaseError> {
+    pub(crate) fn line(&self) -> Result<String, CaseError> {
         let text = self.string()?;
         if text.trim().is_empty() || text.chars().any(char::is_control) {
             return Err(self.refuse("non-empty text on one line", "not one line of text"));
@@ -132,7 +132,7 @@ impl<'a> Value<'a> {
     }
 
     /// One of several names.
-    pub(super) fn one_of<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, CaseError> {
+    pub(crate) fn one_of<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, CaseError> {
         let names: Vec<&str> = choices.iter().map(|c| c.0).collect();
         let allowed = names.join(", ");
         let DeValue::String(text) = self.item.get_ref() else {
@@ -151,7 +151,7 @@ impl<'a> Value<'a> {
     }
 
     /// Entries of an array.
-    pub(super) fn list(&self) -> Result<Vec<Value<'a>>, CaseError> {
+    pub(crate) fn list(&self) -> Result<Vec<Value<'a>>, CaseError> {
         match self.item.get_ref() {
             DeValue::Array(array) => Ok(array
                 .iter()
@@ -165,7 +165,7 @@ impl<'a> Value<'a> {
     }
 
     /// Array of `length` entries.
-    pub(super) fn list_of(&self, length: usize) -> Result<Vec<Value<'a>>, CaseError> {
+    pub(crate) fn list_of(&self, length: usize) -> Result<Vec<Value<'a>>, CaseError> {
         let list = self.list()?;
         if list.len() != length {
             return Err(self.refuse(
@@ -177,19 +177,19 @@ impl<'a> Value<'a> {
     }
 
     /// Array of `length` finite numbers.
-    pub(super) fn numbers(&self, length: usize) -> Result<Vec<f64>, CaseError> {
+    pub(crate) fn numbers(&self, length: usize) -> Result<Vec<f64>, CaseError> {
         self.list_of(length)?.iter().map(Value::number).collect()
     }
 
     /// A table with no other keys than the allowed ones.
-    pub(super) fn table(&self, keys: &[&str]) -> Result<Table<'a>, CaseError> {
+    pub(crate) fn table(&self, keys: &[&str]) -> Result<Table<'a>, CaseError> {
         let table = self.any_table()?;
         table.only(keys)?;
         Ok(table)
     }
 
     /// A table whose keys are not known beforehand.
-    pub(super) fn any_table(&self) -> Result<Table<'a>, CaseError> {
+    pub(crate) fn any_table(&self) -> Result<Table<'a>, CaseError> {
         match self.item.get_ref() {
             DeValue::Table(map) => Ok(Table {
                 source: self.source,
@@ -203,7 +203,7 @@ impl<'a> Value<'a> {
 
 impl<'a> Table<'a> {
     /// The whole document.
-    pub(super) fn root(
+    pub(crate) fn root(
         source: Source<'a>,
         map: &'a DeTable<'a>,
         keys: &[&str],
@@ -231,12 +231,12 @@ impl<'a> Table<'a> {
     }
 
     /// Place of the table: its header, or its braces.
-    pub(super) fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         self.span.clone()
     }
 
     /// Keys with their places and values, in file order.
-    pub(super) fn entries(&self) -> Vec<(&'a str, Span, Value<'a>)> {
+    pub(crate) fn entries(&self) -> Vec<(&'a str, Span, Value<'a>)> {
         let value = |item| Value {
             source: self.source,
             item,
@@ -251,7 +251,7 @@ impl<'a> Table<'a> {
     }
 
     /// Value of a key that may be absent.
-    pub(super) fn get(&self, key: &str) -> Option<Value<'a>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         self.map.get(key).map(|item| Value {
             source: self.source,
             item,
@@ -259,13 +259,13 @@ impl<'a> Table<'a> {
     }
 
     /// Value of a key that must be given.
-    pub(super) fn required(&self, key: &str) -> Result<Value<'a>, CaseError> {
+    pub(crate) fn required(&self, key: &str) -> Result<Value<'a>, CaseError> {
         self.get(key)
             .ok_or_else(|| self.missing(&format!("`{key}`")))
     }
 
     /// The one key of several that is given, exactly one of which must be.
-    pub(super) fn exactly_one<'k>(
+    pub(crate) fn exactly_one<'k>(
         &self,
         keys: &[&'k str],
     ) -> Result<(&'k str, Value<'a>), CaseError> {
@@ -287,7 +287,7 @@ impl<'a> Table<'a> {
     }
 
     /// Error about what is not there, at the table itself.
-    pub(super) fn missing(&self, wanted: &str) -> CaseError {
+    pub(crate) fn missing(&self, wanted: &str) -> CaseError {
         self.source.error(
             &self.span,
             "nothing",
@@ -297,7 +297,7 @@ impl<'a> Table<'a> {
     }
 
     /// Tables of an array of tables; none if the key is absent.
-    pub(super) fn tables(&self, key: &str) -> Result<Vec<Value<'a>>, CaseError> {
+    pub(crate) fn tables(&self, key: &str) -> Result<Vec<Value<'a>>, CaseError> {
         let Some(value) = self.get(key) else {
             return Ok(Vec::new());
         };

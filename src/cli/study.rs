@@ -1,0 +1,192 @@
+//! The verbs `study`, `merge` and `work`: sweeps of cells, each a record of its own.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::CliError;
+use super::output::{say, warn};
+use super::progress::Bar;
+use crate::report::prepare_output;
+use crate::sweep::conduct::{Conduct, Shard, conduct};
+use crate::sweep::merge::merge;
+use crate::sweep::plan::Plan;
+use crate::sweep::record::Record;
+use crate::sweep::store::Store;
+use crate::sweep::worker::{Limits, serve};
+
+/// The sweep that is run without a file: work and precision of all methods.
+const STANDARD: (&str, &str) = (
+    "benches/study.toml",
+    include_str!("../../benches/study.toml"),
+);
+
+/// Arguments of the verb `study`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Sweep file; by default that of the project's own study
+    sweep: Option<PathBuf>,
+    /// Folder for the records and the report; cells that have a record there are not measured again
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+    /// Cells at the same time; times are recorded for 1 only
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+    /// Part of the cells, e.g. 2/8; `merge` joins the folders
+    #[arg(long, value_parser = shard)]
+    shard: Option<Shard>,
+    /// Time limit per cell with set-up and repetitions, in s
+    #[arg(long, default_value_t = 300.0, value_parser = positive)]
+    time_limit: f64,
+    /// Limit on the address space of the process of a cell, in MB
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    memory_limit: Option<u64>,
+    /// Measure cells again whose record was made by another program or machine
+    #[arg(long)]
+    redo: bool,
+    /// Print the ids of the cells, and measure nothing
+    #[arg(long)]
+    list: bool,
+}
+
+/// Arguments of the verb `merge`.
+#[derive(Debug, clap::Args)]
+pub struct MergeArguments {
+    /// Folders with records
+    #[arg(required = true)]
+    folders: Vec<PathBuf>,
+    /// Folder for all records and the report
+    #[arg(long)]
+    out: PathBuf,
+    /// Merge records of different commits or machines, and take the first of contradicting ones
+    #[arg(long)]
+    force: bool,
+}
+
+/// Arguments of the verb `work`.
+#[derive(Debug, clap::Args)]
+pub struct WorkArguments {
+    /// Limit on the address space, in MB
+    #[arg(long)]
+    memory_mb: Option<u64>,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/');
+    match parts.map(|(number, of)| (number.parse(), of.parse())) {
+        Some((Ok(number), Ok(of))) if 1 <= number && number <= of => Ok(Shard { number, of }),
+        _ => Err("i/n with whole numbers 1 <= i <= n".into()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("a finite number > 0".into()),
+    }
+}
+
+/// Set by an interruption.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Runs the verb `study`; false if cells are left, or one claimed what does not hold or crashed.
+pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+    let plan = match &arguments.sweep {
+        Some(file) => Plan::read(file)?,
+        None => Plan::parse(STANDARD.0.as_ref(), STANDARD.1)?,
+    };
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    if arguments.list {
+        let own = plan.tasks.iter().enumerate().filter(|(k, _)| shard.has(*k));
+        own.for_each(|(_, task)| say(format_args!("{}", task.id)));
+        return Ok(true);
+    }
+    prepare_output(&arguments.out)?;
+    let store = Store::create(&arguments.out, plan.contents())?;
+    let program = std::env::current_exe().map_err(CliError::Program)?;
+    watch_for_interruption()?;
+    let how = Conduct {
+        program: &program,
+        jobs: usize::from(arguments.jobs),
+        limits: Limits {
+            seconds: arguments.time_limit,
+            memory_mb: arguments.memory_limit,
+        },
+        shard,
+        redo: arguments.redo,
+        stop: &STOP,
+    };
+    let bar = Bar::with_lines();
+    let conducted = conduct(&plan.tasks, plan.repeats, &store, how, &bar)?;
+    bar.finish();
+    say(format_args!(
+        "{} cells: {} measured before, {} now, {} left",
+        conducted.cells,
+        conducted.before,
+        conducted.now,
+        conducted.cells - conducted.before - conducted.now
+    ));
+    let records = store.records()?;
+    if records.len() < plan.tasks.len() {
+        say(format_args!(
+            "{} of {} cells of the sweep have a record in {}",
+            records.len(),
+            plan.tasks.len(),
+            arguments.out.display()
+        ));
+        return Ok(conducted.complete());
+    }
+    report(&store, &records)
+}
+
+/// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
+/// group: what comes within a second is the same one.
+fn watch_for_interruption() -> Result<(), CliError> {
+    let mut first: Option<Instant> = None;
+    ctrlc::set_handler(move || match first {
+        None => {
+            first = Some(Instant::now());
+            STOP.store(true, Ordering::SeqCst);
+            warn(format_args!(
+                "Interrupted: finishing the cells that are being measured"
+            ));
+        }
+        Some(before) if before.elapsed() > Duration::from_secs(1) => std::process::exit(130),
+        Some(_) => {}
+    })
+    .map_err(CliError::Interrupt)
+}
+
+/// Runs the verb `merge`; false if cells are missing.
+pub fn run_merge(arguments: MergeArguments) -> Result<bool, CliError> {
+    prepare_output(&arguments.out)?;
+    let merged = merge(&arguments.folders, &arguments.out, arguments.force)?;
+    let total = merged.store.contents().cells.len();
+    say(format_args!("{} of {total} cells", merged.records.len()));
+    for id in &merged.missing {
+        warn(format_args!("missing: {id}"));
+    }
+    Ok(report(&merged.store, &merged.records)? && merged.missing.is_empty())
+}
+
+/// Runs the verb `work`.
+pub fn run_work(arguments: &WorkArguments) -> Result<bool, CliError> {
+    // An interruption at the terminal reaches the whole group of processes; the conductor decides.
+    ctrlc::set_handler(|| ()).map_err(CliError::Interrupt)?;
+    let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
+    serve(input, output, arguments.memory_mb).map_err(CliError::Work)?;
+    Ok(true)
+}
+
+/// Writes the report beside the records.
+fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
+    let wrong = |r: &&Record| {
+        let verdict = r.found.verdict.as_str();
+        verdict == "false-claim" || verdict.starts_with("crashed")
+    };
+    for record in records.iter().filter(wrong) {
+        warn(format_args!("{}: {}", record.found.verdict, record.id));
+    }
+    say(format_args!("Results: {}", store.dir().display()));
+    Ok(!records.iter().any(|r| wrong(&r)))
+}

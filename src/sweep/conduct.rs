@@ -1,0 +1,188 @@
+//! Has the cells of a sweep measured, some at a time, and keeps every record as soon as it is there.
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use super::measure::Repeats;
+use super::plan::Task;
+use super::record::{Found, Origin, Record, SCHEMA};
+use super::store::{Store, StoreError};
+use super::worker::{Answer, Limits, Request, Worker, WorkerError};
+use crate::harness::run::{Choice, Progress};
+
+/// How the cells are measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Conduct<'a> {
+    /// The program that has the verb `work`.
+    pub program: &'a Path,
+    /// Cells at the same time; times are kept for one only.
+    pub jobs: usize,
+    /// Limits on each.
+    pub limits: Limits,
+    /// Which part of the cells: the k-th with k mod `of` = `number` − 1.
+    pub shard: Shard,
+    /// Measure cells again whose record is of another program or machine; otherwise such a record is an error.
+    pub redo: bool,
+    /// Set from outside to end after the cells that are being measured.
+    pub stop: &'a AtomicBool,
+}
+
+/// A part of the cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl Shard {
+    /// All cells.
+    pub const ALL: Self = Self { number: 1, of: 1 };
+
+    /// Whether the cell of that position, from 0, belongs to it.
+    pub fn has(&self, position: usize) -> bool {
+        position % self.of == self.number - 1
+    }
+}
+
+/// What was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Conducted {
+    /// Cells of this shard.
+    pub cells: usize,
+    /// Of these, measured before.
+    pub before: usize,
+    /// Measured now.
+    pub now: usize,
+}
+
+impl Conducted {
+    /// Whether nothing is left.
+    pub fn complete(&self) -> bool {
+        self.before + self.now == self.cells
+    }
+}
+
+/// Why a sweep ended early, apart from being told to.
+#[derive(Debug, thiserror::Error)]
+pub enum ConductError {
+    /// The folder of records.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The workers.
+    #[error(transparent)]
+    Worker(#[from] WorkerError),
+}
+
+/// Measures the cells of a shard that have no record yet.
+///
+/// # Errors
+/// The first [`ConductError`]; records that were kept before it stay.
+pub fn conduct(
+    tasks: &[Task],
+    repeats: Repeats,
+    store: &Store,
+    how: Conduct<'_>,
+    progress: &dyn Progress,
+) -> Result<Conducted, ConductError> {
+    let origin = Origin::here();
+    let own = tasks.iter().enumerate().filter(|(k, _)| how.shard.has(*k));
+    let own: Vec<&Task> = own.map(|(_, task)| task).collect();
+    let mut left = Vec::new();
+    for task in &own {
+        match store.get(&task.id)? {
+            None => left.push(*task),
+            Some(record) if how.redo && record.origin.difference(&origin).is_some() => {
+                left.push(*task);
+            }
+            Some(record) => store.check_origin(&record, &origin, REMEDY)?,
+        }
+    }
+    let ids: Vec<String> = left.iter().map(|task| task.id.clone()).collect();
+    store.clear_partial(&ids)?;
+    progress.plan(left.len());
+
+    // Times of cells that share the machine mean nothing, so none are taken.
+    let repeats = if how.jobs > 1 { Repeats::NONE } else { repeats };
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let failure: Mutex<Option<ConductError>> = Mutex::new(None);
+    let failed = || failure.lock().map_or(true, |f| f.is_some());
+    std::thread::scope(|scope| {
+        for _ in 0..how.jobs {
+            scope.spawn(|| {
+                let mut worker = Worker::new(how.program, how.limits);
+                while !how.stop.load(Ordering::SeqCst) && !failed() {
+                    let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
+                        break;
+                    };
+                    let kept = one(task, repeats, &mut worker, &origin)
+                        .and_then(|record| Ok(store.put(&record).map(|()| record)?));
+                    match kept {
+                        Ok(record) => {
+                            done.fetch_add(1, Ordering::SeqCst);
+                            progress.done(&line(&record));
+                        }
+                        Err(error) => {
+                            if let Ok(mut failure) = failure.lock() {
+                                failure.get_or_insert(error);
+                            }
+                        }
+                    }
+                }
+            });
+        }
+    });
+    if let Some(error) = failure.into_inner().ok().flatten() {
+        return Err(error);
+    }
+    Ok(Conducted {
+        cells: own.len(),
+        before: own.len() - left.len(),
+        now: done.into_inner(),
+    })
+}
+
+const REMEDY: &str = "choose another folder, or --redo to measure such cells again";
+
+fn one(
+    task: &Task,
+    repeats: Repeats,
+    worker: &mut Worker<'_>,
+    origin: &Origin,
+) -> Result<Record, ConductError> {
+    let request = Request {
+        cell: task.cell.clone(),
+        text: task.text.to_string(),
+        repeats,
+    };
+    Ok(match worker.ask(&request)? {
+        Answer::Measured(record) => *record,
+        Answer::Ended(verdict) => {
+            let choice = Choice::parse(&task.cell.method).ok();
+            let label = choice.as_ref().map_or(&task.cell.method, |c| &c.label);
+            let exact = choice.as_ref().is_some_and(|c| c.method.exact);
+            Record {
+                schema: SCHEMA,
+                id: task.id.clone(),
+                cell: task.cell.clone(),
+                origin: origin.clone(),
+                found: Found::only(verdict.to_string(), label.clone(), exact),
+                spent: None,
+            }
+        }
+    })
+}
+
+/// One line on a cell: id, verdict, and what it took.
+fn line(record: &Record) -> String {
+    let Record {
+        id, found, spent, ..
+    } = record;
+    let iterations = found.sum(|i| i.iterations);
+    let time = spent.as_ref().map_or_else(String::new, |spent| {
+        format!(", {:.3} ms", 1e3 * spent.solve.median_s)
+    });
+    format!("{id}: {}, {iterations} iterations{time}", found.verdict)
+}

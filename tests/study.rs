@@ -1,0 +1,435 @@
+//! Sweeps through the program: a killed run is taken up, shards are merged, limits are verdicts, bad folders are refused.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use stickslip::sweep::record::Record;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
+
+/// 5 methods × 40 tolerances on a coarse plate: 200 cells of a few milliseconds.
+fn sweep(folder: &Path, methods: &[&str], tolerances: usize) -> std::path::PathBuf {
+    let list: Vec<String> = (0..tolerances)
+        .map(|k| format!("{:e}", 10f64.powf(-2.0 - 0.2 * k as f64)))
+        .collect();
+    let text = format!(
+        "title = \"Two hundred cells\"\nrepeats = {{ least = 1, most = 2, seconds = 0.0 }}\n\n[[cells]]\n\
+         cases = [\"plate_mesh1\"]\nrefine = [1]\nfriction = [0.1]\nmethods = {methods:?}\ntolerances = [{}]\n",
+        list.join(", ")
+    );
+    let file = folder.join("sweep.toml");
+    fs::write(&file, text).unwrap();
+    file
+}
+
+const METHODS: [&str; 5] = [
+    "b-newton",
+    "hybrid",
+    "latin",
+    "nsgs",
+    "penalty:normal=1e2,tangential=1e2",
+];
+
+fn study(file: &Path, out: &Path, more: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command
+        .arg("study")
+        .arg(file)
+        .arg("--out")
+        .arg(out)
+        .args(more);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+fn code(mut command: Command) -> i32 {
+    command.status().unwrap().code().unwrap()
+}
+
+/// What was found, by file; and that nothing else lies in the folder.
+fn found(out: &Path) -> BTreeMap<String, Record> {
+    let files = fs::read_dir(out.join("cells")).unwrap();
+    files
+        .map(|entry| {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let mut record: Record =
+                serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+            assert_eq!(name, format!("{}.json", record.id));
+            record.spent = None;
+            (name, record)
+        })
+        .collect()
+}
+
+/// Goal: `kill -9` loses nothing but the cell that was being measured.
+#[test]
+fn a_killed_sweep_is_taken_up_and_ends_like_one_that_was_not_killed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS, 40);
+    let (whole, killed) = (folder.path().join("whole"), folder.path().join("killed"));
+    assert_eq!(code(study(&file, &whole, &[])), 0);
+    let expected = found(&whole);
+    assert_eq!(expected.len(), 200);
+
+    let mut run = study(&file, &killed, &[]).spawn().unwrap();
+    let clock = Instant::now();
+    let kept = || fs::read_dir(killed.join("cells")).map_or(0, Iterator::count);
+    while kept() < 30 {
+        assert!(
+            clock.elapsed() < Duration::from_secs(120),
+            "{} cells",
+            kept()
+        );
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+    let before = kept();
+    assert!(
+        (30..200).contains(&before),
+        "killed after the end: {before}"
+    );
+
+    // What a run killed while it wrote leaves behind.
+    let id = expected.values().next_back().unwrap().id.clone();
+    fs::write(killed.join(format!("cells/{id}.json.1.partial")), "{\"sch").unwrap();
+    let again = study(&file, &killed, &[])
+        .stdout(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(again.status.code(), Some(0));
+    let text = String::from_utf8(again.stdout).unwrap();
+    assert!(text.starts_with("200 cells: "), "{text}");
+    assert!(!text.starts_with("200 cells: 0 measured before"), "{text}");
+    assert_eq!(found(&killed), expected);
+
+    // A third run measures nothing.
+    let third = study(&file, &killed, &[])
+        .stdout(Stdio::piped())
+        .output()
+        .unwrap();
+    let text = String::from_utf8(third.stdout).unwrap();
+    assert!(
+        text.starts_with("200 cells: 200 measured before, 0 now"),
+        "{text}"
+    );
+}
+
+#[test]
+fn two_shards_merged_equal_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS[..3], 10);
+    let at = |name: &str| folder.path().join(name);
+    assert_eq!(code(study(&file, &at("whole"), &[])), 0);
+    assert_eq!(code(study(&file, &at("one"), &["--shard", "1/2"])), 0);
+    assert_eq!(
+        code(study(&file, &at("two"), &["--shard", "2/2", "--jobs", "2"])),
+        0
+    );
+    assert_eq!(found(&at("one")).len(), 15);
+    let merge = |folders: &[&str], more: &[&str]| {
+        let mut command = Command::new(PROGRAM);
+        command.arg("merge").args(folders.iter().map(|f| at(f)));
+        command.arg("--out").arg(at("merged")).args(more);
+        command.output().unwrap()
+    };
+    let output = merge(&["one"], &[]);
+    assert_eq!(
+        output.status.code(),
+        Some(1),
+        "half of the cells are missing"
+    );
+    let missing = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        missing
+            .lines()
+            .filter(|l| l.starts_with("missing: "))
+            .count(),
+        15
+    );
+
+    assert_eq!(merge(&["one", "two"], &[]).status.code(), Some(0));
+    assert_eq!(found(&at("merged")), found(&at("whole")));
+    // Tables without times are equal byte by byte.
+    for table in ["cells.csv", "increments.csv", "deviations.csv"] {
+        let read = |out: &str| fs::read(at(out).join(table)).unwrap();
+        assert_eq!(read("merged"), read("whole"), "{table}");
+    }
+
+    // Times of cells that shared the machine are not kept.
+    let spent = |out: &str| {
+        let files = fs::read_dir(at(out).join("cells")).unwrap();
+        let text = files.map(|f| fs::read_to_string(f.unwrap().path()).unwrap());
+        text.filter(|t| !t.contains("\"spent\": null")).count()
+    };
+    assert_eq!((spent("one"), spent("two")), (15, 0));
+
+    // Another machine, and another result of the same program.
+    let change = |from: &str, to: &str| {
+        let entry = fs::read_dir(at("two").join("cells"))
+            .unwrap()
+            .next()
+            .unwrap();
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from));
+        fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        (path, text)
+    };
+    let (path, text) = change("\"machine\": \"", "\"machine\": \"another ");
+    let output = merge(&["one", "two"], &[]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("machine") && error.contains("--force"),
+        "{error}"
+    );
+    assert_eq!(merge(&["one", "two"], &["--force"]).status.code(), Some(0));
+    fs::write(path, text).unwrap();
+
+    let (path, text) = change("\"iterations\": ", "\"iterations\": 1");
+    let output = merge(&["whole", "two"], &[]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error.contains("other numbers"), "{error}");
+    fs::write(path, text).unwrap();
+
+    let (path, text) = change("\"schema\": 1", "\"schema\": 7");
+    let output = merge(&["one", "two"], &["--force"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error.contains("schema 7"), "{error}");
+    fs::write(path, text).unwrap();
+}
+
+#[test]
+fn records_of_another_program_are_not_taken_for_ones_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS[..1], 2);
+    let out = folder.path().join("out");
+    assert_eq!(code(study(&file, &out, &[])), 0);
+    let expected = found(&out);
+    let path = fs::read_dir(out.join("cells"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(
+        &path,
+        text.replacen("\"rustc\": \"", "\"rustc\": \"old ", 1),
+    )
+    .unwrap();
+    let output = study(&file, &out, &[])
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("compiler") && error.contains("--redo"),
+        "{error}"
+    );
+    assert_eq!(code(study(&file, &out, &["--redo"])), 0);
+    assert_eq!(found(&out), expected);
+
+    // A record that is cut off is never skipped as done.
+    fs::write(&path, &text[..text.len() / 2]).unwrap();
+    let output = study(&file, &out, &[])
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains(path.file_name().unwrap().to_str().unwrap()),
+        "{error}"
+    );
+
+    // Another sweep does not mix with this one.
+    let other = sweep(folder.path(), &METHODS[..1], 3);
+    let output = study(&other, &out, &[])
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("another sweep"), "{error}");
+}
+
+#[test]
+fn limits_of_time_and_memory_are_verdicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &["hybrid"], 2);
+    let at = |name: &str| folder.path().join(name);
+    // No cell is measured within a microsecond; all have a record.
+    assert_eq!(
+        code(study(&file, &at("time"), &["--time-limit", "1e-6"])),
+        0
+    );
+    let timed_out = found(&at("time"));
+    assert_eq!(timed_out.len(), 2);
+    assert!(timed_out.values().all(|r| r.found.verdict == "timed-out"));
+
+    let text = fs::read_to_string(&file)
+        .unwrap()
+        .replace("refine = [1]", "refine = [8, 1]");
+    fs::write(&file, text).unwrap();
+    // The coarse mesh fits into 150 MB of address space, 176 × 176 cells do not.
+    let out = at("memory");
+    assert_eq!(code(study(&file, &out, &["--memory-limit", "150"])), 0);
+    let verdict = |part: &str| {
+        let records = found(&out);
+        let own = records.values().filter(|r| r.id.contains(part));
+        own.map(|r| r.found.verdict.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(verdict(".r8."), ["out-of-memory", "out-of-memory"]);
+    assert_eq!(verdict(".r1."), ["solved", "solved"]);
+}
+
+#[test]
+fn bad_sweep_files_are_refused_at_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sweep.toml");
+    let good = "title = \"t\"\n[[cells]]\ncases = [\"cyclic\"]\n";
+    for (text, place, part) in [
+        ("title = \"t\"\n".to_owned(), "1:1", "[[cells]]"),
+        (good.replace("cyclic", "cyclik"), "3:10", "unknown case"),
+        (good.replace("cyclic", "no.toml"), "", "no.toml"),
+        (
+            format!("{good}methods = [\"newton\"]\n"),
+            "4:12",
+            "unknown method `newton`",
+        ),
+        (
+            format!("{good}methods = [\"penalty:normal=-1\"]\n"),
+            "4:12",
+            "normal",
+        ),
+        (format!("{good}methods = []\n"), "4:11", "empty list"),
+        (
+            format!("{good}tolerances = [2.0]\n"),
+            "4:15",
+            "out of range",
+        ),
+        (
+            format!("{good}tolerances = [1e-3, \"x\"]\n"),
+            "4:21",
+            "wrong type",
+        ),
+        (format!("{good}refine = [0]\n"), "4:11", "out of range"),
+        (
+            format!("{good}contact = [\"stars\"]\n"),
+            "4:12",
+            "did you mean `star`?",
+        ),
+        (format!("{good}friction = [-0.1]\n"), "4:13", "out of range"),
+        (
+            format!("{good}random = {{ dimension = 2, problems = 3 }}\n"),
+            "4:10",
+            "exclude each other",
+        ),
+        (format!("{good}meshes = [1]\n"), "4:1", "unknown key"),
+        (
+            good.replace("[[cells]]", "repeats = { least = 0 }\n[[cells]]"),
+            "2:21",
+            "out of range",
+        ),
+        (good.replace("title", "title = "), "1:", "not valid TOML"),
+    ] {
+        fs::write(&file, &text).unwrap();
+        let out = folder.path().join("out");
+        let output = study(&file, &out, &[])
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{text}\n{error}");
+        assert!(
+            error.contains(&format!("sweep.toml:{place}")) || place.is_empty(),
+            "{text}\n{error}"
+        );
+        assert!(error.contains(part), "{text}\n{error}");
+        assert!(!out.exists(), "{text}");
+    }
+}
+
+/// Goal: whoever cannot write gets an error that names the path, and nothing half-written.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_an_error_and_holds_no_half_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS[..1], 2);
+    // A device that is always full stands where a record goes.
+    let out = folder.path().join("full");
+    assert_eq!(code(study(&file, &out, &["--shard", "1/2"])), 0);
+    let output = study(&file, Path::new("/dev/null/x"), &[])
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("/dev/null")
+    );
+
+    // The folder of the records becomes a file.
+    fs::rename(out.join("cells"), out.join("elsewhere")).unwrap();
+    fs::write(out.join("cells"), "in the way").unwrap();
+    let output = study(&file, &out, &[])
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("cells"), "{error}");
+    assert_eq!(fs::read_to_string(out.join("cells")).unwrap(), "in the way");
+}
+
+/// Goal: an interruption ends the run with whole records; the next run takes it up.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_finishes_its_cell_and_says_what_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS, 40);
+    let out = folder.path().join("out");
+    let run = study(&file, &out, &[])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let clock = Instant::now();
+    while fs::read_dir(out.join("cells")).map_or(0, Iterator::count) < 10 {
+        assert!(clock.elapsed() < Duration::from_secs(120));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let kill = Command::new("kill")
+        .arg("-INT")
+        .arg(run.id().to_string())
+        .status();
+    assert!(kill.unwrap().success());
+    let output = run.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let (text, errors) = (
+        String::from_utf8(output.stdout).unwrap(),
+        String::from_utf8(output.stderr).unwrap(),
+    );
+    let kept = found(&out).len();
+    assert!((10..200).contains(&kept), "{kept}");
+    assert!(
+        text.contains(&format!("{kept} now, {} left", 200 - kept)),
+        "{text}"
+    );
+    assert!(errors.contains("Interrupted"), "{errors}");
+    // One line per cell where nobody looks at a bar.
+    let lines = errors.lines().filter(|l| l.starts_with('[')).count();
+    assert_eq!(lines, kept);
+    assert_eq!(code(study(&file, &out, &[])), 0);
+    assert_eq!(found(&out).len(), 200);
+}
