@@ -9,7 +9,7 @@ use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::sweep::analysis::{
-    compare_methods, compare_problems, has_defaults, method_time, published_times,
+    common_tolerance, compare_methods, compare_problems, has_defaults, method_time, published_times,
 };
 use crate::sweep::cell::Problem;
 use crate::sweep::record::{Record, Spent};
@@ -152,7 +152,7 @@ fn without_mesh(problem: &Problem) -> Problem {
 }
 
 /// A figure per case, contact space and friction: a bar per mesh by the fastest right method, then a bar per method on the
-/// finest mesh, all solved to the finest tolerance that any of them was.
+/// finest mesh, all at the finest tolerance at which something was solved on every mesh.
 fn add_figures(
     bundle: &mut Bundle,
     rows: &[TimeRow<'_>],
@@ -169,10 +169,11 @@ fn add_figures(
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
-        let tolerances = group.iter().map(|row| row.record.cell.tolerance);
-        let finest = tolerances.fold(f64::INFINITY, f64::min);
+        let on_mesh = |rows: &[&TimeRow]| rows.iter().map(|r| r.record.cell.tolerance).collect();
+        let meshes = group.chunk_by(|a, b| a.record.cell.refine == b.record.cell.refine);
+        let tolerance = common_tolerance(&meshes.map(on_mesh).collect::<Vec<_>>());
         let mut group = group.to_vec();
-        group.retain(|row| row.record.cell.tolerance == finest);
+        group.retain(|row| Some(row.record.cell.tolerance) == tolerance);
         let Some(first) = group.first() else { continue };
         let cell = &first.record.cell;
         let space = cell.space.as_deref().unwrap_or("own");
