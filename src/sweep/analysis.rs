@@ -126,6 +126,13 @@ pub fn compare_problems(a: &Problem, b: &Problem) -> Ordering {
     key(a).cmp(&key(b)).then_with(friction)
 }
 
+/// The finest tolerance that was asked for on every mesh, given those of each; none where they share none.
+pub fn common_tolerance(meshes: &[Vec<f64>]) -> Option<f64> {
+    let (first, others) = meshes.split_first()?;
+    let shared = |tolerance: &&f64| others.iter().all(|mesh| mesh.contains(tolerance));
+    first.iter().filter(shared).copied().min_by(f64::total_cmp)
+}
+
 /// All problems of some records, in order.
 pub fn problems(records: &[Record]) -> Vec<Problem> {
     let mut all: Vec<Problem> = records.iter().map(|r| r.cell.problem()).collect();
@@ -240,6 +247,17 @@ mod tests {
         // See `timed`: prepare 10 %, solve 90 % of the time, intervals of ±10 %.
         assert!((time.median_s - 2.0).abs() < 1e-12);
         assert!((time.low_s - 1.8).abs() < 1e-12 && (time.high_s - 2.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn meshes_are_compared_at_a_tolerance_that_all_of_them_have() {
+        let coarse = vec![1e-3, 1e-6, 1e-9, 1e-10];
+        assert_eq!(
+            common_tolerance(&[coarse.clone(), vec![1e-9, 1e-6]]),
+            Some(1e-9)
+        );
+        assert_eq!(common_tolerance(&[coarse, vec![1e-8]]), None);
+        assert_eq!(common_tolerance(&[]), None);
     }
 
     #[test]

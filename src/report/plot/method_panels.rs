@@ -70,15 +70,17 @@ pub struct MethodPanels {
     pub panels: Vec<MethodPanel>,
 }
 
-/// Corners of the curve that jumps at each step (x, y) to y and stays there up to `end`; it rises from 0 at the first step.
+/// Corners of the curve that jumps at each step (x, y) to y and stays there up to `end`. It begins where it first rises from
+/// 0: many curves along the axis could not be told apart.
 pub fn stairs(steps: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     let mut last = 0.0;
-    for [x, y] in steps {
+    for [x, y] in steps.iter().filter(|step| step[1] > 0.0) {
         points.extend([[*x, last], [*x, *y]]);
         last = *y;
     }
-    points.extend(steps.last().map(|[x, y]| [end.max(*x), *y]));
+    let highest = points.last().copied();
+    points.extend(highest.map(|[x, y]| [end.max(x), y]));
     points.dedup();
     points
 }
@@ -114,7 +116,7 @@ pub fn method_panels(figure: &MethodPanels) -> Result<Option<String>, ReportErro
     let y = if figure.logarithmic {
         Axis::log(&figure.y_label, all().map(|p| p[1]).chain(lowest))
     } else {
-        Some(Axis::linear(&figure.y_label, [0.0, 1.0], 5))
+        Some(Axis::linear(&figure.y_label, [0.0, 1.0], 6))
     };
     let Some(y) = y else { return Ok(None) };
     let styles = Looks::of(figure);
@@ -246,11 +248,15 @@ fn draw(figure: &MethodPanels, panels: &[Panel], looks: &Looks) -> Result<String
         let last = row + 1 == rows;
         if last || !shared { AXIS_MM } else { BELOW_MM }
     };
+    let head = match figure.panels.iter().any(|p| !p.heading.is_empty()) {
+        true => HEADING_MM,
+        false => 1.0,
+    };
     let mut tops = Vec::new();
     let mut end = caption_height(&caption);
     for row in 0..rows {
-        tops.push(end + HEADING_MM);
-        end += HEADING_MM + figure.height + below(row);
+        tops.push(end + head);
+        end += head + figure.height + below(row);
     }
     let height = end + legend::ROW_MM * grid.rows() as f64 + 0.5;
     let mut canvas = Canvas::new(width, height);
@@ -315,11 +321,10 @@ mod tests {
         let corners = stairs(&[[1.0, 0.5], [2.0, 1.0]], 8.0);
         let expected = [[1.0, 0.0], [1.0, 0.5], [2.0, 0.5], [2.0, 1.0], [8.0, 1.0]];
         assert_eq!(corners, expected);
-        // A profile that begins at zero has no jump there.
-        assert_eq!(
-            stairs(&[[1.0, 0.0], [3.0, 1.0]], 3.0),
-            [[1.0, 0.0], [3.0, 0.0], [3.0, 1.0]]
-        );
+        // Nothing is drawn along the axis.
+        let late = stairs(&[[1.0, 0.0], [3.0, 1.0]], 3.0);
+        assert_eq!(late, [[3.0, 0.0], [3.0, 1.0]]);
+        assert!(stairs(&[[1.0, 0.0]], 8.0).is_empty());
         assert!(stairs(&[], 8.0).is_empty());
     }
 

@@ -9,7 +9,7 @@ use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::sweep::analysis::{
-    compare_methods, compare_problems, has_defaults, method_time, published_times,
+    common_tolerance, compare_methods, compare_problems, has_defaults, method_time, published_times,
 };
 use crate::sweep::cell::Problem;
 use crate::sweep::record::{Record, Spent};
@@ -67,9 +67,9 @@ impl<'a> TimeRow<'a> {
         ]
     }
 
-    /// Without output: what it takes to have the answer.
+    /// All stages.
     fn total(&self) -> f64 {
-        self.stages()[..6].iter().sum()
+        self.stages().iter().sum()
     }
 }
 
@@ -152,7 +152,7 @@ fn without_mesh(problem: &Problem) -> Problem {
 }
 
 /// A figure per case, contact space and friction: a bar per mesh by the fastest right method, then a bar per method on the
-/// finest mesh, all to the finest tolerance.
+/// finest mesh, all at the finest tolerance at which something was solved on every mesh.
 fn add_figures(
     bundle: &mut Bundle,
     rows: &[TimeRow<'_>],
@@ -166,16 +166,15 @@ fn add_figures(
         compare_problems(&problem(a), &problem(b))
             .then(a.record.cell.refine.cmp(&b.record.cell.refine))
             .then_with(|| compare_methods(&a.record.cell.method, &b.record.cell.method))
-            .then(a.record.cell.tolerance.total_cmp(&b.record.cell.tolerance))
-    });
-    // The finest tolerance of each method on each mesh.
-    own.dedup_by(|b, a| {
-        a.record.cell.problem() == b.record.cell.problem()
-            && a.record.cell.method == b.record.cell.method
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
-        let first = group[0];
+        let on_mesh = |rows: &[&TimeRow]| rows.iter().map(|r| r.record.cell.tolerance).collect();
+        let meshes = group.chunk_by(|a, b| a.record.cell.refine == b.record.cell.refine);
+        let tolerance = common_tolerance(&meshes.map(on_mesh).collect::<Vec<_>>());
+        let mut group = group.to_vec();
+        group.retain(|row| Some(row.record.cell.tolerance) == tolerance);
+        let Some(first) = group.first() else { continue };
         let cell = &first.record.cell;
         let space = cell.space.as_deref().unwrap_or("own");
         let friction = value(cell.mu());
@@ -184,7 +183,7 @@ fn add_figures(
             stem = format!("{stem}-{}", names.len());
         }
         names.push(stem.clone());
-        let svg = stacked(&figure(group, study))?;
+        let svg = stacked(&figure(&group, study))?;
         bundle.add(format!("figures/{stem}.svg"), svg)?;
     }
     Ok(())
@@ -217,10 +216,11 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
     Stacked {
         title: format!("Stages of a run: {}", cell.case),
         caption: format!(
-            "{}, {space}, {} = {}, solved to the finest tolerance asked for{}\nat the right: total time in s, stages from 8 % on are printed",
+            "{}, {space}, {} = {}, solved to a natural map of {}{}\nshares from 8 % on are printed, total time at the right",
             cell.case,
             italic("μ"),
             value(cell.mu()),
+            value(cell.tolerance),
             study.caveat(),
         ),
         scale: "share of the total time [%]".into(),
@@ -233,6 +233,6 @@ fn bar(row: &TimeRow<'_>, label: String) -> Bar {
     Bar {
         label,
         values: row.stages().into(),
-        note: significant(row.stages().iter().sum(), 3),
+        note: format!("{} s", significant(row.total(), 3)),
     }
 }

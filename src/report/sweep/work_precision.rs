@@ -12,13 +12,18 @@ use crate::sweep::analysis::series::{Point, Series, Swept, series};
 use crate::sweep::analysis::{problem_names, problems};
 use crate::sweep::cell::Problem;
 
-/// Adds `work_precision.csv` and a figure per problem.
+/// Points of a curve: problems that were solved at the three tiers alone have no figure.
+const CURVE: usize = 4;
+
+/// Adds `work_precision.csv` and a figure per problem with a curve.
 pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
     let all = problems(study.records);
     let mut rows = Vec::new();
     for (problem, name) in all.iter().zip(problem_names(&all)) {
         let series = series(study.records, problem);
-        if let Some(svg) = method_panels(&figure(problem, &series, &study.caveat()))? {
+        let drawn = series.iter().any(|own| own.points.len() >= CURVE);
+        let figure = figure(problem, &series, &study.caveat());
+        if let (true, Some(svg)) = (drawn, method_panels(&figure)?) {
             let stem = file_name(&["work_precision", &name]);
             bundle.add(format!("figures/{stem}.svg"), svg)?;
         }
@@ -142,7 +147,7 @@ fn figure(problem: &Problem, series: &[Series<'_>], caveat: &str) -> MethodPanel
     MethodPanels {
         title: format!("Work against precision: {}", problem.case),
         caption: format!(
-            "{}, {mesh}, {space}, {} = {}{caveat}\ndistance from the converged solution of the same discrete problem, at the lower edge: below {}, hollow: laws of their own, along their parameter",
+            "{}, {mesh}, {space}, {} = {}{caveat}\nerror: distance from the converged solution of the same discrete problem, at {} also what is smaller\nhollow markers: laws of their own, with options in brackets along the first of these",
             problem.case,
             italic("μ"),
             value(friction),

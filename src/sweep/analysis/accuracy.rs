@@ -2,12 +2,12 @@
 //!
 //! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy,
 //! or the first quantity that is followed, against its limit, see [`orders`](crate::harness::converge::orders). Methods that
-//! solve the contact laws enter, with default options and the finest tolerance that has an honest verdict: the modelling
-//! error of the others would hide that of the mesh.
+//! solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
+//! modelling error of the others would hide that of the mesh.
 
 use super::{
-    compare_methods, compare_problems, has_defaults, is_honest, method_time, problems,
-    published_times,
+    common_tolerance, compare_methods, compare_problems, has_defaults, is_honest, method_time,
+    problems, published_times,
 };
 use crate::harness::converge::orders::{self, ErrorRow, OrderRow};
 use crate::harness::converge::{Measured, Regularity, Sample, Seconds, Value, Variant};
@@ -49,23 +49,17 @@ pub fn refinements(records: &[Record]) -> Vec<Refinement> {
 }
 
 fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
-    let mut finest: Vec<&Record> = Vec::new();
-    for record in records
-        .iter()
-        .filter(|r| r.found.exact && has_defaults(&r.cell))
-    {
-        if !is_honest(record) || !meshes.contains(&record.cell.problem()) {
-            continue;
-        }
-        let same = |other: &&mut &Record| {
-            other.cell.method == record.cell.method && other.cell.refine == record.cell.refine
-        };
-        match finest.iter_mut().find(same) {
-            Some(other) if other.cell.tolerance > record.cell.tolerance => *other = record,
-            Some(_) => {}
-            None => finest.push(record),
-        }
-    }
+    let exact = |r: &&Record| r.found.exact && has_defaults(&r.cell);
+    let own: Vec<&Record> = records.iter().filter(exact).collect();
+    let on = |mesh: &Problem| -> Vec<f64> {
+        let own = own.iter().filter(|r| r.cell.problem() == *mesh);
+        own.map(|r| r.cell.tolerance).collect()
+    };
+    let tolerance = common_tolerance(&meshes.iter().map(on).collect::<Vec<_>>())?;
+    let mut finest = own;
+    finest.retain(|r| {
+        r.cell.tolerance == tolerance && is_honest(r) && meshes.contains(&r.cell.problem())
+    });
     finest.sort_by(|a, b| {
         compare_methods(&a.cell.method, &b.cell.method).then(a.cell.refine.cmp(&b.cell.refine))
     });

@@ -5,7 +5,7 @@
 //! than beyond the intervals of the [shifted geometric means](super::ranking).
 //!
 //! Confidence comes from the problems on which no method at all is faster than the named ones beyond the intervals, k of n:
-//! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does, `open` otherwise.
+//! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n is at least 3, `open` otherwise.
 
 use std::fmt;
 
@@ -19,6 +19,8 @@ use super::test_set::TestSet;
 use crate::sweep::cell::Problem;
 use crate::sweep::record::Record;
 
+/// Fewer problems say nothing.
+const FEWEST: usize = 3;
 /// A slip below this part of the displacements is none.
 const STICKS: f64 = 1e-8;
 
@@ -154,7 +156,7 @@ pub enum Confidence {
     Sure,
     /// Fastest on most of the problems that were measured.
     Likely,
-    /// Not even that, or no times.
+    /// Not even that, too few problems, or no times.
     Open,
 }
 
@@ -283,7 +285,7 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
     let confidence = match wilson(wins + ties, timed) {
         _ if fastest.is_empty() => Confidence::Open,
         [_, low, _] if low > 0.5 => Confidence::Sure,
-        [rate, ..] if rate > 0.5 => Confidence::Likely,
+        [rate, ..] if rate > 0.5 && timed >= FEWEST => Confidence::Likely,
         _ => Confidence::Open,
     };
     Recommendation {
@@ -342,6 +344,7 @@ mod tests {
     /// Source: Wilson's interval of 3 of 3 begins at 0.44, of 4 of 4 at 0.51.
     #[test]
     fn a_few_problems_make_nothing_sure() {
+        assert_eq!(overall(&records(2, 0)).confidence, Confidence::Open);
         assert_eq!(overall(&records(3, 0)).confidence, Confidence::Likely);
         assert_eq!(overall(&records(4, 0)).confidence, Confidence::Sure);
     }

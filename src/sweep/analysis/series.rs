@@ -18,7 +18,7 @@ use crate::sweep::statistics::Timing;
 pub enum Swept {
     /// The tolerance asked for.
     Tolerance,
-    /// The first of these options.
+    /// The first of these options, all of which change.
     Options(String),
 }
 
@@ -48,7 +48,7 @@ pub struct Point<'a> {
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series<'a> {
-    /// Method; of a curve along options their names in brackets.
+    /// Method; of a curve along options these in brackets, with the values of those that stay.
     pub label: String,
     /// Whether its limit are the contact laws.
     pub exact: bool,
@@ -59,7 +59,8 @@ pub struct Series<'a> {
 }
 
 /// The curves of one problem, in the order of the methods. A method with laws of its own has a curve along the tolerance with
-/// its defaults, and one along each set of options that was changed, at the finest tolerance.
+/// its defaults, and one along each set of options that was changed, at the finest tolerance; options that are the same all
+/// along stand in the label, and the defaults have a point on the curve where they agree with these.
 pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
     let mut by_method: BTreeMap<&str, Vec<Point<'a>>> = BTreeMap::new();
     for record in records.iter().filter(|r| r.cell.problem() == *problem) {
@@ -72,7 +73,7 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
         points.sort_by(|a, b| b.value.total_cmp(&a.value));
     }
     let mut all: Vec<Series> = Vec::new();
-    let mut along_options: BTreeMap<(&str, String), Vec<Point<'a>>> = BTreeMap::new();
+    let mut along_options: BTreeMap<(&str, String), Vec<Choice<'a>>> = BTreeMap::new();
     for (method, points) in &by_method {
         let Some(first) = points.first().map(|p| p.record) else {
             continue;
@@ -87,32 +88,73 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
             });
         }
         let changed = options(method);
-        if let (false, Some((_, value)), Some(finest)) = (exact, changed.first(), points.last()) {
+        if let (false, false, Some(finest)) = (exact, changed.is_empty(), points.last()) {
             let names: Vec<&str> = changed.iter().map(|(name, _)| *name).collect();
             let key = (method_name(&first.cell), names.join(","));
-            let mut point = finest.clone();
-            point.value = *value;
-            along_options.entry(key).or_default().push(point);
+            let group = along_options.entry(key).or_default();
+            group.push((changed, finest.clone()));
         }
     }
-    for ((method, names), mut points) in along_options {
-        let first = names.split(',').next().unwrap_or(&names);
+    for ((method, _), group) in along_options {
         let finest = by_method.get(method).and_then(|points| points.last());
-        if let (Some(point), Some(value)) = (finest, default(method, first)) {
-            let mut point = point.clone();
-            point.value = value;
-            points.push(point);
-        }
-        points.sort_by(|a, b| a.value.total_cmp(&b.value));
-        all.push(Series {
-            label: format!("{method}[{names}]"),
-            exact: false,
-            swept: Swept::Options(names),
-            points,
-        });
+        all.extend(along(method, group, finest));
     }
     all.sort_by(|a, b| compare_methods(&a.label, &b.label));
     all
+}
+
+/// Options and the cell that has them.
+type Choice<'a> = (Vec<(&'a str, f64)>, Point<'a>);
+
+/// The curve of cells with the same options in other values.
+fn along<'a>(
+    method: &str,
+    mut group: Vec<Choice<'a>>,
+    defaults: Option<&Point<'a>>,
+) -> Option<Series<'a>> {
+    let first = group.first()?.0.clone();
+    let varies = |k: &usize| {
+        group
+            .iter()
+            .any(|(options, _)| options[*k].1 != first[*k].1)
+    };
+    let mut varying: Vec<usize> = (0..first.len()).filter(varies).collect();
+    if varying.is_empty() {
+        varying = (0..first.len()).collect();
+    }
+    let stays = |k: usize| !varying.contains(&k);
+    let parts = first.iter().enumerate().map(|(k, (name, value))| {
+        if stays(k) {
+            format!("{name}={value:e}")
+        } else {
+            (*name).to_owned()
+        }
+    });
+    let label = format!("{method}[{}]", parts.collect::<Vec<_>>().join(","));
+    let agrees = |k: usize| default(method, first[k].0) == Some(first[k].1);
+    if (0..first.len()).filter(|k| stays(*k)).all(agrees) {
+        let own: Option<Vec<(&str, f64)>> = first
+            .iter()
+            .map(|(name, _)| Some((*name, default(method, name)?)))
+            .collect();
+        group.extend(own.zip(defaults.cloned()));
+    }
+    let along = *varying.first()?;
+    let mut points: Vec<Point> = group
+        .into_iter()
+        .map(|(options, point)| Point {
+            value: options[along].1,
+            ..point
+        })
+        .collect();
+    points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let names: Vec<&str> = varying.iter().map(|k| first[*k].0).collect();
+    Some(Series {
+        label,
+        exact: false,
+        swept: Swept::Options(names.join(",")),
+        points,
+    })
 }
 
 fn point(record: &Record) -> Option<Point<'_>> {
@@ -182,6 +224,34 @@ mod tests {
                     options,
                     vec![1e-3, 1e-5, 1e-7]
                 ),
+            ]
+        );
+    }
+
+    /// Goal: with θ = −1 the default of γ is another method: θ is 1 there.
+    #[test]
+    fn an_option_that_stays_tells_curves_apart() {
+        let of = |method: &str| timed(record("a", method, 1e-9), 1.0);
+        let records = vec![
+            of("nitsche"),
+            of("nitsche:gamma=4"),
+            of("nitsche:theta=-1,gamma=16"),
+            of("nitsche:theta=-1,gamma=4"),
+        ];
+        let found = series(&records, &records[0].cell.problem());
+        let lines: Vec<(&str, &str, Vec<f64>)> = found
+            .iter()
+            .map(|s| {
+                let values = s.points.iter().map(|p| p.value).collect();
+                (s.label.as_str(), s.swept.name(), values)
+            })
+            .collect();
+        assert_eq!(
+            lines,
+            [
+                ("nitsche", "tolerance", vec![1e-9]),
+                ("nitsche[gamma]", "gamma", vec![2.0, 4.0]),
+                ("nitsche[theta=-1e0,gamma]", "gamma", vec![4.0, 16.0]),
             ]
         );
     }
