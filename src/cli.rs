@@ -3,6 +3,7 @@
 mod converge;
 mod exchange;
 mod output;
+mod page;
 mod progress;
 mod spaces;
 mod stress;
@@ -30,6 +31,7 @@ use crate::harness::shipped;
 use crate::harness::stress::StressError;
 use crate::pages;
 use crate::paper::{self, PaperError};
+use crate::report::{self, page::PageError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
@@ -82,6 +84,8 @@ enum Verb {
     Converge(converge::Arguments),
     /// Test the contact spaces: numerical inf-sup condition on cracks that lie in the grid in many ways
     Spaces(spaces::Arguments),
+    /// Show a report folder as one page, index.html
+    Page(page::Arguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
@@ -129,6 +133,9 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// A folder that cannot be shown as a page.
+    #[error(transparent)]
+    Page(#[from] PageError),
     /// An increment that cannot be exported.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -215,6 +222,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Stress(arguments) => stress::run(arguments),
         Verb::Converge(arguments) => converge::run(arguments),
         Verb::Spaces(arguments) => spaces::run(arguments),
+        Verb::Page(arguments) => page::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),
@@ -241,6 +249,7 @@ fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     let paper = paper::run(settings, &bar)?;
     bar.finish();
     paper.write(out, &provenance(settings))?;
+    report::page::write(out)?;
     say(format_args!("{}", paper.text()?));
     say(format_args!("Report: {}", out.display()));
     print_missed(&paper.results);
@@ -275,6 +284,7 @@ fn run_verb(
     }
     bar.finish();
     standard::write(out, &results, &provenance(settings))?;
+    report::page::write(out)?;
     say(format_args!(
         "{}",
         standard::runs_table(&results.runs)?.terminal()

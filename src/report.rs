@@ -13,6 +13,7 @@ mod error;
 mod error_figures;
 pub mod infsup;
 pub mod number;
+pub mod page;
 pub mod paper;
 pub mod patch;
 pub mod plot;
