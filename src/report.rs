@@ -14,6 +14,7 @@ mod error_figures;
 pub mod infsup;
 mod loops;
 pub mod number;
+pub mod page;
 pub mod paper;
 pub mod patch;
 pub mod plot;
