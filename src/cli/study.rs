@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::{Provenance, prepare_output, sweep};
+use crate::report::{Provenance, page, prepare_output, sweep};
 use crate::sweep::compare::compare;
 use crate::sweep::conduct::{Conduct, Shard, conduct};
 use crate::sweep::merge::merge;
@@ -234,6 +234,7 @@ fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
     let total = store.contents().cells.len();
     let bundle = sweep::bundle(records, total, &provenance(store, records))?;
     bundle.commit(store.dir())?;
+    page::write(store.dir())?;
     say(format_args!("Results: {}", store.dir().display()));
     Ok(!records.iter().any(|r| wrong(&r)))
 }

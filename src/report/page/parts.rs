@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod cases;
+mod choice;
 mod expected;
 mod files;
 mod methods;
@@ -12,6 +13,7 @@ mod peers;
 mod robustness;
 mod runs;
 mod spaces;
+mod study;
 mod summary;
 
 use super::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
@@ -20,9 +22,11 @@ use super::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
 pub type Part = fn(&Folder, &mut Budget) -> Result<Option<Section>, PageError>;
 
 /// All parts in the order of the page, which is also the order in which figures get room.
-pub const PARTS: [Part; 11] = [
+pub const PARTS: [Part; 13] = [
     summary::section,
+    choice::section,
     paper::section,
+    study::section,
     methods::section,
     runs::section,
     expected::section,

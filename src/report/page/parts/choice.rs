@@ -1,0 +1,98 @@
+//! Which method to use when, and how sure that is: the recommendations of the study, first in words.
+
+use super::{largest, made};
+use crate::report::number::significant;
+use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Sheet, Show};
+
+const SHOWN: [Show; 11] = [
+    Show::new("tier", Kind::Text),
+    Show::new("dimension", Kind::Text),
+    Show::new("friction", Kind::Text),
+    Show::new("loading", Kind::Text),
+    Show::new("unknowns", Kind::Text),
+    Show::new("problems", Kind::Number),
+    Show::new("fastest", Kind::Text).titled("fastest of the most reliable"),
+    Show::new("evidence", Kind::Text),
+    Show::new("confidence", Kind::Text),
+    Show::new("correct_rate", Kind::Percent(0)).titled("right answers"),
+    Show::new("correct_low", Kind::Percent(0)).titled("at least (95 %)"),
+];
+
+const CONFIDENCE: [(&str, &str); 3] = [
+    (
+        "sure",
+        "on the problems of the class, nobody is faster than the named methods more often than not: Wilson's 95 % interval of \
+         that share lies above one half",
+    ),
+    (
+        "likely",
+        "the share lies above one half, its interval does not",
+    ),
+    ("open", "the problems measured do not decide"),
+];
+
+/// The section.
+pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageError> {
+    let mut blocks = Vec::new();
+    for path in folder.named("recommendations.csv") {
+        let sheet = folder.sheet(path)?;
+        blocks.push(Block::List(advice(&sheet)?));
+        let terms = CONFIDENCE.map(|(word, meaning)| (word.to_owned(), meaning.to_owned()));
+        blocks.push(Block::Terms(terms.to_vec()));
+        let title = "By accuracy and class of problems";
+        blocks.push(Block::Table(folder.grid(path, title, &SHOWN)?));
+    }
+    let lead = "From the study below. In a class only methods that give the right answer as often as any other may be named; of \
+                these all are named that none is faster than beyond the intervals of the times. What friction does and how large \
+                a problem is, its owner mostly knows beforehand; the rest of the table says what was measured, on the machine \
+                named at the end of this page.";
+    Ok(made("choice", "Which method, and how sure", lead, blocks))
+}
+
+/// A sentence per accuracy on all problems together, and one per dimension where friction matters.
+fn advice(sheet: &Sheet) -> Result<Vec<String>, PageError> {
+    let column = |name: &str| sheet.texts(name);
+    let (tiers, dimensions) = (column("tier")?, column("dimension")?);
+    let (friction, loading) = (column("friction")?, column("loading")?);
+    let (fastest, evidence) = (column("fastest")?, column("evidence")?);
+    let (confidence, problems) = (column("confidence")?, sheet.numbers("problems")?);
+    let (rate, low) = (
+        sheet.numbers("correct_rate")?,
+        sheet.numbers("correct_low")?,
+    );
+    let most = largest(problems.iter().copied());
+    let mut sentences = Vec::new();
+    for k in 0..tiers.len() {
+        let wide = loading[k] == "any" && (dimensions[k] == "any" || friction[k] == "slip");
+        if !wide || fastest[k].is_empty() || !most.is_finite() {
+            continue;
+        }
+        let class = match dimensions[k] {
+            "any" => "any problem".to_owned(),
+            dimension => format!("{dimension}D with slip"),
+        };
+        let verb = if fastest[k].contains(';') {
+            "are"
+        } else {
+            "is"
+        };
+        sentences.push(format!(
+            "Accuracy {}, {class}: {} {verb} fastest. {}: {} ({} problems; right on {} % of them, at least {} % with 95 % \
+             confidence).",
+            tiers[k],
+            fastest[k].replace(';', ","),
+            capital(confidence[k]),
+            evidence[k],
+            significant(problems[k], 6),
+            significant(100.0 * rate[k], 3),
+            significant((100.0 * low[k]).floor(), 3),
+        ));
+    }
+    Ok(sentences)
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    let first = letters.next().map(|c| c.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
+}
