@@ -22,6 +22,8 @@ pub mod robustness;
 pub mod standard;
 pub mod study;
 pub mod tables;
+mod timing_statistics;
+pub mod timings;
 pub mod vtu;
 
 pub use bundle::{Bundle, prepare_output};
