@@ -80,6 +80,21 @@ fn a_sample_of_many_calls_counts_as_its_mean() {
 }
 
 #[test]
+fn the_readable_table_leaves_out_what_takes_no_time() {
+    let home = tempfile::tempdir().unwrap();
+    plant(home.path(), "a/new", &raw("latin", &[(1001.0, 1)]), 1);
+    plant(home.path(), "b/new", &raw("nsgs", &[(999.0, 1)]), 1);
+    let found = harvest(home.path(), &["latin", "nsgs"].map(expected));
+    let mut bundle = Bundle::new();
+    add_to(&mut bundle, &found.rows).unwrap();
+    let text = |name: &str| String::from_utf8(bundle.get(name).unwrap().to_vec()).unwrap();
+    assert!(text("timings.csv").contains("nsgs") && text("timings.csv").contains("latin"));
+    // One sample has no interval.
+    assert!(text("timings.md").contains("| latin | 1 | – | – | 1 | 1 | solved |"));
+    assert!(!text("timings.md").contains("nsgs"));
+}
+
+#[test]
 fn results_of_another_build_another_list_or_a_baseline_are_left_aside() {
     let home = tempfile::tempdir().unwrap();
     let one = |method: &str| raw(method, &[(1000.0, 1)]);

@@ -99,6 +99,11 @@ impl Problem {
     }
 }
 
+/// Before every benchmark.
+pub const WARM_UP: Duration = Duration::from_millis(100);
+/// For the samples of a benchmark together, where ten calls do not take longer.
+pub const MEASUREMENT: Duration = Duration::from_millis(300);
+
 /// Whether a case runs end to end with all methods too.
 pub fn runs_all_methods(problem: &Problem) -> bool {
     problem.case == "plate_mesh1"
@@ -111,8 +116,8 @@ pub fn settings() -> Criterion {
     Criterion::default()
         .sample_size(10)
         .nresamples(2_000)
-        .warm_up_time(Duration::from_millis(100))
-        .measurement_time(Duration::from_millis(300))
+        .warm_up_time(WARM_UP)
+        .measurement_time(MEASUREMENT)
         .without_plots()
 }
 

@@ -254,14 +254,14 @@ impl Row for TimingRow {
     }
 }
 
-/// All timings for reading.
+/// The timings of a microsecond and more for reading: below that a stage has nothing to do.
 ///
 /// # Errors
 /// Those of [`Table::push`].
 pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
     let mut table = Table::new(
-        "Wall times on one thread: median of the samples with its 95 % interval, and the least sample. Two medians whose \
-         intervals overlap are not told apart",
+        "Wall times on one thread: median of the samples with its 95 % interval, and the least sample; nothing below 1 μs. \
+         Two medians whose intervals overlap are not told apart",
         vec![
             Column::new("group", "", Align::Left),
             Column::new("function", "", Align::Left),
@@ -278,7 +278,8 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
         s if s.is_nan() => "–".to_owned(),
         s => significant(s / MICROSECOND, DIGITS),
     };
-    let mut sorted: Vec<&TimingRow> = rows.iter().collect();
+    let long = |row: &&TimingRow| row.timing.median >= MICROSECOND;
+    let mut sorted: Vec<&TimingRow> = rows.iter().filter(long).collect();
     sorted.sort_by(|a, b| a.order(b));
     for row in sorted {
         let TimingRow {
