@@ -1,59 +1,56 @@
-//! Time to discretise, factor and condense the paper's bodies; everything before a method starts.
+//! Time to discretise, factor and condense; everything before a method starts.
+
+mod common;
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Duration;
 
-use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
+use common::{
+    ASSEMBLY, CONDENSATION, FACTORISATION, MESH_TO_SYSTEM, PROBLEMS, bench, group, settings,
+};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::shipped;
 use stickslip_methods::ContactSystem;
 
-/// Case and refinement factor.
-const BODIES: [(&str, usize); 4] = [
-    ("plate_mesh1", 1),
-    ("plate_mesh1", 4),
-    ("beam_model1", 1),
-    ("beam_model2", 1),
-];
-
 fn discretisation(criterion: &mut Criterion) {
-    for (name, refine) in BODIES {
-        let case = match shipped::find(name) {
-            Some(Ok(case)) => case,
-            other => panic!("{name}: {other:?}"),
-        };
+    for problem in &PROBLEMS {
+        let case = problem.case();
         let body = || {
-            Body::new(&case, refine, Needs::default()).expect("shipped cases can be discretised")
+            Body::new(&case, problem.refine, Needs::default())
+                .expect("shipped cases can be discretised")
         };
-        let mut group = criterion.benchmark_group(format!("discretisation/{name}"));
-        group
-            .sample_size(10)
-            .sampling_mode(SamplingMode::Flat)
-            .warm_up_time(Duration::from_millis(300))
-            .measurement_time(Duration::from_secs(2));
-        group.bench_function(BenchmarkId::new("mesh to system", refine), |b| {
-            b.iter(|| black_box(body()));
-        });
-        let factorise = |body: &Body| body.elastic.factorise().expect("K is regular");
-        group.bench_function(BenchmarkId::new("factorisation", refine), |b| {
-            b.iter_batched_ref(body, |body| factorise(body), BatchSize::PerIteration);
-        });
+        let factorise = |body: &mut Body| body.elastic.factorise().expect("K is regular");
         let factored = || {
-            let body = body();
-            factorise(&body);
-            let friction = vec![0.3; body.points.len()];
-            ContactSystem::new(body.elastic, friction).expect("friction is valid")
+            let mut body = body();
+            factorise(&mut body);
+            let friction = vec![problem.friction; body.points.len()];
+            ContactSystem::new(Arc::clone(&body.elastic), friction).expect("friction is valid")
         };
-        group.bench_function(BenchmarkId::new("condensation", refine), |b| {
-            b.iter_batched_ref(
-                factored,
-                |system| system.condense().expect("the body is held"),
-                BatchSize::PerIteration,
-            );
+        let name = |stage| problem.discretisation(stage);
+        let mut group = group(criterion, &name("").group);
+        bench(&mut group, &name(MESH_TO_SYSTEM), |b| {
+            b.iter_with_large_drop(&body);
+        });
+        bench(&mut group, &name(ASSEMBLY), |b| {
+            // A part of the stage above, which tells its time itself.
+            let assembly_s = || black_box(body()).assembly_s;
+            b.iter_custom(|calls| Duration::from_secs_f64((0..calls).map(|_| assembly_s()).sum()));
+        });
+        bench(&mut group, &name(FACTORISATION), |b| {
+            b.iter_batched_ref(body, factorise, BatchSize::PerIteration);
+        });
+        bench(&mut group, &name(CONDENSATION), |b| {
+            let condense = |system: &mut ContactSystem| system.condense().expect("it is held");
+            b.iter_batched_ref(factored, condense, BatchSize::PerIteration);
         });
         group.finish();
     }
 }
 
-criterion_group!(benches, discretisation);
+criterion_group! {
+    name = benches;
+    config = settings();
+    targets = discretisation
+}
 criterion_main!(benches);

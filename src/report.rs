@@ -25,6 +25,8 @@ pub mod standard;
 pub mod study;
 pub mod sweep;
 pub mod tables;
+mod timing_statistics;
+pub mod timings;
 pub mod vtu;
 
 pub use bundle::{Bundle, prepare_output};

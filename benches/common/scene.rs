@@ -1,0 +1,101 @@
+//! One increment of a case, ready for any method: K factored and condensed, start state reached.
+
+use std::sync::Arc;
+
+use stickslip::harness::attempt::{attempt, prepare};
+use stickslip::harness::body::{Body, Needs};
+use stickslip::harness::loading::Loading;
+use stickslip::harness::run::Choice;
+use stickslip::harness::verdict::Verdict;
+use stickslip_methods::{
+    ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier, method,
+};
+
+use super::{EXACT, Problem};
+
+/// The increment of a load path in which an exact method took the most iterations.
+pub struct Scene {
+    system: ContactSystem,
+    load: Load,
+    start_load: Load,
+    start: ContactState,
+    index: usize,
+}
+
+impl Scene {
+    /// Follows the load path to its end with an exact method.
+    pub fn new(problem: &Problem) -> Self {
+        let case = problem.case();
+        let needs = Needs {
+            frictionless: false,
+            traction: true,
+        };
+        let body =
+            Body::new(&case, problem.refine, needs).expect("shipped cases can be discretised");
+        let friction = vec![problem.friction; body.points.len()];
+        let system =
+            || ContactSystem::new(Arc::clone(&body.elastic), friction.clone()).expect("valid");
+        let path = system();
+        path.condense().expect("the body is held");
+        let loading = Loading::new(&body, &case, problem.friction).expect("the closed form holds");
+        let exact = Choice::new(method(EXACT).expect("registered"), &[]).expect("defaults");
+        let (mut solver, _) = prepare(&exact, &path).expect("an exact method takes every case");
+        let (mut start, mut start_load) = (ContactState::zero(&path), Load::zero(&body.elastic));
+        let mut hardest = None;
+        for index in 0..case.path.increments {
+            let load = loading.at(index + 1);
+            let scene = Scene {
+                system: system(),
+                load: load.clone(),
+                start_load,
+                start,
+                index,
+            };
+            let tried = attempt(solver.as_mut(), &scene.increment(), Tier::High);
+            assert_eq!(tried.verdict, Verdict::Solved(Tier::High), "{}", case.name);
+            let outcome = tried.judged.expect("solved").outcome;
+            let iterations = outcome.counters.iterations;
+            if hardest.as_ref().is_none_or(|(most, _)| iterations > *most) {
+                hardest = Some((iterations, scene));
+            }
+            (start, start_load) = (outcome.state, load);
+        }
+        hardest.expect("a load path has an increment").1
+    }
+
+    /// The increment, to the highest accuracy.
+    pub fn increment(&self) -> Increment<'_> {
+        Increment {
+            system: &self.system,
+            load: &self.load,
+            start_load: &self.start_load,
+            start: &self.start,
+            index: self.index,
+            tolerance: Tier::High.tolerance(),
+        }
+    }
+
+    /// What the judge says of a method on this increment. Afterwards all is computed that methods share.
+    pub fn judge(&self, choice: &Choice) -> Verdict {
+        match prepare(choice, &self.system) {
+            Ok((mut solver, _)) => attempt(solver.as_mut(), &self.increment(), Tier::High).verdict,
+            Err(verdict) => verdict,
+        }
+    }
+
+    /// A new instance of a method that has seen nothing.
+    pub fn build(&self, choice: &Choice) -> Box<dyn Enforcement> {
+        (choice.method.build)(&choice.options).expect("defaults are valid")
+    }
+
+    /// Prepares a method.
+    pub fn prepare(&self, solver: &mut dyn Enforcement) {
+        solver.prepare(&self.system).expect("K is factored");
+    }
+
+    /// Solves the increment.
+    pub fn solve(&self, solver: &mut dyn Enforcement) -> Outcome {
+        let solved = solver.solve(&self.increment(), &mut Silent);
+        solved.expect("the input is valid")
+    }
+}
