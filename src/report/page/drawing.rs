@@ -101,7 +101,8 @@ impl Drawing {
         let view = value("viewBox").ok_or("no viewBox")?;
         let millimetres = value("width").and_then(|w| w.strip_suffix("mm")?.parse::<f64>().ok());
         Ok(Self {
-            title,
+            // It becomes an attribute.
+            title: title.replace('"', "&quot;"),
             view: view.to_owned(),
             body: body.trim().to_owned(),
             wide: millimetres.is_none_or(|width| width > 100.0),

@@ -17,6 +17,7 @@ mod study;
 mod summary;
 
 use super::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
+use crate::report::standard::honest;
 
 /// Reads what it knows in the folder; nothing where there is nothing.
 pub type Part = fn(&Folder, &mut Budget) -> Result<Option<Section>, PageError>;
@@ -56,7 +57,7 @@ fn titled(title: &str, path: &str) -> String {
     }
 }
 
-/// Every table of this file name, as it is.
+/// Every table of this file name, as it is, without the times of runs that did not do what they claim.
 fn tables(
     folder: &Folder,
     name: &str,
@@ -65,8 +66,29 @@ fn tables(
 ) -> Result<Vec<Block>, PageError> {
     let paths = folder.named(name).into_iter();
     paths
-        .map(|path| Ok(Block::Table(folder.grid(path, title, shows)?)))
+        .map(|path| {
+            let mut grid = folder.grid(path, title, shows)?;
+            hide_times(&mut grid, honest);
+            Ok(Block::Table(grid))
+        })
         .collect()
+}
+
+/// Times stand only in rows whose verdict satisfies `keep`.
+fn hide_times(grid: &mut Grid, keep: fn(&str) -> bool) {
+    let columns = grid.columns.iter();
+    let Some(verdict) = columns.clone().position(|c| c.kind == Kind::Verdict) else {
+        return;
+    };
+    let times: Vec<usize> = columns
+        .enumerate()
+        .filter_map(|(k, column)| (column.unit == "s").then_some(k))
+        .collect();
+    for row in &mut grid.rows {
+        if !keep(&row[verdict]) {
+            times.iter().for_each(|k| row[*k] = "NaN".into());
+        }
+    }
 }
 
 /// Figures whose path without folders satisfies `wanted`, as one folded group.

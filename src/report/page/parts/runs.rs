@@ -1,7 +1,8 @@
 //! The runs themselves, where no comparison sums them up: the results of `stickslip run`.
 
-use super::{made, tables};
+use super::{hide_times, made, tables};
 use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Show};
+use crate::report::standard::solved;
 
 /// Longest table inside the page; of longer ones the beginning is shown.
 const ROWS: usize = 2000;
@@ -30,7 +31,7 @@ pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageE
     let mut blocks = tables(folder, "runs.csv", "Runs, every increment", &RUNS)?;
     for block in &mut blocks {
         if let Block::Table(grid) = block {
-            hide_times(grid);
+            hide_times(grid, solved);
             if grid.rows.len() > ROWS {
                 grid.title = format!("Runs, the first {ROWS} of {} increments", grid.rows.len());
                 grid.rows.truncate(ROWS);
@@ -38,17 +39,4 @@ pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageE
         }
     }
     Ok(made("runs", "Runs", "", blocks))
-}
-
-/// A time is shown beside right answers only.
-fn hide_times(grid: &mut crate::report::page::Grid) {
-    let place = |name: &str| RUNS.iter().position(|show| show.column == name);
-    let (Some(verdict), Some(time)) = (place("verdict"), place("solve_s")) else {
-        return;
-    };
-    for row in &mut grid.rows {
-        if !crate::report::standard::solved(&row[verdict]) {
-            row[time] = "NaN".into();
-        }
-    }
 }
