@@ -151,7 +151,7 @@ fn without_mesh(problem: &Problem) -> Problem {
     }
 }
 
-/// A figure per case, contact space and friction: a bar per mesh by the fastest right method, then a bar per method on the
+/// A figure per case, contact space and friction on several meshes: a bar per mesh by the fastest right method, then a bar per method on the
 /// finest mesh, all at the finest tolerance at which something was solved on every mesh.
 fn add_figures(
     bundle: &mut Bundle,
@@ -169,6 +169,11 @@ fn add_figures(
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
+        if group.first().map(|row| row.record.cell.refine)
+            == group.last().map(|row| row.record.cell.refine)
+        {
+            continue;
+        }
         let on_mesh = |rows: &[&TimeRow]| rows.iter().map(|r| r.record.cell.tolerance).collect();
         let meshes = group.chunk_by(|a, b| a.record.cell.refine == b.record.cell.refine);
         let tolerance = common_tolerance(&meshes.map(on_mesh).collect::<Vec<_>>());
