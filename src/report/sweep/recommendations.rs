@@ -90,7 +90,7 @@ fn table(rows: &[Recommendation], caveat: &str) -> Result<Table, ReportError> {
     let column = |name: &str| Column::new(name, "", Align::Left);
     let mut table = Table::new(
         format!(
-            "Fastest methods among the most reliable; all of them are named that none is faster than beyond the intervals{caveat}"
+            "Fastest methods among those that are right most often: none is faster than the named ones beyond the intervals, first who is among the fastest on most problems{caveat}"
         ),
         vec![
             column("tier"),

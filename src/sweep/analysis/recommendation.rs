@@ -3,7 +3,7 @@
 //! Problems are sorted into classes by what a user knows beforehand: dimension, friction, one increment or a path, size. In a
 //! class, only methods that are right as often as any other may be the fastest; of these, all are named that none is faster
 //! than beyond the intervals of the [shifted geometric means](super::ranking), first the one that is among the fastest of all
-//! methods on most problems.
+//! methods on most problems (of equals in the order of the registry).
 //!
 //! Confidence comes from the problems on which no method at all is faster than the first beyond the intervals, k of n:
 //! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n is at least 3, `open` otherwise.
@@ -212,19 +212,24 @@ impl Recommendation {
 
     /// What the confidence stands on, in words.
     pub fn evidence(&self) -> String {
-        let Some((first, others)) = self.fastest.split_first() else {
+        let Some(first) = self.fastest.first() else {
             return "no times".into();
         };
-        let Fastest {
-            method,
-            among,
-            alone,
-        } = first;
-        let mut words = format!("{method} among the fastest on {among} of {}", self.timed);
-        if *alone > 0 {
+        let Fastest { among, alone, .. } = first;
+        let equal = |f: &&Fastest| f.among == *among;
+        let (top, others): (Vec<&Fastest>, Vec<&Fastest>) = self.fastest.iter().partition(equal);
+        let names: Vec<&str> = top.iter().map(|f| f.method.as_str()).collect();
+        let who = match names.len() {
+            1..=3 => names.join(", "),
+            count => format!("{count} methods"),
+        };
+        let mut words = format!("{who} among the fastest on {among} of {}", self.timed);
+        if names.len() > 1 {
+            words += " each";
+        } else if *alone > 0 {
             words += &format!(", alone on {alone}");
         }
-        for other in others {
+        for other in others.iter().take(2) {
             words += &format!("; {} on {}", other.method, other.among);
         }
         words
@@ -370,7 +375,7 @@ mod tests {
             *record = timed(record.clone(), 1.1);
         }
         let found = overall(&records);
-        let evidence = "b-newton among the fastest on 5 of 5; pdas on 5";
+        let evidence = "b-newton, pdas among the fastest on 5 of 5 each";
         assert_eq!(found.evidence(), evidence);
         // One problem on which only one of them is: it comes first.
         let slow = records.iter_mut().find(|r| r.cell.method == "b-newton");
@@ -378,7 +383,8 @@ mod tests {
         *slow = timed(slow.clone(), 1.3);
         let found = overall(&records);
         assert_eq!(names(&found), ["pdas", "b-newton"]);
-        assert_eq!((found.fastest[0].among, found.fastest[0].alone), (5, 1));
+        let evidence = "pdas among the fastest on 5 of 5, alone on 1; b-newton on 4";
+        assert_eq!(found.evidence(), evidence);
     }
 
     #[test]
