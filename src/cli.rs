@@ -3,6 +3,7 @@
 mod converge;
 mod exchange;
 mod output;
+mod page;
 mod progress;
 mod spaces;
 mod stress;
@@ -33,6 +34,7 @@ use crate::harness::shipped;
 use crate::harness::stress::StressError;
 use crate::pages;
 use crate::paper::{self, PaperError};
+use crate::report::{self, page::PageError};
 use crate::report::{Provenance, ReportError, prepare_output, standard};
 use crate::sweep::conduct::ConductError;
 use crate::sweep::plan::PlanError;
@@ -92,9 +94,13 @@ enum Verb {
     Study(study::Arguments),
     /// Join the records of a sweep that ran in several folders
     Merge(study::MergeArguments),
+    /// Show what changed between two runs of a sweep beyond noise
+    Compare(study::CompareArguments),
     /// Measure the cells that come in on standard input, as `study` starts it
     #[command(hide = true)]
     Work(study::WorkArguments),
+    /// Show a report folder as one page, index.html
+    Page(page::Arguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
@@ -142,6 +148,9 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// A folder that cannot be shown as a page.
+    #[error(transparent)]
+    Page(#[from] PageError),
     /// An increment that cannot be exported.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -235,7 +244,9 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Spaces(arguments) => spaces::run(arguments),
         Verb::Study(arguments) => study::run(arguments),
         Verb::Merge(arguments) => study::run_merge(arguments),
+        Verb::Compare(arguments) => study::run_compare(&arguments),
         Verb::Work(arguments) => study::run_work(&arguments),
+        Verb::Page(arguments) => page::run(arguments),
         Verb::Export(args) => exchange::export_verb(args),
         Verb::Solve(args) => exchange::solve_verb(args),
         Verb::Judge(args) => exchange::judge_verb(args),
@@ -262,6 +273,7 @@ fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     let paper = paper::run(settings, &bar)?;
     bar.finish();
     paper.write(out, &provenance(settings))?;
+    report::page::write(out)?;
     say(format_args!("{}", paper.text()?));
     say(format_args!("Report: {}", out.display()));
     print_missed(&paper.results);
@@ -296,6 +308,7 @@ fn run_verb(
     }
     bar.finish();
     standard::write(out, &results, &provenance(settings))?;
+    report::page::write(out)?;
     say(format_args!(
         "{}",
         standard::runs_table(&results.runs)?.terminal()

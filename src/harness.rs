@@ -6,6 +6,7 @@ pub mod boundary;
 pub mod case;
 pub mod converge;
 pub mod errors;
+pub mod exact_curve;
 pub mod exchange;
 pub mod expect;
 pub mod export;

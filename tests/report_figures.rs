@@ -2,220 +2,11 @@
 
 mod report_data;
 
-use report_data::{beam, key, plate, points, rates, results, results_of_all_methods};
-use stickslip::harness::record::{HistoryRow, Picture, PictureCell, PointRow};
+use report_data::figures::figures;
+use report_data::{beam, beam_step, cycle, exact, key, plate, points};
+use stickslip::harness::record::{HistoryRow, Picture, PictureCell};
 use stickslip::report::ReportError;
-use stickslip::report::comparison::comparison;
-use stickslip::report::plot::{
-    self, Axis3, Curve, CurvePlot, ErrorCurve, ErrorFigure, ErrorPanel, Guide, Magnification, Tier,
-};
-use stickslip_methods::METHODS;
-
-/// Every kind of figure, with the texts that it must show.
-fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
-    let results = results();
-    let by_method: Vec<PointRow> = results
-        .points
-        .iter()
-        .filter(|row| row.key.friction == 0.1)
-        .cloned()
-        .collect();
-    let history: Vec<HistoryRow> = results
-        .history
-        .iter()
-        .filter(|row| row.key.friction == 0.1)
-        .cloned()
-        .collect();
-    let curve = |label: &str, factor: f64| Curve {
-        label: label.into(),
-        points: (0..8)
-            .map(|i| 10f64.powi(9 + i))
-            .map(|k| [k, factor / k + 1e-9])
-            .collect(),
-    };
-    let error = CurvePlot {
-        caption: "penalty".into(),
-        x_label: "penalty parameter [N/m]".into(),
-        y_label: "relative error [-]".into(),
-        curves: vec![curve("μ = 0.1", 3e8), curve("μ = 1.2", 9e8)],
-    };
-    let path = [[0.0, 0.0], [1.0, 3e5], [2.0, 3e5], [0.0, -3e5], [1.0, 0.0]];
-    let cycle = CurvePlot {
-        caption: "cycle".into(),
-        x_label: "displacement [mm]".into(),
-        y_label: "force [N/m]".into(),
-        curves: vec![Curve {
-            label: "latin".into(),
-            points: path.to_vec(),
-        }],
-    };
-    let tier = Tier::named("high");
-    let all = results_of_all_methods();
-    vec![
-        (
-            "residual of all methods",
-            plot::residual_history(&all.history, tier.as_ref()).expect("residual"),
-            METHODS.iter().map(|method| method.name).collect(),
-        ),
-        (
-            "traction of all methods",
-            plot::contact_traction(&all.points, 1).expect("traction"),
-            vec![
-                "12 exact methods, apart by at most 0.002",
-                "penalty, off by at most 0.002",
-            ],
-        ),
-        (
-            "slip of all methods",
-            plot::contact_slip(&all.points, 1).expect("slip"),
-            vec!["12 exact methods", "barrier, off by less than 1e-12"],
-        ),
-        (
-            "cost",
-            plot::method_cost(&comparison(&all.runs)).expect("cost"),
-            vec![
-                "plate_mesh1",
-                "iterations [-]",
-                "solve time [s]",
-                ">nitsche<",
-            ],
-        ),
-        (
-            "rates",
-            plot::success_rates(&rates()).expect("rates"),
-            vec![
-                "solved, or own laws kept, in 2D [%]",
-                "solved, or own laws kept, in 3D [%]",
-                ">99.9<",
-                ">87.5<",
-                ">–<",
-                ">nitsche<",
-            ],
-        ),
-        (
-            "residual",
-            plot::residual_history(&history, tier.as_ref()).expect("residual"),
-            vec![
-                "latin",
-                "penalty",
-                "tier high (1e-9)",
-                "iteration [-]",
-                "10⁻⁸",
-                "natural-map residual [-]",
-            ],
-        ),
-        (
-            "traction",
-            plot::contact_traction(&by_method, 1).expect("traction"),
-            vec![
-                "[MPa]",
-                "distance along the crack [m]",
-                "stick",
-                "open",
-                "slip limit",
-            ],
-        ),
-        (
-            "slip",
-            plot::contact_slip(&by_method, 1).expect("slip"),
-            vec!["slip [mm]", "normal gap [µm]", "b-newton"],
-        ),
-        (
-            "contours",
-            plot::displacement_contours(&plate(), Magnification::Auto, "plate").expect("contours"),
-            vec!["plate, deformation ×10", "[mm]", "−50", "[m]"],
-        ),
-        (
-            "solid",
-            plot::solid_displacement(&beam(), Axis3::Z, Magnification::Factor(50.0), "beam")
-                .expect("solid"),
-            vec!["beam, deformation ×50", "[mm]", "−1.0"],
-        ),
-        (
-            "error",
-            plot::error_plot(&error, Some(-1.0)).expect("error"),
-            vec!["penalty parameter [N/m]", "10¹²", "μ = 1.2", ">1<"],
-        ),
-        (
-            "convergence",
-            drawn(&convergence()),
-            vec![
-                "unknowns",
-                "tips not enriched",
-                "p0: 0.45",
-                "p0: 0.98",
-                "edge-pairs: 0.94",
-                // Orders 1/2 and 1 in h, as legs of triangles over 2 in N.
-                ">theory: 0.5<",
-                ">theory: 1<",
-                ">0.5<",
-                ">1<",
-                ">2<",
-                "10⁴",
-            ],
-        ),
-        (
-            "convergence without theory",
-            drawn(&ErrorFigure {
-                columns: 1,
-                panels: vec![error_panel("", 0.8, None)],
-                ..convergence()
-            }),
-            vec!["star: 0.80", ">1<", ">3<"],
-        ),
-        (
-            "loop",
-            plot::line_plot(&cycle).expect("loop"),
-            vec!["force [10³ N/m]", "−200", "latin"],
-        ),
-    ]
-}
-
-/// Errors h^p of four contact spaces on four meshes, p falling from space to space; without theory of a solid.
-fn error_panel(heading: &str, p: f64, theory: Option<f64>) -> ErrorPanel {
-    let run = if theory.is_some() { 2.0 } else { 3.0 };
-    let curve = |(look, space): (usize, &str)| {
-        let p = p - 0.02 * look as f64;
-        let size = [0.1, 0.05, 0.025, 0.0125];
-        let error = |h: f64| [2.0 * h.powf(-run), (1.0 + 0.2 * look as f64) * h.powf(p)];
-        ErrorCurve {
-            label: format!("{space}: {p:.2}"),
-            look,
-            points: size.map(error).to_vec(),
-        }
-    };
-    let spaces = ["star", "p0", "facet", "edge-pairs"].into_iter();
-    ErrorPanel {
-        heading: heading.into(),
-        curves: spaces.enumerate().map(curve).collect(),
-        guides: vec![Guide {
-            rise: -theory.unwrap_or(1.0),
-            run,
-            label: theory.map(|order| format!("theory: {order}")),
-        }],
-    }
-}
-
-/// Four contact spaces with three tip enrichments.
-fn convergence() -> ErrorFigure {
-    ErrorFigure {
-        title: "energy norm against unknowns".into(),
-        caption: "inclined crack, hybrid, μ = 0.3\nobserved orders in h".into(),
-        x_label: "unknowns".into(),
-        y_label: "error: energy norm".into(),
-        columns: 3,
-        panels: vec![
-            error_panel("tips not enriched", 0.47, Some(0.5)),
-            error_panel("tip cells enriched", 0.52, Some(0.5)),
-            error_panel("tips enriched within 0.2 m", 1.0, Some(1.0)),
-        ],
-    }
-}
-
-fn drawn(figure: &ErrorFigure) -> String {
-    let svg = plot::error_figure(figure).expect("a figure");
-    svg.expect("errors above zero")
-}
+use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification};
 
 /// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.
 fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
@@ -373,13 +164,13 @@ fn contour_bands_cover_the_body_without_holes() {
 fn figures_refuse_what_they_cannot_show() {
     let nothing = plot::residual_history(&[], None).expect_err("no rows");
     assert!(matches!(nothing, ReportError::Figure { .. }), "{nothing}");
-    let other = plot::contact_slip(&points(&key("latin", 0.1)), 2).expect_err("no crack 2");
+    let other = plot::contact_slip(&points(&key("latin", 0.1)), &[], 2).expect_err("no crack 2");
     assert!(other.to_string().contains("crack 2"), "{other}");
     let mut solid = points(&key("latin", 0.1));
     for row in &mut solid {
         row.force_unit = "N".into();
     }
-    assert!(plot::contact_traction(&solid, 1).is_err());
+    assert!(plot::contact_traction(&solid, &[], 1).is_err());
     let wrong = plot::displacement_contours(&beam(), Magnification::Auto, "").expect_err("3D");
     assert!(wrong.to_string().contains("3 dimensions"), "{wrong}");
     let mut bare = plate();
@@ -418,12 +209,12 @@ fn figures_survive_sparse_and_flat_data() {
     for row in &mut rows {
         (row.slip_a_m, row.gap_m, row.status) = (1e-19, 0.0, "stick".into());
     }
-    let svg = plot::contact_slip(&rows, 1).expect("round-off slips");
+    let svg = plot::contact_slip(&rows, &[], 1).expect("round-off slips");
     assert!(
         svg.contains("slip [m]"),
         "round-off is not enlarged to an axis of its own"
     );
-    plot::contact_traction(&rows[..1], 1).expect("a single point");
+    plot::contact_traction(&rows[..1], &[], 1).expect("a single point");
 
     let mut flat = plate();
     for u in &mut flat.point_vectors[0].1 {
@@ -494,4 +285,80 @@ fn cells_without_a_finite_displacement_are_left_out() {
     let mut solid = beam();
     solid.point_vectors[0].1[3] = [f64::NAN; 3];
     plot::solid_displacement(&solid, Axis3::Y, Magnification::Auto, "").expect("a figure");
+}
+
+/// Points of all lines of a colour in a figure.
+fn lines_of(svg: &str, colour: &str) -> Vec<Vec<[f64; 2]>> {
+    let lines = svg.split("<polyline").skip(1);
+    let own = lines.filter(|line| {
+        let element = line.split('>').next().unwrap_or_default();
+        element.contains(&format!("stroke=\"{colour}\""))
+    });
+    let points = own.filter_map(|line| line.split("points=\"").nth(1)?.split('"').next());
+    let pair = |pair: &str| {
+        let (x, y) = pair.split_once(',').expect("a pair");
+        [x, y].map(|n| n.parse().expect("a number"))
+    };
+    let line = |text: &str| text.split_whitespace().map(pair).collect();
+    points.map(line).collect()
+}
+
+#[test]
+fn the_closed_form_is_drawn_where_it_belongs_and_nowhere_else() {
+    let rows = points(&key("b-newton", 0.1));
+    let curves = |exact: &[_]| {
+        let svg = plot::contact_traction(&rows, exact, 1).expect("a figure");
+        let lines = lines_of(&svg, "#000000");
+        let long = lines.iter().filter(|line| line.len() == 41).count();
+        assert_eq!(svg.contains(">exact<"), long > 0);
+        long
+    };
+    assert_eq!(curves(&exact(0.1)), 2, "p_n and |p_t|");
+    assert_eq!(curves(&exact(0.8)), 0, "another friction coefficient");
+    let mut later = exact(0.1);
+    later.iter_mut().for_each(|row| row.increment = 2);
+    assert_eq!(curves(&later), 0, "another increment");
+    let mut other = exact(0.1);
+    other.iter_mut().for_each(|row| row.crack = 2);
+    assert_eq!(curves(&other), 0, "another crack");
+}
+
+#[test]
+fn paths_that_do_not_run_back_are_no_loops() {
+    let loop_of = |rows: &[_], crack| plot::friction_loop(rows, crack, &[]).expect("drawn");
+    assert!(loop_of(&cycle(), 1).is_some());
+    assert!(loop_of(&cycle(), 2).is_none(), "no such crack");
+    let mut three = cycle();
+    three.retain(|row| row.key.increment <= 3);
+    assert!(loop_of(&three, 1).is_none(), "three increments");
+    let mut forth = cycle();
+    forth.retain(|row| row.key.increment <= 4);
+    assert!(loop_of(&forth, 1).is_none(), "only forth");
+}
+
+#[test]
+fn the_solid_behind_a_crack_is_a_body_and_the_rest_an_outline() {
+    let svg = plot::contact_status(&beam_step(), Magnification::Auto, "").expect("a figure");
+    // Three sides of the lower half are in sight, the top one below the crack: 6 x 5, 18 x 5 and 6 x 18 cells.
+    let greys =
+        svg.matches("<polygon").count() - count_of(&svg, "#000000") - count_of(&svg, "#FFFFFF");
+    let tints = ["#5687BE", "#F4C878"].map(|tint| count_of(&svg, tint));
+    assert_eq!(tints, [2, 2], "a region and a sample each");
+    assert_eq!(greys - tints[0] - tints[1], 30 + 90 + 108);
+    let mut bare = beam_step();
+    bare.crack.point_scalars.clear();
+    let error = plot::contact_status(&bare, Magnification::Auto, "").expect_err("no status");
+    assert!(error.to_string().contains("status"), "{error}");
+    bare.crack.cells.clear();
+    assert!(plot::contact_status(&bare, Magnification::Auto, "").is_err());
+}
+
+/// Filled polygons of a colour.
+fn count_of(svg: &str, colour: &str) -> usize {
+    let polygons = svg.split("<polygon").skip(1);
+    let own = polygons.filter(|p| {
+        let element = p.split('>').next().unwrap_or_default();
+        element.contains(&format!("fill=\"{colour}\""))
+    });
+    own.count()
 }

@@ -33,8 +33,13 @@ fn one_command_writes_all_kinds_and_twice_the_same() {
     assert!(files.contains(&sweep), "{files:?}");
     assert_eq!([of(".displacement.svg"), of(".vtu"), of(".pvd")], [1, 4, 1]);
     assert_eq!(
+        [of(".von-mises.svg"), of(".contact.svg"), of(".loop.svg")],
+        [1, 0, 0],
+        "a plane body in one increment"
+    );
+    assert_eq!(
         [of(".csv"), of(".md"), of(".tex"), of("provenance.toml")],
-        [5, 2, 2, 1]
+        [6, 2, 2, 1]
     );
 }
 
@@ -95,6 +100,7 @@ fn success_replaces_old_files_and_leaves_no_traces() {
     csv::write_all(dir.path(), &results()).expect("written");
     let names = files_below(dir.path());
     let expected = [
+        "exact.csv",
         "expectations.csv",
         "history.csv",
         "mine.txt",

@@ -37,7 +37,7 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
             .for_each(|row| row.key.method = method.name.into());
         points.extend(own);
     }
-    let together = plot::contact_traction(&points, 1).expect("a figure");
+    let together = plot::contact_traction(&points, &[], 1).expect("a figure");
     assert!(together.contains("12 exact methods, apart by less than 1e-12"));
     for method in METHODS {
         assert!(together.contains(method.name), "{} is named", method.name);
@@ -53,7 +53,7 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
     for row in points.iter_mut().filter(|row| row.key.method == "nsgs") {
         row.p_n *= 1.0 - 4e-4;
     }
-    let svg = plot::contact_traction(&points, 1).expect("a figure");
+    let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
     assert!(svg.contains(">latin<"), "one that differs stands alone");
     assert!(svg.contains("11 exact methods, apart by at most 0.0004"));
     // The same laws with another status at a point are another answer, whatever the forces.
@@ -63,6 +63,6 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
     {
         row.status = "stick".into();
     }
-    let svg = plot::contact_traction(&points, 1).expect("a figure");
+    let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
     assert!(svg.contains("10 exact methods") && svg.contains(">tresca<"));
 }

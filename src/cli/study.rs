@@ -1,17 +1,19 @@
-//! The verbs `study`, `merge` and `work`: sweeps of cells, each a record of its own.
+//! The verbs `study`, `merge`, `compare` and `work`: sweeps of cells, each a record of its own.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::prepare_output;
+use crate::report::{Provenance, prepare_output, sweep};
+use crate::sweep::compare::compare;
 use crate::sweep::conduct::{Conduct, Shard, conduct};
 use crate::sweep::merge::merge;
 use crate::sweep::plan::Plan;
-use crate::sweep::record::Record;
+use crate::sweep::record::{Origin, Record};
 use crate::sweep::store::Store;
 use crate::sweep::worker::{Limits, serve};
 
@@ -44,9 +46,24 @@ pub struct Arguments {
     /// Measure cells again whose record was made by another program or machine
     #[arg(long)]
     redo: bool,
+    /// Folder with records of an earlier run to compare with
+    #[arg(long)]
+    baseline: Option<PathBuf>,
     /// Print the ids of the cells, and measure nothing
     #[arg(long)]
     list: bool,
+}
+
+/// Arguments of the verb `compare`.
+#[derive(Debug, clap::Args)]
+pub struct CompareArguments {
+    /// Folder with the records before
+    a: PathBuf,
+    /// Folder with the records after
+    b: PathBuf,
+    /// Folder for compare.csv; by default the comparison is only printed
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// Arguments of the verb `merge`.
@@ -101,6 +118,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         own.for_each(|(_, task)| say(format_args!("{}", task.id)));
         return Ok(true);
     }
+    // What cannot be compared with is found out before hours of work.
+    let baseline = arguments.baseline.as_deref().map(Store::open);
+    let before = baseline.transpose()?.map(|store| store.records());
+    let before = before.transpose()?;
     prepare_output(&arguments.out)?;
     let store = Store::create(&arguments.out, plan.contents())?;
     let program = std::env::current_exe().map_err(CliError::Program)?;
@@ -136,7 +157,30 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         ));
         return Ok(conducted.complete());
     }
-    report(&store, &records)
+    let expected = report(&store, &records)?;
+    match before {
+        Some(before) => Ok(changes(&before, &records, Some(&arguments.out))? && expected),
+        None => Ok(expected),
+    }
+}
+
+/// Runs the verb `compare`; false if a verdict got worse.
+pub fn run_compare(arguments: &CompareArguments) -> Result<bool, CliError> {
+    if let Some(out) = &arguments.out {
+        prepare_output(out)?;
+    }
+    let [a, b] = [&arguments.a, &arguments.b].map(|dir| Store::open(dir)?.records());
+    changes(&a?, &b?, arguments.out.as_deref())
+}
+
+fn changes(a: &[Record], b: &[Record], out: Option<&Path>) -> Result<bool, CliError> {
+    let comparison = compare(a, b);
+    if let Some(out) = out {
+        sweep::comparison_bundle(&comparison)?.commit(out)?;
+    }
+    let table = sweep::comparison_table(&comparison)?;
+    say(format_args!("{}", table.terminal()));
+    Ok(!comparison.worse())
 }
 
 /// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
@@ -187,6 +231,31 @@ fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
     for record in records.iter().filter(wrong) {
         warn(format_args!("{}: {}", record.found.verdict, record.id));
     }
+    let total = store.contents().cells.len();
+    let bundle = sweep::bundle(records, total, &provenance(store, records))?;
+    bundle.commit(store.dir())?;
     say(format_args!("Results: {}", store.dir().display()));
     Ok(!records.iter().any(|r| wrong(&r)))
+}
+
+/// Of this program, which wrote the report, and where they differ of those that measured.
+fn provenance(store: &Store, records: &[Record]) -> Provenance {
+    let here = Origin::here();
+    let mut provenance =
+        Provenance::collect(1).with_option("sweep", store.contents().title.clone());
+    let others: BTreeSet<&Origin> = records.iter().map(|record| &record.origin).collect();
+    for (number, origin) in others.into_iter().filter(|o| **o != here).enumerate() {
+        let Origin {
+            version,
+            commit,
+            dirty,
+            rustc,
+            profile,
+            machine,
+        } = origin;
+        let text =
+            format!("{version}, commit {commit}, dirty {dirty}, {rustc}, {profile}, {machine}");
+        provenance = provenance.with_option(format!("measured by {}", number + 1), text);
+    }
+    provenance
 }

@@ -45,6 +45,7 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
                 "max_gap" | "max_penetration" | "max_penetration_sampled" | "max_slip" => {
                     (body_or_crack(), &[""], "m")
                 }
+                "mean_slip" => (cracks.clone(), &local[1..], "m"),
                 "dissipation" | "strain_energy" => (vec![String::new()], &[""], energy),
                 "energy_identity" => (vec![String::new()], &[""], "-"),
                 unknown => {

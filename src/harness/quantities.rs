@@ -187,6 +187,15 @@ pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> 
                 .sqrt()
         };
         push("max_slip", &at, "", largest(&slip), "m");
+        if !at.is_empty() {
+            // Mean over the surface of the crack: NaN for one without contact points.
+            let area: f64 = own.iter().map(|&i| body.points[i].weight).sum();
+            for c in 1..dim {
+                let part = |&i: &usize| body.points[i].weight * now.jump[i * dim + c];
+                let mean = own.iter().map(part).sum::<f64>() / area;
+                push("mean_slip", &at, LOCAL[c], mean, "m");
+            }
+        }
     }
     push("dissipation", "", "", now.dissipation, energy_unit);
     push("strain_energy", "", "", now.strain_energy, energy_unit);

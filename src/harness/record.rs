@@ -102,7 +102,7 @@ pub struct QuantityRow {
     #[serde(flatten)]
     pub key: RunKey,
     /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
-    /// max_penetration_sampled, max_slip, dissipation, strain_energy, …
+    /// max_penetration_sampled, max_slip, mean_slip, dissipation, strain_energy, …
     pub quantity: String,
     /// Place: a side, a probe, a crack (`crack-1`), or empty.
     pub at: String,
@@ -182,6 +182,33 @@ pub struct PointRow {
     pub force_unit: String,
     /// open, stick or slip.
     pub status: String,
+}
+
+/// One row of `exact.csv`: the closed form of a case at a place along its crack; 2D only.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExactRow {
+    /// Case name.
+    pub case: String,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Increment, from 1.
+    pub increment: usize,
+    /// Crack number, from 1.
+    pub crack: usize,
+    /// Distance along the crack from its first point [m].
+    pub s_m: f64,
+    /// Position [m].
+    pub x_m: f64,
+    /// Position [m].
+    pub y_m: f64,
+    /// Normal gap, open > 0 [m].
+    pub gap_m: f64,
+    /// Tangential jump along a, total [m].
+    pub slip_a_m: f64,
+    /// Contact traction along n on side 1, compression > 0 [Pa].
+    pub p_n_pa: f64,
+    /// Contact traction along a on side 1 [Pa].
+    pub p_a_pa: f64,
 }
 
 /// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
@@ -288,6 +315,8 @@ pub struct Results {
     pub history: Vec<HistoryRow>,
     /// points.csv
     pub points: Vec<PointRow>,
+    /// exact.csv
+    pub exact: Vec<ExactRow>,
     /// expectations.csv
     pub expectations: Vec<ExpectRow>,
     /// Fields of selected runs.
@@ -301,6 +330,7 @@ impl Results {
         self.quantities.extend(other.quantities);
         self.history.extend(other.history);
         self.points.extend(other.points);
+        self.exact.extend(other.exact);
         self.expectations.extend(other.expectations);
         self.fields.extend(other.fields);
     }

@@ -7,6 +7,7 @@ use stickslip_methods::{ContactSystem, Method, OptionError, Options, Tier};
 
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
+use crate::harness::exact_curve::exact_rows;
 use crate::harness::expect::{self, expectation_rows};
 use crate::harness::loading::Loading;
 use crate::harness::path::Path;
@@ -266,6 +267,10 @@ pub fn run_case(
             );
             let mu = per_crack.first().copied().unwrap_or(0.0);
             let loading = Arc::new(Loading::new(&body, case, mu)?);
+            // The same on every mesh.
+            if Some(&refine) == case.sweep.refine.first() {
+                results.exact.extend(exact_rows(case, &loading, mu));
+            }
             let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
             for (number, choice) in choices.iter().enumerate() {
                 cells.push(Cell {

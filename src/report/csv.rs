@@ -3,7 +3,7 @@
 use super::number::{residual, time, value};
 use super::{Bundle, ReportError};
 use crate::harness::record::{
-    ExpectRow, HistoryRow, PointRow, QuantityRow, Results, RunKey, RunRow,
+    ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, Results, RunKey, RunRow,
 };
 use std::cmp::Ordering;
 use std::path::Path;
@@ -89,7 +89,7 @@ pub fn file<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
         .map_err(|e| ReportError::Csv(e.into_error().into()))
 }
 
-/// Adds `runs.csv`, `quantities.csv`, `history.csv`, `points.csv` and `expectations.csv`.
+/// Adds `runs.csv`, `quantities.csv`, `history.csv`, `points.csv`, `exact.csv` and `expectations.csv`.
 ///
 /// # Errors
 /// Those of [`Bundle::add`].
@@ -98,10 +98,11 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
     bundle.add(QuantityRow::FILE, file(&results.quantities)?)?;
     bundle.add(HistoryRow::FILE, file(&results.history)?)?;
     bundle.add(PointRow::FILE, file(&results.points)?)?;
+    bundle.add(ExactRow::FILE, file(&results.exact)?)?;
     bundle.add(ExpectRow::FILE, file(&results.expectations)?)
 }
 
-/// Writes the five CSV files into `dir`, all or none.
+/// Writes these six files into `dir`, all or none.
 ///
 /// # Errors
 /// [`ReportError::Io`] naming the path that could not be written.
@@ -310,6 +311,53 @@ impl Row for PointRow {
 
     fn order(&self, other: &Self) -> Ordering {
         (self.crack, self.point).cmp(&(other.crack, other.point))
+    }
+}
+
+impl Row for ExactRow {
+    const FILE: &'static str = "exact.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "case",
+        "friction",
+        "increment",
+        "crack",
+        "s_m",
+        "x_m",
+        "y_m",
+        "gap_m",
+        "slip_a_m",
+        "p_n_pa",
+        "p_a_pa",
+    ];
+    const KEYED: bool = false;
+
+    fn cells(&self) -> Vec<String> {
+        let ExactRow {
+            case,
+            friction,
+            increment,
+            crack,
+            s_m,
+            x_m,
+            y_m,
+            gap_m,
+            slip_a_m,
+            p_n_pa,
+            p_a_pa,
+        } = self;
+        let mut cells = vec![case.clone(), value(*friction)];
+        cells.extend([increment.to_string(), crack.to_string()]);
+        let numbers = [s_m, x_m, y_m, gap_m, slip_a_m, p_n_pa, p_a_pa];
+        cells.extend(numbers.map(|number| value(*number)));
+        cells
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        self.case
+            .cmp(&other.case)
+            .then(self.friction.total_cmp(&other.friction))
+            .then((self.increment, self.crack).cmp(&(other.increment, other.crack)))
+            .then(self.s_m.total_cmp(&other.s_m))
     }
 }
 

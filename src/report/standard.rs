@@ -6,7 +6,7 @@
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, paper, vtu};
+use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
 use crate::harness::expect;
 use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,6 +26,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
     }
     add_residuals(&mut bundle, results)?;
     add_profiles(&mut bundle, results)?;
+    loops::add_to(&mut bundle, results)?;
     for fields in &results.fields {
         add_fields(&mut bundle, fields, provenance)?;
     }
@@ -310,11 +311,11 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
         let name = format!("figures/{name}.crack-{crack}");
         bundle.add(
             format!("{name}.traction.svg"),
-            plot::contact_traction(&rows, crack)?,
+            plot::contact_traction(&rows, &results.exact, crack)?,
         )?;
         bundle.add(
             format!("{name}.slip.svg"),
-            plot::contact_slip(&rows, crack)?,
+            plot::contact_slip(&rows, &results.exact, crack)?,
         )?;
     }
     Ok(())
@@ -354,10 +355,22 @@ fn add_fields(
         return Ok(());
     };
     let caption = format!("{run}, μ = {friction}");
-    let svg = match step.body.dim {
-        2 => plot::displacement_contours(&step.body, Magnification::Auto, &caption)?,
-        3 => plot::solid_displacement(&step.body, Axis3::Z, Magnification::Auto, &caption)?,
+    let (body, magnified) = (&step.body, Magnification::Auto);
+    let (displacement, stress) = match body.dim {
+        2 => (
+            plot::displacement_contours(body, magnified, &caption)?,
+            plot::von_mises_contours(body, magnified, &caption)?,
+        ),
+        3 => (
+            plot::solid_displacement(body, Axis3::Z, magnified, &caption)?,
+            plot::solid_von_mises(body, magnified, &caption)?,
+        ),
         _ => return Ok(()),
     };
-    bundle.add(format!("figures/{stem}.displacement.svg"), svg)
+    if body.dim == 3 && !step.crack.cells.is_empty() {
+        let svg = plot::contact_status(step, magnified, &caption)?;
+        bundle.add(format!("figures/{stem}.contact.svg"), svg)?;
+    }
+    bundle.add(format!("figures/{stem}.displacement.svg"), displacement)?;
+    bundle.add(format!("figures/{stem}.von-mises.svg"), stress)
 }

@@ -1,7 +1,9 @@
-//! One table, three forms: booktabs LaTeX, Markdown, terminal.
+//! One table, three forms: LaTeX, Markdown, terminal.
 //!
-//! Cells are text; whoever fills the table decides about digits. In columns aligned at the decimal point, cells with
-//! fewer decimals are padded so that the points stand below each other.
+//! Cells are text; whoever fills the table decides about digits. On a terminal, cells of columns aligned at the decimal
+//! point are padded where they have fewer decimals, so that the points stand below each other.
+
+mod latex;
 
 use super::ReportError;
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
@@ -134,58 +136,6 @@ impl Table {
         text
     }
 
-    /// A `table` float with `booktabs` rules, a `longtable` where it would not fit on a page; `label` is the target of
-    /// `\ref`.
-    pub fn latex(&self, label: &str) -> String {
-        let line = |cells: Vec<String>| format!("    {} \\\\\n", cells.join(" & "));
-        let spec: String = self
-            .columns
-            .iter()
-            .map(|c| if c.align == Align::Left { 'l' } else { 'r' })
-            .collect();
-        let long = self.rows.len() > PAGE_ROWS;
-        let title = escape_latex(&self.title);
-        let mut text = if long {
-            format!(
-                "% needs \\usepackage{{booktabs,longtable}}\n\\begin{{longtable}}{{{spec}}}\n  \\caption{{{title}}}\n  \\label{{{label}}}\\\\\n    \\toprule\n"
-            )
-        } else {
-            format!(
-                "% needs \\usepackage{{booktabs}}\n\\begin{{table}}\n  \\centering\n  \\caption{{{title}}}\n  \\label{{{label}}}\n  \\begin{{tabular}}{{{spec}}}\n    \\toprule\n"
-            )
-        };
-        text += &line(
-            self.columns
-                .iter()
-                .map(|c| escape_latex(&c.heading()))
-                .collect(),
-        );
-        text += "    \\midrule\n";
-        if long {
-            // The heading comes again on every page.
-            text += "    \\endhead\n";
-        }
-        for row in &self.rows {
-            let cells = row.iter().enumerate().map(|(column, cell)| {
-                let padding = match self.padding(column, cell) {
-                    0 => String::new(),
-                    // A missing decimal point takes room too.
-                    n if cell.contains('.') => format!("\\phantom{{{}}}", "0".repeat(n)),
-                    n => format!("\\phantom{{.{}}}", "0".repeat(n - 1)),
-                };
-                latex_cell(cell) + &padding
-            });
-            text += &line(cells.collect());
-        }
-        text += "    \\bottomrule\n";
-        text += if long {
-            "\\end{longtable}\n"
-        } else {
-            "  \\end{tabular}\n\\end{table}\n"
-        };
-        text
-    }
-
     /// The title and the table for a terminal, never wrapped; no trailing line end.
     pub fn terminal(&self) -> String {
         const FIGURE_SPACE: &str = "\u{2007}";
@@ -244,59 +194,6 @@ fn escape_markdown(text: &str) -> String {
         match c {
             '|' | '*' | '`' | '<' => out.extend(['\\', c]),
             '\n' => out.push(' '),
-            _ => out.push(c),
-        }
-    }
-    out
-}
-
-/// Rows that fit on a page beside the caption.
-const PAGE_ROWS: usize = 40;
-
-/// A number becomes mathematics (a true minus sign, powers of ten), anything else text.
-fn latex_cell(cell: &str) -> String {
-    match cell.parse::<f64>() {
-        Ok(value) if value.is_finite() => match cell.split_once(['e', 'E']) {
-            Some((mantissa, exponent)) => {
-                format!(
-                    "${mantissa} \\times 10^{{{}}}$",
-                    exponent.trim_start_matches('+')
-                )
-            }
-            None => format!("${cell}$"),
-        },
-        _ => escape_latex(cell),
-    }
-}
-
-/// Text for LaTeX: special characters escaped, the non-ASCII characters used in reports as commands.
-pub fn escape_latex(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => out.extend(['\\', c]),
-            '\\' => out += "\\textbackslash{}",
-            '~' => out += "\\textasciitilde{}",
-            '^' => out += "\\textasciicircum{}",
-            '<' | '>' | '|' => out += &format!("${c}$"),
-            '\n' => out.push(' '),
-            'β' => out += "$\\beta$",
-            'μ' | 'µ' => out += "$\\mu$",
-            'ν' => out += "$\\nu$",
-            'ρ' => out += "$\\rho$",
-            '→' => out += "$\\to$",
-            '×' => out += "$\\times$",
-            '−' => out += "$-$",
-            '·' => out += "$\\cdot$",
-            '°' => out += "$^\\circ$",
-            '²' => out += "$^2$",
-            '³' => out += "$^3$",
-            '≤' => out += "$\\le$",
-            '≥' => out += "$\\ge$",
-            '∞' => out += "$\\infty$",
-            '–' => out += "--",
-            '—' => out += "---",
-            '…' => out += "\\ldots{}",
             _ => out.push(c),
         }
     }

@@ -3,6 +3,8 @@
 // Every test program uses a part of this.
 #![allow(dead_code)]
 
+pub mod figures;
+
 use stickslip::harness::record::*;
 use stickslip::report::robustness::RobustnessRow;
 
@@ -369,5 +371,120 @@ pub fn beam() -> Picture {
         }
     }
     picture.point_vectors.push(("displacement_m".into(), u));
+    // 100 to 400 kPa along the beam, 2 MPa in one of its 1080 cells, at a corner.
+    let stress = picture.cells.iter().map(|cell| {
+        let x = picture.points[cell.points[0]];
+        1e5 + 5e4 * x[1]
+    });
+    let mut stress: Vec<f64> = stress.collect();
+    stress[0] = 2e6;
+    picture.cell_scalars.push(("von_mises_pa".into(), stress));
     picture
+}
+
+/// The beam with its crack at mid-height: open, sticking and sliding along y from end to end.
+pub fn beam_step() -> FieldStep {
+    let cells = [6, 18];
+    let mut crack = Picture {
+        dim: 3,
+        ..Picture::default()
+    };
+    let (mut jump, mut traction, mut status) = (Vec::new(), Vec::new(), Vec::new());
+    for j in 0..=cells[1] {
+        for i in 0..=cells[0] {
+            let y = 6.0 * j as f64 / cells[1] as f64;
+            crack
+                .points
+                .push([2.0 * i as f64 / cells[0] as f64, y, 1.5]);
+            jump.push([0.0, 3e-4 * y / 6.0, if j < 6 { 1e-4 } else { 0.0 }]);
+            traction.push([0.0, -1e5, 1e6]);
+            status.push([0.0, 1.0, 2.0][j / 7]);
+        }
+    }
+    let node = |i: usize, j: usize| j * (cells[0] + 1) + i;
+    for j in 0..cells[1] {
+        for i in 0..cells[0] {
+            crack.cells.push(PictureCell {
+                shape: PictureShape::Polygon,
+                points: vec![
+                    node(i, j),
+                    node(i + 1, j),
+                    node(i + 1, j + 1),
+                    node(i, j + 1),
+                ],
+            });
+        }
+    }
+    crack.point_vectors.push(("jump_m".into(), jump));
+    let tractions = ("contact_traction_pa".into(), traction);
+    crack.point_vectors.push(tractions);
+    crack.point_scalars.push(("status".into(), status));
+    FieldStep {
+        time: 1.0,
+        body: beam(),
+        crack,
+    }
+}
+
+/// A closed form along the crack of [`points`].
+pub fn exact(friction: f64) -> Vec<ExactRow> {
+    let length = CRACK * 2f64.sqrt() * 2.0;
+    let row = |i: usize| {
+        let s = length * i as f64 / 40.0;
+        let pressure = 2.6e7 * (1.0 + 0.3 * (s * (length - s)).max(0.0).sqrt() / length);
+        ExactRow {
+            case: "plate_mesh1".into(),
+            friction,
+            increment: 1,
+            crack: 1,
+            s_m: s,
+            x_m: -CRACK + s / 2f64.sqrt(),
+            y_m: -CRACK + s / 2f64.sqrt(),
+            gap_m: 0.0,
+            slip_a_m: 0.07 * (s * (length - s)).max(0.0).sqrt() / length,
+            p_n_pa: pressure,
+            p_a_pa: -friction * pressure,
+        }
+    };
+    (0..=40).rev().map(row).collect()
+}
+
+/// Mean slip and contact force over a cycle of 12 increments that turns back after the fourth and the eighth, by two exact
+/// methods and a third that ends early: shear up to 3 kN/m in the first two increments, then slip of 1 mm in two more.
+pub fn cycle() -> Vec<QuantityRow> {
+    let path = [
+        [0.0, 1.5e3],
+        [0.0, 3e3],
+        [5e-4, 3e3],
+        [1e-3, 3e3],
+        [1e-3, 0.0],
+        [1e-3, -3e3],
+        [5e-4, -3e3],
+        [0.0, -3e3],
+        [0.0, 3e3],
+        [1e-3, 3e3],
+        [1e-3, -3e3],
+        [0.0, -3e3],
+    ];
+    let mut rows = Vec::new();
+    for (method, count) in [("latin", 12), ("b-newton", 12), ("nsgs", 7)] {
+        for (index, [slip, shear]) in path.into_iter().enumerate().take(count) {
+            let mut key = key(method, 0.3);
+            key.increment = index + 1;
+            let mut push = |quantity: &str, value: f64, unit: &str| {
+                rows.push(QuantityRow {
+                    key: key.clone(),
+                    quantity: quantity.into(),
+                    at: "crack-1".into(),
+                    component: "a".into(),
+                    value,
+                    unit: unit.into(),
+                });
+            };
+            push("mean_slip", slip, "m");
+            // The force on side 1 opposes what shears it.
+            push("contact_force", -shear, "N/m");
+        }
+    }
+    rows
 }

@@ -27,6 +27,8 @@ pub struct Levels {
     /// Strictly between `low` and `high`, evenly spaced.
     inner: Vec<f64>,
     step: f64,
+    /// Largest value, where it lies beyond `high`.
+    beyond: Option<f64>,
 }
 
 impl Levels {
@@ -40,6 +42,7 @@ impl Levels {
                 high,
                 inner: Vec::new(),
                 step: 0.0,
+                beyond: None,
             };
         }
         let step = level_step(span / BANDS);
@@ -50,7 +53,14 @@ impl Levels {
             high,
             inner,
             step,
+            beyond: None,
         }
+    }
+
+    /// The same for a field with this largest value, maybe above the upper end: the highest band takes what is above.
+    pub fn reaching(self, largest: f64) -> Self {
+        let beyond = Some(largest).filter(|largest| *largest > self.high);
+        Self { beyond, ..self }
     }
 
     /// Decimals that all levels need.
@@ -105,6 +115,9 @@ pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_m
     }
 }
 
+/// Height of the point on a bar that does not reach the largest value.
+const POINT_MM: f64 = 2.5;
+
 /// A vertical colour bar with its label on top: lower left corner, height, in millimetres.
 pub fn colour_bar(
     canvas: &mut Canvas,
@@ -115,6 +128,10 @@ pub fn colour_bar(
 ) {
     const WIDTH: f64 = 3.0;
     let [x, bottom] = origin;
+    let height = match levels.beyond {
+        Some(_) => height - POINT_MM - 1.2,
+        None => height,
+    };
     let span = if levels.high > levels.low {
         levels.high - levels.low
     } else {
@@ -134,13 +151,20 @@ pub fn colour_bar(
         canvas.fill(&corners, levels.colour(band));
     }
     let top = bottom - height;
-    let corners = [
+    let mut corners = vec![
         [x, top],
-        [x + WIDTH, top],
-        [x + WIDTH, bottom],
         [x, bottom],
+        [x + WIDTH, bottom],
+        [x + WIDTH, top],
         [x, top],
     ];
+    // A bar that ends in a point does not reach the largest value.
+    let point = [x + 0.5 * WIDTH, top - POINT_MM];
+    if levels.beyond.is_some() {
+        let colour = levels.colour(levels.inner.len());
+        canvas.fill(&[[x, top], [x + WIDTH, top], point], colour);
+        corners.insert(4, point);
+    }
     canvas.line(&corners, BLACK, 0.15);
 
     let mut tick = |at: f64, text: String| {
@@ -155,7 +179,18 @@ pub fn colour_bar(
     for level in &levels.inner {
         tick(place(*level), number(*level, digits));
     }
-    canvas.text(label, [x, top - 3.0], LABEL_PT, Anchor::Start, BLACK);
+    if let Some(largest) = levels.beyond {
+        let text = format!("to {}", crate::report::number::significant(largest, 2));
+        let at = [x + WIDTH + 1.3, point[1] + 0.3];
+        canvas.text(&text, at, SMALL_PT, Anchor::Start, BLACK);
+    }
+    let above = if levels.beyond.is_some() {
+        POINT_MM + 1.2
+    } else {
+        0.0
+    };
+    let at = [x, top - 3.0 - above];
+    canvas.text(label, at, LABEL_PT, Anchor::Start, BLACK);
 }
 
 /// The part of a triangle where the field is at least the level, and the piece of contour line that bounds it.
@@ -202,13 +237,14 @@ fn cut(a: (Pixel, f64), b: (Pixel, f64), level: f64) -> Pixel {
 
 /// Union of polygons by their outline: directed edges, of which opposite ones cancel.
 #[derive(Default)]
-struct Region {
+pub struct Region {
     /// Ends in order, and whether the edge runs that way (+1) or back (−1).
     edges: Vec<([Pixel; 2], i32)>,
 }
 
 impl Region {
-    fn add(&mut self, polygon: &[Pixel]) {
+    /// Adds a polygon.
+    pub fn add(&mut self, polygon: &[Pixel]) {
         let area: i64 = edges_of(polygon)
             .map(|(a, b)| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]))
             .sum();
@@ -223,7 +259,7 @@ impl Region {
     }
 
     /// Closed outlines; every remaining edge is walked as often as it is counted.
-    fn loops(&mut self) -> Vec<Vec<Pixel>> {
+    pub fn loops(&mut self) -> Vec<Vec<Pixel>> {
         self.edges.sort_unstable();
         let mut next: BTreeMap<Pixel, Vec<Pixel>> = BTreeMap::new();
         for equal in self.edges.chunk_by(|a, b| a.0 == b.0) {

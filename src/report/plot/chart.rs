@@ -6,8 +6,8 @@ use super::canvas::{
 };
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
-use super::marks;
 use super::style::{Marker, Style, draw_mark, draw_marker};
+use super::{marks, route};
 use crate::report::ReportError;
 
 /// Sizes of text [pt].
@@ -70,6 +70,8 @@ pub enum Markers {
     Spread,
     /// At every point, those of later curves on top.
     Every,
+    /// At points that are not crowded; the first curve shows in which direction it is run through.
+    Route,
 }
 
 /// A whole figure.
@@ -195,11 +197,15 @@ pub fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
                 }
             }
         }
-        Markers::Sparse => {
+        Markers::Sparse | Markers::Route => {
             for (series, places) in panel.series.iter().zip(&places) {
                 draw_markers(canvas, series, places);
             }
         }
+    }
+    if let (Markers::Route, Some(first)) = (panel.markers, places.first()) {
+        let points: Vec<[f64; 2]> = first.iter().flatten().copied().collect();
+        route::draw(canvas, frame, &points);
     }
 }
 
@@ -302,7 +308,8 @@ fn draw_markers(canvas: &mut Canvas, series: &Series, places: &Places) {
             before == look && (place[0] - at[0]).hypot(place[1] - at[1]) < MARKER_GAP_MM
         });
         if !crowded && series.style.stagger.picks(index) {
-            draw_marker(canvas, *place, look.0, look.1, series.style.colour);
+            let colour = series.style.marker_colour();
+            draw_marker(canvas, *place, look.0, look.1, colour);
             last = Some((*place, look));
         }
     }

@@ -7,6 +7,8 @@ pub const BLACK: Rgb = [0, 0, 0];
 pub const WHITE: Rgb = [255, 255, 255];
 /// Captions and reference lines.
 pub const GREY: Rgb = [96, 96, 96];
+/// Bands below black lines.
+pub const MIDDLE: Rgb = [150, 150, 150];
 /// Grid lines, undeformed outlines.
 pub const LIGHT: Rgb = [205, 205, 205];
 

@@ -1,48 +1,21 @@
-//! Displacement contours of a plane body on its deformed shape, u_x and u_y side by side.
+//! Contours on the deformed shape of a plane body: u_x and u_y side by side, or von Mises' stress.
 
-use super::axis::{Axis, nice_step, prefixed, range};
-use super::bands::{self, Levels, Pixel, Triangle, chains};
-use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, plain, subscript, wrapped,
-};
+use super::axis::{Axis, range};
+use super::bands::{self, Pixel, Triangle, chains};
+use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
 use super::chart::{LABEL_PT, TICK_PT};
 use super::colour::{BLACK, LIGHT};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
 use crate::harness::record::{Picture, PictureShape};
 use crate::report::ReportError;
 use std::collections::BTreeSet;
 
-const FIGURE: &str = "displacement contours";
-/// Name of the point vector that is drawn.
-pub const DISPLACEMENT: &str = "displacement_m";
-
 /// Faces below this size on paper are not refined [pixels].
 const SMALL: i32 = 12;
 /// Least and greatest height of a colour bar [mm].
 const BAR_MM: [f64; 2] = [32.0, 60.0];
-
-/// Factor by which displacements are enlarged in the picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Magnification {
-    /// A round factor that makes the largest displacement about a twentieth of the body.
-    Auto,
-    /// This factor.
-    Factor(f64),
-}
-
-impl Magnification {
-    /// The factor for a body of this diameter (m) and this largest displacement (m).
-    pub fn factor(self, diameter: f64, displacement: f64) -> f64 {
-        match self {
-            Self::Factor(factor) => factor,
-            Self::Auto if displacement > 0.0 && diameter > 0.0 => {
-                nice_step(0.02 * diameter / displacement)
-            }
-            Self::Auto => 1.0,
-        }
-    }
-}
 
 /// Displacement components u_x and u_y of a 2D picture as filled bands on the deformed shape.
 ///
@@ -56,11 +29,37 @@ pub fn displacement_contours(
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
+    let displacement = point_vector(picture, DISPLACEMENT)?;
+    let fields = [0, 1].map(|component| Field::displacement(displacement, component));
+    contours(picture, &fields, magnification, "Displacement", caption)
+}
+
+/// von Mises' equivalent stress of a 2D picture as filled bands on the deformed shape, see [`displacement_contours`];
+/// needs the cell scalar `von_mises_pa` too, of which points show the mean over their cells.
+///
+/// # Errors
+/// Those of [`displacement_contours`].
+pub fn von_mises_contours(
+    picture: &Picture,
+    magnification: Magnification,
+    caption: &str,
+) -> Result<String, ReportError> {
+    let field = Field::von_mises(picture)?;
+    let caption = format!("{caption}, {STRESS}");
+    contours(picture, &[field], magnification, "Stress", &caption)
+}
+
+/// One or two fields as panels.
+fn contours(
+    picture: &Picture,
+    fields: &[Field],
+    magnification: Magnification,
+    title: &str,
+    caption: &str,
+) -> Result<String, ReportError> {
     if picture.dim != 2 {
-        return Err(unfit(
-            "picture",
-            format!("{} dimensions, {FIGURE} need 2", picture.dim),
-        ));
+        let reason = format!("{} dimensions, contours need 2", picture.dim);
+        return Err(unfit("picture", reason));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
     let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
@@ -86,29 +85,27 @@ pub fn displacement_contours(
 
     let body = Body {
         picture,
-        displacement,
         places,
         outline,
         faces,
         shown,
     };
-    let layout = Layout::new(&body.shown);
+    let layout = Layout::new(&body.shown, fields.len());
     let caption = full_caption(caption, factor);
-    let lines = wrapped(&caption, CAPTION_PT, Width::Page.mm() - 3.0);
+    let lines = wrapped(&caption, CAPTION_PT, layout.width - 3.0);
     let top = caption_height(&lines);
-    let mut canvas = Canvas::new(Width::Page.mm(), top + layout.height());
+    let mut canvas = Canvas::new(layout.width, top + layout.height());
     canvas.caption(&lines);
-    for component in 0..2 {
-        let [x, y] = layout.origin(component);
-        draw_component(&mut canvas, &body, component, [x, top + y], &layout);
+    for (panel, field) in fields.iter().enumerate() {
+        let [x, y] = layout.origin(panel);
+        draw_field(&mut canvas, &body, field, [x, top + y], &layout);
     }
-    canvas.finish(&format!("Displacement contours: {caption}"))
+    canvas.finish(&format!("{title}: {caption}"))
 }
 
-/// What is drawn, the same in both panels.
+/// What is drawn, the same in all panels.
 struct Body<'a> {
     picture: &'a Picture,
-    displacement: &'a [[f64; 3]],
     /// Deformed positions [m].
     places: Vec<[f64; 2]>,
     faces: Vec<Face>,
@@ -118,9 +115,12 @@ struct Body<'a> {
     shown: Box2,
 }
 
-/// Two panels, side by side, or one above the other for flat bodies.
+/// Panels side by side, or one above the other for flat bodies; a single one takes a column.
 struct Layout {
+    panels: usize,
     stacked: bool,
+    /// Width of the figure [mm].
+    width: f64,
     /// Millimetres on paper per metre.
     scale: f64,
     body: [f64; 2],
@@ -133,17 +133,23 @@ impl Layout {
     const ABOVE: f64 = 6.0;
     const BELOW: f64 = 10.0;
 
-    fn new(shown: &Box2) -> Self {
+    fn new(shown: &Box2, panels: usize) -> Self {
         let stacked = shown.width() > 2.5 * shown.height();
-        let width = if stacked {
-            Width::Page.mm()
-        } else {
-            0.5 * Width::Page.mm()
+        let width = match panels {
+            1 if !stacked => Width::Column.mm(),
+            _ => Width::Page.mm(),
         };
-        let room = [width - Self::LEFT - Self::RIGHT, 90.0];
+        let panel = if stacked {
+            width
+        } else {
+            width / panels as f64
+        };
+        let room = [panel - Self::LEFT - Self::RIGHT, 90.0];
         let scale = (room[0] / shown.width()).min(room[1] / shown.height());
         Self {
+            panels,
             stacked,
+            width,
             scale,
             body: [scale * shown.width(), scale * shown.height()],
         }
@@ -156,7 +162,7 @@ impl Layout {
 
     fn height(&self) -> f64 {
         if self.stacked {
-            2.0 * self.panel_height()
+            self.panels as f64 * self.panel_height()
         } else {
             self.panel_height()
         }
@@ -169,16 +175,16 @@ impl Layout {
         if self.stacked {
             [Self::LEFT, bottom + n * self.panel_height()]
         } else {
-            [Self::LEFT + n * 0.5 * Width::Page.mm(), bottom]
+            [Self::LEFT + n * self.width / self.panels as f64, bottom]
         }
     }
 }
 
-/// Bands of one displacement component, outlines, axes, colour bar.
-fn draw_component(
+/// Bands of a field, outlines, axes, colour bar.
+fn draw_field(
     canvas: &mut Canvas,
     body: &Body<'_>,
-    component: usize,
+    field: &Field,
     origin: [f64; 2],
     layout: &Layout,
 ) {
@@ -190,44 +196,25 @@ fn draw_component(
             bottom - scale * (y - shown.low[1]),
         ])
     };
-    let u = |point: usize| body.displacement[point][component];
-    let (low, high) = range((0..body.displacement.len()).map(u)).unwrap_or((0.0, 0.0));
-    let (factor, unit) = prefixed(low.abs().max(high.abs()), "m");
-    let levels = Levels::new(low * factor, high * factor);
-
     let undeformed = |point: usize| {
         let [x, y, _] = body.picture.points[point];
         paper([x, y])
     };
     let deformed = |point: usize| paper(body.places[point]);
     stroke(canvas, &body.outline, undeformed, LIGHT, 0.15);
-    let corner = |point: usize| (deformed(point), u(point) * factor);
+    let corner = |point: usize| (deformed(point), field.values[point]);
     let triangles: Vec<Triangle> = body
         .faces
         .iter()
         .flat_map(|face| split(&face.points, corner))
         .collect();
-    bands::fill(canvas, &triangles, &levels, 0.05);
+    bands::fill(canvas, &triangles, &field.levels, 0.05);
     stroke(canvas, &body.outline, deformed, BLACK, 0.2);
 
     draw_axes(canvas, [left - 1.5, bottom + 1.5], shown, scale);
     let bar = [left + layout.body[0] + 4.0, bottom];
     let height = layout.body[1].clamp(BAR_MM[0], BAR_MM[1]);
-    let label = format!(
-        "{}{} [{unit}]",
-        italic("u"),
-        subscript(["x", "y"][component])
-    );
-    bands::colour_bar(canvas, &levels, bar, height, &label);
-}
-
-/// The caption with the magnification.
-pub(super) fn full_caption(caption: &str, factor: f64) -> String {
-    let deformation = format!("deformation ×{}", crate::report::number::value(factor));
-    match plain(caption) {
-        text if text.is_empty() => deformation,
-        text => format!("{text}, {deformation}"),
-    }
+    bands::colour_bar(canvas, &field.levels, bar, height, &field.label);
 }
 
 /// Left and lower axis, a little off the body.
@@ -272,26 +259,6 @@ fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
     );
     let middle = 0.5 * (origin[1] + end[1]);
     canvas.text_upwards(&y.label, [origin[0] - 9.0, middle], LABEL_PT, BLACK);
-}
-
-/// The values of a point vector.
-///
-/// # Errors
-/// [`ReportError::Picture`] when it is missing or has not one value per point.
-pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
-    let found = picture.point_vectors.iter().find(|(n, _)| n == name);
-    let Some((_, values)) = found else {
-        return Err(unfit(name, "the picture has no such point vector".into()));
-    };
-    if values.len() != picture.points.len() {
-        let reason = format!(
-            "{} values for {} points",
-            values.len(),
-            picture.points.len()
-        );
-        return Err(unfit(name, reason));
-    }
-    Ok(values)
 }
 
 /// All plane cells whose points have a finite place.
@@ -368,13 +335,6 @@ pub(super) fn stroke(
         .collect();
     for line in chains(&edges) {
         canvas.pixel_line(line, colour, width);
-    }
-}
-
-pub(super) fn unfit(name: &str, reason: String) -> ReportError {
-    ReportError::Picture {
-        name: name.to_owned(),
-        reason,
     }
 }
 

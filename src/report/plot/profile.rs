@@ -1,26 +1,20 @@
 //! Profiles along a 2D crack: traction and slip, with the contact status at every point.
 
-use super::agreement::{at_most, difference, groups};
+use super::agreement::difference;
 use super::axis::{Axis, prefixed};
-use super::canvas::{Width, italic, plain, subscript};
+use super::canvas::{Width, italic, subscript};
 use super::chart::{Chart, Markers, Panel, Series};
 use super::colour::{BLACK, GREY, Rgb};
 use super::legend::Entry;
-use super::methods;
+use super::method_curves::{MethodCurve, method_curves};
 use super::names::{Names, by_run};
-use super::style::{Marker, Style};
-use crate::harness::record::{PointRow, RunKey};
+use super::style::{Style, status_marker};
+use crate::harness::record::{ExactRow, PointRow, RunKey};
 use crate::report::ReportError;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Jumps below this fraction of the crack's length are what the tolerance of a method leaves.
 const ROUND_OFF: f64 = 1e-10;
-
-/// Largest difference of a curve that still runs along another one for the most part, as a fraction of the range.
-const LIES_ON: f64 = 0.06;
-
-/// What differences in the legend mean.
-const SCALE_NOTE: &str = "differences as fractions of the largest value";
 
 /// Tractions below this fraction of the largest are nothing to compare.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -30,21 +24,28 @@ const VISIBLE: f64 = 0.01;
 
 /// Contact traction p_n and |p_t| (force per tributary length) along one 2D crack; markers tell stick, slip and open,
 /// dots the slip limit μ p_n. Runs with one friction coefficient by exact methods whose curves cannot be told apart are
-/// drawn once, all others get curves of their own.
+/// drawn once, all others get curves of their own. `exact`: closed forms, of which those of the runs' cases, friction
+/// coefficients and increments are drawn as thin lines.
 ///
 /// # Errors
 /// [`ReportError::Figure`] when `rows` has no point of a 2D crack with this number.
-pub fn contact_traction(rows: &[PointRow], crack: usize) -> Result<String, ReportError> {
+pub fn contact_traction(
+    rows: &[PointRow],
+    exact: &[ExactRow],
+    crack: usize,
+) -> Result<String, ReportError> {
     let normal = |row: &PointRow| row.p_n / row.weight;
     let tangential = |row: &PointRow| row.p_a.hypot(row.p_b) / row.weight;
     let limit = |row: &PointRow| row.key.friction * normal(row).max(0.0);
     let figure = "contact traction";
-    let profile = Profile::new(figure, rows, crack, "Pa", &[&normal, &tangential])?;
+    let profile = Profile::new(figure, (rows, exact), crack, "Pa", &[&normal, &tangential])?;
 
     let symbol = italic("p");
-    let mut upper = profile.panel(&format!("{symbol}{}", subscript("n")), &[&normal]);
+    let mut upper = profile.panel(&format!("{symbol}{}", subscript("n")), &[&normal], &|row| {
+        row.p_n_pa
+    });
     let label = format!("|{symbol}{}|", subscript("t"));
-    let mut lower = profile.panel(&label, &[&tangential, &limit]);
+    let mut lower = profile.panel(&label, &[&tangential, &limit], &|row| row.p_a_pa.abs());
     let largest = profile.largest(&limit).max(f64::MIN_POSITIVE);
     let limits = |curve: &ProfileCurve<'_>| -> Vec<f64> {
         let values = curve.points.iter().map(|row| limit(row) / largest);
@@ -62,6 +63,8 @@ pub fn contact_traction(rows: &[PointRow], crack: usize) -> Result<String, Repor
         }
         lower.curve(&profile, index, &tangential);
     }
+    upper.exact();
+    lower.exact();
     let limit = Entry {
         label: format!("slip limit {} {symbol}{}", italic("μ"), subscript("n")),
         style: Style::limit(if profile.by_method { GREY } else { BLACK }),
@@ -79,17 +82,21 @@ pub fn contact_traction(rows: &[PointRow], crack: usize) -> Result<String, Repor
 ///
 /// # Errors
 /// Those of [`contact_traction`].
-pub fn contact_slip(rows: &[PointRow], crack: usize) -> Result<String, ReportError> {
+pub fn contact_slip(
+    rows: &[PointRow],
+    exact: &[ExactRow],
+    crack: usize,
+) -> Result<String, ReportError> {
     let slip = |row: &PointRow| row.slip_a_m;
     let gap = |row: &PointRow| row.gap_m;
-    let profile = Profile::new("contact slip", rows, crack, "m", &[&slip, &gap])?;
+    let profile = Profile::new("contact slip", (rows, exact), crack, "m", &[&slip, &gap])?;
     // Gaps of closed points are round-off; a panel of round-off says nothing.
     let opens = profile.rows().any(|row| row.status == "open")
         || profile.largest(&gap) > 1e-6 * profile.largest(&slip);
 
-    let mut panels = vec![profile.panel("slip", &[&slip])];
+    let mut panels = vec![profile.panel("slip", &[&slip], &|row| row.slip_a_m)];
     if opens {
-        panels.push(profile.panel("normal gap", &[&gap]));
+        panels.push(profile.panel("normal gap", &[&gap], &|row| row.gap_m));
     }
     for index in 0..profile.curves.len() {
         panels[0].curve(&profile, index, &slip);
@@ -97,12 +104,16 @@ pub fn contact_slip(rows: &[PointRow], crack: usize) -> Result<String, ReportErr
             panel.curve(&profile, index, &gap);
         }
     }
+    panels.iter_mut().for_each(ProfilePanel::exact);
     let panels = panels.into_iter().map(|panel| panel.panel).collect();
     profile.chart("Slip", panels, Vec::new())
 }
 
 /// A function of a contact point.
 type Of<'f> = &'f dyn Fn(&PointRow) -> f64;
+
+/// The same of the closed form.
+type ExactOf<'f> = &'f dyn Fn(&ExactRow) -> f64;
 
 /// One curve: points of the run that is drawn.
 struct ProfileCurve<'a> {
@@ -118,6 +129,8 @@ struct Profile<'a> {
     /// All runs, also those that another one stands for.
     runs: Vec<Vec<&'a PointRow>>,
     curves: Vec<ProfileCurve<'a>>,
+    /// Closed forms, one per friction coefficient.
+    exact: Vec<Vec<&'a ExactRow>>,
     /// Whether methods are compared; otherwise each run is a curve.
     by_method: bool,
     /// What all runs share.
@@ -132,13 +145,15 @@ struct Profile<'a> {
 struct ProfilePanel {
     panel: Panel,
     factor: f64,
+    /// Points of the closed forms.
+    exact: Vec<Vec<[f64; 2]>>,
 }
 
 impl<'a> Profile<'a> {
     /// `of` are the functions that will be drawn, all in one unit.
     fn new(
         figure: &'static str,
-        rows: &'a [PointRow],
+        (rows, exact): (&'a [PointRow], &'a [ExactRow]),
         crack: usize,
         unit: &'static str,
         of: &[Of<'_>],
@@ -162,6 +177,7 @@ impl<'a> Profile<'a> {
         let names = Names::of(&keys);
         let methods: BTreeSet<&str> = keys.iter().map(|key| key.method.as_str()).collect();
         let mut profile = Self {
+            exact: exact_of(&keys, exact, crack),
             curves: Vec::new(),
             // One run per method: nothing else tells the runs apart.
             by_method: methods.len() == runs.len(),
@@ -195,47 +211,21 @@ impl<'a> Profile<'a> {
             .map(|run| run[0].key.method.as_str())
             .collect();
         let statuses = |run: usize| self.runs[run].iter().map(|row| &row.status);
-        let groups = groups(
-            scaled,
-            |run| methods::is_exact(methods[run]),
-            |a, b| statuses(a).eq(statuses(b)),
-        );
-        let styles = methods::styles(&methods);
-        let shared = groups[0].members.len() > 1;
-        let mut turns = 0;
-        for (index, group) in groups.iter().enumerate() {
-            let first = group.members[0];
-            let several = group.members.len() > 1;
-            let sample = match index {
-                0 if several => Style::shared(),
-                _ => styles[first].clone(),
-            };
-            let off = difference(&scaled[0], &scaled[first]);
-            // Curves that lie on the shared one take turns; others need no help.
-            let style = if shared && index > 0 && off <= LIES_ON {
-                turns += 1;
-                sample.clone().on_shared(turns - 1)
-            } else {
-                sample.clone()
-            };
-            let count = format!("{} exact methods", group.members.len());
-            let label = if several {
-                let names: Vec<String> = group.members.iter().map(|m| plain(methods[*m])).collect();
-                let names = names.join(", ");
-                self.notes.push(format!("{count}: {names}, {SCALE_NOTE}"));
-                format!("{count}, apart by {}", at_most(group.apart))
-            } else if shared && !methods::is_exact(methods[first]) {
-                format!("{}, off by {}", plain(methods[first]), at_most(off))
-            } else {
-                plain(methods[first])
-            };
-            self.curves.push(ProfileCurve {
-                points: self.runs[first].clone(),
-                style,
-                sample,
-                label,
-            });
-        }
+        let shared = if self.exact.is_empty() {
+            Style::shared()
+        } else {
+            Style::shared_below_exact()
+        };
+        let alike = |a, b| statuses(a).eq(statuses(b));
+        let found = method_curves(&methods, scaled, &shared, alike);
+        self.notes = found.notes;
+        let curve = |curve: MethodCurve| ProfileCurve {
+            points: self.runs[curve.run].clone(),
+            style: curve.style,
+            sample: curve.sample,
+            label: curve.label,
+        };
+        self.curves = found.curves.into_iter().map(curve).collect();
     }
 
     /// All points of all runs.
@@ -271,9 +261,11 @@ impl<'a> Profile<'a> {
         values.filter(|v| v.is_finite()).fold(0.0, f64::max)
     }
 
-    /// An empty panel whose y axis covers the functions `of` and zero.
-    fn panel(&self, name: &str, of: &[Of<'_>]) -> ProfilePanel {
+    /// An empty panel whose y axis covers the functions `of`, the closed form and zero.
+    fn panel(&self, name: &str, of: &[Of<'_>], exact: ExactOf<'_>) -> ProfilePanel {
+        let closed = || self.exact.iter().flatten().map(|row| exact(row));
         let largest = of.iter().map(|f| self.largest(f)).fold(0.0, f64::max);
+        let largest = closed().map(f64::abs).fold(largest, f64::max);
         // Jumps of sticking points are round-off: they are drawn as zero, not on an axis of attometres.
         let round_off = self.unit == "m" && largest < ROUND_OFF * self.length();
         let (factor, unit) = if round_off {
@@ -282,8 +274,9 @@ impl<'a> Profile<'a> {
             prefixed(largest, self.unit)
         };
         let values = (self.rows()).flat_map(|row| of.iter().map(|f| f(row) * factor));
-        let shown = values.chain([0.0]);
-        let along = self.rows().map(|row| row.s_m);
+        let shown = values.chain([0.0]).chain(closed().map(|v| v * factor));
+        let ends = self.exact.iter().flatten().map(|row| row.s_m);
+        let along = self.rows().map(|row| row.s_m).chain(ends);
         let panel = Panel {
             x: Axis::linear("distance along the crack [m]", along, 6),
             y: Axis::linear(&format!("{name} [{unit}]"), shown, 4),
@@ -292,7 +285,16 @@ impl<'a> Profile<'a> {
             slopes: Vec::new(),
             markers: Markers::Sparse,
         };
-        ProfilePanel { panel, factor }
+        let place = |row: &&ExactRow| [row.s_m, exact(row) * factor];
+        let exact = self.exact.iter();
+        let exact = exact
+            .map(|curve| curve.iter().map(place).collect())
+            .collect();
+        ProfilePanel {
+            panel,
+            factor,
+            exact,
+        }
     }
 
     fn chart(
@@ -313,15 +315,19 @@ impl<'a> Profile<'a> {
         // What stands for many methods has a long label: a row of its own.
         let shared = self.notes.len().min(1);
         let shared: Vec<Entry> = entries.by_ref().take(shared).collect();
+        if !self.exact.is_empty() {
+            marks.push(Entry {
+                label: "exact".into(),
+                style: Style::exact(),
+                line: true,
+            });
+        }
         for status in ["stick", "slip", "open"] {
             if self.rows().any(|row| row.status == status) {
                 let (marker, filled) = status_marker(status);
-                let mut style = Style::reference(BLACK);
-                style.marker = Some(marker);
-                style.filled = filled;
                 marks.push(Entry {
                     label: status.to_owned(),
-                    style,
+                    style: Style::mark(marker, filled),
                     line: false,
                 });
             }
@@ -363,6 +369,16 @@ impl ProfilePanel {
         });
     }
 
+    /// The closed forms over what has been drawn.
+    fn exact(&mut self) {
+        let curves = std::mem::take(&mut self.exact).into_iter();
+        self.panel.series.extend(curves.map(|points| Series {
+            points,
+            style: Style::exact(),
+            markers: Vec::new(),
+        }));
+    }
+
     fn reference(&mut self, curve: &ProfileCurve<'_>, colour: Rgb, of: Of<'_>) {
         self.panel.series.push(Series {
             points: self.points(curve, of),
@@ -372,10 +388,23 @@ impl ProfilePanel {
     }
 }
 
-fn status_marker(status: &str) -> (Marker, bool) {
-    match status {
-        "stick" => (Marker::Disc, true),
-        "slip" => (Marker::Triangle, false),
-        _ => (Marker::Cross, false),
+/// Closed forms that belong to the runs, one curve per case, friction coefficient and increment.
+fn exact_of<'a>(keys: &[&RunKey], exact: &'a [ExactRow], crack: usize) -> Vec<Vec<&'a ExactRow>> {
+    type Name<'a> = (&'a str, u64, usize);
+    let own = |row: &ExactRow| {
+        let of = |key: &&RunKey| {
+            key.case == row.case && key.friction == row.friction && key.increment == row.increment
+        };
+        row.crack == crack && keys.iter().any(of)
+    };
+    let mut curves: BTreeMap<Name<'a>, Vec<&'a ExactRow>> = BTreeMap::new();
+    for row in exact.iter().filter(|row| own(row)) {
+        let name = (row.case.as_str(), row.friction.to_bits(), row.increment);
+        curves.entry(name).or_default().push(row);
     }
+    let mut curves: Vec<Vec<&ExactRow>> = curves.into_values().collect();
+    for curve in &mut curves {
+        curve.sort_by(|a, b| a.s_m.total_cmp(&b.s_m));
+    }
+    curves
 }

@@ -174,6 +174,41 @@ impl Style {
         }
     }
 
+    /// The same where a closed form is drawn over it: a band on which a thin black line is seen.
+    pub fn shared_below_exact() -> Self {
+        Self {
+            colour: colour::MIDDLE,
+            ..Self::shared()
+        }
+    }
+
+    /// Markers on a band are black, or they would be lost on it.
+    pub fn marker_colour(&self) -> Rgb {
+        if self.colour == colour::MIDDLE {
+            colour::BLACK
+        } else {
+            self.colour
+        }
+    }
+
+    /// A closed form: thin, black, without markers.
+    pub fn exact() -> Self {
+        Self {
+            dashes: &[],
+            ..Self::reference(colour::BLACK)
+        }
+    }
+
+    /// A marker alone, black.
+    pub fn mark(marker: Marker, filled: bool) -> Self {
+        Self {
+            marker: Some(marker),
+            size: MARKER_MM,
+            filled,
+            ..Self::reference(colour::BLACK)
+        }
+    }
+
     /// The n-th of the curves drawn on a [`shared`](Self::shared) one: narrower, the dashes taking turns.
     pub fn on_shared(self, index: usize) -> Self {
         Self {
@@ -245,6 +280,15 @@ impl Style {
     }
 }
 
+/// Marker of a contact status and whether it is filled.
+pub fn status_marker(status: &str) -> (Marker, bool) {
+    match status {
+        "stick" => (Marker::Disc, true),
+        "slip" => (Marker::Triangle, false),
+        _ => (Marker::Cross, false),
+    }
+}
+
 /// A marker centred at `at`; an unfilled one is white inside.
 pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bool, colour: Rgb) {
     draw_sized(canvas, at, MARKER_MM, marker, filled, colour);
@@ -253,7 +297,8 @@ pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bo
 /// The marker of a style in its size, if it has one.
 pub fn draw_mark(canvas: &mut Canvas, at: [f64; 2], style: &Style) {
     if let Some(marker) = style.marker {
-        draw_sized(canvas, at, style.size, marker, style.filled, style.colour);
+        let colour = style.marker_colour();
+        draw_sized(canvas, at, style.size, marker, style.filled, colour);
     }
 }
 

@@ -3,7 +3,7 @@
 //! A cut cell comes as many tetrahedra; its faces are put together again, so that the picture shows the mesh and not the
 //! tetrahedra. Cells of one mesh cell have the same value of the cell scalar `cell`.
 
-use super::contour::unfit;
+use super::field::unfit;
 use super::outline::{Weld, cell_scalar};
 use crate::harness::record::{Picture, PictureCell, PictureShape};
 use crate::report::ReportError;

@@ -1,0 +1,54 @@
+//! The runs themselves, where no comparison sums them up: the results of `stickslip run`.
+
+use super::{made, tables};
+use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Show};
+
+/// Longest table inside the page; of longer ones the beginning is shown.
+const ROWS: usize = 2000;
+
+const RUNS: [Show; 13] = [
+    Show::new("case", Kind::Text),
+    Show::new("mesh", Kind::Text),
+    Show::new("space", Kind::Text),
+    Show::new("method", Kind::Text),
+    Show::new("friction", Kind::Number),
+    Show::new("increment", Kind::Number),
+    Show::new("tier", Kind::Text),
+    Show::new("verdict", Kind::Verdict),
+    Show::new("natural_map", Kind::Digits(2)),
+    Show::new("iterations", Kind::Number),
+    Show::new("tangent_factorisations", Kind::Number).titled("dense factorisations"),
+    Show::new("points", Kind::Number),
+    Show::new("solve_s", Kind::Digits(3)),
+];
+
+/// The section.
+pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageError> {
+    if !folder.named("comparison.csv").is_empty() {
+        return Ok(None);
+    }
+    let mut blocks = tables(folder, "runs.csv", "Runs, every increment", &RUNS)?;
+    for block in &mut blocks {
+        if let Block::Table(grid) = block {
+            hide_times(grid);
+            if grid.rows.len() > ROWS {
+                grid.title = format!("Runs, the first {ROWS} of {} increments", grid.rows.len());
+                grid.rows.truncate(ROWS);
+            }
+        }
+    }
+    Ok(made("runs", "Runs", "", blocks))
+}
+
+/// A time is shown beside right answers only.
+fn hide_times(grid: &mut crate::report::page::Grid) {
+    let place = |name: &str| RUNS.iter().position(|show| show.column == name);
+    let (Some(verdict), Some(time)) = (place("verdict"), place("solve_s")) else {
+        return;
+    };
+    for row in &mut grid.rows {
+        if !crate::report::standard::solved(&row[verdict]) {
+            row[time] = "NaN".into();
+        }
+    }
+}

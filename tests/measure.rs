@@ -1,0 +1,209 @@
+//! One cell, measured: a liar is found out and gets no time, a method with a memory is caught, errors are what they say.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use stickslip::harness::run::{Choice, friction_values};
+use stickslip::harness::shipped;
+use stickslip::report::{Provenance, sweep};
+use stickslip::sweep::Bench;
+use stickslip::sweep::cell::{Cell, digest};
+use stickslip::sweep::measure::{Repeats, measure};
+use stickslip::sweep::record::Record;
+use stickslip_methods::{
+    ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Silent,
+    Status,
+};
+
+const REPEATS: Repeats = Repeats {
+    least: 7,
+    most: 7,
+    seconds: 0.0,
+    patience_s: 60.0,
+};
+
+fn cell(case: &str, friction: usize, method: &str, tolerance: f64) -> (Cell, String) {
+    let case = shipped::find(case).unwrap().unwrap();
+    let cell = Cell {
+        case: case.name.clone(),
+        digest: digest(&case.source),
+        refine: 1,
+        space: None,
+        friction: friction_values(&case)[friction].clone(),
+        method: method.into(),
+        tolerance,
+    };
+    (cell, case.source)
+}
+
+fn measured(bench: &mut Bench, case: &str, method: &str, tolerance: f64) -> Record {
+    let (cell, text) = cell(case, 0, method, tolerance);
+    let choice = Choice::parse(method).unwrap();
+    measure(bench, &cell, &text, &choice, REPEATS).unwrap()
+}
+
+/// A method that runs another one and spoils its answer.
+struct Spoiled {
+    inner: Box<dyn Enforcement>,
+    spoil: fn(&mut Outcome),
+}
+
+impl Enforcement for Spoiled {
+    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
+        self.inner.prepare(system)
+    }
+
+    fn solve(
+        &mut self,
+        increment: &Increment<'_>,
+        _monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError> {
+        let mut outcome = self.inner.solve(increment, &mut Silent)?;
+        (self.spoil)(&mut outcome);
+        Ok(outcome)
+    }
+}
+
+fn hybrid() -> Result<Box<dyn Enforcement>, MethodError> {
+    let method = stickslip_methods::method("hybrid").unwrap();
+    (method.build)(&Options::new(method.options, &[]).unwrap())
+}
+
+const fn spoiled(
+    name: &'static str,
+    build: fn(&Options) -> Result<Box<dyn Enforcement>, MethodError>,
+) -> Method {
+    Method {
+        name,
+        label: name,
+        reference: "",
+        summary: "",
+        exact: true,
+        options: &[],
+        source: "",
+        build,
+    }
+}
+
+/// Claims to have converged with a thousandth more contact force than equilibrium asks for.
+static LIAR: Method = spoiled("liar", |_| {
+    Ok(Box::new(Spoiled {
+        inner: hybrid()?,
+        spoil: |outcome| {
+            outcome.status = Status::Converged;
+            outcome.state.p.iter_mut().for_each(|p| *p *= 1.001);
+        },
+    }))
+});
+
+/// Answers a little differently from the second time on: within the tolerance, but not the same bits.
+static FORGETFUL: Method = spoiled("forgetful", |_| {
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+    Ok(Box::new(Spoiled {
+        inner: hybrid()?,
+        spoil: |outcome| {
+            let calls = CALLS.fetch_add(1, Ordering::SeqCst);
+            outcome.state.p[0] *= 1.0 + 1e-15 * calls as f64;
+        },
+    }))
+});
+
+#[test]
+fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
+    let mut bench = Bench::default();
+    let choice = Choice::new(&LIAR, &[]).unwrap();
+    let (cell, text) = cell("plate_mesh1", 0, "liar", 1e-3);
+    let mut lie = measure(&mut bench, &cell, &text, &choice, REPEATS).unwrap();
+    assert_eq!(lie.found.verdict, "false-claim");
+    assert_eq!(lie.found.increments[0].verdict, "false-claim");
+    assert_eq!((&lie.spent, &lie.found.solver_error), (&None, &None));
+    assert!(lie.found.deviations.is_empty() && lie.found.values.is_empty());
+
+    // Even where a record had a time, nothing made from it shows one.
+    let truth = measured(&mut bench, "plate_mesh1", "hybrid", 1e-3);
+    assert_eq!(truth.found.verdict, "solved");
+    lie.spent.clone_from(&truth.spent);
+    lie.spent.as_mut().unwrap().solve.median_s = 0.123_456_7;
+    lie.spent.as_mut().unwrap().setup_s = 0.765_432_1;
+    let bundle = sweep::bundle(&[lie, truth], 2, &Provenance::collect(1)).unwrap();
+    let mut seen = 0;
+    for path in bundle.paths() {
+        let text = String::from_utf8_lossy(bundle.get(path).unwrap()).into_owned();
+        assert!(
+            !text.contains("0.1234567") && !text.contains("0.1235"),
+            "{path}"
+        );
+        assert!(
+            !text.contains("0.7654321") && !text.contains("0.7654"),
+            "{path}"
+        );
+        seen += usize::from(text.contains("false-claim"));
+    }
+    assert!(seen >= 2, "the verdict itself must be shown");
+    let times = String::from_utf8(bundle.get("times.csv").unwrap().to_vec()).unwrap();
+    assert!(
+        times.contains("hybrid") && !times.contains("liar"),
+        "{times}"
+    );
+}
+
+#[test]
+fn a_method_that_answers_differently_when_asked_again_is_caught() {
+    let choice = Choice::new(&FORGETFUL, &[]).unwrap();
+    let (cell, text) = cell("plate_mesh1", 0, "forgetful", 1e-6);
+    let record = measure(&mut Bench::default(), &cell, &text, &choice, REPEATS).unwrap();
+    assert!(
+        record.found.verdict.starts_with("crashed: "),
+        "{}",
+        record.found.verdict
+    );
+    assert!(record.found.verdict.contains("other bits"));
+    assert_eq!(record.spent, None);
+}
+
+/// Goal: ‖u − u*‖_K = ‖P − P*‖_W, so the energy error of a penalty falls like 1/k, as its forces do (Kikuchi & Oden 1988);
+/// a method asked for more digits is closer to the converged solution.
+#[test]
+fn solver_errors_follow_penalty_and_tolerance() {
+    let mut bench = Bench::default();
+    let error = |bench: &mut Bench, method: &str, tolerance: f64| {
+        let record = measured(bench, "plate_mesh1", method, tolerance);
+        let error = record.found.solver_error.unwrap();
+        assert!(error.reference_natural_map <= 1e-12, "{method}");
+        error
+    };
+    let soft = error(&mut bench, "penalty:normal=1e3,tangential=1e3", 1e-9);
+    let hard = error(&mut bench, "penalty:normal=1e4,tangential=1e4", 1e-9);
+    for ratio in [
+        soft.energy / hard.energy,
+        soft.force / hard.force,
+        soft.jump / hard.jump,
+    ] {
+        assert!((9.0..11.0).contains(&ratio), "{ratio}");
+    }
+    let [rough, fine] = [1e-3, 1e-9].map(|tolerance| error(&mut bench, "latin", tolerance));
+    // The natural map is relative to the size of the problem; its condition number is far below a thousand.
+    assert!((1e-7..1e-2).contains(&rough.energy), "{}", rough.energy);
+    assert!(
+        fine.energy < 1e-5 * rough.energy,
+        "{} {}",
+        fine.energy,
+        rough.energy
+    );
+    let same = error(&mut bench, "hybrid", 1e-12);
+    assert_eq!((same.energy, same.force, same.jump), (0.0, 0.0, 0.0));
+}
+
+#[test]
+fn what_was_found_is_the_same_whoever_was_measured_before() {
+    let mut bench = Bench::default();
+    measured(&mut bench, "cyclic", "nitsche", 1e-6);
+    measured(&mut bench, "plate_mesh1", "nsgs", 1e-3);
+    let after = measured(&mut bench, "cyclic", "b-newton", 1e-6);
+    let alone = measured(&mut Bench::default(), "cyclic", "b-newton", 1e-6);
+    assert_eq!(after.found, alone.found);
+    assert_eq!(after.found.increments.len(), 16);
+    assert!(after.found.sum(|i| i.state_changes) > 0);
+    let spent = after.spent.unwrap();
+    assert_eq!((spent.solve.samples, spent.prepare.samples), (7, 7));
+    assert!(spent.solve.min_s > 0.0 && spent.solve.median_s >= spent.solve.min_s);
+}
