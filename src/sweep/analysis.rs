@@ -77,6 +77,26 @@ pub fn method_time(spent: &Spent) -> Timing {
     }
 }
 
+/// Setup, assembly of K and its factorisation for a cell with times [s]: the least of all cells that build the same body on
+/// the same machine. Each is measured once, and a cold start has nothing to do with the method.
+pub fn body_times(record: &Record, records: &[Record]) -> Option<[f64; 3]> {
+    let of = |r: &Record| {
+        published_times(r).map(|spent| [spent.setup_s, spent.assembly_s, spent.factorisation_s])
+    };
+    let alike = |other: &&Record| {
+        let (a, b) = (&record.cell, &other.cell);
+        (&a.case, &a.digest, a.refine, &a.space) == (&b.case, &b.digest, b.refine, &b.space)
+            && a.friction == b.friction
+            && record.origin.machine == other.origin.machine
+            && record.origin.profile == other.origin.profile
+    };
+    let own = of(record)?;
+    let all = records.iter().filter(alike).filter_map(of);
+    Some(all.fold(own, |least, other| {
+        std::array::from_fn(|k| least[k].min(other[k]))
+    }))
+}
+
 /// Honest verdicts.
 enum Grade {
     Solved,
@@ -247,6 +267,27 @@ mod tests {
         // See `timed`: prepare 10 %, solve 90 % of the time, intervals of ±10 %.
         assert!((time.median_s - 2.0).abs() < 1e-12);
         assert!((time.low_s - 1.8).abs() < 1e-12 && (time.high_s - 2.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cold_start_is_not_that_of_a_method() {
+        let cold = |method: &str, setup_s: f64, machine: &str| {
+            let mut cell = timed(record("plate", method, 1e-6), 1.0);
+            cell.spent.as_mut().unwrap().setup_s = setup_s;
+            cell.origin.machine = machine.into();
+            cell
+        };
+        let records = [
+            cold("latin", 0.5, "one"),
+            cold("pdas", 0.2, "one"),
+            cold("nsgs", 0.1, "two"),
+        ];
+        let mut liar = records[1].clone();
+        liar.found.verdict = "false-claim".into();
+        let setup = |records: &[Record]| body_times(&records[0], records).map(|t| t[0]);
+        assert_eq!(setup(&records), Some(0.2));
+        assert_eq!(setup(&[records[0].clone(), liar.clone()]), Some(0.5));
+        assert_eq!(body_times(&liar, &records), None);
     }
 
     #[test]

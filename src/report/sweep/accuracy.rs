@@ -80,6 +80,8 @@ impl Row for AccuracyRow<'_> {
 }
 
 fn figure(one: &Refinement, caveat: &str) -> MethodPanels {
+    // Against its own finest mesh a sequence says nothing.
+    let first = one.orders.iter().find(|row| row.kind != Kind::Finest);
     let mut methods: Vec<&str> = Vec::new();
     for row in &one.errors {
         if !methods.contains(&row.variant.method.as_str()) {
@@ -92,11 +94,11 @@ fn figure(one: &Refinement, caveat: &str) -> MethodPanels {
             .errors
             .iter()
             .filter(|row| row.variant.method == *method && row.error >= ROUND_OFF)
+            .filter(|row| row.kind != Some(Kind::Finest))
             .map(|row| [row.seconds.total(), row.error])
             .collect(),
         whiskers: Vec::new(),
     };
-    let first = one.orders.first();
     let observed = first.map_or(f64::NAN, |row| row.order);
     let off = |order: &f64| (order - observed).abs();
     let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
@@ -111,8 +113,7 @@ fn figure(one: &Refinement, caveat: &str) -> MethodPanels {
     });
     let against = match first.map(|row| row.kind) {
         Some(Kind::Exact) => "against the closed form",
-        Some(Kind::Richardson) => "against the extrapolated limit",
-        _ => "against the finest mesh",
+        _ => "against the extrapolated limit",
     };
     let space = first.map_or("", |row| row.variant.space.as_str());
     let friction = one.coarsest.friction.first().copied().unwrap_or(0.0);

@@ -186,11 +186,12 @@ fn duel_figure(duels: &[Duel<'_>], problems: usize, tier: Tier, caveat: &str) ->
         curves: [&duel.first, &duel.second].map(curve).into(),
         guides: Vec::new(),
     };
+    let ever_right = |duel: &&Duel<'_>| duel.second.steps.iter().any(|step| step[1] > 0.0);
     let best = duels.first().map_or("", |duel| duel.first.method);
     MethodPanels {
         title: format!("Performance profiles of two methods, tier {tier}"),
         caption: format!(
-            "{}, {problems} problems{caveat}\n{best} (least shifted geometric mean) against each other method alone",
+            "{}, {problems} problems{caveat}\n{best} (least shifted geometric mean) against each other method alone that is ever right",
             tier_heading(tier)
         ),
         y_label: "fraction [-]".into(),
@@ -198,6 +199,6 @@ fn duel_figure(duels: &[Duel<'_>], problems: usize, tier: Tier, caveat: &str) ->
         every_point: false,
         columns: 5,
         height: 26.0,
-        panels: duels.iter().map(panel).collect(),
+        panels: duels.iter().filter(ever_right).map(panel).collect(),
     }
 }

@@ -47,8 +47,8 @@ impl Row for Recommendation {
         "problems",
         "timed",
         "fastest",
-        "wins",
-        "ties",
+        "among",
+        "alone",
         "evidence",
         "confidence",
         "reliable",
@@ -63,8 +63,10 @@ impl Row for Recommendation {
         let mut cells = vec![self.tier.to_string()];
         cells.extend(class_cells(self));
         cells.extend([self.problems, self.timed].map(|n| n.to_string()));
-        cells.push(self.fastest.join("; "));
-        cells.extend([self.wins, self.ties].map(|n| n.to_string()));
+        cells.push(names(self).join("; "));
+        let first = self.fastest.first();
+        let counts = first.map_or([0, 0], |first| [first.among, first.alone]);
+        cells.extend(counts.map(|n| n.to_string()));
         cells.push(self.evidence());
         cells.push(self.confidence.to_string());
         cells.push(self.reliable.join("; "));
@@ -79,11 +81,16 @@ impl Row for Recommendation {
     }
 }
 
+/// The fastest methods.
+fn names(row: &Recommendation) -> Vec<&str> {
+    row.fastest.iter().map(|f| f.method.as_str()).collect()
+}
+
 fn table(rows: &[Recommendation], caveat: &str) -> Result<Table, ReportError> {
     let column = |name: &str| Column::new(name, "", Align::Left);
     let mut table = Table::new(
         format!(
-            "Fastest methods among the most reliable; all of them are named that none is faster than beyond the intervals{caveat}"
+            "Fastest methods among those that are right most often: none is faster than the named ones beyond the intervals, first who is among the fastest on most problems{caveat}"
         ),
         vec![
             column("tier"),
@@ -109,7 +116,7 @@ fn table(rows: &[Recommendation], caveat: &str) -> Result<Table, ReportError> {
         };
         cells.extend([
             row.problems.to_string(),
-            row.fastest.join(", "),
+            names(row).join(", "),
             row.evidence(),
             row.confidence.to_string(),
             reliable,

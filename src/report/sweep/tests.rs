@@ -310,6 +310,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
     let section = page.split("\n## ").find(|part| part.starts_with("Study\n"));
     let parts = section.unwrap().split("\n### `").skip(1);
     let columns = |part: &str| -> Vec<String> {
+        let part = part.split("\n### ").next().unwrap();
         let rows = part.lines().filter_map(|line| line.strip_prefix("| `"));
         rows.map(|row| row.split('`').next().unwrap().to_owned())
             .collect()

@@ -9,7 +9,8 @@ use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::sweep::analysis::{
-    common_tolerance, compare_methods, compare_problems, has_defaults, method_time, published_times,
+    body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
+    published_times,
 };
 use crate::sweep::cell::Problem;
 use crate::sweep::record::{Record, Spent};
@@ -151,7 +152,7 @@ fn without_mesh(problem: &Problem) -> Problem {
     }
 }
 
-/// A figure per case, contact space and friction: a bar per mesh by the fastest right method, then a bar per method on the
+/// A figure per case, contact space and friction on several meshes: a bar per mesh by the fastest right method, then a bar per method on the
 /// finest mesh, all at the finest tolerance at which something was solved on every mesh.
 fn add_figures(
     bundle: &mut Bundle,
@@ -169,6 +170,11 @@ fn add_figures(
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
+        if group.first().map(|row| row.record.cell.refine)
+            == group.last().map(|row| row.record.cell.refine)
+        {
+            continue;
+        }
         let on_mesh = |rows: &[&TimeRow]| rows.iter().map(|r| r.record.cell.tolerance).collect();
         let meshes = group.chunk_by(|a, b| a.record.cell.refine == b.record.cell.refine);
         let tolerance = common_tolerance(&meshes.map(on_mesh).collect::<Vec<_>>());
@@ -199,7 +205,7 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
         let best = rows.iter().min_by(|a, b| own(a).total_cmp(&own(b)))?;
         let mesh = best.record.found.problem.as_ref().map(|p| p.mesh.as_str());
         let label = format!("{}, {}", mesh.unwrap_or("?"), best.record.found.method);
-        Some(bar(best, label))
+        Some(bar(best, label, study))
     });
     let mut groups = vec![(
         "each mesh, least median of all methods".to_owned(),
@@ -208,7 +214,7 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
     if let Some(finest) = meshes.last() {
         let bars = finest
             .iter()
-            .map(|row| bar(row, row.record.found.method.clone()));
+            .map(|row| bar(row, row.record.found.method.clone(), study));
         groups.push(("finest mesh, each method".to_owned(), bars.collect()));
     }
     let space = group[0].record.found.problem.as_ref();
@@ -229,10 +235,14 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
     }
 }
 
-fn bar(row: &TimeRow<'_>, label: String) -> Bar {
+fn bar(row: &TimeRow<'_>, label: String, study: &Study<'_>) -> Bar {
+    let mut values = row.stages();
+    if let Some(body) = body_times(row.record, study.records) {
+        values[..3].copy_from_slice(&body);
+    }
     Bar {
         label,
-        values: row.stages().into(),
-        note: format!("{} s", significant(row.total(), 3)),
+        values: values.into(),
+        note: format!("{} s", significant(values.iter().sum(), 3)),
     }
 }

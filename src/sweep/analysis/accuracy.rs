@@ -6,7 +6,7 @@
 //! modelling error of the others would hide that of the mesh.
 
 use super::{
-    common_tolerance, compare_methods, compare_problems, has_defaults, is_honest, method_time,
+    body_times, common_tolerance, compare_methods, compare_problems, has_defaults, is_honest,
     problems, published_times,
 };
 use crate::harness::converge::orders::{self, ErrorRow, OrderRow};
@@ -63,7 +63,8 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
     finest.sort_by(|a, b| {
         compare_methods(&a.cell.method, &b.cell.method).then(a.cell.refine.cmp(&b.cell.refine))
     });
-    let samples: Vec<Sample> = finest.iter().filter_map(|record| sample(record)).collect();
+    let samples = finest.iter().filter_map(|record| sample(record, records));
+    let samples: Vec<Sample> = samples.collect();
     let (errors, orders) = orders::rows(&samples);
     Some(Refinement {
         coarsest: meshes.first()?.clone(),
@@ -73,7 +74,7 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
     })
 }
 
-fn sample(record: &Record) -> Option<Sample> {
+fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
     let found = &record.found;
     let ProblemSize {
         mesh,
@@ -101,7 +102,7 @@ fn sample(record: &Record) -> Option<Sample> {
         dofs,
         points,
         verdict: Verdict::Solved,
-        seconds: seconds(record),
+        seconds: seconds(record, records),
         measured: measured(record)?,
     })
 }
@@ -129,19 +130,20 @@ fn measured(record: &Record) -> Option<Measured> {
     }]))
 }
 
-/// Times of a cell, NaN where they may not be shown.
-pub fn seconds(record: &Record) -> Seconds {
-    published_times(record).map_or(Seconds::NONE, |spent| {
-        let own = method_time(spent).median_s;
-        Seconds {
-            setup: spent.setup_s,
-            assembly: spent.assembly_s,
-            factorisation: spent.factorisation_s,
+/// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
+fn seconds(record: &Record, records: &[Record]) -> Seconds {
+    let times = body_times(record, records).zip(published_times(record));
+    times.map_or(
+        Seconds::NONE,
+        |([setup, assembly, factorisation], spent)| Seconds {
+            setup,
+            assembly,
+            factorisation,
             condensation: spent.condensation_s,
-            prepare: own - spent.solve.median_s,
+            prepare: spent.prepare.median_s,
             solve: spent.solve.median_s,
-        }
-    })
+        },
+    )
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@
 //!
 //! The shift δ keeps problems that every method solves at once from ruling the mean: it is the power of ten at or below the
 //! median over the problems of the least right cost. A problem without right answer of the method enters with ten times the
-//! largest right cost of any method on it (penalised average, PAR10); one that no method solves is left out. The ends of the
-//! interval are the means of the ends.
+//! largest right cost of any method on it (penalised average, PAR10); one that no method solves is left out, and so is a
+//! method without any right answer. The ends of the interval are the means of the ends.
 //!
 //! A method has all ranks from 1 + (number of methods whose interval lies below its own) to (number of methods) − (number
 //! whose interval lies above): methods whose intervals overlap always share a rank, none is put before the other.
@@ -73,6 +73,7 @@ pub fn ranking<'a>(costs: &Costs<'a>) -> Option<Ranking<'a>> {
         }
     };
     let mut standings: Vec<Standing> = costs.methods.iter().enumerate().map(standing).collect();
+    standings.retain(|standing| standing.correct > 0);
     let means: Vec<Cost> = standings.iter().map(|s| s.mean).collect();
     for standing in &mut standings {
         let below = means.iter().filter(|m| m.is_below(&standing.mean)).count();
@@ -177,6 +178,16 @@ mod tests {
             (ranked[1].1 - (105f64.sqrt() - 1.0)).abs() < 1e-12,
             "{ranked:?}"
         );
+    }
+
+    #[test]
+    fn who_is_never_right_is_not_ranked() {
+        let mut records = one_problem(&[("b-newton", 1.0)]);
+        records.push(lying("false-claim"));
+        records[1].cell.case = "a".into();
+        let ranked = ranked(&records);
+        assert_eq!(ranked.len(), 1);
+        assert_eq!((ranked[0].0.as_str(), ranked[0].2), ("b-newton", [1, 1]));
     }
 
     #[test]

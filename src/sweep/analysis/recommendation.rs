@@ -2,9 +2,10 @@
 //!
 //! Problems are sorted into classes by what a user knows beforehand: dimension, friction, one increment or a path, size. In a
 //! class, only methods that are right as often as any other may be the fastest; of these, all are named that none is faster
-//! than beyond the intervals of the [shifted geometric means](super::ranking).
+//! than beyond the intervals of the [shifted geometric means](super::ranking), first the one that is among the fastest of all
+//! methods on most problems (of equals in the order of the registry).
 //!
-//! Confidence comes from the problems on which no method at all is faster than the named ones beyond the intervals, k of n:
+//! Confidence comes from the problems on which no method at all is faster than the first beyond the intervals, k of n:
 //! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n is at least 3, `open` otherwise.
 
 use std::fmt;
@@ -12,10 +13,10 @@ use std::fmt;
 use stickslip_methods::Tier;
 
 use super::costs::{Costs, Measure};
-use super::is_correct;
 use super::proportion::wilson;
 use super::ranking::ranking;
 use super::test_set::TestSet;
+use super::{compare_methods, is_correct};
 use crate::sweep::cell::Problem;
 use crate::sweep::record::Record;
 
@@ -170,6 +171,17 @@ impl fmt::Display for Confidence {
     }
 }
 
+/// A method that none is faster than in the mean, and the problems on which none is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fastest {
+    /// Method.
+    pub method: String,
+    /// Problems on which no method is faster beyond the intervals.
+    pub among: usize,
+    /// Of these, problems on which it is faster than all others.
+    pub alone: usize,
+}
+
 /// What to use in a class of problems at a tier.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
@@ -181,13 +193,10 @@ pub struct Recommendation {
     pub problems: usize,
     /// How many of them have times that can be compared.
     pub timed: usize,
-    /// Fastest methods among the most reliable, none faster than another beyond the intervals; empty without times.
-    pub fastest: Vec<String>,
-    /// Problems on which only they are among the fastest of all methods.
-    pub wins: usize,
-    /// Problems on which others are among the fastest as well.
-    pub ties: usize,
-    /// How sure that is.
+    /// Fastest methods among the most reliable, none faster than another in the mean; first who is among the fastest on
+    /// most problems. Empty without times.
+    pub fastest: Vec<Fastest>,
+    /// How sure the first is.
     pub confidence: Confidence,
     /// Methods with the highest rate of right answers.
     pub reliable: Vec<String>,
@@ -203,24 +212,25 @@ impl Recommendation {
 
     /// What the confidence stands on, in words.
     pub fn evidence(&self) -> String {
-        if self.fastest.is_empty() {
+        let Some(first) = self.fastest.first() else {
             return "no times".into();
-        }
-        let Self {
-            wins, ties, timed, ..
-        } = self;
-        let lost = timed - wins - ties;
-        let who = if self.fastest.len() > 1 {
-            "one of them fastest"
-        } else {
-            "fastest"
         };
-        let mut words = format!("{who} on {wins} of {timed}");
-        if *ties > 0 {
-            words += &format!(", tied on {ties}");
+        let Fastest { among, alone, .. } = first;
+        let equal = |f: &&Fastest| f.among == *among;
+        let (top, others): (Vec<&Fastest>, Vec<&Fastest>) = self.fastest.iter().partition(equal);
+        let names: Vec<&str> = top.iter().map(|f| f.method.as_str()).collect();
+        let who = match names.len() {
+            1..=3 => names.join(", "),
+            count => format!("{count} methods"),
+        };
+        let mut words = format!("{who} among the fastest on {among} of {}", self.timed);
+        if names.len() > 1 {
+            words += " each";
+        } else if *alone > 0 {
+            words += &format!(", alone on {alone}");
         }
-        if lost > 0 {
-            words += &format!(", beaten on {lost}");
+        for other in others.iter().take(2) {
+            words += &format!("; {} on {}", other.method, other.among);
         }
         words
     }
@@ -269,21 +279,27 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
     let name = |m: &usize| set.methods[*m].to_owned();
     let ranking = ranking(&costs.of_methods(&reliable));
     let standings = ranking.map_or_else(Vec::new, |ranking| ranking.standings);
+    let cheapest: Vec<Vec<usize>> = (0..costs.problems()).map(|p| costs.cheapest(p)).collect();
     let first = standings.iter().filter(|standing| standing.rank[0] == 1);
-    let fastest: Vec<&str> = first.map(|standing| standing.method).collect();
-    let (mut wins, mut ties) = (0, 0);
-    for problem in 0..costs.problems() {
-        let cheapest = costs.cheapest(problem);
-        let named = |m: &&usize| fastest.contains(&costs.methods[**m]);
-        match cheapest.iter().filter(named).count() {
-            0 => {}
-            count if count == cheapest.len() => wins += 1,
-            _ => ties += 1,
-        }
-    }
+    let mut fastest: Vec<Fastest> = first
+        .map(|standing| {
+            let own = |m: &usize| costs.methods[*m] == standing.method;
+            let among = cheapest.iter().filter(|all| all.iter().any(own));
+            Fastest {
+                method: standing.method.to_owned(),
+                among: among.clone().count(),
+                alone: among.filter(|all| all.len() == 1).count(),
+            }
+        })
+        .collect();
+    fastest.sort_by(|a, b| {
+        (b.among, b.alone)
+            .cmp(&(a.among, a.alone))
+            .then_with(|| compare_methods(&a.method, &b.method))
+    });
     let timed = costs.problems() - costs.unsolved();
-    let confidence = match wilson(wins + ties, timed) {
-        _ if fastest.is_empty() => Confidence::Open,
+    let among = fastest.first().map_or(0, |first| first.among);
+    let confidence = match wilson(among, timed) {
         [_, low, _] if low > 0.5 => Confidence::Sure,
         [rate, ..] if rate > 0.5 && timed >= FEWEST => Confidence::Likely,
         _ => Confidence::Open,
@@ -293,9 +309,7 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
         tier: set.tier,
         problems: set.problems.len(),
         timed,
-        fastest: fastest.into_iter().map(str::to_owned).collect(),
-        wins,
-        ties,
+        fastest,
         confidence,
         reliable: reliable.iter().map(name).collect(),
         correct,
@@ -324,6 +338,10 @@ mod tests {
         all
     }
 
+    fn names(found: &Recommendation) -> Vec<&str> {
+        found.fastest.iter().map(|f| f.method.as_str()).collect()
+    }
+
     fn overall(records: &[Record]) -> Recommendation {
         let all = recommendations(records);
         all.into_iter().find(|r| r.class == Class::ALL).unwrap()
@@ -332,13 +350,14 @@ mod tests {
     #[test]
     fn an_unreliable_method_is_never_recommended() {
         let found = overall(&records(6, 1));
-        assert_eq!(found.fastest, ["b-newton"]);
+        assert_eq!(names(&found), ["b-newton"]);
         assert_eq!(found.reliable, ["b-newton", "latin"]);
-        assert_eq!((found.wins, found.ties, found.correct), (1, 0, 6));
-        assert_eq!(found.confidence, Confidence::Open);
-        assert_eq!(found.evidence(), "fastest on 1 of 6, beaten on 5");
+        assert_eq!((found.confidence, found.correct), (Confidence::Open, 6));
+        let evidence = "b-newton among the fastest on 1 of 6, alone on 1";
+        assert_eq!(found.evidence(), evidence);
         let found = overall(&records(6, 0));
-        assert_eq!((found.fastest, found.wins), (vec!["pdas".to_owned()], 6));
+        assert_eq!(names(&found), ["pdas"]);
+        assert_eq!((found.fastest[0].among, found.fastest[0].alone), (6, 6));
     }
 
     /// Source: Wilson's interval of 3 of 3 begins at 0.44, of 4 of 4 at 0.51.
@@ -356,8 +375,16 @@ mod tests {
             *record = timed(record.clone(), 1.1);
         }
         let found = overall(&records);
-        assert_eq!(found.fastest, ["pdas", "b-newton"]);
-        assert_eq!(found.evidence(), "one of them fastest on 5 of 5");
+        let evidence = "b-newton, pdas among the fastest on 5 of 5 each";
+        assert_eq!(found.evidence(), evidence);
+        // One problem on which only one of them is: it comes first.
+        let slow = records.iter_mut().find(|r| r.cell.method == "b-newton");
+        let slow = slow.unwrap();
+        *slow = timed(slow.clone(), 1.3);
+        let found = overall(&records);
+        assert_eq!(names(&found), ["pdas", "b-newton"]);
+        let evidence = "pdas among the fastest on 5 of 5, alone on 1; b-newton on 4";
+        assert_eq!(found.evidence(), evidence);
     }
 
     #[test]

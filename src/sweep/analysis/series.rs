@@ -18,7 +18,7 @@ use crate::sweep::statistics::Timing;
 pub enum Swept {
     /// The tolerance asked for.
     Tolerance,
-    /// The first of these options, all of which change.
+    /// An option, and those that follow from its value.
     Options(String),
 }
 
@@ -48,7 +48,7 @@ pub struct Point<'a> {
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series<'a> {
-    /// Method; of a curve along options these in brackets, with the values of those that stay.
+    /// Method; of a curve along options these in brackets, then others that are not the default.
     pub label: String,
     /// Whether its limit are the contact laws.
     pub exact: bool,
@@ -59,8 +59,8 @@ pub struct Series<'a> {
 }
 
 /// The curves of one problem, in the order of the methods. A method with laws of its own has a curve along the tolerance with
-/// its defaults, and one along each set of options that was changed, at the finest tolerance; options that are the same all
-/// along stand in the label, and the defaults have a point on the curve where they agree with these.
+/// its defaults, and curves along the option that takes most values, at the finest tolerance: options that follow from its
+/// value change with it, others tell curves apart.
 pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
     let mut by_method: BTreeMap<&str, Vec<Point<'a>>> = BTreeMap::new();
     for record in records.iter().filter(|r| r.cell.problem() == *problem) {
@@ -73,7 +73,7 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
         points.sort_by(|a, b| b.value.total_cmp(&a.value));
     }
     let mut all: Vec<Series> = Vec::new();
-    let mut along_options: BTreeMap<(&str, String), Vec<Choice<'a>>> = BTreeMap::new();
+    let mut approximate: BTreeMap<&str, Vec<Choice<'a>>> = BTreeMap::new();
     for (method, points) in &by_method {
         let Some(first) = points.first().map(|p| p.record) else {
             continue;
@@ -87,74 +87,75 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
                 points: points.clone(),
             });
         }
-        let changed = options(method);
-        if let (false, false, Some(finest)) = (exact, changed.is_empty(), points.last()) {
-            let names: Vec<&str> = changed.iter().map(|(name, _)| *name).collect();
-            let key = (method_name(&first.cell), names.join(","));
-            let group = along_options.entry(key).or_default();
-            group.push((changed, finest.clone()));
+        if let (false, Some(finest)) = (exact, points.last()) {
+            let group = approximate.entry(method_name(&first.cell)).or_default();
+            group.push((options(method), finest.clone()));
         }
     }
-    for ((method, _), group) in along_options {
-        let finest = by_method.get(method).and_then(|points| points.last());
-        all.extend(along(method, group, finest));
+    for (method, group) in &approximate {
+        all.extend(along_options(method, group));
     }
     all.sort_by(|a, b| compare_methods(&a.label, &b.label));
     all
 }
 
-/// Options and the cell that has them.
-type Choice<'a> = (Vec<(&'a str, f64)>, Point<'a>);
+/// All options with their values, and the cell that has them.
+type Choice<'a> = (Vec<(String, f64)>, Point<'a>);
 
-/// The curve of cells with the same options in other values.
-fn along<'a>(
-    method: &str,
-    mut group: Vec<Choice<'a>>,
-    defaults: Option<&Point<'a>>,
-) -> Option<Series<'a>> {
-    let first = group.first()?.0.clone();
-    let varies = |k: &usize| {
-        group
-            .iter()
-            .any(|(options, _)| options[*k].1 != first[*k].1)
+/// The curves of one method with laws of its own, given by cells with different options; none where all are the same.
+fn along_options<'a>(method: &str, cells: &[Choice<'a>]) -> Vec<Series<'a>> {
+    let value = |cell: &Choice<'a>, name: &str| {
+        let own = cell.0.iter().find(|(option, _)| option == name);
+        own.map(|(_, value)| *value)
     };
-    let mut varying: Vec<usize> = (0..first.len()).filter(varies).collect();
-    if varying.is_empty() {
-        varying = (0..first.len()).collect();
-    }
-    let stays = |k: usize| !varying.contains(&k);
-    let parts = first.iter().enumerate().map(|(k, (name, value))| {
-        if stays(k) {
-            format!("{name}={value:e}")
-        } else {
-            (*name).to_owned()
+    let values = |name: &str| {
+        let mut all: Vec<f64> = cells.iter().filter_map(|cell| value(cell, name)).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all.len()
+    };
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in cells.iter().flat_map(|(options, _)| options) {
+        if !names.contains(&name.as_str()) && values(name) > 1 {
+            names.push(name);
         }
-    });
-    let label = format!("{method}[{}]", parts.collect::<Vec<_>>().join(","));
-    let agrees = |k: usize| default(method, first[k].0) == Some(first[k].1);
-    if (0..first.len()).filter(|k| stays(*k)).all(agrees) {
-        let own: Option<Vec<(&str, f64)>> = first
-            .iter()
-            .map(|(name, _)| Some((*name, default(method, name)?)))
-            .collect();
-        group.extend(own.zip(defaults.cloned()));
     }
-    let along = *varying.first()?;
-    let mut points: Vec<Point> = group
-        .into_iter()
-        .map(|(options, point)| Point {
-            value: options[along].1,
-            ..point
+    // The first of those with most values.
+    let most = names.iter().map(|name| values(name)).max();
+    let Some(along) = names.iter().find(|n| Some(values(n)) == most).copied() else {
+        return Vec::new();
+    };
+    let follows = |name: &&str| {
+        cells.iter().all(|a| {
+            let alike = cells.iter().filter(|b| value(a, along) == value(b, along));
+            alike.into_iter().all(|b| value(a, name) == value(b, name))
         })
-        .collect();
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let names: Vec<&str> = varying.iter().map(|k| first[*k].0).collect();
-    Some(Series {
-        label,
-        exact: false,
-        swept: Swept::Options(names.join(",")),
-        points,
-    })
+    };
+    let (changing, apart): (Vec<&str>, Vec<&str>) = names.iter().partition(|n| follows(n));
+    let mut curves: BTreeMap<String, Vec<Point<'a>>> = BTreeMap::new();
+    for cell in cells {
+        let stays = apart.iter().filter_map(|name| {
+            let value = value(cell, name)?;
+            (default(method, name) != Some(value)).then(|| format!("{name}={value:e}"))
+        });
+        let parts = changing.iter().map(|name| (*name).to_owned()).chain(stays);
+        let label = format!("{method}[{}]", parts.collect::<Vec<_>>().join(","));
+        let point = Point {
+            value: value(cell, along).unwrap_or(f64::NAN),
+            ..cell.1.clone()
+        };
+        curves.entry(label).or_default().push(point);
+    }
+    let curve = |(label, mut points): (String, Vec<Point<'a>>)| {
+        points.sort_by(|a, b| a.value.total_cmp(&b.value));
+        Series {
+            label,
+            exact: false,
+            swept: Swept::Options(changing.join(",")),
+            points,
+        }
+    };
+    curves.into_iter().map(curve).collect()
 }
 
 fn point(record: &Record) -> Option<Point<'_>> {
@@ -167,13 +168,26 @@ fn point(record: &Record) -> Option<Point<'_>> {
     })
 }
 
-/// Options of a method as on the command line.
-fn options(method: &str) -> Vec<(&str, f64)> {
-    let list = method.split_once(':').map_or("", |(_, list)| list);
+/// Options of a method as on the command line, the rest as the registry has them.
+fn options(method: &str) -> Vec<(String, f64)> {
+    let (name, list) = method.split_once(':').unwrap_or((method, ""));
     let pairs = list.split(',').filter_map(|part| part.split_once('='));
-    pairs
+    let given: Vec<(&str, f64)> = pairs
         .filter_map(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)))
-        .collect()
+        .collect();
+    let known = METHODS.iter().find(|m| m.name == name);
+    let mut all: Vec<(String, f64)> = known
+        .map_or(&[][..], |m| m.options)
+        .iter()
+        .map(|spec| (spec.name.to_owned(), spec.default))
+        .collect();
+    for (name, value) in given {
+        match all.iter_mut().find(|(option, _)| option == name) {
+            Some((_, own)) => *own = value,
+            None => all.push((name.to_owned(), value)),
+        }
+    }
+    all
 }
 
 fn default(method: &str, option: &str) -> Option<f64> {
@@ -228,15 +242,15 @@ mod tests {
         );
     }
 
-    /// Goal: with θ = −1 the default of γ is another method: θ is 1 there.
+    /// Goal: γ takes most values, θ tells curves apart, and the default of γ is a point of each.
     #[test]
     fn an_option_that_stays_tells_curves_apart() {
         let of = |method: &str| timed(record("a", method, 1e-9), 1.0);
         let records = vec![
             of("nitsche"),
             of("nitsche:gamma=4"),
-            of("nitsche:theta=-1,gamma=16"),
-            of("nitsche:theta=-1,gamma=4"),
+            of("nitsche:gamma=16,theta=-1"),
+            of("nitsche:theta=-1"),
         ];
         let found = series(&records, &records[0].cell.problem());
         let lines: Vec<(&str, &str, Vec<f64>)> = found
@@ -250,8 +264,8 @@ mod tests {
             lines,
             [
                 ("nitsche", "tolerance", vec![1e-9]),
+                ("nitsche[gamma,theta=-1e0]", "gamma", vec![2.0, 16.0]),
                 ("nitsche[gamma]", "gamma", vec![2.0, 4.0]),
-                ("nitsche[theta=-1e0,gamma]", "gamma", vec![4.0, 16.0]),
             ]
         );
     }
