@@ -86,6 +86,36 @@ fn names(row: &Recommendation) -> Vec<&str> {
     row.fastest.iter().map(|f| f.method.as_str()).collect()
 }
 
+/// The first of some names, and how many more.
+fn some(names: &[&str]) -> String {
+    const SHOWN: usize = 3;
+    match names.len().saturating_sub(SHOWN) {
+        // Another name takes no more room than its number.
+        0 | 1 => names.join(", "),
+        more => format!("{} and {more} more", names[..SHOWN].join(", ")),
+    }
+}
+
+/// The class in a few words.
+fn class(row: &Recommendation) -> String {
+    let [dim, friction, loading, unknowns] = class_cells(row);
+    let dim = match dim.as_str() {
+        ANY => dim,
+        _ => format!("{dim}D"),
+    };
+    let unknowns = match unknowns.as_str() {
+        ANY => unknowns,
+        _ => format!("{unknowns} unknowns"),
+    };
+    let parts = [dim, friction, loading, unknowns];
+    let told: Vec<String> = parts.into_iter().filter(|part| part != ANY).collect();
+    if told.is_empty() {
+        "all".into()
+    } else {
+        told.join(", ")
+    }
+}
+
 fn table(rows: &[Recommendation], caveat: &str) -> Result<Table, ReportError> {
     let column = |name: &str| Column::new(name, "", Align::Left);
     let mut table = Table::new(
@@ -94,34 +124,32 @@ fn table(rows: &[Recommendation], caveat: &str) -> Result<Table, ReportError> {
         ),
         vec![
             column("tier"),
-            column("dimension"),
-            column("friction"),
-            column("loading"),
-            column("unknowns"),
-            Column::new("problems", "", Align::Right),
+            column("problems"),
+            Column::new("count", "", Align::Right),
             column("fastest"),
-            column("evidence"),
+            column("first among the fastest on"),
             column("confidence"),
-            column("most reliable"),
-            column("right"),
+            column("most often right"),
+            column("right on"),
         ],
     );
     for row in rows {
-        let mut cells = vec![row.tier.to_string()];
-        cells.extend(class_cells(row));
-        // A list of all methods would say less than their number.
-        let reliable = match row.reliable.len() {
-            0..=4 => row.reliable.join(", "),
-            count => format!("{count} methods"),
-        };
-        cells.extend([
+        let first = row.fastest.first();
+        let among = first.map_or_else(
+            || "no times".to_owned(),
+            |first| format!("{} of {}", first.among, row.timed),
+        );
+        let reliable: Vec<&str> = row.reliable.iter().map(String::as_str).collect();
+        let cells = vec![
+            row.tier.to_string(),
+            class(row),
             row.problems.to_string(),
-            names(row).join(", "),
-            row.evidence(),
+            some(&names(row)),
+            among,
             row.confidence.to_string(),
-            reliable,
+            some(&reliable),
             format!("{} of {}", row.correct, row.problems),
-        ]);
+        ];
         table.push(cells)?;
     }
     Ok(table)
