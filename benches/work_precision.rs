@@ -1,4 +1,8 @@
-//! Gathers what the benchmarks measured into `reports/bench/`: `timings.csv`, tables, provenance.
+//! Gathers what the benchmarks measured into `reports/bench/`, runs the study of run time against error into
+//! `reports/study/`, and shows all of `reports/` as one page, `reports/index.html`.
+//!
+//! The study is measured afresh every time; its records lie in `target/tmp/study`. It is left out where a filter asks for
+//! some benchmarks only.
 //!
 //! No benchmark itself, but a target like them, so that one `cargo bench` measures and reports; cargo runs targets by name.
 //! It succeeds with whatever results there are. Under `cargo test --benches` or with `--test` it does all the same on the
@@ -8,15 +12,22 @@ mod common;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Instant, SystemTime};
 
 use common::scene::Scene;
 use common::{
     ALL_METHODS, EXACT, PREPARE, PROBLEMS, Problem, SOLVE, STAGES, one_thread, runs_all_methods,
 };
-use stickslip::harness::run::Choice;
+use stickslip::harness::run::{Choice, Progress};
+use stickslip::report::page;
+use stickslip::report::sweep;
 use stickslip::report::timings::{self, BenchmarkName, Expected, Ignored, harvest, last_built};
 use stickslip::report::{Bundle, Provenance, prepare_output};
+use stickslip::sweep::conduct::{Conduct, Shard, conduct};
+use stickslip::sweep::plan::Plan;
+use stickslip::sweep::store::Store;
+use stickslip::sweep::worker::Limits;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -31,21 +42,138 @@ fn main() -> Result<(), Box<dyn Error>> {
         let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/bench");
         (&PROBLEMS[..], criterion_home(), reports)
     } else {
-        let out = scratch.path().join("reports");
+        let out = scratch.path().join("reports/bench");
         (&PROBLEMS[4..], scratch.path().join("criterion"), out)
     };
     prepare_output(&out)?;
 
     let mut bundle = Bundle::new();
     add_timings(&mut bundle, &home, problems)?;
-    // Further studies of the bench run add their files to the bundle here.
     let provenance = Provenance::collect(1).with_option("arguments", arguments.join(" "));
     provenance.add_to(&mut bundle)?;
     bundle.commit(&out)?;
     for path in bundle.paths() {
         println!("wrote {}", out.join(path).display());
     }
+    if full && filtered(&arguments) {
+        println!("no study: only some benchmarks are asked for");
+        return Ok(());
+    }
+    let reports = out.parent().unwrap_or(&out);
+    let (records, sweep) = if full {
+        let records = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study");
+        if records.exists() {
+            std::fs::remove_dir_all(&records)?;
+        }
+        (records, SWEEP)
+    } else {
+        (scratch.path().join("study"), SMALLEST)
+    };
+    study(sweep, &records, &reports.join("study"))?;
+    let bytes = page::write(reports)?;
+    println!(
+        "wrote {}, {bytes} bytes",
+        reports.join(page::FILE).display()
+    );
     Ok(())
+}
+
+/// The sweep of the study.
+const SWEEP: &str = include_str!("study.toml");
+
+/// A sweep that takes no time.
+const SMALLEST: &str = "
+title = \"A small study\"
+repeats = { least = 1, most = 1 }
+[[cells]]
+cases = [\"sliding_block_embedded\"]
+refine = [1]
+friction = [0.2]
+";
+
+/// Options of criterion that are followed by a value.
+const WITH_VALUE: [&str; 15] = [
+    "--save-baseline",
+    "--baseline",
+    "--baseline-lenient",
+    "--load-baseline",
+    "--sample-size",
+    "--warm-up-time",
+    "--measurement-time",
+    "--nresamples",
+    "--noise-threshold",
+    "--confidence-level",
+    "--significance-level",
+    "--profile-time",
+    "--color",
+    "--output-format",
+    "--format",
+];
+
+/// Whether an argument selects benchmarks.
+fn filtered(arguments: &[String]) -> bool {
+    let mut before = "";
+    for argument in arguments {
+        if !argument.starts_with('-') && !WITH_VALUE.contains(&before) {
+            return true;
+        }
+        before = argument;
+    }
+    false
+}
+
+/// Measures a sweep and writes its report.
+fn study(sweep: &str, records: &Path, out: &Path) -> Result<(), Box<dyn Error>> {
+    let plan = Plan::parse(Path::new("benches/study.toml"), sweep)?;
+    let store = Store::create(records, plan.contents())?;
+    let how = Conduct {
+        program: Path::new(env!("CARGO_BIN_EXE_stickslip")),
+        jobs: 1,
+        timed: true,
+        limits: Limits {
+            seconds: 60.0,
+            memory_mb: None,
+        },
+        shard: Shard::ALL,
+        redo: false,
+        stop: &AtomicBool::new(false),
+    };
+    println!(
+        "study: {} cells, records in {}",
+        plan.tasks.len(),
+        records.display()
+    );
+    let clock = Instant::now();
+    conduct(&plan.tasks, plan.repeats, &store, how, &Tenths::default())?;
+    println!("study: measured in {:.0} s", clock.elapsed().as_secs_f64());
+    let kept = store.records()?;
+    let provenance = Provenance::collect(1).with_option("sweep", plan.title.clone());
+    sweep::bundle(&kept, plan.tasks.len(), &provenance)?.commit(out)?;
+    println!("wrote {}", out.display());
+    Ok(())
+}
+
+/// A line per tenth of the cells.
+#[derive(Default)]
+struct Tenths {
+    planned: AtomicUsize,
+    done: AtomicUsize,
+}
+
+impl Progress for Tenths {
+    fn plan(&self, runs: usize) {
+        self.planned.store(runs, Ordering::Relaxed);
+    }
+
+    fn done(&self, label: &str) {
+        let (done, planned) = (
+            self.done.fetch_add(1, Ordering::Relaxed) + 1,
+            self.planned.load(Ordering::Relaxed),
+        );
+        if done * 10 / planned != (done - 1) * 10 / planned {
+            println!("study: {done} of {planned}, {label}");
+        }
+    }
 }
 
 /// Where criterion writes, by its own rules.

@@ -6,7 +6,7 @@
 # STICKSLIP, the program, target/release/stickslip by default.
 #
 # A cell is measured on one thread, and its times are worth something only on a node that does nothing else.
-# `sbatch --oversubscribe --mem=4G ... --jobs 2` shares nodes and keeps no times.
+# `sbatch --oversubscribe --mem=4G ... --untimed` shares nodes and takes no times.
 #SBATCH --job-name=stickslip
 #SBATCH --nodes=1 --ntasks=1 --cpus-per-task=1
 #SBATCH --exclusive --mem=0

@@ -51,7 +51,7 @@ pub fn prepare(
     choice: &Choice,
     system: &ContactSystem,
 ) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
-    let crashed = |e: MethodError| Verdict::Crashed(e.to_string());
+    let crashed = |e: MethodError| Verdict::failed(e.to_string());
     let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
     if let Some(reason) = method.refuses(system) {
         return Err(Verdict::Refused(reason));
@@ -81,7 +81,7 @@ pub fn attempt(method: &mut dyn Enforcement, increment: &Increment<'_>, accepted
             solve_s,
             judged: Some(judged),
         },
-        Err(error) => Attempt::unsolved(Verdict::Crashed(error.to_string())),
+        Err(error) => Attempt::unsolved(Verdict::failed(error.to_string())),
     }
 }
 

@@ -95,6 +95,17 @@ impl Verdict {
         }
     }
 
+    /// An error, or that it ran out of memory, which libraries tell in words only: "memory allocation of … failed" (the
+    /// runtime), "out of memory" and `OutOfMemory` (the sparse factorisation).
+    pub fn failed(error: String) -> Self {
+        let words = ["memory allocation of", "out of memory", "OutOfMemory"];
+        if words.iter().any(|words| error.contains(words)) {
+            Verdict::OutOfMemory
+        } else {
+            Verdict::Crashed(error)
+        }
+    }
+
     /// True if the run did what it said: its times may be published.
     pub fn is_honest(&self) -> bool {
         matches!(self, Verdict::Solved | Verdict::Approximate(_))

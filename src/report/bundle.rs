@@ -7,8 +7,8 @@
 use super::ReportError;
 use std::collections::BTreeMap;
 use std::fs;
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Component, Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files of one command, by path relative to the output folder.
 #[derive(Debug, Default)]
@@ -117,13 +117,7 @@ struct Swapped<'a> {
 
 impl Staging {
     fn create(dir: &Path) -> Result<Self, ReportError> {
-        // The numbers keep two commands, and two threads of one, with the same output folder apart.
-        static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let root = dir.join(format!(".stickslip-partial-{}-{count}", std::process::id()));
-        if root.exists() {
-            fs::remove_dir_all(&root).map_err(|e| ReportError::io("remove folder", &root, e))?;
-        }
+        let root = dir.join(format!(".stickslip-partial-{}", unique()));
         fs::create_dir(&root).map_err(|e| ReportError::io("create folder", &root, e))?;
         Ok(Self { root })
     }
@@ -183,6 +177,14 @@ impl Drop for Staging {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.root);
     }
+}
+
+/// A word that no other command uses at the same time, also on other machines and in containers whose processes have the
+/// same numbers.
+pub fn unique() -> String {
+    // The standard library seeds its hash maps at random.
+    let random = RandomState::new().build_hasher().finish();
+    format!("{}-{random:016x}", std::process::id())
 }
 
 fn create_dir(dir: &Path) -> Result<(), ReportError> {

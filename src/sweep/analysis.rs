@@ -305,7 +305,10 @@ mod tests {
     fn problems_with_the_same_words_have_different_names() {
         let mut other = record("plate", "latin", 1e-6).cell.problem();
         let one = other.clone();
-        assert_eq!(problem_names(&[one.clone()]), ["plate.r1.own.mu-0.3"]);
+        assert_eq!(
+            problem_names(std::slice::from_ref(&one)),
+            ["plate.r1.own.mu-0.3"]
+        );
         other.friction.push(0.5);
         let names = problem_names(&[one, other]);
         assert!(

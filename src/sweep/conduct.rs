@@ -16,11 +16,13 @@ use crate::harness::run::{Choice, Progress};
 pub struct Conduct<'a> {
     /// The program that has the verb `work`.
     pub program: &'a Path,
-    /// Cells at the same time; times are kept for one only.
+    /// Cells at the same time; times are taken for one only.
     pub jobs: usize,
+    /// Whether times are taken at all: not where others use the machine.
+    pub timed: bool,
     /// Limits on each.
     pub limits: Limits,
-    /// Which part of the cells: the k-th with k mod `of` = `number` − 1.
+    /// Which part of the cells.
     pub shard: Shard,
     /// Measure cells again whose record is of another program or machine; otherwise such a record is an error.
     pub redo: bool,
@@ -28,7 +30,8 @@ pub struct Conduct<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// A part of the cells.
+/// A part of the cells: they are dealt out in the order of the digests in their ids, which is as good as chance, so that
+/// every part has its share of cheap and costly cells, and parts differ by one cell at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// From 1.
@@ -41,9 +44,18 @@ impl Shard {
     /// All cells.
     pub const ALL: Self = Self { number: 1, of: 1 };
 
-    /// Whether the cell of that position, from 0, belongs to it.
-    pub fn has(&self, position: usize) -> bool {
-        position % self.of == self.number - 1
+    /// Its cells, in the order of the plan.
+    pub fn cells<'a>(&self, tasks: &'a [Task]) -> Vec<&'a Task> {
+        let digest = |k: &usize| tasks[*k].id.rsplit('.').next();
+        let mut dealt: Vec<usize> = (0..tasks.len()).collect();
+        dealt.sort_by_key(digest);
+        let mut own: Vec<usize> = dealt
+            .into_iter()
+            .skip(self.number - 1)
+            .step_by(self.of)
+            .collect();
+        own.sort_unstable();
+        own.into_iter().map(|k| &tasks[k]).collect()
     }
 }
 
@@ -88,8 +100,7 @@ pub fn conduct(
     progress: &dyn Progress,
 ) -> Result<Conducted, ConductError> {
     let origin = Origin::here();
-    let own = tasks.iter().enumerate().filter(|(k, _)| how.shard.has(*k));
-    let own: Vec<&Task> = own.map(|(_, task)| task).collect();
+    let own = how.shard.cells(tasks);
     let mut left = Vec::new();
     for task in &own {
         match store.get(&task.id)? {
@@ -105,7 +116,8 @@ pub fn conduct(
     progress.plan(left.len());
 
     // Times of cells that share the machine mean nothing, so none are taken.
-    let repeats = if how.jobs > 1 { Repeats::NONE } else { repeats };
+    let timed = how.timed && how.jobs == 1;
+    let repeats = if timed { repeats } else { Repeats::NONE };
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failure: Mutex<Option<ConductError>> = Mutex::new(None);
     let failed = || failure.lock().map_or(true, |f| f.is_some());

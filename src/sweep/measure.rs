@@ -256,7 +256,7 @@ fn repeat(
             };
             let (outcome, solve_s) = solve(method.as_mut(), &problem);
             total_s += solve_s;
-            let again = outcome.map_err(|e| Verdict::Crashed(e.to_string()))?.state;
+            let again = outcome.map_err(|e| Verdict::failed(e.to_string()))?.state;
             if again != *first {
                 let message = "the same increment gave other bits when it was solved again";
                 return Err(Verdict::Crashed(message.into()));

@@ -25,10 +25,16 @@ pub struct Merged {
 /// contradictions.
 pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, StoreError> {
     const REMEDY: &str = "--force merges them all the same";
-    let stores = from
+    let mut stores = from
         .iter()
         .map(|dir| Store::open(dir))
         .collect::<Result<Vec<_>, _>>()?;
+    // What the target holds already is part of what is merged.
+    match Store::open(into) {
+        Ok(store) => stores.push(store),
+        Err(StoreError::NoSweep { .. }) => {}
+        Err(error) => return Err(error),
+    }
     let mut chosen: BTreeMap<String, (Record, &Store)> = BTreeMap::new();
     let mut origin: Option<Origin> = None;
     for store in &stores {

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
+use crate::report::bundle::unique;
 
 /// Ending of a file that is being written.
 const PARTIAL: &str = "partial";
@@ -268,7 +269,7 @@ impl Store {
             let path = entry.map_err(|e| StoreError::io("list", &cells, e))?.path();
             let partial = path.extension().is_some_and(|e| e == PARTIAL);
             let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
-            // Name of a partial file: <id>.json.<process>.partial.
+            // Name of a partial file: <id>.json.<unique>.partial.
             let id = stem.rsplit_once(".json.").map(|(id, _)| id);
             if partial && id.is_some_and(|id| ids.iter().any(|own| own == id)) {
                 fs::remove_file(&path).map_err(|e| StoreError::io("remove", &path, e))?;
@@ -340,8 +341,8 @@ fn to_json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, StoreError> 
 /// Writes a file under another name and renames it.
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", std::process::id()));
-    let written = fs::File::create(&partial)
+    let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
+    let written = fs::File::create_new(&partial)
         .and_then(|mut file| {
             file.write_all(bytes)?;
             // A full disk may tell only now; the rename must not come before the contents.

@@ -77,6 +77,15 @@ pub fn serve(
     if let Some(megabytes) = memory_mb {
         memory::bound(megabytes)?;
     }
+    // A record names what went wrong, not where in which build: neither threads nor folders of a machine.
+    std::panic::set_hook(Box::new(|panic| {
+        let payload = panic.payload();
+        let literal = payload.downcast_ref::<&str>().copied();
+        let formatted = payload.downcast_ref::<String>().map(String::as_str);
+        let payload = literal.or(formatted).unwrap_or("of unknown kind");
+        let text: Vec<&str> = payload.lines().collect();
+        let _nobody_listens = writeln!(std::io::stderr(), "panic: {}", text.join(" "));
+    }));
     let mut bench = Bench::default();
     for line in input.lines() {
         let Request {
@@ -157,7 +166,7 @@ impl<'a> Worker<'a> {
                 self.running = Some(running);
                 Ok(match reply {
                     Reply::Measured(record) => Answer::Measured(record),
-                    Reply::Failed(reason) => Answer::Ended(Verdict::Crashed(reason)),
+                    Reply::Failed(reason) => Answer::Ended(Verdict::failed(reason)),
                 })
             }
             Err(RecvTimeoutError::Timeout) => {
@@ -181,6 +190,8 @@ impl<'a> Worker<'a> {
         // One thread: times of methods are compared, not of thread pools.
         let piped = command
             .env("RAYON_NUM_THREADS", "1")
+            // The C library reserves address space per arena, as many as threads happen to meet: limits would be luck.
+            .env("MALLOC_ARENA_MAX", "1")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
@@ -229,13 +240,9 @@ impl Running {
         drop(self.input);
         let status = self.child.wait();
         let complaints = self.complaints.join().unwrap_or_default();
-        // What the Rust runtime says before it aborts.
-        if complaints.contains("memory allocation of") {
-            return Verdict::OutOfMemory;
-        }
         let status = status.map_or_else(|e| e.to_string(), |status| status.to_string());
         let first = complaints.lines().find(|line| !line.is_empty());
-        Verdict::Crashed(match first {
+        Verdict::failed(match first {
             Some(line) => format!("{status}: {line}"),
             None => status,
         })

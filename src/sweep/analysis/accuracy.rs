@@ -1,7 +1,7 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 //!
 //! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy,
-//! or the first quantity that is followed, against its limit, see [`orders`](crate::harness::converge::orders). Methods that
+//! or the first quantity that is followed, against its limit, see [`orders`]. Methods that
 //! solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
 //! modelling error of the others would hide that of the mesh.
 
