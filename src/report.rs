@@ -25,7 +25,6 @@ pub mod standard;
 pub mod study;
 pub mod sweep;
 pub mod tables;
-mod timing_statistics;
 pub mod timings;
 pub mod vtu;
 

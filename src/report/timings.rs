@@ -17,8 +17,8 @@ use serde::Deserialize;
 use super::csv::{self, Row};
 use super::number::{significant, time};
 use super::tables::{Align, Column, Table};
-use super::timing_statistics::Timing;
 use super::{Bundle, ReportError, paper};
+use crate::sweep::statistics::Timing;
 
 /// Significant digits of the readable table: more is noise.
 const DIGITS: usize = 3;
@@ -104,9 +104,9 @@ pub fn harvest(home: &Path, expected: &[Expected]) -> Harvest {
     let mut harvest = Harvest::default();
     let wanted: BTreeMap<&BenchmarkName, &Expected> =
         expected.iter().map(|e| (&e.name, e)).collect();
-    let mut found: BTreeMap<BenchmarkName, (SystemTime, PathBuf, Vec<f64>)> = BTreeMap::new();
+    let mut found: BTreeMap<BenchmarkName, (SystemTime, PathBuf, Timing)> = BTreeMap::new();
     for path in files {
-        let (name, seconds, modified) = match read(&path) {
+        let (name, timing, modified) = match read(&path) {
             Ok(result) => result,
             Err(reason) => {
                 harvest.ignored.push((path, Ignored::Broken(reason)));
@@ -120,16 +120,16 @@ pub fn harvest(home: &Path, expected: &[Expected]) -> Harvest {
         let newest = found.get(&name).map_or(expected.newer_than, |own| own.0);
         if modified <= newest {
             harvest.ignored.push((path, Ignored::Stale));
-        } else if let Some(older) = found.insert(name, (modified, path, seconds)) {
+        } else if let Some(older) = found.insert(name, (modified, path, timing)) {
             harvest.ignored.push((older.1, Ignored::Stale));
         }
     }
     for (name, expected) in wanted {
         match found.get(name) {
-            Some((_, _, seconds)) => harvest.rows.push(TimingRow {
+            Some((_, _, timing)) => harvest.rows.push(TimingRow {
                 name: name.clone(),
                 verdict: expected.verdict.clone(),
-                timing: Timing::of(seconds),
+                timing: *timing,
             }),
             None => harvest.missing.push(name.clone()),
         }
@@ -178,8 +178,8 @@ struct Sample {
     iteration_count: u64,
 }
 
-/// Benchmark, seconds per call of every sample, time of the last change.
-fn read(path: &Path) -> Result<(BenchmarkName, Vec<f64>, SystemTime), String> {
+/// Benchmark, seconds per call, time of the last change.
+fn read(path: &Path) -> Result<(BenchmarkName, Timing, SystemTime), String> {
     let modified = fs::metadata(path).and_then(|data| data.modified());
     let modified = modified.map_err(|e| e.to_string())?;
     let mut reader = ::csv::Reader::from_path(path).map_err(|e| e.to_string())?;
@@ -207,8 +207,10 @@ fn read(path: &Path) -> Result<(BenchmarkName, Vec<f64>, SystemTime), String> {
         }
         seconds.push(per_call);
     }
-    let name = name.ok_or("no samples")?;
-    Ok((name, seconds, modified))
+    match (name, Timing::of(&seconds)) {
+        (Some(name), Some(timing)) => Ok((name, timing, modified)),
+        _ => Err("no samples".into()),
+    }
 }
 
 impl Row for TimingRow {
@@ -229,10 +231,10 @@ impl Row for TimingRow {
             verdict,
             timing:
                 Timing {
-                    median,
-                    min,
-                    low,
-                    high,
+                    median_s,
+                    min_s,
+                    low_s,
+                    high_s,
                     samples,
                 },
         } = self;
@@ -242,10 +244,10 @@ impl Row for TimingRow {
             value.clone(),
             verdict.clone(),
             samples.to_string(),
-            time(*median),
-            time(*low),
-            time(*high),
-            time(*min),
+            time(*median_s),
+            time(*low_s),
+            time(*high_s),
+            time(*min_s),
         ]
     }
 
@@ -274,11 +276,8 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
             Column::new("verdict", "", Align::Left),
         ],
     );
-    let shown = |seconds: f64| match seconds {
-        s if s.is_nan() => "–".to_owned(),
-        s => significant(s / MICROSECOND, DIGITS),
-    };
-    let long = |row: &&TimingRow| row.timing.median >= MICROSECOND;
+    let shown = |seconds: f64| significant(seconds / MICROSECOND, DIGITS);
+    let long = |row: &&TimingRow| row.timing.median_s >= MICROSECOND;
     let mut sorted: Vec<&TimingRow> = rows.iter().filter(long).collect();
     sorted.sort_by(|a, b| a.order(b));
     for row in sorted {
@@ -291,10 +290,10 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
             name.group.clone(),
             name.function.clone(),
             name.value.clone(),
-            shown(timing.median),
-            shown(timing.low),
-            shown(timing.high),
-            shown(timing.min),
+            shown(timing.median_s),
+            shown(timing.low_s),
+            shown(timing.high_s),
+            shown(timing.min_s),
             timing.samples.to_string(),
             verdict.clone(),
         ])?;
