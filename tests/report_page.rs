@@ -225,6 +225,14 @@ fn a_folder_with_one_table_shows_what_it_has() {
         assert!(!html.contains(absent), "{absent}");
     }
     assert!(html.contains("href=\"some/where/table1.csv\""));
+    assert!(!html.contains("(some/where)"), "one of its kind");
+    let both = folder(&[("table1.csv", TABLE1), ("some/where/table1.csv", TABLE1)]);
+    let html = page(both.path());
+    check(&html);
+    assert_eq!(
+        html.matches("top of the plate (some/where)</span>").count(),
+        1
+    );
     let error = refusal(&[("notes.txt", "nothing")]);
     assert!(error.contains("no report in"), "{error}");
 }

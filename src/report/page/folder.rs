@@ -114,12 +114,18 @@ impl Folder {
         })
     }
 
-    /// A table without columns and rows yet, with its links and an anchor made from its path.
+    /// A table without columns and rows yet, with its links and an anchor made from its path; the title tells the folder
+    /// where several have such a table.
     pub fn empty_grid(&self, path: &str, title: &str) -> Grid {
         let stem = path.strip_suffix(".csv").unwrap_or(path);
+        let (place, name) = split(path);
+        let alone = place.is_empty() || self.named(name).len() == 1;
         Grid {
             id: anchor(stem),
-            title: title.to_owned(),
+            title: match alone {
+                true => title.to_owned(),
+                false => format!("{title} ({place})"),
+            },
             links: self.forms(stem),
             ..Grid::default()
         }

@@ -49,14 +49,6 @@ fn made(id: &str, title: &str, lead: &str, blocks: Vec<Block>) -> Option<Section
     })
 }
 
-/// A title, with the folder where it is not the page's own.
-fn titled(title: &str, path: &str) -> String {
-    match super::folder::split(path).0 {
-        "" => title.to_owned(),
-        folder => format!("{title} ({folder})"),
-    }
-}
-
 /// Every table of this file name, as it is, without the times of runs that did not do what they claim.
 fn tables(
     folder: &Folder,

@@ -1,7 +1,7 @@
 //! Errors and observed orders on sequences of meshes.
 
-use super::{figures, made, tables, titled};
-use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Show};
+use super::{figures, made, tables};
+use crate::report::page::{Budget, Folder, Kind, PageError, Section, Show};
 
 const ORDERS: [Show; 13] = [
     Show::new("case", Kind::Text),
@@ -23,11 +23,6 @@ const ORDERS: [Show; 13] = [
 pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, PageError> {
     let title = "Observed beside theoretical orders, by case, contact space and tip enrichment";
     let mut blocks = tables(folder, "orders.csv", title, &ORDERS)?;
-    for (block, path) in blocks.iter_mut().zip(folder.named("orders.csv")) {
-        if let Block::Table(grid) = block {
-            grid.title = titled(title, path);
-        }
-    }
     blocks.extend(figures(
         folder,
         budget,

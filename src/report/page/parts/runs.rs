@@ -33,7 +33,7 @@ pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageE
         if let Block::Table(grid) = block {
             hide_times(grid, solved);
             if grid.rows.len() > ROWS {
-                grid.title = format!("Runs, the first {ROWS} of {} increments", grid.rows.len());
+                grid.title += &format!(": the first {ROWS} of {}", grid.rows.len());
                 grid.rows.truncate(ROWS);
             }
         }
