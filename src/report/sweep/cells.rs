@@ -1,15 +1,20 @@
 //! What was found: one row per cell, increment and quantity. No times.
 
 use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
+use crate::sweep::cell::Problem;
 use crate::sweep::record::{IncrementFound, Record};
 
 /// Significant digits of discretisation errors.
 const ERROR_DIGITS: usize = 4;
+
+/// Kind of a quantity beside its closed form.
+const EXACT: &str = "exact";
 
 /// Adds `cells.csv`, `increments.csv` and `deviations.csv`.
 pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
@@ -26,10 +31,27 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
     });
     let increments: Vec<IncrementRow> = increments.collect();
     bundle.add(IncrementRow::FILE, csv::file(&increments)?)?;
-    let deviations: Vec<DeviationRow> = records
-        .iter()
-        .flat_map(|record| DeviationRow::all(record))
-        .collect();
+    // A quantity without exact value says something only beside that of another mesh.
+    let sequence = |record: &Record| {
+        let Problem {
+            case,
+            space,
+            friction,
+            ..
+        } = record.cell.problem();
+        (case, space, format!("{friction:?}"))
+    };
+    let mut meshes: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
+    for record in &records {
+        let own = meshes.entry(sequence(record)).or_default();
+        own.insert(record.cell.refine);
+    }
+    let deviations = records.iter().flat_map(|record| {
+        let several = meshes[&sequence(record)].len() > 1;
+        let rows = DeviationRow::all(record).into_iter();
+        rows.filter(move |row| several || row.kind == EXACT)
+    });
+    let deviations: Vec<DeviationRow> = deviations.collect();
     bundle.add(DeviationRow::FILE, csv::file(&deviations)?)
 }
 
@@ -195,7 +217,7 @@ impl<'a> DeviationRow<'a> {
     fn all(record: &'a Record) -> Vec<Self> {
         let deviations = record.found.deviations.iter().map(|d| Self {
             record,
-            kind: "exact",
+            kind: EXACT,
             quantity: &d.quantity,
             at: &d.at,
             found: d.found.unwrap_or(f64::NAN),
