@@ -280,9 +280,9 @@ fn limits_of_time_and_memory_are_verdicts() {
         .unwrap()
         .replace("refine = [1]", "refine = [8, 1]");
     fs::write(&file, text).unwrap();
-    // The coarse mesh fits into 150 MB of address space, 176 × 176 cells do not.
+    // The coarse mesh fits into 70 MB of address space, 176 × 176 cells do not.
     let out = at("memory");
-    assert_eq!(code(study(&file, &out, &["--memory-limit", "150"])), 0);
+    assert_eq!(code(study(&file, &out, &["--memory-limit", "70"])), 0);
     let verdict = |part: &str| {
         let records = found(&out);
         let own = records.values().filter(|r| r.id.contains(part));
