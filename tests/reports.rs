@@ -17,6 +17,7 @@ use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
 use stickslip::report::robustness::{FailureRow, RobustnessRow};
 use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::report::tables::{Align, Column, Table};
+use stickslip::report::timings::TimingRow;
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
 
 fn text(bundle: &Bundle, path: &str) -> String {
@@ -46,6 +47,7 @@ fn csv_bundle() -> Bundle {
         file(InfSupRow::FILE, csv::file::<InfSupRow>(&[])),
         file(SequenceRow::FILE, csv::file::<SequenceRow>(&[])),
         file(ConvergedRow::FILE, csv::file::<ConvergedRow>(&[])),
+        file(TimingRow::FILE, csv::file::<TimingRow>(&[])),
     ] {
         bundle.add(name, contents).expect("a name of its own");
     }
