@@ -23,14 +23,17 @@ const SHOWN: [Show; 11] = [
 const CONFIDENCE: [(&str, &str); 3] = [
     (
         "sure",
-        "on the problems of the class, nobody is faster than the named methods more often than not: Wilson's 95 % interval of \
-         that share lies above one half",
+        "the first method named is among the fastest on more than half of such problems: Wilson's 95 % interval of its share \
+         lies above one half",
     ),
     (
         "likely",
-        "the share lies above one half, its interval does not",
+        "its share lies above one half, the interval does not",
     ),
-    ("open", "the problems measured do not decide"),
+    (
+        "open",
+        "the problems measured do not decide, or are too few",
+    ),
 ];
 
 /// The section.
@@ -83,10 +86,9 @@ fn advice(sheet: &Sheet) -> Result<Vec<String>, PageError> {
             "is"
         };
         sentences.push(format!(
-            "Accuracy {}, {class}: {} {verb} fastest. {}: {} ({} problems; right on {} % of them, at least {} % with 95 % \
-             confidence).",
+            "Accuracy {}, {class}: take {}. {}: {} ({} problems; right on {} % of them, at least {} % with 95 % confidence).",
             tiers[k],
-            fastest[k].replace(';', ","),
+            fastest[k].replace(';', " or"),
             capital(confidence[k]),
             evidence[k],
             significant(problems[k], 6),
