@@ -2,6 +2,7 @@
 //!
 //! A missing git, a missing repository or a source archive gives `unknown`, never a failed build.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::process::Command;
 
@@ -45,12 +46,32 @@ fn main() {
 
     embed_cases();
 
+    set("SOURCES", Some(format!("{:016x}", digest_of_sources())));
     set("COMMIT", commit);
     set("DIRTY", dirty);
     set("RUSTC", output(&rustc, &["--version"]));
     set("TARGET", std::env::var("TARGET").ok());
     set("PROFILE", std::env::var("PROFILE").ok());
     set("FEATURES", Some(features.join(",")));
+}
+
+/// Digest of names and contents of the sources: tells builds of one commit with different changes apart.
+fn digest_of_sources() -> u64 {
+    fn visit(path: &Path, hasher: &mut DefaultHasher) {
+        if let Ok(entries) = std::fs::read_dir(path) {
+            let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+            paths.sort();
+            paths.iter().for_each(|path| visit(path, hasher));
+        } else if let Ok(contents) = std::fs::read(path) {
+            path.hash(hasher);
+            contents.hash(hasher);
+        }
+    }
+    let mut hasher = DefaultHasher::new();
+    for path in SOURCES {
+        visit(Path::new(path), &mut hasher);
+    }
+    hasher.finish()
 }
 
 /// Writes the list of the shipped cases, so that a new file in `cases/` is all it takes to add one.

@@ -148,7 +148,7 @@ fn study(sweep: &str, records: &Path, out: &Path) -> Result<(), Box<dyn Error>> 
     println!("study: measured in {:.0} s", clock.elapsed().as_secs_f64());
     let kept = store.records()?;
     let provenance = Provenance::collect(1).with_option("sweep", plan.title.clone());
-    sweep::bundle(&kept, plan.tasks.len(), &provenance)?.commit(out)?;
+    sweep::bundle(&kept, plan.tasks.len(), &provenance)?.commit_all(out, "figures")?;
     println!("wrote {}", out.display());
     Ok(())
 }

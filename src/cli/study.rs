@@ -101,8 +101,8 @@ fn shard(text: &str) -> Result<Shard, String> {
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("a finite number > 0".into()),
+        Ok(seconds) if seconds > 0.0 && seconds <= 1e9 => Ok(seconds),
+        _ => Err("a number > 0 and at most 1e9".into()),
     }
 }
 
@@ -217,9 +217,23 @@ pub fn run_merge(arguments: MergeArguments) -> Result<bool, CliError> {
 pub fn run_work(arguments: &WorkArguments) -> Result<bool, CliError> {
     // An interruption at the terminal reaches the whole group of processes; the conductor decides.
     ctrlc::set_handler(|| ()).map_err(CliError::Interrupt)?;
+    end_with_parent().map_err(CliError::Work)?;
     let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
     serve(input, output, arguments.memory_mb).map_err(CliError::Work)?;
     Ok(true)
+}
+
+/// A worker whose conductor was killed must not go on beside the next run, whose times it would disturb.
+#[cfg(target_os = "linux")]
+fn end_with_parent() -> std::io::Result<()> {
+    use rustix::process::{Signal, set_parent_process_death_signal};
+    Ok(set_parent_process_death_signal(Some(Signal::KILL))?)
+}
+
+/// Elsewhere a worker ends when it has answered and finds its input closed.
+#[cfg(not(target_os = "linux"))]
+fn end_with_parent() -> std::io::Result<()> {
+    Ok(())
 }
 
 /// Writes the report beside the records.
@@ -233,7 +247,7 @@ fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
     }
     let total = store.contents().cells.len();
     let bundle = sweep::bundle(records, total, &provenance(store, records))?;
-    bundle.commit(store.dir())?;
+    bundle.commit_all(store.dir(), "figures")?;
     page::write(store.dir())?;
     say(format_args!("Results: {}", store.dir().display()));
     Ok(!records.iter().any(|r| wrong(&r)))
@@ -250,12 +264,14 @@ fn provenance(store: &Store, records: &[Record]) -> Provenance {
             version,
             commit,
             dirty,
+            sources,
             rustc,
             profile,
             machine,
         } = origin;
-        let text =
-            format!("{version}, commit {commit}, dirty {dirty}, {rustc}, {profile}, {machine}");
+        let text = format!(
+            "{version}, commit {commit}, dirty {dirty}, sources {sources}, {rustc}, {profile}, {machine}"
+        );
         provenance = provenance.with_option(format!("measured by {}", number + 1), text);
     }
     provenance

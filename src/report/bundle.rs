@@ -66,6 +66,28 @@ impl Bundle {
         self.files.get(path).map(Vec::as_slice)
     }
 
+    /// As [`commit`](Self::commit); then files of the sub-folder `own` that are not in the bundle go: what an earlier run drew
+    /// and this one does not would stay as if it were of this run.
+    ///
+    /// # Errors
+    /// Those of [`commit`](Self::commit), and a folder that cannot be listed or cleared.
+    pub fn commit_all(&self, dir: &Path, own: &str) -> Result<(), ReportError> {
+        self.commit(dir)?;
+        let folder = dir.join(own);
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        let listing = |e| ReportError::io("list folder", &folder, e);
+        for entry in fs::read_dir(&folder).map_err(listing)? {
+            let path = entry.map_err(listing)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if path.is_file() && !self.files.contains_key(&format!("{own}/{name}")) {
+                fs::remove_file(&path).map_err(|e| ReportError::io("remove file", &path, e))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Writes everything into `dir`, replacing files of the same name; other files stay.
     ///
     /// # Errors

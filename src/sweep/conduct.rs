@@ -10,6 +10,7 @@ use super::record::{Found, Origin, Record, SCHEMA};
 use super::store::{Store, StoreError};
 use super::worker::{Answer, Limits, Request, Worker, WorkerError};
 use crate::harness::run::{Choice, Progress};
+use crate::harness::verdict::Verdict;
 
 /// How the cells are measured.
 #[derive(Debug, Clone, Copy)]
@@ -100,6 +101,9 @@ pub fn conduct(
     progress: &dyn Progress,
 ) -> Result<Conducted, ConductError> {
     let origin = Origin::here();
+    // Times of cells that share the machine mean nothing, so none are taken.
+    let timed = how.timed && how.jobs == 1;
+    let repeats = if timed { repeats } else { Repeats::NONE };
     let own = how.shard.cells(tasks);
     let mut left = Vec::new();
     for task in &own {
@@ -108,16 +112,20 @@ pub fn conduct(
             Some(record) if how.redo && record.origin.difference(&origin).is_some() => {
                 left.push(*task);
             }
-            Some(record) => store.check_origin(&record, &origin, REMEDY)?,
+            Some(record) => {
+                store.check_origin(&record, &origin, REMEDY)?;
+                let other_limits = record.limits.is_some_and(|limits| limits != how.limits);
+                let untimed = timed && record.is_honest() && record.spent.is_none();
+                if other_limits || untimed {
+                    left.push(*task);
+                }
+            }
         }
     }
     let ids: Vec<String> = left.iter().map(|task| task.id.clone()).collect();
     store.clear_partial(&ids)?;
     progress.plan(left.len());
 
-    // Times of cells that share the machine mean nothing, so none are taken.
-    let timed = how.timed && how.jobs == 1;
-    let repeats = if timed { repeats } else { Repeats::NONE };
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failure: Mutex<Option<ConductError>> = Mutex::new(None);
     let failed = || failure.lock().map_or(true, |f| f.is_some());
@@ -129,7 +137,7 @@ pub fn conduct(
                     let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
                         break;
                     };
-                    let kept = one(task, repeats, &mut worker, &origin)
+                    let kept = one(task, repeats, how.limits, &mut worker, &origin)
                         .and_then(|record| Ok(store.put(&record).map(|()| record)?));
                     match kept {
                         Ok(record) => {
@@ -161,6 +169,7 @@ const REMEDY: &str = "choose another folder, or --redo to measure such cells aga
 fn one(
     task: &Task,
     repeats: Repeats,
+    limits: Limits,
     worker: &mut Worker<'_>,
     origin: &Origin,
 ) -> Result<Record, ConductError> {
@@ -180,6 +189,8 @@ fn one(
                 id: task.id.clone(),
                 cell: task.cell.clone(),
                 origin: origin.clone(),
+                limits: matches!(verdict, Verdict::TimedOut | Verdict::OutOfMemory)
+                    .then_some(limits),
                 found: Found::only(verdict.to_string(), label.clone(), exact),
                 spent: None,
             }

@@ -122,7 +122,7 @@ pub fn measure(
     let peaks = [scene.peak_mb, memory::peak_mb()].into_iter().flatten();
     let peak_mb = peaks.reduce(f64::max);
     if verdict.is_honest() {
-        found.solver_error = solver_error(&mut scene, &pass.snapshots);
+        found.solver_error = solver_error(&mut scene, &pass.snapshots, choice.method.name);
     }
     let spent = timed.ok().flatten().zip(pass.rows.last());
     let spent = spent.map(|((prepare, solve), row)| Spent {
@@ -140,6 +140,7 @@ pub fn measure(
         id: cell.id(),
         cell: cell.clone(),
         origin: Origin::here(),
+        limits: None,
         found,
         spent,
     })

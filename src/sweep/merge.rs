@@ -44,6 +44,11 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
                 store.check_origin(&record, origin, REMEDY)?;
             }
             match chosen.get(&record.id) {
+                // What a limit ended says nothing about the cell.
+                Some((first, _)) if first.limits.is_some() => {
+                    chosen.insert(record.id.clone(), (record, store));
+                }
+                Some(_) if record.limits.is_some() => {}
                 Some((first, other)) if first.found != record.found && !forced => {
                     return Err(StoreError::Contradiction {
                         id: record.id,
@@ -51,8 +56,8 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
                         second: store.dir().to_path_buf(),
                     });
                 }
-                Some(_) => {}
-                None => {
+                Some((first, _)) if first.found != record.found || first.spent.is_some() => {}
+                _ => {
                     chosen.insert(record.id.clone(), (record, store));
                 }
             }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
 use super::statistics::Timing;
+use super::worker::Limits;
 use crate::harness::converge::Value;
 use crate::harness::errors::Deviation;
 use crate::report::Provenance;
@@ -25,7 +26,9 @@ pub struct Record {
     pub cell: Cell,
     /// By which program on which machine.
     pub origin: Origin,
-    /// What came out; the same on every run of the same program.
+    /// Limits that ended it, where the verdict is `timed-out` or `out-of-memory`: it says something about them alone.
+    pub limits: Option<Limits>,
+    /// What came out; the same on every run of the same program, but for limits.
     pub found: Found,
     /// Times and memory; present beside an honest verdict on a machine that had nothing else to do.
     pub spent: Option<Spent>,
@@ -40,6 +43,8 @@ pub struct Origin {
     pub commit: String,
     /// Whether the sources differed from it: `true`, `false` or `unknown`.
     pub dirty: String,
+    /// Digest of the sources, which a commit with further changes does not tell.
+    pub sources: String,
     /// Compiler.
     pub rustc: String,
     /// `debug` or `release`.
@@ -65,6 +70,7 @@ impl Origin {
             version,
             commit,
             dirty,
+            sources: env!("STICKSLIP_BUILD_SOURCES").into(),
             rustc,
             profile,
             machine: format!("{os}, {cpu}"),
@@ -77,6 +83,7 @@ impl Origin {
             version,
             commit,
             dirty,
+            sources,
             rustc,
             profile,
             machine,
@@ -85,6 +92,7 @@ impl Origin {
             ("version", version, &other.version),
             ("commit", commit, &other.commit),
             ("uncommitted changes", dirty, &other.dirty),
+            ("sources", sources, &other.sources),
             ("compiler", rustc, &other.rustc),
             ("profile", profile, &other.profile),
             ("machine", machine, &other.machine),
@@ -169,7 +177,7 @@ pub struct SolverError {
     pub energy: f64,
     /// |P − P*| / |P*| [-].
     pub force: f64,
-    /// |[[u]] − [[u]]*| / |[[u]]*| [-].
+    /// max |[[u]] − [[u]]*| / max |u*| [-].
     pub jump: f64,
 }
 
@@ -223,6 +231,14 @@ pub struct Spent {
     /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
     /// not tell.
     pub peak_mb: Option<f64>,
+}
+
+impl Record {
+    /// Whether the whole path did what it says.
+    pub fn is_honest(&self) -> bool {
+        let verdict = self.found.verdict.as_str();
+        verdict == "solved" || verdict.starts_with("approximate")
+    }
 }
 
 impl Found {

@@ -8,7 +8,7 @@ use stickslip_methods::ContactSystem;
 use super::cell::Cell;
 use super::measure::MeasureError;
 use super::memory;
-use super::reference::Reference;
+use super::reference::References;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{self, Case, ContactSpace};
 use crate::harness::loading::Loading;
@@ -36,7 +36,7 @@ struct Kept {
 struct PerFriction {
     friction: Vec<f64>,
     system: Arc<ContactSystem>,
-    reference: Option<Reference>,
+    references: References,
 }
 
 /// What a cell is solved on.
@@ -53,8 +53,8 @@ pub struct Scene<'a> {
     pub loading: Loading<'a>,
     /// Peak of memory while the body was discretised and factored [MB].
     pub peak_mb: Option<f64>,
-    /// Converged solution, once it was asked for.
-    pub reference: &'a mut Option<Reference>,
+    /// Converged solutions, once they were asked for.
+    pub references: &'a mut References,
 }
 
 impl Bench {
@@ -100,12 +100,12 @@ impl Bench {
                 PerFriction {
                     friction: cell.friction.clone(),
                     system: Arc::new(system),
-                    reference: None,
+                    references: References::default(),
                 }
             }
         };
         let PerFriction {
-            system, reference, ..
+            system, references, ..
         } = kept.friction.insert(per_friction);
         let loading = Loading::new(&kept.body, &kept.case, cell.mu()).map_err(RunError::from)?;
         Ok(Scene {
@@ -115,7 +115,7 @@ impl Bench {
             system,
             loading,
             peak_mb: kept.peak_mb,
-            reference,
+            references,
         })
     }
 }

@@ -41,7 +41,7 @@ pub enum Reply {
 }
 
 /// Limits on one cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Wall-clock time with set-up and repeats [s].
     pub seconds: f64,
@@ -60,9 +60,6 @@ pub enum WorkerError {
         /// Why.
         source: std::io::Error,
     },
-    /// It answered something else.
-    #[error("a worker answered `{0}`")]
-    Babble(String),
 }
 
 /// The worker's side: measures what it is asked for until its input ends.
@@ -161,8 +158,11 @@ impl<'a> Worker<'a> {
             .recv_timeout(Duration::from_secs_f64(self.limits.seconds))
         {
             Ok(line) => {
-                let reply = serde_json::from_str(&line);
-                let reply = reply.map_err(|_| WorkerError::Babble(line.clone()))?;
+                let Ok(reply) = serde_json::from_str(&line) else {
+                    running.kill();
+                    let text = "the worker answered what is no record".to_owned();
+                    return Ok(Answer::Ended(Verdict::Crashed(text)));
+                };
                 self.running = Some(running);
                 Ok(match reply {
                     Reply::Measured(record) => Answer::Measured(record),

@@ -30,7 +30,7 @@ pub fn performance<'a>(costs: &Costs<'a>) -> Vec<Curve<'a>> {
         let values = row.iter().flatten().map(|cost| cost.value);
         values.fold(f64::INFINITY, f64::min)
     };
-    let ratio = |_: &Record, row: &[Option<Cost>], cost: &Cost| cost.value / best(row);
+    let ratio = |_: &[&Record], row: &[Option<Cost>], cost: &Cost| cost.value / best(row);
     curves(costs, ratio, Some(1.0))
 }
 
@@ -61,11 +61,16 @@ impl Budget {
     }
 
     /// A cost in units of the budget; infinite where the unit is unknown.
-    fn spent(self, record: &Record, cost: &Cost) -> f64 {
+    fn spent(self, records: &[&Record], cost: &Cost) -> f64 {
         let unit = match self {
-            Budget::Passes => record.found.problem.as_ref().map(|p| p.points as f64),
+            Budget::Passes => {
+                let mut sizes = records.iter().filter_map(|r| r.found.problem.as_ref());
+                sizes.next().map(|p| p.points as f64)
+            }
+            // One unit for all methods: the least of the bodies that were made for the problem.
             Budget::Factorisations => {
-                super::published_times(record).map(|spent| spent.factorisation_s)
+                let times = records.iter().filter_map(|r| super::published_times(r));
+                times.map(|spent| spent.factorisation_s).reduce(f64::min)
             }
         };
         let unit = unit.filter(|unit| *unit > 0.0);
@@ -75,13 +80,13 @@ impl Budget {
 
 /// Data profile of every method; `costs` are those of [`Budget::measure`].
 pub fn data<'a>(costs: &Costs<'a>, budget: Budget) -> Vec<Curve<'a>> {
-    curves(costs, |record, _, cost| budget.spent(record, cost), None)
+    curves(costs, |records, _, cost| budget.spent(records, cost), None)
 }
 
 /// Distribution of a number over the problems, for every method.
 fn curves<'a>(
     costs: &Costs<'a>,
-    of: impl Fn(&Record, &[Option<Cost>], &Cost) -> f64,
+    of: impl Fn(&[&Record], &[Option<Cost>], &Cost) -> f64,
     from: Option<f64>,
 ) -> Vec<Curve<'a>> {
     let count = costs.problems();
@@ -91,7 +96,7 @@ fn curves<'a>(
     let curve = |(index, method): (usize, &&'a str)| {
         let rows = costs.costs.iter().zip(&costs.records);
         let mut values: Vec<f64> = rows
-            .filter_map(|(row, records)| Some(of(records[index], row, &row[index]?)))
+            .filter_map(|(row, records)| Some(of(records, row, &row[index]?)))
             .filter(|value| value.is_finite())
             .collect();
         values.sort_by(f64::total_cmp);

@@ -6,8 +6,10 @@
 //! methods on most problems (of equals in the order of the registry).
 //!
 //! Confidence comes from the problems on which no method at all is faster than the first beyond the intervals, k of n:
-//! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n is at least 3, `open` otherwise.
+//! `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n is at least 3, `open` otherwise. Friction
+//! coefficients and meshes of one case are no independent evidence: k and n are scaled down to as many votes as there are cases.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use stickslip_methods::Tier;
@@ -299,9 +301,12 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
     });
     let timed = costs.problems() - costs.unsolved();
     let among = fastest.first().map_or(0, |first| first.among);
-    let confidence = match wilson(among, timed) {
+    // Friction coefficients and meshes of one case are no independent evidence: it counts as much as there are cases.
+    let cases: BTreeSet<&str> = set.problems.iter().map(|p| p.case.as_str()).collect();
+    let votes = timed.min(cases.len());
+    let confidence = match wilson(among * votes / timed.max(1), votes) {
         [_, low, _] if low > 0.5 => Confidence::Sure,
-        [rate, ..] if rate > 0.5 && timed >= FEWEST => Confidence::Likely,
+        [rate, ..] if rate > 0.5 && votes >= FEWEST => Confidence::Likely,
         _ => Confidence::Open,
     };
     Recommendation {

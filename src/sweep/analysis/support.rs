@@ -43,6 +43,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
             version: "0.1.0".into(),
             commit: "abc".into(),
             dirty: "false".into(),
+            sources: "0123456789abcdef".into(),
             rustc: "1.89".into(),
             profile: "release".into(),
             machine: "linux, one".into(),
@@ -81,6 +82,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
             deviations: Vec::new(),
             values: Vec::new(),
         },
+        limits: None,
         spent: None,
     }
 }

@@ -69,21 +69,15 @@ fn advice(sheet: &Sheet) -> Result<Vec<String>, PageError> {
         sheet.numbers("correct_rate")?,
         sheet.numbers("correct_low")?,
     );
-    let most = largest(problems.iter().copied());
     let mut sentences = Vec::new();
     for k in 0..tiers.len() {
         let wide = loading[k] == "any" && (dimensions[k] == "any" || friction[k] == "slip");
-        if !wide || fastest[k].is_empty() || !most.is_finite() {
+        if !wide || fastest[k].is_empty() {
             continue;
         }
         let class = match dimensions[k] {
-            "any" => "any problem".to_owned(),
+            "any" => "all problems".to_owned(),
             dimension => format!("{dimension}D with slip"),
-        };
-        let verb = if fastest[k].contains(';') {
-            "are"
-        } else {
-            "is"
         };
         sentences.push(format!(
             "Accuracy {}, {class}: take {}. {}: {} ({} problems; right on {} % of them, at least {} % with 95 % confidence).",
