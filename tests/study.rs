@@ -392,7 +392,7 @@ fn bad_sweep_files_are_refused_at_their_place() {
 fn a_folder_that_cannot_be_written_is_an_error_and_holds_no_half_record() {
     let folder = tempfile::tempdir().unwrap();
     let file = sweep(folder.path(), &METHODS[..1], 2);
-    // A device that is always full stands where a record goes.
+    // What cannot become a folder.
     let out = folder.path().join("full");
     assert_eq!(code(study(&file, &out, &["--shard", "1/2"])), 0);
     let output = study(&file, Path::new("/dev/null/x"), &[])
