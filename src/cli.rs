@@ -422,6 +422,18 @@ fn find_case(name: &str) -> Result<Case, CliError> {
     Ok(case::read(name)?)
 }
 
+/// The methods named, or all of them with their defaults.
+fn methods_or_all(named: &[String]) -> Result<Vec<Choice>, CliError> {
+    if named.is_empty() {
+        let all = METHODS.iter().map(|method| Choice::parse(method.name));
+        return Ok(all.collect::<Result<_, _>>()?);
+    }
+    let chosen = named.iter().map(|argument| Choice::parse(argument));
+    let chosen = chosen.collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+    Ok(chosen)
+}
+
 fn list_text() -> String {
     let mut text = String::from("Methods\n");
     for method in METHODS {

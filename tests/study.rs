@@ -49,6 +49,23 @@ fn code(mut command: Command) -> i32 {
     command.status().unwrap().code().unwrap()
 }
 
+/// Exit code and what was printed.
+fn printed(mut command: Command) -> (Option<i32>, String) {
+    let output = command.stdout(Stdio::piped()).output().unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stdout).unwrap(),
+    )
+}
+
+/// What a command complains of that ends with 2.
+fn refused(mut command: Command) -> String {
+    let output = command.stderr(Stdio::piped()).output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    error
+}
+
 /// What was found, by file; and that nothing else lies in the folder.
 fn found(out: &Path) -> BTreeMap<String, Record> {
     let files = fs::read_dir(out.join("cells")).unwrap();
@@ -97,22 +114,14 @@ fn a_killed_sweep_is_taken_up_and_ends_like_one_that_was_not_killed() {
     // What a run killed while it wrote leaves behind.
     let id = expected.values().next_back().unwrap().id.clone();
     fs::write(killed.join(format!("cells/{id}.json.1.partial")), "{\"sch").unwrap();
-    let again = study(&file, &killed, &[])
-        .stdout(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(again.status.code(), Some(0));
-    let text = String::from_utf8(again.stdout).unwrap();
+    let (code_again, text) = printed(study(&file, &killed, &[]));
+    assert_eq!(code_again, Some(0));
     assert!(text.starts_with("200 cells: "), "{text}");
     assert!(!text.starts_with("200 cells: 0 measured before"), "{text}");
     assert_eq!(found(&killed), expected);
 
     // A third run measures nothing.
-    let third = study(&file, &killed, &[])
-        .stdout(Stdio::piped())
-        .output()
-        .unwrap();
-    let text = String::from_utf8(third.stdout).unwrap();
+    let (_, text) = printed(study(&file, &killed, &[]));
     assert!(
         text.starts_with("200 cells: 200 measured before, 0 now"),
         "{text}"
@@ -252,12 +261,7 @@ fn records_of_another_program_are_not_taken_for_ones_own() {
         text.replacen("\"rustc\": \"", "\"rustc\": \"old ", 1),
     )
     .unwrap();
-    let output = study(&file, &out, &[])
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let error = String::from_utf8(output.stderr).unwrap();
+    let error = refused(study(&file, &out, &[]));
     assert!(
         error.contains("compiler") && error.contains("--redo"),
         "{error}"
@@ -267,12 +271,7 @@ fn records_of_another_program_are_not_taken_for_ones_own() {
 
     // A record that is cut off is never skipped as done.
     fs::write(&path, &text[..text.len() / 2]).unwrap();
-    let output = study(&file, &out, &[])
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let error = String::from_utf8(output.stderr).unwrap();
+    let error = refused(study(&file, &out, &[]));
     assert!(
         error.contains(path.file_name().unwrap().to_str().unwrap()),
         "{error}"
@@ -280,12 +279,7 @@ fn records_of_another_program_are_not_taken_for_ones_own() {
 
     // Another sweep does not mix with this one.
     let other = sweep(folder.path(), &METHODS[..1], 3);
-    let output = study(&other, &out, &[])
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let error = String::from_utf8(output.stderr).unwrap();
+    let error = refused(study(&other, &out, &[]));
     assert!(error.contains("another sweep"), "{error}");
 }
 
@@ -395,26 +389,13 @@ fn a_folder_that_cannot_be_written_is_an_error_and_holds_no_half_record() {
     // What cannot become a folder.
     let out = folder.path().join("full");
     assert_eq!(code(study(&file, &out, &["--shard", "1/2"])), 0);
-    let output = study(&file, Path::new("/dev/null/x"), &[])
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("/dev/null")
-    );
+    let error = refused(study(&file, Path::new("/dev/null/x"), &[]));
+    assert!(error.contains("/dev/null"), "{error}");
 
     // The folder of the records becomes a file.
     fs::rename(out.join("cells"), out.join("elsewhere")).unwrap();
     fs::write(out.join("cells"), "in the way").unwrap();
-    let output = study(&file, &out, &[])
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let error = String::from_utf8(output.stderr).unwrap();
+    let error = refused(study(&file, &out, &[]));
     assert!(error.contains("cells"), "{error}");
     assert_eq!(fs::read_to_string(out.join("cells")).unwrap(), "in the way");
 }

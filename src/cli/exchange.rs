@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stickslip_methods::{METHODS, Residuals, Tier};
+use stickslip_methods::{Residuals, Tier};
 
 use super::output::say;
-use super::{Bar, CliError, find_case, provenance, refuse_twins};
+use super::{Bar, CliError, find_case, methods_or_all, provenance, refuse_twins};
 use crate::harness::export::{Request, export};
 use crate::harness::problem_file::ProblemFile;
 use crate::harness::record::Results;
@@ -89,16 +89,7 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
 }
 
 pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
-    let given: Vec<String> = if args.method.is_empty() {
-        METHODS.iter().map(|m| m.name.to_owned()).collect()
-    } else {
-        args.method
-    };
-    let chosen = given
-        .iter()
-        .map(|m| Choice::parse(m))
-        .collect::<Result<Vec<_>, _>>()?;
-    refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+    let chosen = methods_or_all(&args.method)?;
     let problems = (args.files.iter())
         .map(|file| ProblemFile::read(file))
         .collect::<Result<Vec<_>, _>>()?;

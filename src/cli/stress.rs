@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use stickslip_methods::{METHODS, Tier};
+use stickslip_methods::Tier;
 
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, refuse_twins};
-use crate::harness::run::Choice;
+use super::{CliError, methods_or_all};
 use crate::harness::stress::{self, Study, Trial};
 use crate::harness::verdict::Verdict;
 use crate::report::{Provenance, prepare_output, robustness};
@@ -53,16 +52,7 @@ fn friction(text: &str) -> Result<f64, String> {
 
 /// Runs the study; false if a method claimed what does not hold, or failed with an error. Giving up is a result here.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let given: Vec<String> = if arguments.method.is_empty() {
-        METHODS.iter().map(|m| m.name.to_owned()).collect()
-    } else {
-        arguments.method
-    };
-    let choices = given
-        .iter()
-        .map(|m| Choice::parse(m))
-        .collect::<Result<Vec<_>, _>>()?;
-    refuse_twins("method", choices.iter().map(|c| c.label.as_str()))?;
+    let choices = methods_or_all(&arguments.method)?;
     let sorted = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values.dedup();

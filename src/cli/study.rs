@@ -260,19 +260,8 @@ fn provenance(store: &Store, records: &[Record]) -> Provenance {
         Provenance::collect(1).with_option("sweep", store.contents().title.clone());
     let others: BTreeSet<&Origin> = records.iter().map(|record| &record.origin).collect();
     for (number, origin) in others.into_iter().filter(|o| **o != here).enumerate() {
-        let Origin {
-            version,
-            commit,
-            dirty,
-            sources,
-            rustc,
-            profile,
-            machine,
-        } = origin;
-        let text = format!(
-            "{version}, commit {commit}, dirty {dirty}, sources {sources}, {rustc}, {profile}, {machine}"
-        );
-        provenance = provenance.with_option(format!("measured by {}", number + 1), text);
+        provenance =
+            provenance.with_option(format!("measured by {}", number + 1), origin.to_string());
     }
     provenance
 }

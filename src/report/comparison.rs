@@ -107,7 +107,7 @@ impl Row for ComparisonRow {
         "local_solves",
         "solve_s",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -215,7 +215,7 @@ impl Row for VariantRow {
         "global_factorisations",
         "solve_s",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![

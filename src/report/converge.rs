@@ -12,7 +12,10 @@ use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 /// Significant digits of errors: they are no better than the order of the method.
 const ERROR_DIGITS: usize = 4;
 
-fn variant_cells(variant: &Variant) -> [String; 5] {
+/// Columns of a sequence of meshes.
+const VARIANT_COLUMNS: [&str; 5] = ["case", "space", "tip", "method", "friction"];
+
+fn variant_cells(variant: &Variant) -> Vec<String> {
     let Variant {
         case,
         space,
@@ -20,7 +23,7 @@ fn variant_cells(variant: &Variant) -> [String; 5] {
         method,
         friction,
     } = variant;
-    [
+    vec![
         case.clone(),
         space.clone(),
         tip.clone(),
@@ -38,11 +41,6 @@ fn compare_variants(a: &Variant, b: &Variant) -> Ordering {
 impl Row for ErrorRow {
     const FILE: &'static str = "convergence.csv";
     const COLUMNS: &'static [&'static str] = &[
-        "case",
-        "space",
-        "tip",
-        "method",
-        "friction",
         "mesh",
         "refine",
         "h_m",
@@ -65,11 +63,15 @@ impl Row for ErrorRow {
         "prepare_s",
         "solve_s",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &VARIANT_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        variant_cells(&self.variant)
+    }
 
     fn cells(&self) -> Vec<String> {
         let ErrorRow {
-            variant,
+            variant: _,
             mesh,
             refine,
             h,
@@ -86,8 +88,7 @@ impl Row for ErrorRow {
             order,
             seconds,
         } = self;
-        let mut cells = variant_cells(variant).to_vec();
-        cells.extend([
+        let mut cells = vec![
             mesh.clone(),
             refine.to_string(),
             value(*h),
@@ -103,7 +104,7 @@ impl Row for ErrorRow {
             kind.map_or("", Kind::name).to_owned(),
             significant(*order, ERROR_DIGITS),
             time(seconds.total()),
-        ]);
+        ];
         cells.extend(seconds.split().map(time));
         cells
     }
@@ -118,11 +119,6 @@ impl Row for ErrorRow {
 impl Row for OrderRow {
     const FILE: &'static str = "orders.csv";
     const COLUMNS: &'static [&'static str] = &[
-        "case",
-        "space",
-        "tip",
-        "method",
-        "friction",
         "quantity",
         "at",
         "kind",
@@ -134,11 +130,15 @@ impl Row for OrderRow {
         "order",
         "theoretical_order",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &VARIANT_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        variant_cells(&self.variant)
+    }
 
     fn cells(&self) -> Vec<String> {
         let OrderRow {
-            variant,
+            variant: _,
             quantity,
             at,
             kind,
@@ -151,8 +151,7 @@ impl Row for OrderRow {
             theory,
             dim: _,
         } = self;
-        let mut cells = variant_cells(variant).to_vec();
-        cells.extend([
+        vec![
             quantity.clone(),
             at.clone(),
             kind.name().to_owned(),
@@ -163,8 +162,7 @@ impl Row for OrderRow {
             significant(above_round_off(*error), ERROR_DIGITS),
             significant(*order, ERROR_DIGITS),
             value(theory.unwrap_or(f64::NAN)),
-        ]);
-        cells
+        ]
     }
 
     fn order(&self, other: &Self) -> Ordering {

@@ -52,7 +52,7 @@ impl Row for SequenceRow {
         "order",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -115,7 +115,7 @@ impl Row for ConvergedRow {
         "printed_mn_per_m",
         "printed_difference",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let optional = |number: Option<f64>, digits| {

@@ -12,13 +12,17 @@ use std::path::Path;
 pub trait Row {
     /// File name, e.g. `runs.csv`.
     const FILE: &'static str;
-    /// Columns, without those of the run's key.
+    /// First columns, which rows of other files have too: what a row is about. Those of a run's key unless said otherwise.
+    const LEADING: &'static [&'static str] = &KEY_COLUMNS;
+    /// Further columns.
     const COLUMNS: &'static [&'static str];
-    /// Whether the columns of the run's key come first.
-    const KEYED: bool = true;
-    /// The run the row belongs to; present where [`Row::KEYED`].
+    /// The run the row belongs to, if rows are sorted by it.
     fn key(&self) -> Option<&RunKey> {
         None
+    }
+    /// Cells in the order of [`Row::LEADING`].
+    fn leading(&self) -> Vec<String> {
+        self.key().map(key_cells).into_iter().flatten().collect()
     }
     /// Cells in the order of [`Row::COLUMNS`].
     fn cells(&self) -> Vec<String>;
@@ -59,8 +63,7 @@ pub fn compare_keys(a: &RunKey, b: &RunKey) -> Ordering {
 
 /// All columns of a row type, in order.
 pub fn header<R: Row>() -> Vec<&'static str> {
-    let key: &[&str] = if R::KEYED { &KEY_COLUMNS } else { &[] };
-    key.iter().chain(R::COLUMNS).copied().collect()
+    R::LEADING.iter().chain(R::COLUMNS).copied().collect()
 }
 
 /// The contents of one CSV file, rows sorted by key and then by [`Row::order`].
@@ -80,7 +83,7 @@ pub fn file<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     writer.write_record(header::<R>())?;
     for row in sorted {
-        let mut cells: Vec<String> = row.key().map(key_cells).into_iter().flatten().collect();
+        let mut cells = row.leading();
         cells.extend(row.cells());
         writer.write_record(&cells)?;
     }
@@ -329,7 +332,7 @@ impl Row for ExactRow {
         "p_n_pa",
         "p_a_pa",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let ExactRow {

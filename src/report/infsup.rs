@@ -74,7 +74,7 @@ impl Row for InfSupRow {
         "share",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let InfSupRow {

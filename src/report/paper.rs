@@ -77,7 +77,7 @@ impl Row for Table1Row {
         "relative_difference",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -181,7 +181,7 @@ impl Row for Table2Row {
         "max_difference_mm",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![

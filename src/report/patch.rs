@@ -37,7 +37,7 @@ impl Row for PatchRow {
         "displacement_error",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let PatchRow {

@@ -210,7 +210,7 @@ impl Row for RobustnessRow {
         "stick_share",
         "slip_share",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![
@@ -255,7 +255,7 @@ impl Row for FailureRow {
         "unique",
         "points",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![

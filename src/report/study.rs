@@ -38,7 +38,7 @@ impl Row for PenaltyRow {
         "natural_map",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -88,7 +88,7 @@ impl Row for RefinementRow {
         "reaction_mn_per_m",
         "verdict",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![
@@ -144,7 +144,7 @@ impl Row for LimitRow {
         "mesh_2_mn_per_m",
         "relative_gap",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![

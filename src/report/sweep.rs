@@ -118,7 +118,7 @@ struct StudyRow {
 impl Row for StudyRow {
     const FILE: &'static str = "study.csv";
     const COLUMNS: &'static [&'static str] = &["quantity", "value"];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         vec![self.quantity.clone(), self.value.to_string()]

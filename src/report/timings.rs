@@ -218,7 +218,7 @@ impl Row for TimingRow {
     const COLUMNS: &'static [&'static str] = &[
         "group", "function", "value", "verdict", "samples", "median_s", "low_s", "high_s", "min_s",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let TimingRow {

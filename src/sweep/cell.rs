@@ -79,6 +79,16 @@ pub struct Problem {
     pub friction: Vec<f64>,
 }
 
+impl Problem {
+    /// The same whatever the mesh.
+    pub fn without_mesh(&self) -> Self {
+        Self {
+            refine: 0,
+            ..self.clone()
+        }
+    }
+}
+
 /// Digest of a case file, as in [`Cell::digest`].
 pub fn digest(text: &str) -> String {
     hexadecimal(text)[..16].to_owned()

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use super::analysis::is_honest;
 use super::measure::Repeats;
 use super::plan::Task;
 use super::record::{Found, Origin, Record, SCHEMA};
@@ -115,7 +116,7 @@ pub fn conduct(
             Some(record) => {
                 store.check_origin(&record, &origin, REMEDY)?;
                 let other_limits = record.limits.is_some_and(|limits| limits != how.limits);
-                let untimed = timed && record.is_honest() && record.spent.is_none();
+                let untimed = timed && is_honest(&record) && record.spent.is_none();
                 if other_limits || untimed {
                     left.push(*task);
                 }

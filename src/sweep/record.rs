@@ -3,6 +3,9 @@
 //! What was found is a function of the cell and the program alone; what was spent belongs to the machine and the moment.
 //! The two are kept apart, so that a rerun can be compared bit by bit.
 
+use std::fmt;
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
@@ -54,8 +57,13 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// This program on this machine.
+    /// This program on this machine; found out once.
     pub fn here() -> Self {
+        static HERE: OnceLock<Origin> = OnceLock::new();
+        HERE.get_or_init(Self::collect).clone()
+    }
+
+    fn collect() -> Self {
         let Provenance {
             version,
             commit,
@@ -77,8 +85,8 @@ impl Origin {
         }
     }
 
-    /// The first difference from another origin: what, here, there.
-    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+    /// Names and values of all parts.
+    fn parts(&self) -> [(&'static str, &str); 7] {
         let Self {
             version,
             commit,
@@ -88,17 +96,30 @@ impl Origin {
             profile,
             machine,
         } = self;
-        let pairs = [
-            ("version", version, &other.version),
-            ("commit", commit, &other.commit),
-            ("uncommitted changes", dirty, &other.dirty),
-            ("sources", sources, &other.sources),
-            ("compiler", rustc, &other.rustc),
-            ("profile", profile, &other.profile),
-            ("machine", machine, &other.machine),
-        ];
-        let different = pairs.into_iter().find(|(_, own, others)| own != others);
-        different.map(|(what, own, others)| (what, own.clone(), others.clone()))
+        [
+            ("version", version),
+            ("commit", commit),
+            ("uncommitted changes", dirty),
+            ("sources", sources),
+            ("compiler", rustc),
+            ("profile", profile),
+            ("machine", machine),
+        ]
+    }
+
+    /// The first difference from another origin: what, here, there.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let mut pairs = self.parts().into_iter().zip(other.parts());
+        let ((what, own), (_, others)) = pairs.find(|((_, own), (_, others))| own != others)?;
+        Some((what, own.to_owned(), others.to_owned()))
+    }
+}
+
+impl fmt::Display for Origin {
+    /// `version 0.1.0, commit …, machine …`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = self.parts().map(|(name, value)| format!("{name} {value}"));
+        f.write_str(&parts.join(", "))
     }
 }
 
@@ -231,14 +252,6 @@ pub struct Spent {
     /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
     /// not tell.
     pub peak_mb: Option<f64>,
-}
-
-impl Record {
-    /// Whether the whole path did what it says.
-    pub fn is_honest(&self) -> bool {
-        let verdict = self.found.verdict.as_str();
-        verdict == "solved" || verdict.starts_with("approximate")
-    }
 }
 
 impl Found {

@@ -1,6 +1,7 @@
 //! Time to accuracy: the error of the discretisation beside what it takes to have the answer, mesh by mesh.
 
 use super::Study;
+use crate::harness::converge::Variant;
 use crate::harness::converge::orders::{ErrorRow, Kind, ROUND_OFF};
 use crate::report::csv::{self, Row};
 use crate::report::number::value;
@@ -36,42 +37,27 @@ struct AccuracyRow<'a>(&'a ErrorRow);
 
 impl Row for AccuracyRow<'_> {
     const FILE: &'static str = "time_to_accuracy.csv";
-    const COLUMNS: &'static [&'static str] = &[
-        "case",
-        "space",
-        "method",
-        "friction",
-        "mesh",
-        "refine",
-        "h_m",
-        "dofs",
-        "points",
-        "verdict",
-        "quantity",
-        "at",
-        "found",
-        "reference",
-        "error_bar",
-        "error",
-        "kind",
-        "order",
-        "total_s",
-        "setup_s",
-        "assembly_s",
-        "factorisation_s",
-        "condensation_s",
-        "prepare_s",
-        "solve_s",
-    ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &["case", "space", "method", "friction"];
+    const COLUMNS: &'static [&'static str] = ErrorRow::COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        let Variant {
+            case,
+            space,
+            tip: _,
+            method,
+            friction,
+        } = &self.0.variant;
+        vec![
+            case.clone(),
+            space.clone(),
+            method.clone(),
+            value(*friction),
+        ]
+    }
 
     fn cells(&self) -> Vec<String> {
-        let mut cells = self.0.cells();
-        let tip = ErrorRow::COLUMNS.iter().position(|name| *name == "tip");
-        if let Some(tip) = tip {
-            cells.remove(tip);
-        }
-        cells
+        self.0.cells()
     }
 
     fn order(&self, other: &Self) -> std::cmp::Ordering {

@@ -1,12 +1,12 @@
 //! What was found: one row per cell, increment and quantity. No times.
 
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
+use crate::sweep::analysis::accuracy::sequences;
 use crate::sweep::cell::Problem;
 use crate::sweep::record::{IncrementFound, Record};
 
@@ -32,22 +32,9 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
     let increments: Vec<IncrementRow> = increments.collect();
     bundle.add(IncrementRow::FILE, csv::file(&increments)?)?;
     // A quantity without exact value says something only beside that of another mesh.
-    let sequence = |record: &Record| {
-        let Problem {
-            case,
-            space,
-            friction,
-            ..
-        } = record.cell.problem();
-        (case, space, format!("{friction:?}"))
-    };
-    let mut meshes: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
-    for record in &records {
-        let own = meshes.entry(sequence(record)).or_default();
-        own.insert(record.cell.refine);
-    }
+    let refined: Vec<Problem> = sequences(study.records).into_iter().flatten().collect();
     let deviations = records.iter().flat_map(|record| {
-        let several = meshes[&sequence(record)].len() > 1;
+        let several = refined.contains(&record.cell.problem());
         let rows = DeviationRow::all(record).into_iter();
         rows.filter(move |row| several || row.kind == EXACT)
     });
@@ -77,14 +64,6 @@ struct CellRow<'a>(&'a Record);
 impl Row for CellRow<'_> {
     const FILE: &'static str = "cells.csv";
     const COLUMNS: &'static [&'static str] = &[
-        CELL_COLUMNS[0],
-        CELL_COLUMNS[1],
-        CELL_COLUMNS[2],
-        CELL_COLUMNS[3],
-        CELL_COLUMNS[4],
-        CELL_COLUMNS[5],
-        CELL_COLUMNS[6],
-        CELL_COLUMNS[7],
         "digest",
         "exact",
         "verdict",
@@ -110,7 +89,11 @@ impl Row for CellRow<'_> {
         "final_changes",
         "schema",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &CELL_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        cell_columns(self.0)
+    }
 
     fn cells(&self) -> Vec<String> {
         let record = self.0;
@@ -123,7 +106,7 @@ impl Row for CellRow<'_> {
             true => f64::NAN,
             false => found.natural_map(),
         };
-        let mut cells = cell_columns(record);
+        let mut cells = Vec::new();
         cells.extend([
             record.cell.digest.clone(),
             found.exact.to_string(),
@@ -165,14 +148,6 @@ struct IncrementRow<'a> {
 impl Row for IncrementRow<'_> {
     const FILE: &'static str = "increments.csv";
     const COLUMNS: &'static [&'static str] = &[
-        CELL_COLUMNS[0],
-        CELL_COLUMNS[1],
-        CELL_COLUMNS[2],
-        CELL_COLUMNS[3],
-        CELL_COLUMNS[4],
-        CELL_COLUMNS[5],
-        CELL_COLUMNS[6],
-        CELL_COLUMNS[7],
         "increment",
         "verdict",
         "natural_map",
@@ -184,10 +159,14 @@ impl Row for IncrementRow<'_> {
         "state_changes",
         "final_changes",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &CELL_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        cell_columns(self.record)
+    }
 
     fn cells(&self) -> Vec<String> {
-        let mut cells = cell_columns(self.record);
+        let mut cells = Vec::new();
         cells.extend([
             self.number.to_string(),
             self.found.verdict.clone(),
@@ -242,14 +221,6 @@ impl<'a> DeviationRow<'a> {
 impl Row for DeviationRow<'_> {
     const FILE: &'static str = "deviations.csv";
     const COLUMNS: &'static [&'static str] = &[
-        CELL_COLUMNS[0],
-        CELL_COLUMNS[1],
-        CELL_COLUMNS[2],
-        CELL_COLUMNS[3],
-        CELL_COLUMNS[4],
-        CELL_COLUMNS[5],
-        CELL_COLUMNS[6],
-        CELL_COLUMNS[7],
         "kind",
         "quantity",
         "at",
@@ -258,10 +229,14 @@ impl Row for DeviationRow<'_> {
         "error",
         "norm",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &CELL_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        cell_columns(self.record)
+    }
 
     fn cells(&self) -> Vec<String> {
-        let mut cells = cell_columns(self.record);
+        let mut cells = Vec::new();
         cells.extend([
             self.kind.into(),
             self.quantity.into(),

@@ -15,7 +15,7 @@ pub struct ChangeRow<'a>(pub &'a Change);
 impl Row for ChangeRow<'_> {
     const FILE: &'static str = "compare.csv";
     const COLUMNS: &'static [&'static str] = &["id", "what", "direction", "a", "b", "ratio"];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let Change {

@@ -62,7 +62,7 @@ impl Row for PairRow<'_> {
     const COLUMNS: &'static [&'static str] = &[
         "tier", "method", "other", "problems", "wins", "ties", "losses", "neither",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let Pair {
@@ -125,7 +125,7 @@ impl Row for DuelRow {
     const FILE: &'static str = "pairwise_profiles.csv";
     const COLUMNS: &'static [&'static str] =
         &["tier", "first", "other", "method", "tau", "fraction"];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let [tau, fraction] = self.step.map(|x| significant(x, DIGITS));

@@ -107,7 +107,7 @@ impl Row for ProfileRow {
     const FILE: &'static str = "profiles.csv";
     const COLUMNS: &'static [&'static str] =
         &["measure", "tier", "method", "tau", "fraction", "problems"];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let [bound, fraction] = self.step.map(|x| significant(x, DIGITS));
@@ -137,7 +137,7 @@ impl Row for DataRow {
     const FILE: &'static str = "data_profiles.csv";
     const COLUMNS: &'static [&'static str] =
         &["budget", "tier", "method", "alpha", "fraction", "problems"];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         self.0.cells()

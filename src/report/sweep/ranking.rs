@@ -80,7 +80,7 @@ impl Row for RankingRow {
         "shift_s",
         "penalty",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![self.tier.to_string(), self.method.clone()];

@@ -57,7 +57,7 @@ impl Row for Recommendation {
         "correct_low",
         "correct_high",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![self.tier.to_string()];

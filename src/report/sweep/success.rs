@@ -49,7 +49,7 @@ impl Row for SuccessRow {
         FAILURES[10],
         FAILURES[11],
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![

@@ -12,7 +12,6 @@ use crate::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
 };
-use crate::sweep::cell::Problem;
 use crate::sweep::record::{Record, Spent};
 use crate::sweep::statistics::Timing;
 
@@ -89,14 +88,6 @@ fn timing_cells(timing: &Timing) -> [String; 5] {
 impl Row for TimeRow<'_> {
     const FILE: &'static str = "times.csv";
     const COLUMNS: &'static [&'static str] = &[
-        CELL_COLUMNS[0],
-        CELL_COLUMNS[1],
-        CELL_COLUMNS[2],
-        CELL_COLUMNS[3],
-        CELL_COLUMNS[4],
-        CELL_COLUMNS[5],
-        CELL_COLUMNS[6],
-        CELL_COLUMNS[7],
         "verdict",
         "setup_s",
         "assembly_s",
@@ -121,12 +112,16 @@ impl Row for TimeRow<'_> {
         "machine",
         "profile",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &CELL_COLUMNS;
+
+    fn leading(&self) -> Vec<String> {
+        cell_columns(self.record)
+    }
 
     fn cells(&self) -> Vec<String> {
         let Spent { prepare, solve, .. } = self.spent;
         let method = method_time(self.spent);
-        let mut cells = cell_columns(self.record);
+        let mut cells = Vec::new();
         cells.push(self.record.found.verdict.clone());
         cells.extend(self.stages()[..4].iter().map(|t| time(*t)));
         cells.extend(timing_cells(prepare));
@@ -144,14 +139,6 @@ impl Row for TimeRow<'_> {
     }
 }
 
-/// The problem apart from its mesh.
-fn without_mesh(problem: &Problem) -> Problem {
-    Problem {
-        refine: 0,
-        ..problem.clone()
-    }
-}
-
 /// A figure per case, contact space and friction on several meshes: a bar per mesh by the fastest right method, then a bar per method on the
 /// finest mesh, all at the finest tolerance at which something was solved on every mesh.
 fn add_figures(
@@ -162,7 +149,7 @@ fn add_figures(
     let solved =
         |row: &&TimeRow| row.record.found.verdict == "solved" && has_defaults(&row.record.cell);
     let mut own: Vec<&TimeRow> = rows.iter().filter(solved).collect();
-    let problem = |row: &TimeRow| without_mesh(&row.record.cell.problem());
+    let problem = |row: &TimeRow| row.record.cell.problem().without_mesh();
     own.sort_by(|a, b| {
         compare_problems(&problem(a), &problem(b))
             .then(a.record.cell.refine.cmp(&b.record.cell.refine))

@@ -67,7 +67,7 @@ impl Row for PointRow<'_> {
         "method_low_s",
         "method_high_s",
     ];
-    const KEYED: bool = false;
+    const LEADING: &'static [&'static str] = &[];
 
     fn cells(&self) -> Vec<String> {
         let Point {

@@ -36,16 +36,22 @@ pub struct Refinement {
 
 /// All sequences of at least two meshes with something to measure.
 pub fn refinements(records: &[Record]) -> Vec<Refinement> {
-    let coarse = |problem: &Problem| Problem {
-        refine: 0,
-        ..problem.clone()
-    };
-    let mut all = problems(records);
-    all.sort_by(|a, b| compare_problems(&coarse(a), &coarse(b)).then(a.refine.cmp(&b.refine)));
-    all.chunk_by(|a, b| coarse(a) == coarse(b))
-        .filter(|meshes| meshes.len() > 1)
+    let meshes = sequences(records);
+    meshes
+        .iter()
         .filter_map(|meshes| refinement(records, meshes))
         .collect()
+}
+
+/// Problems that differ in their mesh alone, from coarse to fine; at least two each.
+pub fn sequences(records: &[Record]) -> Vec<Vec<Problem>> {
+    let mut all = problems(records);
+    all.sort_by(|a, b| {
+        compare_problems(&a.without_mesh(), &b.without_mesh()).then(a.refine.cmp(&b.refine))
+    });
+    let sequences = all.chunk_by(|a, b| a.without_mesh() == b.without_mesh());
+    let several = sequences.filter(|meshes| meshes.len() > 1);
+    several.map(<[Problem]>::to_vec).collect()
 }
 
 fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
