@@ -66,26 +66,32 @@
 //!
 //! One file beside this one that exports `METHOD`, and two lines here: `mod` and the [`METHODS`] entry.
 
-pub mod problem;
+mod algebra;
+mod condensed;
+mod contract;
+mod error;
 
-mod admm;
-mod augmented_lagrangian;
-mod b_newton;
-mod barrier;
-mod hybrid;
-mod interior_point;
-mod latin;
-mod newton_ac;
-mod nitsche;
-mod nsgs;
-mod pdas;
-mod penalty;
-mod projection;
-mod socp;
-mod tresca;
+pub mod conic;
+pub mod newton;
+pub mod own_laws;
+pub mod splitting;
 
-pub use problem::law;
-pub use problem::*;
+pub use algebra::delassus::MAX_CONDENSED_ROWS;
+pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
+pub use condensed::local_form::LocalForm;
+pub use condensed::starts::{Start, Uniqueness, from_all_starts};
+pub use condensed::uniqueness::contact_wise_margin;
+pub use contract::elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use contract::judge::{Residuals, consistency, residuals, residuals_of};
+pub use contract::law;
+pub use contract::options::{OptionError, OptionSpec, Options};
+pub use contract::point_status::{PointStatus, point_status};
+pub use contract::state::{
+    Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status,
+};
+pub use contract::system::{ContactSystem, Increment, Load};
+pub use contract::tier::{Tier, UnknownTier};
+pub use error::MethodError;
 
 /// A method of enforcing the contact laws.
 ///
@@ -154,21 +160,21 @@ impl Method {
 /// All methods: Newton methods, the interior point, multiplier and splitting methods, sweeps, fixed points, and those that
 /// solve laws of their own.
 pub static METHODS: &[&Method] = &[
-    &b_newton::METHOD,
-    &newton_ac::METHOD,
-    &pdas::METHOD,
-    &hybrid::METHOD,
-    &interior_point::METHOD,
-    &augmented_lagrangian::METHOD,
-    &latin::METHOD,
-    &admm::METHOD,
-    &nsgs::METHOD,
-    &projection::METHOD,
-    &socp::METHOD,
-    &tresca::METHOD,
-    &penalty::METHOD,
-    &barrier::METHOD,
-    &nitsche::METHOD,
+    &newton::b_newton::METHOD,
+    &newton::newton_ac::METHOD,
+    &newton::pdas::METHOD,
+    &newton::hybrid::METHOD,
+    &newton::interior_point::METHOD,
+    &splitting::augmented_lagrangian::METHOD,
+    &splitting::latin::METHOD,
+    &splitting::admm::METHOD,
+    &splitting::nsgs::METHOD,
+    &splitting::projection::METHOD,
+    &conic::socp::METHOD,
+    &conic::tresca::METHOD,
+    &own_laws::penalty::METHOD,
+    &own_laws::barrier::METHOD,
+    &own_laws::nitsche::METHOD,
 ];
 
 /// The method of that name.

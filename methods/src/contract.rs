@@ -1,0 +1,12 @@
+//! What a method is given, what it returns, and who judges it: body, increment, state, laws, judge, options, registry.
+
+pub(crate) mod barrier_law;
+pub mod elastic;
+pub mod judge;
+pub mod law;
+pub(crate) mod operator;
+pub mod options;
+pub mod point_status;
+pub mod state;
+pub mod system;
+pub mod tier;

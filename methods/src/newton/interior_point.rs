@@ -1,0 +1,355 @@
+//! Primal-dual interior-point method.
+//!
+//! Central path: Kanno, Martins & Pinto da Costa, Int. J. Numer. Meth. Engng 65 (2006) 62, for the laws as complementarity
+//! of second-order cones; predictor and corrector: Mehrotra, SIAM J. Optim. 2 (1992) 575. Related: Acary, Armand, Nguyen
+//! & Shpakovych, Second-order cone programming for frictional contact mechanics using interior point algorithm (2023), with
+//! De Saxcé's cone in place of the pair (g, λ).
+//!
+//! ```text
+//! v = (g, d) = q + W P + Q β,  Qᵀ P = c          condensed equilibrium; v is an unknown of its own
+//! P_n g = ν                                      P_n > 0, g > 0             Signorini
+//! (P_n, P_t/μ) ∘ (λ, d) = (ν, 0)                 |P_t| < μ P_n, |d| < λ     Coulomb; ∘ is the Jordan product
+//!
+//! ν = mean of the products of all cones
+//! predictor:  Newton's direction for ν -> 0      δᵃ, longest step tᵃ inside the cones, νᵃ there
+//! corrector:  Newton's direction for σ ν, σ = (νᵃ/ν)³, with the products of δᵃ as errors of second order
+//! x <- x + t δ                                   t = min(1, fraction · longest step)
+//! ```
+//! δv and δλ are eliminated, which leaves one dense LU of m + |β| rows for both directions (the equations stand in
+//! `problem/central_path.rs`). The directions are those of the Jordan product itself, without a scaling that would make
+//! them symmetric: friction is not, and the matrix stays regular at the solution, so that the last digits are not lost.
+//!
+//! # Options
+//! `fraction`: of the way to the boundary; 1 − natural map if that is larger, so that the last steps are full Newton steps.
+//! `max_iterations`.
+//!
+//! # Guarantees
+//! Quadratic convergence where no point is at once at a bound and without slip, or closed without force; the number of
+//! steps hardly depends on μ or on the number of points. On random, strongly coupled systems of 12 points (100 for each
+//! μ and dimension, tolerance 1e-9, `tests/robustness.rs`) none fails up to μ = 1, with 7 or 8 steps in the median.
+//! Starts from the forces of the increment's start, moved inside by the fraction of the reference force that they are
+//! wrong by.
+//!
+//! # Failure modes
+//! Coulomb friction is no minimisation: the path may end at a boundary where the problem is not unique (of 200 of those
+//! systems 1 at μ = 2 and 11 at μ = 5). Steps below 2 % start it again from the iterate, moved inside deeper every
+//! time; then it reports a stall. A body that nothing holds ends as stall or mechanism.
+//!
+//! # Skips
+//! Points without friction have no cone. No line search, no switching of branches: one factorisation per step.
+
+#![allow(non_snake_case)]
+
+use faer::Mat;
+
+use crate::algebra::dense::{DenseLu, mul_add};
+use crate::condensed::branches::Branches;
+use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
+use crate::{
+    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
+    Options, Outcome,
+};
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "interior-point",
+    label: "Interior point",
+    reference: "Kanno, Martins & Pinto da Costa, Int. J. Numer. Meth. Engng 65 (2006) 62",
+    summary: "follows the central path of the contact laws, written as complementarity of second-order cones",
+    exact: true,
+    options: &OPTIONS,
+    source: include_str!("interior_point.rs"),
+    build: |options| Ok(Box::new(InteriorPoint::new(options))),
+};
+
+static OPTIONS: [OptionSpec; 2] = [
+    OptionSpec {
+        name: "fraction",
+        unit: "-",
+        default: 0.99,
+        min: 0.5,
+        max: 0.9999,
+        integer: false,
+        help: "fraction of the way to the boundary of the cones that a step may take",
+    },
+    OptionSpec {
+        name: "max_iterations",
+        unit: "-",
+        default: 200.0,
+        min: 1.0,
+        max: 1e6,
+        integer: true,
+        help: "steps before giving up",
+    },
+];
+
+/// Steps without progress after which the iteration counts as stalled.
+const PATIENCE: usize = 40;
+/// Steps below this length jam: the path is left, and taken up again deeper inside.
+const JAMMED: f64 = 0.02;
+/// Least depth of the start inside the cones, relative to the reference force per point.
+const SHALLOWEST: f64 = 0.1;
+
+struct InteriorPoint {
+    fraction: f64,
+    max_iterations: usize,
+}
+
+impl InteriorPoint {
+    fn new(options: &Options) -> Self {
+        Self {
+            fraction: options.own("fraction"),
+            max_iterations: options.own("max_iterations") as usize,
+        }
+    }
+}
+
+/// Unknowns of the method, or a step of them.
+struct Iterate {
+    P: Vec<f64>,
+    beta: Vec<f64>,
+    /// Equal to the jump of P and β only once a full step was taken.
+    v: Vec<f64>,
+    /// One per point.
+    lambda: Vec<f64>,
+}
+
+impl Enforcement for InteriorPoint {
+    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
+        system.elastic().factorise()
+    }
+
+    fn solve(
+        &mut self,
+        increment: &Increment<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError> {
+        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
+            Begin::Done(outcome) => return Ok(outcome),
+            Begin::Contact(problem) => problem,
+        };
+        let limits = Limits {
+            iterations: self.max_iterations,
+            patience: PATIENCE,
+        };
+        let mut P = problem.start_forces();
+        let mut beta = problem.start_amplitudes(&P);
+        let mut branches = Branches::default();
+        let mut path: Option<Iterate> = None;
+        let mut depth = 0.0;
+
+        let status = loop {
+            let v = problem.jump(&P, &beta);
+            let changes = branches.changes(&problem, &P, &v);
+            let natural_map = problem.natural_map(&P, &v);
+            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
+                match problem.confirm(status, &P, &beta)? {
+                    Some(status) => break status,
+                    None => continue,
+                }
+            }
+            let x = path.take().unwrap_or_else(|| {
+                depth = next_depth(depth, &P, natural_map);
+                Iterate::inside(&problem, &P, &beta, depth)
+            });
+            problem.counters.factorisations += 1;
+            let Some(step) = Newton::new(&problem, &x).and_then(|n| n.corrected(&problem, &x))
+            else {
+                break problem.singular();
+            };
+            let t = x.step_length(&problem, &step, self.fraction.max(1.0 - natural_map));
+            let x = x.moved(t, &step);
+            P.clone_from(&x.P);
+            problem.rebalance(&mut P);
+            beta.clone_from(&x.beta);
+            path = (t >= JAMMED).then_some(x);
+        };
+        problem.finish(status, &P, &beta)
+    }
+}
+
+/// How deep inside the cones the path begins: as far as the start is wrong, and twice as deep after every jam. The
+/// natural map of a start without forces says nothing.
+fn next_depth(before: f64, P: &[f64], natural_map: f64) -> f64 {
+    match before {
+        0.0 if P.iter().any(|&p| p != 0.0) => natural_map.clamp(SHALLOWEST, 1.0),
+        0.0 => 1.0,
+        _ => 2.0 * before.max(0.5),
+    }
+}
+
+impl Iterate {
+    /// (P, β) and its jump, moved inside the cones by `depth` times the reference force per point.
+    fn inside(problem: &Reduced<'_>, P: &[f64], beta: &[f64], depth: f64) -> Self {
+        let points = problem.rows.points();
+        let force = depth * problem.reference_force(P) / (points as f64).sqrt();
+        let length = force / problem.condensed.rho;
+        let (mut P, mut v) = (P.to_vec(), problem.jump(P, beta));
+        let lambda = (0..points)
+            .map(|i| {
+                let rows = problem.rows.of(i);
+                let (P, v) = (&mut P[rows.clone()], &mut v[rows]);
+                move_inside(problem.friction(i), P, v, force, length)
+            })
+            .collect();
+        let beta = beta.to_vec();
+        Self { P, beta, v, lambda }
+    }
+
+    fn at(&self, problem: &Reduced<'_>, i: usize) -> ConePoint<'_> {
+        let rows = problem.rows.of(i);
+        ConePoint {
+            mu: problem.friction(i),
+            P: &self.P[rows.clone()],
+            v: &self.v[rows],
+            lambda: self.lambda[i],
+        }
+    }
+
+    fn moved(&self, t: f64, step: &Iterate) -> Iterate {
+        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
+        Iterate {
+            P: add(&self.P, &step.P),
+            beta: add(&self.beta, &step.beta),
+            v: add(&self.v, &step.v),
+            lambda: add(&self.lambda, &step.lambda),
+        }
+    }
+
+    /// Products of all points.
+    fn products(&self, problem: &Reduced<'_>) -> Vec<Products> {
+        let points = 0..problem.rows.points();
+        points.map(|i| self.at(problem, i).products()).collect()
+    }
+
+    /// min(1, `fraction` · longest step inside all cones).
+    fn step_length(&self, problem: &Reduced<'_>, step: &Iterate, fraction: f64) -> f64 {
+        let points = 0..problem.rows.points();
+        fraction
+            * points.fold(1.0 / fraction, |t, i| {
+                self.at(problem, i).step_length(&step.at(problem, i), t)
+            })
+    }
+}
+
+/// ν: the mean over all cones, two per point with friction and one per point without.
+fn mean(problem: &Reduced<'_>, products: &[Products]) -> f64 {
+    let points = 0..problem.rows.points();
+    let cones: usize = points.map(|i| problem.rows.of(i).len().min(2)).sum();
+    products.iter().map(|p| p.normal + p.scalar).sum::<f64>() / cones as f64
+}
+
+/// Newton's equations at one iterate, condensed to (P, β) and factored.
+struct Newton {
+    lu: DenseLu,
+    /// By row, scaled to unit size.
+    rows: Vec<PathRow>,
+    scale: Vec<f64>,
+}
+
+impl Newton {
+    /// `None` if the matrix is singular.
+    fn new(problem: &Reduced<'_>, x: &Iterate) -> Option<Self> {
+        let (W, rho) = (&problem.condensed.w, problem.condensed.rho);
+        let modes = &problem.condensed.modes.q;
+        let n = problem.len();
+        let (mut rows, mut scale) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for i in 0..problem.rows.points() {
+            let equations = x.at(problem, i).equations();
+            for mut row in equations.into_iter().take(problem.rows.of(i).len()) {
+                let size = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let s = 1.0 / (size(&row.a) + size(&row.c) / rho);
+                row.a.iter_mut().chain(&mut row.c).for_each(|x| *x *= s);
+                rows.push(row);
+                scale.push(s);
+            }
+        }
+        // The unknown is ρ β, a force.
+        let mut J = Mat::<f64>::zeros(n + modes.len(), n + modes.len());
+        for i in 0..problem.rows.points() {
+            let point = problem.rows.of(i);
+            for k in point.clone() {
+                for (l, a) in point.clone().zip(rows[k].a) {
+                    J[(k, l)] = a;
+                }
+            }
+        }
+        for j in 0..n {
+            add_product(
+                problem,
+                &rows,
+                W.col_as_slice(j),
+                1.0,
+                J.col_as_slice_mut(j),
+            );
+        }
+        for (j, q) in modes.iter().enumerate() {
+            add_product(problem, &rows, q, 1.0 / rho, J.col_as_slice_mut(n + j));
+            for (k, q) in q.iter().enumerate() {
+                J[(n + j, k)] = *q;
+            }
+        }
+        let lu = DenseLu::new(&J)?;
+        Some(Self { lu, rows, scale })
+    }
+
+    /// Mehrotra's direction: predictor, then the corrector that aims at σ ν.
+    fn corrected(&self, problem: &Reduced<'_>, x: &Iterate) -> Option<Iterate> {
+        let products = x.products(problem);
+        let lack = |nu: f64, second: &[Products]| -> Vec<Products> {
+            let pairs = products.iter().zip(second);
+            pairs.map(|(p, second)| p.lack(nu, second)).collect()
+        };
+        let none = vec![Products::default(); products.len()];
+        let affine = self.direction(problem, x, &lack(0.0, &none))?;
+        let t = x.step_length(problem, &affine, 1.0);
+        let nu = mean(problem, &products);
+        let after = mean(problem, &x.moved(t, &affine).products(problem));
+        let sigma = (after / nu).clamp(0.0, 1.0).powi(3);
+        self.direction(problem, x, &lack(sigma * nu, &affine.products(problem)))
+    }
+
+    /// The direction that makes up for `lack` and for v ≠ q + W P + Q β, Qᵀ P ≠ c.
+    fn direction(&self, problem: &Reduced<'_>, x: &Iterate, lack: &[Products]) -> Option<Iterate> {
+        let n = problem.len();
+        let jump = problem.jump(&x.P, &x.beta);
+        let mut dv: Vec<f64> = jump.iter().zip(&x.v).map(|(jump, v)| jump - v).collect();
+        let mut known = vec![0.0; n];
+        add_product(problem, &self.rows, &dv, 1.0, &mut known);
+        let mut rhs = Vec::with_capacity(n + problem.modes());
+        for (i, lack) in lack.iter().enumerate() {
+            let h = x.at(problem, i).right_side(lack);
+            let rows = problem.rows.of(i).zip(h);
+            rhs.extend(rows.map(|(k, h)| self.scale[k] * h - known[k]));
+        }
+        rhs.extend(problem.missing(&x.P));
+        let solution = self.lu.solve(&rhs)?;
+        let (dP, beta) = solution.split_at(n);
+        let beta: Vec<f64> = beta.iter().map(|b| b / problem.condensed.rho).collect();
+        mul_add(&problem.condensed.w, dP, &mut dv);
+        problem.condensed.modes.add(&beta, &mut dv);
+        let lambda = lack.iter().enumerate().map(|(i, lack)| {
+            let rows = problem.rows.of(i);
+            x.at(problem, i)
+                .lambda_step(lack, &dP[rows.clone()], &dv[rows])
+        });
+        Some(Iterate {
+            lambda: lambda.collect(),
+            P: dP.to_vec(),
+            beta,
+            v: dv,
+        })
+    }
+}
+
+/// y_k += s Σ_l c_kl x_l, the sum over the rows of the point of row k.
+fn add_product(problem: &Reduced<'_>, rows: &[PathRow], x: &[f64], s: f64, y: &mut [f64]) {
+    for i in 0..problem.rows.points() {
+        let point = problem.rows.of(i);
+        let x = &x[point.clone()];
+        for k in point {
+            y[k] += s * x.iter().zip(rows[k].c).map(|(x, c)| x * c).sum::<f64>();
+        }
+    }
+}
