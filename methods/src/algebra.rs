@@ -6,4 +6,6 @@ pub(crate) mod factor;
 pub(crate) mod floating;
 pub mod matrix;
 pub(crate) mod ordering;
+pub(crate) mod rows;
 pub(crate) mod spectrum;
+pub(crate) mod stiffness;

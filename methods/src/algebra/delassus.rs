@@ -1,4 +1,4 @@
-//! The Delassus operator W = B K⁻¹ Bᵀ from the trailing block of the factor.
+//! The Delassus operator W = B K⁻¹ Bᵀ: what it can be asked, and how it follows from the factor of K.
 //!
 //! With D K D = L Lᵀ and the contact unknowns C eliminated last,
 //! ```text
@@ -9,34 +9,151 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, Par};
+use faer::{Accum, Mat, MatMut, Par};
 
+use crate::MethodError;
+use crate::algebra::dense::mul_add;
 use crate::algebra::factor::Factor;
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
-use crate::error::MethodError;
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
 pub const MAX_CONDENSED_ROWS: usize = 12_000;
-/// Columns handled together: wide enough for fast products, narrow enough to skip zeros.
+/// Columns of W handled together: wide enough for fast products, narrow enough to skip zeros.
 const PANEL: usize = 128;
+/// Columns of Y solved for together: whether W is formed or only its diagonal is wanted, so that both see the same bits.
+const SOLVED_TOGETHER: usize = 512;
 
-/// W for the listed rows of B, full (both triangles), exactly symmetric.
+/// The Delassus operator on the contact rows in use, symmetric positive semi-definite, in m/N (2D: m²/N). How it is held
+/// is the business of the implementation alone.
+pub trait Delassus: Send + Sync {
+    /// Number of contact rows.
+    fn rows(&self) -> usize;
+
+    /// v += W p.
+    fn apply_add(&self, p: &[f64], v: &mut [f64]);
+
+    /// Diagonal entries, the compliance of every row.
+    fn diagonal(&self) -> &[f64];
+
+    /// Column k, borrowed where it is held, else computed into `work`.
+    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64];
+
+    /// Whether the matrix is held, so that columns cost nothing.
+    fn formed(&self) -> bool;
+
+    /// Sum of the diagonal.
+    fn trace(&self) -> f64 {
+        self.diagonal().iter().sum()
+    }
+
+    /// Entries between the (at most three) rows of one point.
+    fn block(&self, rows: std::ops::Range<usize>) -> [[f64; 3]; 3] {
+        let (mut block, mut work) = ([[0.0; 3]; 3], Vec::new());
+        for (l, column) in rows.clone().enumerate() {
+            let column = self.column(column, &mut work);
+            for (k, row) in rows.clone().enumerate() {
+                block[k][l] = column[row];
+            }
+        }
+        block
+    }
+
+    /// The whole matrix with f applied to every entry (row, column, W_ij).
+    fn map(&self, f: &dyn Fn(usize, usize, f64) -> f64) -> Mat<f64> {
+        let (m, mut work) = (self.rows(), Vec::new());
+        let mut mapped = Mat::zeros(m, m);
+        for j in 0..m {
+            let column = self.column(j, &mut work);
+            for (i, (to, from)) in mapped
+                .col_as_slice_mut(j)
+                .iter_mut()
+                .zip(column)
+                .enumerate()
+            {
+                *to = f(i, j, *from);
+            }
+        }
+        mapped
+    }
+}
+
+/// W held as a full matrix.
+pub(crate) struct Dense {
+    w: Mat<f64>,
+    diagonal: Vec<f64>,
+}
+
+impl Dense {
+    pub fn new(w: Mat<f64>) -> Self {
+        let diagonal = (0..w.nrows()).map(|k| w[(k, k)]).collect();
+        Self { w, diagonal }
+    }
+
+    /// The block of some of the rows.
+    pub fn select(&self, at: &[usize]) -> Self {
+        Self::new(Mat::from_fn(at.len(), at.len(), |i, j| {
+            self.w[(at[i], at[j])]
+        }))
+    }
+
+    /// The lower triangle, every entry stored.
+    pub fn lower(&self) -> Result<SymmetricMatrix, MethodError> {
+        let m = self.w.nrows();
+        let mut col_ptr = vec![0];
+        let (mut row_idx, mut values) = (Vec::new(), Vec::new());
+        for j in 0..m {
+            row_idx.extend(j..m);
+            values.extend(&self.w.col_as_slice(j)[j..]);
+            col_ptr.push(values.len());
+        }
+        SymmetricMatrix::new(m, col_ptr, row_idx, values)
+    }
+}
+
+impl Delassus for Dense {
+    fn rows(&self) -> usize {
+        self.w.nrows()
+    }
+
+    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
+        mul_add(&self.w, p, v);
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn column<'a>(&'a self, k: usize, _: &'a mut Vec<f64>) -> &'a [f64] {
+        self.w.col_as_slice(k)
+    }
+
+    fn formed(&self) -> bool {
+        true
+    }
+}
+
+/// W for the listed rows of B, full (both triangles), exactly symmetric, and the squared columns of Y: the diagonal of W
+/// as [`diagonal`] gives it.
 pub(crate) fn condense(
     factor: &Factor,
     jump: &JumpOperator,
     rows: &[usize],
-) -> Result<Mat<f64>, MethodError> {
+) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
     let m = rows.len();
     check_rows(m)?;
-    let (mut y, first, sorted) = right_hand_sides(factor, jump, rows);
-    forward_solve(factor, &mut y, &first)?;
+    let half = Half::new(factor, jump, rows);
+    let c = half.height();
+    let mut y = Mat::<f64>::zeros(c, m);
+    let squares = half.squares(|begin, panel| {
+        let width = panel.ncols();
+        y.as_mut().subcols_mut(begin, width).copy_from(panel);
+    })?;
 
     // Wₛ = Yᵀ Y in sorted numbering, lower block triangle.
     let mut w = Mat::<f64>::zeros(m, m);
-    let c = y.nrows();
     for begin in (0..m).step_by(PANEL) {
         let end = (begin + PANEL).min(m);
-        let top = first[begin].min(c);
+        let top = half.first[begin].min(c);
         matmul(
             w.as_mut().submatrix_mut(begin, 0, end - begin, end),
             Accum::Replace,
@@ -50,13 +167,23 @@ pub(crate) fn condense(
     }
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
     let mut position = vec![0; m];
-    for (s, &i) in sorted.iter().enumerate() {
+    for (s, &i) in half.sorted.iter().enumerate() {
         position[i] = s;
     }
-    Ok(Mat::from_fn(m, m, |i, j| {
+    let w = Mat::from_fn(m, m, |i, j| {
         let (a, b) = (position[i], position[j]);
         w[(a.max(b), a.min(b))]
-    }))
+    });
+    Ok((w, squares))
+}
+
+/// The diagonal of W for the listed rows of B, a panel of Y in memory at a time.
+pub(crate) fn diagonal(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+) -> Result<Vec<f64>, MethodError> {
+    Half::new(factor, jump, rows).squares(|_, _| {})
 }
 
 /// W given as a sparse matrix, full.
@@ -74,19 +201,6 @@ pub(crate) fn dense(sparse: &SymmetricMatrix) -> Result<Mat<f64>, MethodError> {
     Ok(w)
 }
 
-/// The lower triangle of a full W, every entry stored.
-pub(crate) fn lower(w: &Mat<f64>) -> Result<SymmetricMatrix, MethodError> {
-    let m = w.nrows();
-    let mut col_ptr = vec![0];
-    let (mut row_idx, mut values) = (Vec::new(), Vec::new());
-    for j in 0..m {
-        row_idx.extend(j..m);
-        values.extend((j..m).map(|i| w[(i, j)]));
-        col_ptr.push(values.len());
-    }
-    SymmetricMatrix::new(m, col_ptr, row_idx, values)
-}
-
 fn check_rows(rows: usize) -> Result<(), MethodError> {
     if rows > MAX_CONDENSED_ROWS {
         return Err(MethodError::TooManyRows {
@@ -97,42 +211,80 @@ fn check_rows(rows: usize) -> Result<(), MethodError> {
     Ok(())
 }
 
-/// (D B_c)ᵀ with columns sorted by first non-zero: matrix, first non-zero of each column, original column.
-fn right_hand_sides(
-    factor: &Factor,
-    jump: &JumpOperator,
-    rows: &[usize],
-) -> (Mat<f64>, Vec<usize>, Vec<usize>) {
-    let begin = factor.ordering.contact_begin;
-    let c = factor.scale.len() - begin;
-    let mut pinned = vec![false; factor.scale.len()];
-    for &pin in &factor.pins {
-        pinned[pin] = true;
-    }
-    // Pinned unknowns do not move, so they carry no part of the jump.
-    let entries = |i: usize| jump.row(i).filter(|&(j, b)| b != 0.0 && !pinned[j]);
-    let first_of = |i: usize| {
-        entries(i)
-            .map(|(j, _)| factor.ordering.inverse[j] - begin)
-            .min()
-            .unwrap_or(c)
-    };
+/// Y with columns sorted by first non-zero, solved for panel by panel.
+struct Half<'a> {
+    factor: &'a Factor,
+    /// Entries of (D B_c)ᵀ by sorted column: position within the contact unknowns, value.
+    entries: Vec<Vec<(usize, f64)>>,
+    /// First non-zero of each sorted column.
+    first: Vec<usize>,
+    /// Original column of each sorted one.
+    sorted: Vec<usize>,
+}
 
-    let starts: Vec<usize> = rows.iter().map(|&i| first_of(i)).collect();
-    let mut sorted: Vec<usize> = (0..rows.len()).collect();
-    sorted.sort_by_key(|&k| (starts[k], k));
-    let first = sorted.iter().map(|&k| starts[k]).collect();
-    let mut y = Mat::<f64>::zeros(c, rows.len());
-    for (column, &k) in sorted.iter().enumerate() {
-        for (j, b) in entries(rows[k]) {
-            y[(factor.ordering.inverse[j] - begin, column)] += b * factor.scale[j];
+impl<'a> Half<'a> {
+    fn new(factor: &'a Factor, jump: &JumpOperator, rows: &[usize]) -> Self {
+        let begin = factor.ordering.contact_begin;
+        let c = factor.scale.len() - begin;
+        let mut pinned = vec![false; factor.scale.len()];
+        for &pin in &factor.pins {
+            pinned[pin] = true;
+        }
+        // Pinned unknowns do not move, so they carry no part of the jump.
+        let entries = |i: usize| -> Vec<(usize, f64)> {
+            jump.row(i)
+                .filter(|&(j, b)| b != 0.0 && !pinned[j])
+                .map(|(j, b)| (factor.ordering.inverse[j] - begin, b * factor.scale[j]))
+                .collect()
+        };
+        let unsorted: Vec<Vec<(usize, f64)>> = rows.iter().map(|&i| entries(i)).collect();
+        let first_of = |k: usize| unsorted[k].iter().map(|e| e.0).min().unwrap_or(c);
+        let mut sorted: Vec<usize> = (0..rows.len()).collect();
+        sorted.sort_by_key(|&k| (first_of(k), k));
+        Self {
+            factor,
+            first: sorted.iter().map(|&k| first_of(k)).collect(),
+            entries: sorted.iter().map(|&k| unsorted[k].clone()).collect(),
+            sorted,
         }
     }
-    (y, first, sorted)
+
+    /// Number of contact unknowns.
+    fn height(&self) -> usize {
+        self.factor.scale.len() - self.factor.ordering.contact_begin
+    }
+
+    /// |y_k|² by original column; `each` sees every solved panel with its first sorted column.
+    fn squares(
+        &self,
+        mut each: impl FnMut(usize, faer::MatRef<'_, f64>),
+    ) -> Result<Vec<f64>, MethodError> {
+        let m = self.sorted.len();
+        let mut squares = vec![0.0; m];
+        for begin in (0..m).step_by(SOLVED_TOGETHER) {
+            let columns = begin..(begin + SOLVED_TOGETHER).min(m);
+            let mut y = Mat::<f64>::zeros(self.height(), columns.len());
+            for (k, entries) in self.entries[columns.clone()].iter().enumerate() {
+                entries
+                    .iter()
+                    .for_each(|&(row, value)| y[(row, k)] += value);
+            }
+            forward_solve(self.factor, y.as_mut(), &self.first[columns.clone()])?;
+            for (k, column) in columns.enumerate() {
+                squares[self.sorted[column]] = y.col_as_slice(k).iter().map(|y| y * y).sum();
+            }
+            each(begin, y.as_ref());
+        }
+        Ok(squares)
+    }
 }
 
 /// y <- L_cc⁻¹ y, supernode by supernode, in panels; column j is zero above `first[j]` (increasing in j).
-fn forward_solve(factor: &Factor, y: &mut Mat<f64>, first: &[usize]) -> Result<(), MethodError> {
+fn forward_solve(
+    factor: &Factor,
+    mut y: MatMut<'_, f64>,
+    first: &[usize],
+) -> Result<(), MethodError> {
     let l = factor.supernodes()?;
     let begin = factor.ordering.contact_begin;
     for s in 0..factor.supernode_count() {
@@ -241,20 +393,27 @@ mod tests {
         for stride in [1, 7, 77] {
             let body = Elastic::new(strips(long, |k| k * stride % n)).unwrap();
             let rows = body.rows();
-            let w = condense(body.factor().unwrap(), body.jump(), &rows.source).unwrap();
+            // Before W is formed, so that neither borrows from the other.
+            let diagonal = body.diagonal(&rows).unwrap();
+            assert_eq!(body.counters().condensations, 0);
+            let (w, mut work) = (body.formed().unwrap(), Vec::new());
+            assert_eq!(body.counters().condensations, 1);
             for j in (0..rows.len()).step_by(17) {
                 let mut unit = vec![0.0; rows.len()];
                 unit[j] = 1.0;
-                let mut u = vec![0.0; n];
-                body.jump().mul_transpose_add(&unit, &mut u);
-                body.solve(&mut u).unwrap();
-                let mut column = vec![0.0; rows.len()];
-                body.jump().mul(&u, &mut column);
+                let mut product = vec![0.0; rows.len()];
+                body.product_add(&rows, &unit, &mut product);
+                let column = w.column(j, &mut work);
                 for i in 0..rows.len() {
-                    assert!((w[(i, j)] - column[i]).abs() < 1e-13, "{stride}: {i} {j}");
-                    assert_eq!(w[(i, j)], w[(j, i)]);
+                    assert!((column[i] - product[i]).abs() < 1e-13, "{stride}: {i} {j}");
+                    assert_eq!(column[i], w.column(i, &mut Vec::new())[j]);
                 }
+                assert!((diagonal[j] - column[j]).abs() < 1e-15, "{stride}: {j}");
             }
+            // The same bits from a body whose W was formed first.
+            let other = Elastic::new(strips(long, |k| k * stride % n)).unwrap();
+            other.formed().unwrap();
+            assert_eq!(other.diagonal(&rows).unwrap(), diagonal);
         }
     }
 

@@ -1,9 +1,7 @@
-//! Small dense systems: LU with partial pivoting and a singularity test.
+//! Vectors and small dense systems: LU with partial pivoting and a singularity test.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatMut};
-
-use crate::algebra::floating::dot;
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
@@ -44,6 +42,11 @@ pub(crate) fn solve_dense(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
     DenseLu::new(a)?.solve(b)
 }
 
+/// x + t s.
+pub(crate) fn along(x: &[f64], t: f64, s: &[f64]) -> Vec<f64> {
+    x.iter().zip(s).map(|(x, s)| x + t * s).collect()
+}
+
 /// x − y.
 pub(crate) fn minus(x: &[f64], y: &[f64]) -> Vec<f64> {
     x.iter().zip(y).map(|(x, y)| x - y).collect()
@@ -66,4 +69,19 @@ pub(crate) fn mul_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
             }
         }
     }
+}
+
+/// Scalar product.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Euclidean norm.
+pub(crate) fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// x / reference with 0/0 = 0.
+pub(crate) fn ratio(x: f64, reference: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x / reference }
 }

@@ -17,6 +17,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side};
 
+use crate::algebra::dense::norm;
 use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::ordering::Ordering;
 use crate::error::MethodError;
@@ -236,11 +237,6 @@ fn scaled_values(k: &SymmetricMatrix, scale: &[f64], pins: &[usize]) -> Vec<f64>
 fn column(x: &mut [f64]) -> MatMut<'_, f64> {
     let n = x.len();
     MatMut::from_column_major_slice_mut(x, n, 1)
-}
-
-/// Euclidean norm.
-pub(crate) fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 pub(crate) fn kernel(what: &'static str, reason: String) -> MethodError {

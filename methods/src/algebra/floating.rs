@@ -1,6 +1,6 @@
 //! Rigid motions of a body without enough supports: pins that make K regular, and the jumps the motions cause.
 
-use crate::algebra::factor::norm;
+use crate::algebra::dense::{dot, norm};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::error::MethodError;
 
@@ -167,9 +167,4 @@ impl ModeJumps {
         let c: Vec<f64> = self.components(x).iter().map(|c| -c).collect();
         self.add(&c, x);
     }
-}
-
-/// Scalar product.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,10 +1,11 @@
-//! Extreme eigenvalues of a dense symmetric positive semi-definite matrix, estimated by the Lanczos process.
+//! Extreme eigenvalues of a symmetric positive semi-definite operator, estimated by the Lanczos process.
 
 use faer::{Mat, Side};
 
-use crate::algebra::dense::mul_add;
-use crate::algebra::factor::norm;
-use crate::algebra::floating::{ModeJumps, dot};
+use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::dot;
+use crate::algebra::dense::norm;
+use crate::algebra::floating::ModeJumps;
 
 /// Lanczos steps: the largest eigenvalue is then exact to a few digits, the smallest within a small factor.
 const STEPS: usize = 60;
@@ -12,8 +13,8 @@ const STEPS: usize = 60;
 const SIGNIFICANT: f64 = 1e-4;
 
 /// (smallest significant, largest) eigenvalue of W on the complement of the rigid motions; `None` if W vanishes there.
-pub(crate) fn extremes(w: &Mat<f64>, modes: &ModeJumps) -> Option<(f64, f64)> {
-    let m = w.nrows();
+pub(crate) fn extremes(w: &dyn Delassus, modes: &ModeJumps) -> Option<(f64, f64)> {
+    let m = w.rows();
     let steps = STEPS.min(m - modes.len().min(m));
     // Any start without symmetry will do; it must be the same every time.
     let mut v: Vec<f64> = (0..m)
@@ -42,7 +43,7 @@ pub(crate) fn extremes(w: &Mat<f64>, modes: &ModeJumps) -> Option<(f64, f64)> {
         }
         v.iter_mut().for_each(|v| *v /= length);
         let mut next = vec![0.0; m];
-        mul_add(w, &v, &mut next);
+        w.apply_add(&v, &mut next);
         modes.project_out(&mut next);
         diagonal.push(dot(&v, &next));
         scale = scale.max(norm(&next));
@@ -67,6 +68,7 @@ pub(crate) fn extremes(w: &Mat<f64>, modes: &ModeJumps) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::delassus::Dense;
 
     #[test]
     fn extremes_of_a_diagonal_matrix_are_found_and_zero_eigenvalues_passed_over() {
@@ -78,11 +80,11 @@ mod tests {
                 0.0
             }
         });
-        let (least, most) = extremes(&w, &none).unwrap();
+        let (least, most) = extremes(&Dense::new(w), &none).unwrap();
         assert!(
             (least - 3.0).abs() < 1e-9 && (most - 40.0).abs() < 1e-9,
             "{least} {most}"
         );
-        assert_eq!(extremes(&Mat::zeros(3, 3), &none), None);
+        assert_eq!(extremes(&Dense::new(Mat::zeros(3, 3)), &none), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Changes between open, stick and slip from one iterate to the next.
 
-use crate::condensed::problem::Reduced;
+use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map};
 
 /// Branch of every point at the iterate before.
@@ -9,8 +9,8 @@ pub(crate) struct Branches(Vec<Branch>);
 
 impl Branches {
     /// Points whose branch, that of the return mapping of P − ρ v, is another one than at the iterate before.
-    pub fn changes(&mut self, problem: &Reduced<'_>, p: &[f64], v: &[f64]) -> usize {
-        let rho = problem.condensed.rho;
+    pub fn changes(&mut self, problem: &ContactProblem<'_>, p: &[f64], v: &[f64]) -> usize {
+        let rho = problem.operator.rho;
         let mut z: Vec<f64> = p.iter().zip(v).map(|(p, v)| p - rho * v).collect();
         let now: Vec<Branch> = (0..problem.rows.points())
             .map(|i| return_map(problem.friction(i), &mut z[problem.rows.of(i)]))

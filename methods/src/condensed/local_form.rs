@@ -1,10 +1,10 @@
 //! An increment as interchange formats hold it: condensed to the contact points, all `dim` rows of every point.
 
-use crate::algebra::delassus;
-use crate::algebra::floating::{ModeJumps, dot};
+use crate::algebra::dense::dot;
+use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::rows::RowSet;
 use crate::contract::judge::slip_from;
-use crate::contract::operator::RowSet;
 use crate::contract::system::Increment;
 use crate::error::MethodError;
 
@@ -35,13 +35,13 @@ impl Increment<'_> {
         }
         let mut u = self.load.force.clone();
         elastic.solve(&mut u)?;
-        let rows = RowSet::new(dim, &vec![dim; elastic.points()]);
+        let rows = RowSet::all(dim, elastic.points());
         let modes = ModeJumps::new(elastic.jump(), &rows.source, elastic.floating());
         let resultant: Vec<f64> = (elastic.floating().iter())
             .map(|r| -dot(r, &self.load.force))
             .collect();
         Ok(LocalForm {
-            w: delassus::lower(&elastic.condensed()?.w)?,
+            w: elastic.formed()?.lower()?,
             q: slip_from(&rows, dim, &self.jump(&u), &self.start_jump()),
             balance: modes.balance(&resultant),
             modes: modes.q,

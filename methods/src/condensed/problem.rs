@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use crate::algebra::dense::mul_add;
-use crate::algebra::factor::norm;
-use crate::algebra::floating::dot;
-use crate::contract::judge::{free_jump, natural_map_norm, ratio, reference_force, slip_from};
-use crate::contract::operator::{Condensed, RowSet};
+use crate::algebra::dense::{dot, norm, ratio};
+use crate::algebra::rows::RowSet;
+use crate::condensed::method::End;
+use crate::contract::judge::{free_jump, natural_map_norm, reference_force, slip_from};
+use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use crate::contract::system::Increment;
 use crate::error::MethodError;
@@ -36,11 +36,22 @@ const IMPROVEMENT: f64 = 0.99;
 
 /// When to give up.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+pub struct Limits {
     /// Iterations in all.
     pub iterations: usize,
     /// Iterations without progress.
     pub patience: usize,
+}
+
+/// What becomes of an iterate that was checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// The method goes on from it.
+    GoOn,
+    /// It fulfils the condensed laws, but not those of the body: q was corrected, and the jump has to be computed anew.
+    Corrected,
+    /// The method ends there.
+    End(Status),
 }
 
 /// How an increment begins.
@@ -48,29 +59,32 @@ pub(crate) enum Begin<'a> {
     /// Nothing closes, or nothing can: there is nothing to iterate on.
     Done(Outcome),
     /// Contact has to be resolved.
-    Contact(Reduced<'a>),
+    Contact(Box<ContactProblem<'a>>),
 }
 
-/// The condensed increment.
-pub(crate) struct Reduced<'a> {
+/// The condensed increment, with what happens to every iterate whatever the method: measured, noted, checked, recovered.
+pub struct ContactProblem<'a> {
+    /// The increment itself.
     pub increment: &'a Increment<'a>,
-    pub condensed: Arc<Condensed>,
+    /// W, Q and ρ.
+    pub operator: Arc<ContactOperator>,
     /// Rows in use.
     pub rows: &'a RowSet,
-    /// Rows (g, d) for P = 0, β = 0.
+    /// Rows (g, d) for P = 0, β = 0, in m.
     pub q: Vec<f64>,
-    /// Displacements for P = 0, pinned unknowns at 0.
-    pub free: Vec<f64>,
-    /// Forces on the body beside f + Bᵀ P: none, or Nitsche's consistency term.
-    pub further: Vec<f64>,
-    /// What `Converged` stands for.
-    pub claim: Claim,
     /// c in Qᵀ P = c.
     pub balance: Vec<f64>,
     /// Natural map at which methods stop.
     pub stop: f64,
+    /// Work done so far.
     pub counters: Counters,
-    pub history: Vec<Iteration>,
+    /// Displacements for P = 0, pinned unknowns at 0.
+    pub(crate) free: Vec<f64>,
+    /// Forces on the body beside f + Bᵀ P: none, or Nitsche's consistency term.
+    pub(crate) further: Vec<f64>,
+    /// What `Converged` stands for.
+    pub(crate) claim: Claim,
+    pub(crate) history: Vec<Iteration>,
     /// |q| of the natural map's denominator.
     free_jump: f64,
     rescues: usize,
@@ -78,14 +92,15 @@ pub(crate) struct Reduced<'a> {
     best: (f64, usize),
     corrections: usize,
     /// The iterate confirmed last, with its displacements.
-    pub confirmed: Option<ContactState>,
+    pub(crate) confirmed: Option<ContactState>,
 }
 
-impl<'a> Reduced<'a> {
+impl<'a> ContactProblem<'a> {
     /// Does the one linear solve without contact forces. If it leaves every gap open, that is the solution, and the
     /// body is not even condensed.
-    pub fn begin(
+    pub(crate) fn begin(
         increment: &'a Increment<'a>,
+        form: DelassusForm,
         claim: impl Fn(f64) -> Claim,
     ) -> Result<Begin<'a>, MethodError> {
         increment.check()?;
@@ -113,11 +128,11 @@ impl<'a> Reduced<'a> {
             }));
         }
 
-        let condensed = system.condensed()?;
-        if condensed.modes.free > 0 {
+        let operator = system.operator(form)?;
+        if operator.modes.free > 0 {
             return Ok(Begin::Done(Outcome {
                 status: Status::Mechanism,
-                claim: claim(condensed.rho),
+                claim: claim(operator.rho),
                 state: increment.start.clone(),
                 history: Vec::new(),
                 counters,
@@ -129,9 +144,9 @@ impl<'a> Reduced<'a> {
             .iter()
             .map(|r| -dot(r, &increment.load.force))
             .collect();
-        let balance = condensed.modes.balance(&resultant);
-        Ok(Begin::Contact(Reduced {
-            free_jump: free_jump(increment, &condensed, &rows.restrict(&jump), &balance),
+        let balance = operator.modes.balance(&resultant);
+        Ok(Begin::Contact(Box::new(ContactProblem {
+            free_jump: free_jump(increment, &operator, &rows.restrict(&jump), &balance),
             q: slip_from(rows, dim, &jump, &increment.start_jump()),
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::new(),
@@ -143,14 +158,15 @@ impl<'a> Reduced<'a> {
             counters,
             free: u,
             further: Vec::new(),
-            claim: claim(condensed.rho),
+            claim: claim(operator.rho),
             corrections: 0,
             confirmed: None,
-            condensed,
-        }))
+            operator,
+        })))
     }
 
     /// Number of rows.
+    #[expect(clippy::len_without_is_empty, reason = "there is contact to resolve")]
     pub fn len(&self) -> usize {
         self.q.len()
     }
@@ -183,18 +199,13 @@ impl<'a> Reduced<'a> {
         let zero = vec![0.0; self.modes()];
         let v = self.jump(p, &zero);
         let distance: Vec<f64> = target.iter().zip(&v).map(|(t, v)| t - v).collect();
-        self.condensed.modes.components(&distance)
-    }
-
-    /// Rows of the point that starts at row `start`.
-    pub fn rows_at(&self, start: usize) -> usize {
-        self.rows.size_at[start]
+        self.operator.modes.components(&distance)
     }
 
     /// A vector with one value on normal and one on tangential rows.
     pub fn by_row(&self, normal: f64, tangential: f64) -> Vec<f64> {
         let mut values = vec![tangential; self.len()];
-        for &row in &self.rows.start[..self.rows.points()] {
+        for &row in self.rows.normal() {
             values[row] = normal;
         }
         values
@@ -203,13 +214,13 @@ impl<'a> Reduced<'a> {
     /// r by row: 1/(W_nn + extra) for the normal and 1/mean(W_tt + extra) for the tangential rows of a point, so that
     /// tangent frames do not matter. Points that move almost rigidly do not raise r without bound.
     pub fn scales(&self, extra: &[f64]) -> Vec<f64> {
-        let w = &self.condensed.w;
-        let floor = COMPLIANCE_FLOOR / self.condensed.rho;
+        let w = self.operator.w.diagonal();
+        let floor = COMPLIANCE_FLOOR / self.operator.rho;
         let mut scale = vec![0.0; self.len()];
         for i in 0..self.rows.points() {
             let rows = self.rows.of(i);
             for part in [rows.start..rows.start + 1, rows.start + 1..rows.end] {
-                let sum: f64 = part.clone().map(|k| w[(k, k)] + extra[k]).sum();
+                let sum: f64 = part.clone().map(|k| w[k] + extra[k]).sum();
                 let mean = sum / part.len().max(1) as f64;
                 scale[part].fill(1.0 / mean.max(floor));
             }
@@ -219,7 +230,7 @@ impl<'a> Reduced<'a> {
 
     /// c − Qᵀ P: what the contact forces lack to balance the load.
     pub fn missing(&self, p: &[f64]) -> Vec<f64> {
-        self.condensed
+        self.operator
             .modes
             .q
             .iter()
@@ -231,13 +242,13 @@ impl<'a> Reduced<'a> {
     /// Restores Qᵀ P = c by the smallest change. Meant for rounding and iteration errors.
     pub fn rebalance(&self, p: &mut [f64]) {
         let missing = self.missing(p);
-        self.condensed.modes.add(&missing, p);
+        self.operator.modes.add(&missing, p);
     }
 
     /// Whether a Newton method that cannot go on by itself may be moved on by [`rescue`](crate::condensed::stages::rescue): after
     /// too long without progress, or where the tangent of a floating body is singular. On the way all points of a piece
     /// may open or slide, but a piece that gets loose again and again is a mechanism.
-    pub fn rescue_left(&mut self) -> bool {
+    pub(crate) fn rescue_left(&mut self) -> bool {
         if self.modes() == 0 && !self.stagnates() {
             return false;
         }
@@ -246,13 +257,13 @@ impl<'a> Reduced<'a> {
         self.rescues <= MAX_RESCUES
     }
 
-    /// Whether the natural map has not fallen for [`STAGNATION`] iterations.
+    /// Whether the natural map has not fallen for some iterations.
     pub fn stagnates(&self) -> bool {
         self.idle() >= STAGNATION
     }
 
     /// Forgets what progress was: another algorithm takes over.
-    pub fn begin_phase(&mut self) {
+    pub(crate) fn begin_phase(&mut self) {
         self.best = (f64::INFINITY, self.counters.iterations);
     }
 
@@ -262,7 +273,7 @@ impl<'a> Reduced<'a> {
     }
 
     /// Rescues before the current one.
-    pub fn earlier_rescues(&self) -> usize {
+    pub(crate) fn earlier_rescues(&self) -> usize {
         self.rescues.saturating_sub(1)
     }
 
@@ -278,32 +289,32 @@ impl<'a> Reduced<'a> {
     /// v = q + W P + Q β.
     pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
         let mut v = self.q.clone();
-        mul_add(&self.condensed.w, p, &mut v);
-        self.condensed.modes.add(beta, &mut v);
+        self.operator.w.apply_add(p, &mut v);
+        self.operator.modes.add(beta, &mut v);
         v
     }
 
     /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
-    pub fn mean_jump(&self) -> f64 {
-        let least = norm(&self.balance) / self.condensed.rho;
+    pub(crate) fn mean_jump(&self) -> f64 {
+        let least = norm(&self.balance) / self.operator.rho;
         self.free_jump.max(least) / (self.rows.points() as f64).sqrt()
     }
 
     /// P_ref, the force the natural map is relative to.
     pub fn reference_force(&self, p: &[f64]) -> f64 {
-        reference_force(&self.condensed, p, self.free_jump)
+        reference_force(self.operator.rho, p, self.free_jump)
     }
 
     /// The natural map, as the judge computes it.
     pub fn natural_map(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        let e = natural_map_norm(friction, self.rows, self.condensed.rho, p, v);
+        let e = natural_map_norm(friction, self.rows, self.operator.rho, p, v);
         ratio(e, self.reference_force(p))
     }
 
     /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
-    pub fn ends(
+    pub(crate) fn ends(
         &mut self,
         natural_map: f64,
         changes: usize,
@@ -334,61 +345,80 @@ impl<'a> Reduced<'a> {
         }
     }
 
+    /// Notes an iterate (P, β) of this natural map and says what becomes of it. One that has converged is checked against K
+    /// itself, as the judge will.
+    ///
+    /// # Errors
+    /// Those of a solve with K.
+    pub fn check(
+        &mut self,
+        natural_map: f64,
+        (p, beta): (&[f64], &[f64]),
+        changes: usize,
+        limits: Limits,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Check, MethodError> {
+        match self.ends(natural_map, changes, limits, monitor) {
+            None => Ok(Check::GoOn),
+            Some(status) => self.confirm(status, p, beta),
+        }
+    }
+
     /// Checks a converged iterate against K itself, as the judge will: W has lost digits to its own condition.
     ///
     /// If the recovered displacements do not fulfil the laws, q takes up the difference between their jump and the
-    /// condensed one, and the method goes on from where it is (`None`): iterative refinement of the condensed problem.
-    pub fn confirm(
+    /// condensed one, and the method goes on from where it is: iterative refinement of the condensed problem.
+    pub(crate) fn confirm(
         &mut self,
         status: Status,
         p: &[f64],
         beta: &[f64],
-    ) -> Result<Option<Status>, MethodError> {
+    ) -> Result<Check, MethodError> {
         if status != Status::Converged {
-            return Ok(Some(status));
+            return Ok(Check::End(status));
         }
         let Some(state) = self.recover(p, beta)? else {
-            return Ok(Some(Status::Diverged));
+            return Ok(Check::End(Status::Diverged));
         };
-        let increment = self.increment;
-        let dim = increment.system.dim();
-        let found = slip_from(
-            self.rows,
-            dim,
-            &increment.jump(&state.u),
-            &increment.start_jump(),
-        );
+        let found = self.slip_of(&state.u);
         let natural_map = self.natural_map(&self.rows.restrict(&state.p), &found);
-        if natural_map <= increment.tolerance {
+        if natural_map <= self.increment.tolerance {
             self.confirmed = Some(state);
-            return Ok(Some(status));
+            return Ok(Check::End(status));
         }
         if self.corrections == MAX_CORRECTIONS {
-            return Ok(Some(Status::Stalled));
+            return Ok(Check::End(Status::Stalled));
         }
         self.corrections += 1;
         self.counters.iterations += 1;
         self.best = (f64::INFINITY, self.counters.iterations);
+        self.correct(&found, p, beta);
+        Ok(Check::Corrected)
+    }
+
+    /// Rows (g, d) of displacements.
+    pub(crate) fn slip_of(&self, u: &[f64]) -> Vec<f64> {
+        let (increment, dim) = (self.increment, self.increment.system.dim());
+        slip_from(self.rows, dim, &increment.jump(u), &increment.start_jump())
+    }
+
+    /// q takes up the difference between the jump found on the body and the condensed one.
+    pub(crate) fn correct(&mut self, found: &[f64], p: &[f64], beta: &[f64]) {
         let condensed = self.jump(p, beta);
-        for ((q, found), condensed) in self.q.iter_mut().zip(&found).zip(&condensed) {
+        for ((q, found), condensed) in self.q.iter_mut().zip(found).zip(&condensed) {
             *q += found - condensed;
         }
-        Ok(None)
     }
 
     /// Contact forces with all `dim` rows per point.
     pub fn all_forces(&self, p: &[f64]) -> Vec<f64> {
         let system = self.increment.system;
-        let mut all = vec![0.0; system.dim() * system.points()];
-        for (&row, &force) in self.rows.source.iter().zip(p) {
-            all[row] = force;
-        }
-        all
+        self.rows.extend(p, system.dim() * system.points())
     }
 
     /// The state with u = K⁻¹ (f + Bᵀ P) + R α, one solve; `None` if the forces left the finite range. What rounding took
     /// from the balance of P is put back, so that it is small beside P itself however small that has become.
-    pub fn recover(
+    pub(crate) fn recover(
         &mut self,
         p: &[f64],
         beta: &[f64],
@@ -405,7 +435,7 @@ impl<'a> Reduced<'a> {
         }
         elastic.solve(&mut u)?;
         self.counters.solves += 1;
-        let amplitudes = self.condensed.modes.amplitudes(beta);
+        let amplitudes = self.operator.modes.amplitudes(beta);
         for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
         }
@@ -413,19 +443,14 @@ impl<'a> Reduced<'a> {
     }
 
     /// Closes the outcome with the displacements of the last iterate.
-    pub fn finish(
-        mut self,
-        status: Status,
-        p: &[f64],
-        beta: &[f64],
-    ) -> Result<Outcome, MethodError> {
+    pub(crate) fn finish(mut self, end: End) -> Result<Outcome, MethodError> {
         let state = match self.confirmed.take() {
             Some(state) => Some(state),
-            None => self.recover(p, beta)?,
+            None => self.recover(&end.at.p, &end.at.beta)?,
         };
         let state = state.unwrap_or_else(|| self.increment.start.clone());
         Ok(Outcome {
-            status,
+            status: end.status,
             claim: self.claim,
             state,
             history: self.history,

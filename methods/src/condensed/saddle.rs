@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use crate::algebra::dense::mul_add;
-use crate::algebra::floating::dot;
-use crate::condensed::problem::{Limits, Reduced};
-use crate::contract::operator::Condensed;
+use crate::algebra::delassus::{Delassus, Dense};
+use crate::algebra::dense::dot;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::operator::ContactOperator;
 use crate::contract::state::{Monitor, Status};
 use crate::error::MethodError;
 
@@ -28,9 +28,9 @@ pub(crate) const REFRESH: usize = 100;
 
 /// The augmented operator of a system.
 pub(crate) struct Saddle {
-    condensed: Arc<Condensed>,
+    operator: Arc<ContactOperator>,
     /// W' where it differs from W.
-    own: Option<Mat<f64>>,
+    own: Option<Dense>,
     /// κ in m/N.
     pub kappa: f64,
 }
@@ -44,42 +44,45 @@ pub(crate) struct Iterate {
 }
 
 impl Saddle {
-    pub fn new(condensed: Arc<Condensed>) -> Self {
-        let kappa = AUGMENTATION / condensed.rho;
-        let own = (condensed.modes.len() > 0).then(|| augment(&condensed, kappa));
+    pub fn new(operator: Arc<ContactOperator>) -> Self {
+        let kappa = AUGMENTATION / operator.rho;
+        let own = (operator.modes.len() > 0).then(|| Dense::new(augment(&operator, kappa)));
         Self {
-            condensed,
+            operator,
             own,
             kappa,
         }
     }
 
     /// W'.
-    pub fn w(&self) -> &Mat<f64> {
-        self.own.as_ref().unwrap_or(&self.condensed.w)
+    pub fn w(&self) -> &dyn Delassus {
+        match &self.own {
+            Some(own) => own,
+            None => &*self.operator.w,
+        }
     }
 
     /// The iterate every method starts from.
-    pub fn start(&self, problem: &Reduced<'_>) -> Iterate {
+    pub fn start(&self, problem: &ContactProblem<'_>) -> Iterate {
         self.at(problem, problem.start_forces())
     }
 
     /// The iterate of given forces.
-    pub fn at(&self, problem: &Reduced<'_>, p: Vec<f64>) -> Iterate {
+    pub fn at(&self, problem: &ContactProblem<'_>, p: Vec<f64>) -> Iterate {
         let beta = problem.start_amplitudes(&p);
         let v = problem.jump(&p, &beta);
         Iterate {
-            gamma: self.condensed.modes.components(&v),
+            gamma: self.operator.modes.components(&v),
             v,
             p,
         }
     }
 
-    /// Judges an iterate whose multipliers are not yet updated, as [`Reduced::ends`] and [`Reduced::confirm`] do: says
+    /// Judges an iterate whose multipliers are not yet updated, as [`ContactProblem::ends`] and [`ContactProblem::confirm`] do: says
     /// how the method ends there. Claims nothing without a fresh v.
     pub fn ends(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         x: &mut Iterate,
         changes: usize,
         limits: Limits,
@@ -99,70 +102,69 @@ impl Saddle {
                 return Ok(None);
             };
             let (p, beta) = self.balanced(problem, x);
-            let confirmed = problem.confirm(status, &p, &beta)?;
-            if confirmed.is_some() {
-                return Ok(confirmed);
+            if let Check::End(status) = problem.confirm(status, &p, &beta)? {
+                return Ok(Some(status));
             }
             self.refresh(problem, x);
         }
     }
 
     /// Computes v afresh.
-    pub fn refresh(&self, problem: &Reduced<'_>, x: &mut Iterate) {
-        let modes = &self.condensed.modes;
+    pub fn refresh(&self, problem: &ContactProblem<'_>, x: &mut Iterate) {
+        let modes = &self.operator.modes;
         x.v.clone_from(&problem.q);
         if modes.len() > 0 {
             let mut least = vec![0.0; x.p.len()];
             modes.add(&problem.balance, &mut least);
-            mul_add(&self.condensed.w, &least, &mut x.v);
+            self.operator.w.apply_add(&least, &mut x.v);
             modes.project_out(&mut x.v);
             let held: Vec<f64> = (x.gamma.iter().zip(&problem.balance))
                 .map(|(g, c)| g - self.kappa * c)
                 .collect();
             modes.add(&held, &mut x.v);
         }
-        mul_add(self.w(), &x.p, &mut x.v);
+        self.w().apply_add(&x.p, &mut x.v);
     }
 
     /// γ <- γ + κ (Qᵀ P − c).
-    pub fn update_multipliers(&self, problem: &Reduced<'_>, x: &mut Iterate) {
+    pub fn update_multipliers(&self, problem: &ContactProblem<'_>, x: &mut Iterate) {
         let step: Vec<f64> = (problem.missing(&x.p).iter())
             .map(|missing| -self.kappa * missing)
             .collect();
         x.gamma.iter_mut().zip(&step).for_each(|(g, s)| *g += s);
-        self.condensed.modes.add(&step, &mut x.v);
+        self.operator.modes.add(&step, &mut x.v);
     }
 
     /// The nearest balanced forces P' and the amplitudes β for which v is their jump, γ not yet updated.
-    pub fn balanced(&self, problem: &Reduced<'_>, x: &Iterate) -> (Vec<f64>, Vec<f64>) {
+    pub fn balanced(&self, problem: &ContactProblem<'_>, x: &Iterate) -> (Vec<f64>, Vec<f64>) {
         let mut p = x.p.clone();
-        if self.condensed.modes.len() == 0 {
+        if self.operator.modes.len() == 0 {
             return (p, Vec::new());
         }
         problem.rebalance(&mut p);
         let zero = vec![0.0; problem.modes()];
         let fixed = problem.jump(&p, &zero);
         let rigid: Vec<f64> = x.v.iter().zip(&fixed).map(|(v, f)| v - f).collect();
-        (p, self.condensed.modes.components(&rigid))
+        (p, self.operator.modes.components(&rigid))
     }
 }
 
 /// Π W Π + κ Q Qᵀ.
-fn augment(condensed: &Condensed, kappa: f64) -> Mat<f64> {
-    let q = &condensed.modes.q;
-    let m = condensed.w.nrows();
+fn augment(operator: &ContactOperator, kappa: f64) -> Mat<f64> {
+    let q = &operator.modes.q;
+    let m = operator.w.rows();
     let wq: Vec<Vec<f64>> = q
         .iter()
         .map(|q| {
             let mut wq = vec![0.0; m];
-            mul_add(&condensed.w, q, &mut wq);
+            operator.w.apply_add(q, &mut wq);
             wq
         })
         .collect();
     // Π W Π = W − Q (W Q)ᵀ − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
-    Mat::from_fn(m, m, |i, j| {
-        let mut entry = condensed.w[(i, j)];
+    operator.w.map(&|i, j, w| {
+        let mut entry = w;
         for a in 0..q.len() {
             entry += kappa * q[a][i] * q[a][j] - q[a][i] * wq[a][j] - wq[a][i] * q[a][j];
             for b in 0..q.len() {

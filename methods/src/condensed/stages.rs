@@ -13,12 +13,15 @@ use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
 use crate::algebra::dense::solve_dense;
+use crate::algebra::dense::{along, dot};
 use crate::algebra::factor::kernel;
-use crate::algebra::floating::dot;
 use crate::algebra::spectrum::extremes;
-use crate::condensed::problem::Reduced;
+use crate::condensed::forces::Pair;
+use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
+use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map};
-use crate::contract::operator::Condensed;
+use crate::contract::operator::ContactOperator;
 use crate::error::MethodError;
 
 /// Relaxation of the sweeps that rescue a Newton method.
@@ -27,42 +30,9 @@ const RESCUE_RELAXATION: f64 = 0.8;
 /// solution than the one that was not enough.
 const RESCUE_SWEEPS: usize = 20;
 
-/// Contact forces, jump rows and rigid amplitudes that fulfil equilibrium.
-pub(crate) struct Pair {
-    pub p: Vec<f64>,
-    pub v: Vec<f64>,
-    pub beta: Vec<f64>,
-}
-
-impl Pair {
-    /// The pair every method starts from.
-    pub fn start(problem: &Reduced<'_>) -> Self {
-        let p = problem.start_forces();
-        let beta = problem.start_amplitudes(&p);
-        Self {
-            v: problem.jump(&p, &beta),
-            p,
-            beta,
-        }
-    }
-
-    /// self += ω (new − self).
-    pub fn relax(&mut self, problem: &Reduced<'_>, omega: f64, new: &Pair) {
-        let step = |x: &mut [f64], new: &[f64]| {
-            x.iter_mut()
-                .zip(new)
-                .for_each(|(x, new)| *x += omega * (new - *x));
-        };
-        step(&mut self.p, &new.p);
-        step(&mut self.v, &new.v);
-        step(&mut self.beta, &new.beta);
-        problem.rebalance(&mut self.p);
-    }
-}
-
 /// The factored global stage, bordered by the rigid motions.
 pub(crate) struct GlobalStage {
-    condensed: Arc<Condensed>,
+    operator: Arc<ContactOperator>,
     k0: f64,
     /// Cholesky factor of I + k₀ W.
     factor: Llt<f64>,
@@ -74,31 +44,23 @@ pub(crate) struct GlobalStage {
 
 impl GlobalStage {
     /// k₀ = `multiple`/√(w_min w_max).
-    pub fn new(condensed: Arc<Condensed>, multiple: f64) -> Result<Self, MethodError> {
-        // A body that is rigid at its contact points has no best direction; ρ still has the right units.
-        let best = extremes(&condensed.w, &condensed.modes)
-            .map_or(condensed.rho, |(least, most)| 1.0 / (least * most).sqrt());
-        Self::along(condensed, multiple * best)
+    pub fn new(operator: Arc<ContactOperator>, multiple: f64) -> Result<Self, MethodError> {
+        let k0 = multiple * best_direction(&operator);
+        Self::along(operator, k0)
     }
 
     /// With the given k₀ in N/m.
-    pub fn along(condensed: Arc<Condensed>, k0: f64) -> Result<Self, MethodError> {
-        let w = &condensed.w;
-        let m = w.nrows();
-        let a = Mat::from_fn(m, m, |i, j| k0 * w[(i, j)] + f64::from(u8::from(i == j)));
+    pub fn along(operator: Arc<ContactOperator>, k0: f64) -> Result<Self, MethodError> {
+        let a = (operator.w).map(&|i, j, w| k0 * w + f64::from(u8::from(i == j)));
         let factor = Llt::new(a.as_ref(), Side::Lower)
             .map_err(|e| kernel("factorisation of I + k0 W", format!("{e:?}")))?;
-        let border: Vec<Vec<f64>> = condensed
-            .modes
-            .q
-            .iter()
-            .map(|q| apply(&factor, q.clone()))
-            .collect();
+        let columns = operator.modes.q.iter();
+        let border: Vec<Vec<f64>> = columns.map(|q| apply(&factor, q.clone())).collect();
         let schur = Mat::from_fn(border.len(), border.len(), |i, j| {
-            dot(&condensed.modes.q[i], &border[j])
+            dot(&operator.modes.q[i], &border[j])
         });
         Ok(Self {
-            condensed,
+            operator,
             k0,
             factor,
             border,
@@ -112,31 +74,21 @@ impl GlobalStage {
     }
 
     /// Whether the stage was made for this operator.
-    pub fn belongs_to(&self, condensed: &Arc<Condensed>) -> bool {
-        Arc::ptr_eq(&self.condensed, condensed)
+    pub fn belongs_to(&self, operator: &Arc<ContactOperator>) -> bool {
+        Arc::ptr_eq(&self.operator, operator)
     }
 
-    /// P̂ + k₀ v̂ = 2 P̂ − z by row, and the branch of each point.
-    pub fn local_stage(&self, problem: &mut Reduced<'_>, pair: &Pair) -> (Vec<f64>, Vec<Branch>) {
-        problem.counters.local_solves += problem.rows.points();
-        let z: Vec<f64> = pair
-            .p
-            .iter()
-            .zip(&pair.v)
-            .map(|(p, v)| p - self.k0 * v)
-            .collect();
-        let mut p_hat = z.clone();
-        let branches = (0..problem.rows.points())
-            .map(|i| return_map(problem.friction(i), &mut p_hat[problem.rows.of(i)]))
-            .collect();
-        (
-            p_hat.iter().zip(&z).map(|(p, z)| 2.0 * p - z).collect(),
-            branches,
-        )
+    /// The [local stage](local_stage) along this direction.
+    pub fn local_stage(
+        &self,
+        problem: &mut ContactProblem<'_>,
+        pair: &Pair,
+    ) -> (Vec<f64>, Vec<Branch>) {
+        local_stage(self.k0, problem, pair)
     }
 
     /// The pair with P + k₀ v = `target`; `None` if the rigid motions move no row.
-    pub fn global_stage(&self, problem: &Reduced<'_>, target: &[f64]) -> Option<Pair> {
+    pub fn global_stage(&self, problem: &ContactProblem<'_>, target: &[f64]) -> Option<Pair> {
         let rhs = target
             .iter()
             .zip(&problem.q)
@@ -164,26 +116,87 @@ impl GlobalStage {
 /// A pair out of the reach of a singular tangent or a cycle: sweeps of both stages from the start of the increment.
 ///
 /// Not from the iterate that failed: a floating block it has pushed far down a slope slides on from there.
-pub(crate) fn rescue(problem: &mut Reduced<'_>) -> Result<Option<Pair>, MethodError> {
+pub(crate) fn rescue(problem: &mut ContactProblem<'_>) -> Result<Option<Pair>, MethodError> {
     alternate(problem, RESCUE_SWEEPS << problem.earlier_rescues())
 }
 
-/// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row.
+/// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row. Where W is
+/// not formed, neither is I + k₀ W: the matrix of the whole body takes its place.
 pub(crate) fn alternate(
-    problem: &mut Reduced<'_>,
+    problem: &mut ContactProblem<'_>,
     sweeps: usize,
 ) -> Result<Option<Pair>, MethodError> {
     let mut pair = Pair::start(problem);
-    let stage = GlobalStage::new(problem.condensed.clone(), 1.0)?;
-    problem.counters.factorisations += 1;
+    let k0 = best_direction(&problem.operator);
+    if problem.operator.w.formed() {
+        let stage = GlobalStage::along(problem.operator.clone(), k0)?;
+        problem.counters.factorisations += 1;
+        for _ in 0..sweeps {
+            let (target, _) = local_stage(k0, problem, &pair);
+            let Some(new) = stage.global_stage(problem, &target) else {
+                return Ok(None);
+            };
+            pair.relax(problem, RESCUE_RELAXATION, &new);
+        }
+        return Ok(Some(pair));
+    }
+    let body = WholeBody::explicit(problem.increment.system)?;
+    let Some(stage) = body.factorise(problem, &stage_rows(k0, problem, &pair, &pair.p))? else {
+        return Ok(None);
+    };
     for _ in 0..sweeps {
-        let (target, _) = stage.local_stage(problem, &pair);
-        let Some(new) = stage.global_stage(problem, &target) else {
+        let (target, _) = local_stage(k0, problem, &pair);
+        let mut rows = stage_rows(k0, problem, &pair, &target);
+        let Some(step) = stage.step(problem, &pair.p, &mut rows) else {
             return Ok(None);
         };
-        pair.relax(problem, RESCUE_RELAXATION, &new);
+        let (p, beta) = (
+            along(&pair.p, 1.0, &step.p),
+            along(&pair.beta, 1.0, &step.beta),
+        );
+        let v = problem.jump(&p, &beta);
+        pair.relax(problem, RESCUE_RELAXATION, &Pair { p, v, beta });
     }
     Ok(Some(pair))
+}
+
+/// The best k₀ in N/m, 1/√(w_min w_max). A body that is rigid at its contact points has none; ρ still has the right units.
+fn best_direction(operator: &ContactOperator) -> f64 {
+    extremes(&*operator.w, &operator.modes)
+        .map_or(operator.rho, |(least, most)| 1.0 / (least * most).sqrt())
+}
+
+/// P̂ + k₀ v̂ = 2 P̂ − z by row, and the branch of each point.
+fn local_stage(k0: f64, problem: &mut ContactProblem<'_>, pair: &Pair) -> (Vec<f64>, Vec<Branch>) {
+    problem.counters.local_solves += problem.rows.points();
+    let z: Vec<f64> = (pair.p.iter().zip(&pair.v))
+        .map(|(p, v)| p - k0 * v)
+        .collect();
+    let mut p_hat = z.clone();
+    let branches = (0..problem.rows.points())
+        .map(|i| return_map(problem.friction(i), &mut p_hat[problem.rows.of(i)]))
+        .collect();
+    let target = p_hat.iter().zip(&z).map(|(p, z)| 2.0 * p - z);
+    (target.collect(), branches)
+}
+
+/// The global stage as rows of a step of the whole body: δP + k₀ δv = target − P − k₀ v.
+fn stage_rows(
+    k0: f64,
+    problem: &ContactProblem<'_>,
+    pair: &Pair,
+    target: &[f64],
+) -> Vec<[PointRow; 3]> {
+    let of_point = |own: std::ops::Range<usize>| {
+        let mut rows = [0.0; 3].map(PointRow::reading);
+        for (l, k) in own.enumerate() {
+            rows[l].a[l] = 1.0;
+            rows[l].c[l] = k0;
+            rows[l].h = pair.p[k] + k0 * pair.v[k] - target[k];
+        }
+        rows
+    };
+    problem.rows.iter().map(of_point).collect()
 }
 
 fn apply(factor: &Llt<f64>, mut x: Vec<f64>) -> Vec<f64> {

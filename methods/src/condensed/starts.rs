@@ -4,16 +4,16 @@
 //! have several solutions, and which one a method finds depends on where it starts. A method that finds different ones has
 //! solved the problem, but its answer is not *the* answer.
 
-use crate::Enforcement;
-use crate::algebra::dense::{minus, solve_dense};
-use crate::algebra::factor::norm;
-use crate::condensed::problem::{Begin, Reduced};
+use crate::algebra::dense::minus;
+use crate::algebra::dense::norm;
+use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::{Begin, ContactProblem};
 use crate::contract::judge::residuals;
+use crate::contract::operator::DelassusForm;
+use crate::contract::registry::Enforcement;
 use crate::contract::state::{Claim, ContactState, Silent, Status};
 use crate::contract::system::Increment;
 use crate::error::MethodError;
-use crate::newton::iteration::RIDGE;
-use faer::Mat;
 
 /// Contact forces to start from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +60,9 @@ impl Uniqueness {
     }
 }
 
+/// Regularisation of a singular tangent of redundant points, relative to 1/ρ: it picks one of the possible P.
+pub(crate) const RIDGE: f64 = 1e-10;
+
 /// Solutions are different if their forces differ by more than this multiple of the tolerance, relative to the reference
 /// force: the condition of the problem enlarges what the tolerance leaves open.
 const DIFFERENT: f64 = 1e4;
@@ -76,15 +79,15 @@ pub fn from_all_starts(
     method: &mut dyn Enforcement,
     increment: &Increment<'_>,
 ) -> Result<(Uniqueness, Vec<ContactState>), MethodError> {
-    let problem = match Reduced::begin(increment, |_| Claim::Exact)? {
+    let problem = match ContactProblem::begin(increment, DelassusForm::Formed, |_| Claim::Exact)? {
         Begin::Contact(problem) => Some(problem),
         Begin::Done(_) => None,
     };
     let mut states: Vec<ContactState> = Vec::new();
     let (mut failed, mut broken) = (None, false);
     for start in Start::ALL {
-        let Some(p) = forces(start, increment, problem.as_ref()) else {
-            failed = failed.or(problem.as_ref().map(Reduced::singular));
+        let Some(p) = forces(start, increment, problem.as_deref()) else {
+            failed = failed.or(problem.as_deref().map(ContactProblem::singular));
             continue;
         };
         let guess = ContactState {
@@ -128,7 +131,7 @@ pub fn from_all_starts(
 fn forces(
     start: Start,
     increment: &Increment<'_>,
-    problem: Option<&Reduced<'_>>,
+    problem: Option<&ContactProblem<'_>>,
 ) -> Option<Vec<f64>> {
     match (start, problem) {
         (Start::Stick, Some(problem)) => Some(problem.all_forces(&tied_forces(problem)?)),
@@ -142,25 +145,27 @@ fn forces(
 
 /// P of W P + Q β = −q, Qᵀ P = c: all points tied. Redundant points make W singular; 1e-10/ρ on its diagonal then picks one
 /// of the possible P. `None` if that does not help.
-pub(crate) fn tied_forces(problem: &Reduced<'_>) -> Option<Vec<f64>> {
-    let m = problem.len();
-    let (modes, rho) = (&problem.condensed.modes.q, problem.condensed.rho);
-    let size = m + modes.len();
-    let bordered = |ridge: f64| {
-        Mat::from_fn(size, size, |i, j| match (i < m, j < m) {
-            (true, true) if i == j => rho * problem.condensed.w[(i, i)] + ridge,
-            (true, true) => rho * problem.condensed.w[(i, j)],
-            (true, false) => modes[j - m][i],
-            (false, true) => modes[i - m][j],
-            (false, false) => 0.0,
-        })
+pub(crate) fn tied_forces(problem: &ContactProblem<'_>) -> Option<Vec<f64>> {
+    let rho = problem.operator.rho;
+    let (all, scaled): (Vec<usize>, Vec<f64>) = (
+        (0..problem.len()).collect(),
+        problem.q.iter().map(|q| -rho * q).collect(),
+    );
+    let tied = |ridge: f64| {
+        let blocks = |value: f64| {
+            let points = problem.rows.by_row().into_iter().enumerate();
+            let unit = points.map(move |(k, own)| {
+                let mut row = [0.0; 3];
+                row[k - own.start] = value;
+                row
+            });
+            unit.collect::<Vec<_>>()
+        };
+        let (a, c) = (blocks(ridge), blocks(rho));
+        let system = Bordered::new(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        system.solve(&scaled, &problem.balance).map(|x| x.0)
     };
-    let mut rhs: Vec<f64> = problem.q.iter().map(|q| -rho * q).collect();
-    rhs.extend(&problem.balance);
-    let solution = solve_dense(&bordered(0.0), &rhs);
-    let mut solution = solution.or_else(|| solve_dense(&bordered(RIDGE), &rhs))?;
-    solution.truncate(m);
-    Some(solution)
+    tied(0.0).or_else(|| tied(RIDGE))
 }
 
 #[cfg(test)]
@@ -187,7 +192,10 @@ mod tests {
             index: 0,
             tolerance: 1e-9,
         };
-        let Begin::Contact(problem) = Reduced::begin(&increment, |_| Claim::Exact).unwrap() else {
+        let Begin::Contact(problem) =
+            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
+                .unwrap()
+        else {
             panic!("the points close");
         };
         let p = forces(Start::Stick, &increment, Some(&problem)).unwrap();

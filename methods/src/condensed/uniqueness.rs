@@ -1,6 +1,7 @@
 //! Whether a single contact point can have several solutions.
 
 use crate::contract::law::tangential_norm;
+use crate::contract::operator::DelassusForm;
 use crate::contract::system::ContactSystem;
 use crate::error::MethodError;
 
@@ -13,13 +14,14 @@ use crate::error::MethodError;
 /// # Errors
 /// Those of factorisation and condensation.
 pub fn contact_wise_margin(system: &ContactSystem) -> Result<f64, MethodError> {
-    let condensed = system.condensed()?;
+    let operator = system.operator(DelassusForm::Formed)?;
     let rows = system.row_set();
     let margin = |i: usize| {
         let own = rows.of(i);
-        let column = &condensed.w.col_as_slice(own.start)[own];
-        column[0] - system.friction()[i] * tangential_norm(column)
+        let block = operator.w.block(own.clone());
+        let column = [block[0][0], block[1][0], block[2][0]];
+        column[0] - system.friction()[i] * tangential_norm(&column[..own.len()])
     };
     let least = (0..rows.points()).map(margin).fold(f64::INFINITY, f64::min);
-    Ok(condensed.rho * least)
+    Ok(operator.rho * least)
 }

@@ -15,15 +15,16 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::FaerError;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+use faer::sparse::{Argsort, Pair as Place, SparseColMat, SymbolicSparseColMat};
 
-use crate::algebra::factor::{kernel, norm};
-use crate::contract::operator::Condensed;
-use crate::newton::b_equations::Row;
+use crate::algebra::dense::{along, norm};
+use crate::algebra::factor::kernel;
+use crate::algebra::rows::RowSet;
+use crate::condensed::forces::Pair;
+use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
+use crate::contract::elastic::Elastic;
 use crate::{ContactSystem, MethodError};
-
-/// (δP, δv) or another pair of vectors by row.
-pub(crate) type TwoVectors = (Vec<f64>, Vec<f64>);
 
 /// Largest |A x − b|/|b| of a solve that counts: a singular matrix leaves more.
 const SOLVED: f64 = 1e-6;
@@ -41,8 +42,9 @@ enum Entry {
 }
 
 /// The analysed matrix of one system.
-pub(crate) struct Global {
-    condensed: Arc<Condensed>,
+pub(crate) struct WholeBody {
+    elastic: Arc<Elastic>,
+    set: RowSet,
     explicit: bool,
     entries: Vec<Entry>,
     pattern: SymbolicSparseColMat<usize>,
@@ -57,7 +59,7 @@ pub(crate) struct Global {
     m: usize,
 }
 
-impl Global {
+impl WholeBody {
     /// The saddle-point form, for rows of any kind.
     pub fn saddle(system: &ContactSystem) -> Result<Self, MethodError> {
         Self::new(system, false)
@@ -69,15 +71,15 @@ impl Global {
     }
 
     fn new(system: &ContactSystem, explicit: bool) -> Result<Self, MethodError> {
-        let condensed = system.condensed()?;
+        let rho = system.scale()?.rho;
         let (elastic, set) = (system.elastic(), system.row_set());
         let K = elastic.stiffness().ok_or(MethodError::NoStiffness)?;
         let (n, m) = (K.size(), set.len());
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / K.diagonal(j).sqrt()).collect();
-        let sigma = condensed.rho.sqrt();
+        let sigma = rho.sqrt();
         let (mut at, mut entries) = (Vec::new(), Vec::new());
         let mut push = |row: usize, col: usize, entry: Entry| {
-            at.push(Pair { row, col });
+            at.push(Place { row, col });
             entries.push(entry);
         };
         for j in 0..n {
@@ -128,7 +130,8 @@ impl Global {
         let symbolic = SymbolicLu::try_new(pattern.as_ref())
             .map_err(|e| kernel("symbolic LU of the monolithic matrix", format!("{e:?}")))?;
         Ok(Self {
-            condensed,
+            elastic: elastic.clone(),
+            set: set.clone(),
             explicit,
             entries,
             pattern,
@@ -144,13 +147,27 @@ impl Global {
 
     /// Whether the matrix was analysed for this system.
     pub fn belongs_to(&self, system: &ContactSystem) -> bool {
-        system
-            .condensed()
-            .is_ok_and(|c| Arc::ptr_eq(&c, &self.condensed))
+        Arc::ptr_eq(system.elastic(), &self.elastic) && *system.row_set() == self.set
     }
 
-    /// (δP, δv) by row; `None` if the matrix is singular.
-    pub fn solve(&self, rows: &[[Row; 3]]) -> Result<Option<TwoVectors>, MethodError> {
+    /// The step from contact forces P that fulfils the rows, with its jump and amplitudes; `None` if the matrix is singular.
+    pub fn step(
+        &self,
+        problem: &mut ContactProblem<'_>,
+        P: &[f64],
+        rows: &mut [[PointRow; 3]],
+    ) -> Result<Option<Pair>, MethodError> {
+        let factor = self.factorise(problem, rows)?;
+        Ok(factor.and_then(|factor| factor.step(problem, P, rows)))
+    }
+
+    /// Factors the matrix of the coefficients of some rows; `None` if it is singular.
+    pub fn factorise(
+        &self,
+        problem: &mut ContactProblem<'_>,
+        rows: &[[PointRow; 3]],
+    ) -> Result<Option<WholeBodyFactor<'_>>, MethodError> {
+        problem.counters.global_factorisations += 1;
         let failed = |e: FaerError| kernel("sparse LU of the monolithic matrix", format!("{e:?}"));
         // In scaled unknowns C becomes C/ρ: B carries √ρ, and so does P.
         let rho = self.sigma * self.sigma;
@@ -167,37 +184,18 @@ impl Global {
             .collect();
         let matrix = SparseColMat::new_from_argsort(self.pattern.clone(), &self.argsort, &values)
             .map_err(failed)?;
-        let size = matrix.ncols();
-        let mut rhs = vec![0.0; size];
-        for (point, &(start, len)) in self.rows.iter().enumerate() {
-            for k in 0..len {
-                let h = rows[point][k].h / self.sigma;
-                if self.explicit {
-                    self.b[point].iter().for_each(|&(j, b)| rhs[j] -= b[k] * h);
-                } else {
-                    rhs[self.n + start + k] = -h;
-                }
-            }
+        match Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref()) {
+            Ok(lu) => Ok(Some(WholeBodyFactor {
+                body: self,
+                matrix,
+                lu,
+            })),
+            Err(LuError::SymbolicSingular { .. }) => Ok(None),
+            Err(LuError::Generic(e)) => Err(failed(e)),
         }
-        let lu = match Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref()) {
-            Ok(lu) => lu,
-            Err(LuError::SymbolicSingular { .. }) => return Ok(None),
-            Err(LuError::Generic(e)) => return Err(failed(e)),
-        };
-        let mut x = rhs.clone();
-        lu.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, size, 1));
-        let mut left = rhs.clone();
-        for j in 0..size {
-            let (rows, values) = (matrix.row_idx_of_col_raw(j), matrix.val_of_col(j));
-            for (&i, value) in rows.iter().zip(values) {
-                left[i] -= value * x[j];
-            }
-        }
-        let solved = norm(&left) <= SOLVED * norm(&rhs) && x.iter().all(|x| x.is_finite());
-        Ok(solved.then(|| self.unscaled(rows, &x)))
     }
 
-    fn unscaled(&self, rows: &[[Row; 3]], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn unscaled(&self, rows: &[[PointRow; 3]], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut dP, mut dv) = (vec![0.0; self.m], vec![0.0; self.m]);
         for (point, &(start, len)) in self.rows.iter().enumerate() {
             for k in 0..len {
@@ -215,4 +213,76 @@ impl Global {
         }
         (dP, dv)
     }
+}
+
+/// The matrix of the whole body for the coefficients of some rows, factored.
+pub(crate) struct WholeBodyFactor<'a> {
+    body: &'a WholeBody,
+    matrix: SparseColMat<usize, f64>,
+    lu: Lu<usize, f64>,
+}
+
+impl WholeBodyFactor<'_> {
+    /// The step from contact forces P that fulfils rows of the factored coefficients; `None` if the matrix is singular.
+    pub fn step(
+        &self,
+        problem: &ContactProblem<'_>,
+        P: &[f64],
+        rows: &mut [[PointRow; 3]],
+    ) -> Option<Pair> {
+        // Without balance there is no equilibrium to linearise: step from the nearest balanced forces P + Q (c − Qᵀ P).
+        let (mut lack, mut response) = (vec![0.0; P.len()], vec![0.0; P.len()]);
+        if problem.modes() > 0 {
+            problem.operator.modes.add(&problem.missing(P), &mut lack);
+            problem.operator.w.apply_add(&lack, &mut response);
+        }
+        for (own, of_point) in problem.rows.iter().zip(rows.iter_mut()) {
+            for row in of_point.iter_mut().take(own.len()) {
+                for (l, k) in own.clone().enumerate() {
+                    row.h += row.a[l] * lack[k] + row.c[l] * response[k];
+                }
+            }
+        }
+        let (dP, dv) = self.solve(rows)?;
+        let (p, v) = (along(&dP, 1.0, &lack), along(&dv, 1.0, &response));
+        let beta = amplitudes(problem, &p, v.clone());
+        Some(Pair { p, v, beta })
+    }
+
+    /// (δP, δv) by row; `None` if the matrix is singular.
+    fn solve(&self, rows: &[[PointRow; 3]]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (body, size) = (self.body, self.matrix.ncols());
+        let mut rhs = vec![0.0; size];
+        for (point, &(start, len)) in body.rows.iter().enumerate() {
+            for k in 0..len {
+                let h = rows[point][k].h / body.sigma;
+                if body.explicit {
+                    body.b[point].iter().for_each(|&(j, b)| rhs[j] -= b[k] * h);
+                } else {
+                    rhs[body.n + start + k] = -h;
+                }
+            }
+        }
+        let mut x = rhs.clone();
+        self.lu
+            .solve_in_place(MatMut::from_column_major_slice_mut(&mut x, size, 1));
+        let mut left = rhs.clone();
+        for j in 0..size {
+            let (rows, values) = (self.matrix.row_idx_of_col_raw(j), self.matrix.val_of_col(j));
+            for (&i, value) in rows.iter().zip(values) {
+                left[i] -= value * x[j];
+            }
+        }
+        let solved = norm(&left) <= SOLVED * norm(&rhs) && x.iter().all(|x| x.is_finite());
+        solved.then(|| body.unscaled(rows, &x))
+    }
+}
+
+/// δβ = Qᵀ (δv − W δP).
+fn amplitudes(problem: &ContactProblem<'_>, dP: &[f64], mut dv: Vec<f64>) -> Vec<f64> {
+    if problem.modes() > 0 {
+        let minus: Vec<f64> = dP.iter().map(|p| -p).collect();
+        problem.operator.w.apply_add(&minus, &mut dv);
+    }
+    problem.operator.modes.components(&dv)
 }

@@ -7,9 +7,9 @@
 
 use faer::Mat;
 
+use crate::algebra::dense::dot;
+use crate::algebra::dense::norm;
 use crate::algebra::dense::{minus, solve_dense};
-use crate::algebra::factor::norm;
-use crate::algebra::floating::dot;
 
 /// Ridge on the normal equations, relative to their trace: differences may depend on each other.
 const RIDGE: f64 = 1e-12;

@@ -16,7 +16,7 @@ use clarabel::solver::{
 };
 
 use crate::algebra::factor::kernel;
-use crate::condensed::problem::Reduced;
+use crate::condensed::problem::ContactProblem;
 use crate::error::MethodError;
 
 /// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
@@ -76,11 +76,11 @@ impl ConeProgram {
     ///
     /// # Errors
     /// Data clarabel refuses.
-    pub fn new(problem: &Reduced<'_>, law: Law, start: &[f64]) -> Result<Self, MethodError> {
-        let rho = problem.condensed.rho;
+    pub fn new(problem: &ContactProblem<'_>, law: Law, start: &[f64]) -> Result<Self, MethodError> {
+        let rho = problem.operator.rho;
         let force = problem.reference_force(start) / (problem.rows.points() as f64).sqrt();
         let length = force / rho;
-        let modes = &problem.condensed.modes;
+        let modes = &problem.operator.modes;
         let mut linear = problem.q.clone();
         modes.project_out(&mut linear);
         linear.iter_mut().for_each(|q| *q /= length);
@@ -167,8 +167,8 @@ impl ConeProgram {
 }
 
 impl Constraints {
-    fn new(problem: &Reduced<'_>, law: Law, force: f64) -> Self {
-        let (n, modes) = (problem.len(), &problem.condensed.modes.q);
+    fn new(problem: &ContactProblem<'_>, law: Law, force: f64) -> Self {
+        let (n, modes) = (problem.len(), &problem.operator.modes.q);
         let mut right: Vec<f64> = problem.balance.iter().map(|c| c / force).collect();
         let mut cones = vec![SupportedConeT::ZeroConeT(modes.len())];
         let mut entry = vec![None; problem.rows.points()];
@@ -218,12 +218,13 @@ impl Constraints {
 }
 
 /// Upper triangle of ρ W.
-fn upper_triangle(problem: &Reduced<'_>, rho: f64) -> CscMatrix<f64> {
-    let n = problem.len();
+fn upper_triangle(problem: &ContactProblem<'_>, rho: f64) -> CscMatrix<f64> {
+    let (n, mut work) = (problem.len(), Vec::new());
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for j in 0..n {
+        let w = problem.operator.w.column(j, &mut work);
         rows.extend(0..=j);
-        values.extend((0..=j).map(|i| rho * problem.condensed.w[(i, j)]));
+        values.extend(w[..=j].iter().map(|w| rho * w));
         starts.push(rows.len());
     }
     CscMatrix::new(n, n, starts, rows, values)
@@ -293,7 +294,10 @@ mod tests {
             index: 0,
             tolerance: 1e-9,
         };
-        let Begin::Contact(problem) = Reduced::begin(&increment, |_| Claim::Exact).unwrap() else {
+        let Begin::Contact(problem) =
+            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
+                .unwrap()
+        else {
             panic!("the load must close the contact");
         };
         let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();

@@ -42,9 +42,7 @@
 use crate::conic::cone_program::Law;
 use crate::conic::fixed_point::{FixedPoint, OPTIONS};
 use crate::contract::law::tangential_norm;
-use crate::{
-    ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome,
-};
+use crate::contract::registry::Method;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -55,32 +53,10 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("socp.rs"),
-    build: |options| Ok(Box::new(Socp::new(options))),
+    build: |options| Box::new(FixedPoint::new(options, Law::Cone, shift)),
 };
-
-struct Socp(FixedPoint);
-
-impl Socp {
-    fn new(options: &Options) -> Self {
-        Self(FixedPoint::new(options, Law::Cone, shift))
-    }
-}
 
 /// μ s of a point.
 fn shift(mu: f64, _: &[f64], v: &[f64]) -> f64 {
     mu * tangential_norm(v)
-}
-
-impl Enforcement for Socp {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        self.0.solve(increment, monitor)
-    }
 }

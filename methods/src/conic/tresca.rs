@@ -44,9 +44,7 @@
 
 use crate::conic::cone_program::Law;
 use crate::conic::fixed_point::{FixedPoint, OPTIONS};
-use crate::{
-    ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome,
-};
+use crate::contract::registry::Method;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -57,32 +55,10 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("tresca.rs"),
-    build: |options| Ok(Box::new(Tresca::new(options))),
+    build: |options| Box::new(FixedPoint::new(options, Law::Bound, bound)),
 };
-
-struct Tresca(FixedPoint);
-
-impl Tresca {
-    fn new(options: &Options) -> Self {
-        Self(FixedPoint::new(options, Law::Bound, bound))
-    }
-}
 
 /// g of a point.
 fn bound(mu: f64, P: &[f64], _: &[f64]) -> f64 {
     mu * P[0].max(0.0)
-}
-
-impl Enforcement for Tresca {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        self.0.solve(increment, monitor)
-    }
 }

@@ -4,16 +4,14 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use faer::Mat;
-
-use crate::algebra::factor::{Factor, norm};
-use crate::algebra::floating::{ModeJumps, pins};
+use crate::algebra::delassus::Dense;
+use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
-use crate::algebra::{delassus, ordering};
-use crate::contract::judge::ratio;
-use crate::contract::operator::{Condensed, RowSet};
+use crate::algebra::rows::RowSet;
+use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
+use crate::contract::operator::{ContactOperator, Scale};
+use crate::contract::tractions::Tractions;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
-use crate::own_laws::stabilisation::Tractions;
 
 /// What a discretisation hands over.
 #[derive(Debug, Clone)]
@@ -45,7 +43,9 @@ pub struct ElasticCounters {
     pub factorisations: usize,
     /// Solves with the factor; refinement steps belong to the solve they refine.
     pub solves: usize,
-    /// Condensations to the contact points (0 or 1).
+    /// Products with a Delassus operator that is not formed, one solve each.
+    pub products: usize,
+    /// Condensations to the contact points (0 or 1): how often the Delassus operator was formed.
     pub condensations: usize,
 }
 
@@ -62,31 +62,22 @@ pub struct ElasticTimings {
     pub traction_s: f64,
 }
 
-/// How displacements follow from forces.
-enum Response {
-    /// K u = f.
-    Stiffness {
-        k: SymmetricMatrix,
-        order: Vec<usize>,
-        factor: Box<OnceLock<Result<Factor, MethodError>>>,
-    },
-    /// u = W f: the unknowns are the jumps themselves.
-    Compliance(SymmetricMatrix),
-}
-
 /// The elastic body, shared by all systems on it through an [`Arc`]. The factor of K and the Delassus operator are
 /// computed on first use.
 pub struct Elastic {
     dim: usize,
-    response: Response,
+    stiffness: Box<dyn Stiffness>,
     jump: JumpOperator,
     weight: Vec<f64>,
     floating: Vec<Vec<f64>>,
     frictionless: bool,
     traction: Option<JumpOperator>,
-    condensed: OnceLock<Result<(Arc<Condensed>, f64), MethodError>>,
+    diagonal: OnceLock<Result<Vec<f64>, MethodError>>,
+    delassus: OnceLock<Result<(Arc<Dense>, f64), MethodError>>,
+    condensed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
     tractions: OnceLock<Result<(Arc<Tractions>, f64), MethodError>>,
     solves: AtomicUsize,
+    products: AtomicUsize,
 }
 
 impl std::fmt::Debug for Elastic {
@@ -120,31 +111,29 @@ impl Elastic {
                 });
             }
         }
-        for mode in &parts.floating {
-            check_len("floating mode", mode.len(), n)?;
-            check_finite("floating mode", mode)?;
-        }
-        pins(&parts.stiffness, &parts.floating)?;
+        let points = parts.weight.len();
+        check_contact(parts.dim, n, &parts.jump, &parts.weight, &parts.floating)?;
         if let Some(traction) = &parts.traction {
             check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
             check_len("traction operator columns", traction.cols(), n)?;
         }
-        Self::checked(Self {
-            dim: parts.dim,
-            response: Response::Stiffness {
-                k: parts.stiffness,
-                order: parts.order,
-                factor: Box::default(),
-            },
-            jump: parts.jump,
-            weight: parts.weight,
-            floating: parts.floating,
+        let rows = condensed_rows(parts.dim, points, parts.frictionless);
+        let entries = rows.source.iter().flat_map(|&i| parts.jump.row(i));
+        let contact = entries.filter(|(_, b)| *b != 0.0).map(|(j, _)| j);
+        let stiffness =
+            SparseStiffness::new(parts.stiffness, parts.order, &parts.floating, contact)?;
+        check_motions(&parts.jump, &parts.floating)?;
+        Ok(Arc::new(Self {
             frictionless: parts.frictionless,
             traction: parts.traction,
-            condensed: OnceLock::new(),
-            tractions: OnceLock::new(),
-            solves: AtomicUsize::new(0),
-        })
+            ..Self::behind(
+                Box::new(stiffness),
+                parts.dim,
+                parts.jump,
+                parts.weight,
+                parts.floating,
+            )
+        }))
     }
 
     /// A body known at its contact points only, by its Delassus operator W (`dim` rows per point, in m/N) and the
@@ -167,47 +156,37 @@ impl Elastic {
                 allowed: "not negative",
             });
         }
-        for mode in &floating {
-            check_len("floating mode", mode.len(), m)?;
-            check_finite("floating mode", mode)?;
-        }
-        Self::checked(Self {
+        let (jump, weight) = (JumpOperator::identity(m), vec![1.0; m / dim.max(1)]);
+        check_contact(dim, m, &jump, &weight, &floating)?;
+        check_motions(&jump, &floating)?;
+        let stiffness = Box::new(DelassusOnly::new(w, &jump, &floating));
+        Ok(Arc::new(Self::behind(
+            stiffness, dim, jump, weight, floating,
+        )))
+    }
+
+    fn behind(
+        stiffness: Box<dyn Stiffness>,
+        dim: usize,
+        jump: JumpOperator,
+        weight: Vec<f64>,
+        floating: Vec<Vec<f64>>,
+    ) -> Self {
+        Self {
             dim,
-            response: Response::Compliance(w),
-            jump: JumpOperator::identity(m),
-            weight: vec![1.0; m / dim.max(1)],
+            stiffness,
+            jump,
+            weight,
             floating,
             frictionless: false,
             traction: None,
+            diagonal: OnceLock::new(),
+            delassus: OnceLock::new(),
             condensed: OnceLock::new(),
             tractions: OnceLock::new(),
             solves: AtomicUsize::new(0),
-        })
-    }
-
-    /// What both kinds of body must fulfil.
-    fn checked(self) -> Result<Arc<Self>, MethodError> {
-        if !(self.dim == 2 || self.dim == 3) {
-            return Err(MethodError::Range {
-                what: "dimension",
-                index: 0,
-                value: self.dim as f64,
-                allowed: "2 or 3",
-            });
+            products: AtomicUsize::new(0),
         }
-        check_len(
-            "jump operator rows",
-            self.jump.rows(),
-            self.dim * self.weight.len(),
-        )?;
-        check_len("jump operator columns", self.jump.cols(), self.unknowns())?;
-        check_positive("weight", self.weight.iter().copied())?;
-        let all: Vec<usize> = (0..self.jump.rows()).collect();
-        let free = ModeJumps::new(&self.jump, &all, &self.floating).free;
-        if free > 0 {
-            return Err(MethodError::FreeRigidMotion { modes: free });
-        }
-        Ok(Arc::new(self))
     }
 
     /// Space dimension.
@@ -222,18 +201,12 @@ impl Elastic {
 
     /// Number of unknowns n.
     pub fn unknowns(&self) -> usize {
-        match &self.response {
-            Response::Stiffness { k, .. } => k.size(),
-            Response::Compliance(w) => w.size(),
-        }
+        self.stiffness.unknowns()
     }
 
     /// Stiffness K; `None` if only the Delassus operator is known.
     pub fn stiffness(&self) -> Option<&SymmetricMatrix> {
-        match &self.response {
-            Response::Stiffness { k, .. } => Some(k),
-            Response::Compliance(_) => None,
-        }
+        self.stiffness.matrix()
     }
 
     /// Jump operator B with all `dim` rows per point.
@@ -264,24 +237,32 @@ impl Elastic {
     /// Work done so far.
     pub fn counters(&self) -> ElasticCounters {
         ElasticCounters {
-            factorisations: usize::from(self.factor_cell().is_some_and(|f| f.get().is_some())),
+            factorisations: self.stiffness.factorisations().0,
             solves: self.solves.load(Relaxed),
-            condensations: usize::from(self.condensed.get().is_some()),
+            products: self.products.load(Relaxed),
+            condensations: usize::from(self.delassus.get().is_some()),
         }
     }
 
     /// Times of the work done so far.
     pub fn timings(&self) -> ElasticTimings {
-        let factor = self.factor_cell().and_then(OnceLock::get);
-        let factor = factor.and_then(|f| f.as_ref().ok());
-        let condensed = self.condensed.get().and_then(|c| c.as_ref().ok());
+        let (_, analysis_s, factorisation_s) = self.stiffness.factorisations();
+        let condensed = self.delassus.get().and_then(|w| w.as_ref().ok());
         let tractions = self.tractions.get().and_then(|t| t.as_ref().ok());
         ElasticTimings {
-            analysis_s: factor.map_or(0.0, |f| f.analysis_s),
-            factorisation_s: factor.map_or(0.0, |f| f.factorisation_s),
+            analysis_s,
+            factorisation_s,
             condensation_s: condensed.map_or(0.0, |c| c.1),
             traction_s: tractions.map_or(0.0, |t| t.1),
         }
+    }
+
+    /// Factors K unless that is done.
+    ///
+    /// # Errors
+    /// K not positive definite apart from the given rigid motions; out of memory.
+    pub fn factorise(&self) -> Result<(), MethodError> {
+        self.stiffness.factorise()
     }
 
     /// Solves K x = f in place, with iterative refinement. Where the body floats, f must balance (Rᵀ f = 0) and the
@@ -291,114 +272,78 @@ impl Elastic {
     /// Wrong length; the errors of the first factorisation.
     pub fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
         check_len("right-hand side", x.len(), self.unknowns())?;
-        match &self.response {
-            Response::Stiffness { k, .. } => self.factor()?.solve(k, x),
-            Response::Compliance(w) => {
-                let f = x.to_vec();
-                w.mul(&f, x);
-                Ok(())
-            }
-        }?;
+        self.stiffness.solve(x)?;
         self.solves.fetch_add(1, Relaxed);
         Ok(())
     }
 
-    /// Solves K X = F in place for all columns together, without refinement. Forces at pinned unknowns count as 0.
-    pub(crate) fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
-        self.factor()?.solve_columns(x)?;
-        self.solves.fetch_add(x.ncols(), Relaxed);
-        Ok(())
-    }
-
-    /// Backward error of equilibrium between displacements and the sum of some forces:
-    /// |K u − Σ f| / (Σ |f| + ||K| |u||). With the Delassus operator alone: |u − W Σ f| / (|u| + ||W| |Σ f||), up to
-    /// rigid motions, or |Qᵀ Σ f| / Σ |f| if that is larger, Q an orthonormal basis of the rigid motions.
+    /// Backward error of equilibrium between displacements and the sum of some forces.
     pub(crate) fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
-        let n = u.len();
-        let sum = |j: usize| forces.iter().map(|f| f[j]).sum::<f64>();
-        let mut work = vec![0.0; n];
-        let (residual, scale): (Vec<f64>, f64) = match &self.response {
-            Response::Stiffness { k, .. } => {
-                k.mul(u, &mut work);
-                let residual = (0..n).map(|j| work[j] - sum(j)).collect();
-                k.mul_abs(u, &mut work);
-                let forces: f64 = forces.iter().map(|f| norm(f)).sum();
-                (residual, forces + norm(&work))
-            }
-            Response::Compliance(w) => {
-                let total: Vec<f64> = (0..n).map(sum).collect();
-                w.mul(&total, &mut work);
-                let mut residual: Vec<f64> = u.iter().zip(&work).map(|(u, w)| u - w).collect();
-                let all: Vec<usize> = (0..n).collect();
-                let modes = ModeJumps::new(&self.jump, &all, &self.floating);
-                modes.project_out(&mut residual);
-                w.mul_abs(&total, &mut work);
-                let deformation = ratio(norm(&residual), norm(u) + norm(&work));
-                // W knows nothing of the rigid motions: that no force is left to drive them is a condition of its own.
-                let size: f64 = forces.iter().map(|f| norm(f)).sum();
-                return deformation.max(ratio(norm(&modes.components(&total)), size));
-            }
-        };
-        ratio(norm(&residual), scale)
+        self.stiffness.imbalance(u, forces)
     }
 
     /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
     pub(crate) fn local_compliance(&self, rows: &[usize]) -> f64 {
-        match &self.response {
-            Response::Stiffness { k, .. } => (rows.iter())
-                .flat_map(|&i| self.jump.row(i))
-                .map(|(j, b)| b * b / k.diagonal(j))
-                .sum(),
-            Response::Compliance(w) => rows.iter().map(|&i| w.diagonal(i)).sum(),
-        }
+        self.stiffness.local_compliance(&self.jump, rows)
     }
 
-    /// Factors K unless that is done.
-    ///
-    /// # Errors
-    /// K not positive definite apart from the given rigid motions; out of memory.
-    pub fn factorise(&self) -> Result<(), MethodError> {
-        match &self.response {
-            Response::Stiffness { .. } => self.factor().map(|_| ()),
-            Response::Compliance(_) => Ok(()),
-        }
+    /// Rows that are condensed.
+    pub(crate) fn rows(&self) -> RowSet {
+        condensed_rows(self.dim, self.points(), self.frictionless)
     }
 
-    fn factor_cell(&self) -> Option<&OnceLock<Result<Factor, MethodError>>> {
-        match &self.response {
-            Response::Stiffness { factor, .. } => Some(factor),
-            Response::Compliance(_) => None,
-        }
+    /// The diagonal of W on some of [`rows`](Self::rows). W is not formed for it.
+    pub(crate) fn diagonal(&self, rows: &RowSet) -> Result<Vec<f64>, MethodError> {
+        let all = self.rows();
+        let build = || self.stiffness.delassus_diagonal(&self.jump, &all.source);
+        let diagonal = self.diagonal.get_or_init(build);
+        let diagonal = diagonal.as_ref().map_err(Clone::clone)?;
+        let places = rows.positions_in(&all);
+        Ok(places.into_iter().map(|k| diagonal[k]).collect())
     }
 
-    /// The factor, computed on first use.
-    pub(crate) fn factor(&self) -> Result<&Factor, MethodError> {
-        match &self.response {
-            Response::Stiffness { k, order, factor } => factor
-                .get_or_init(|| self.new_factor(k, order))
-                .as_ref()
-                .map_err(Clone::clone),
-            Response::Compliance(_) => Err(MethodError::NoStiffness),
+    /// v += W p on some rows by one solve; W is not formed for it.
+    pub(crate) fn product_add(&self, rows: &RowSet, p: &[f64], v: &mut [f64]) {
+        let mut u = vec![0.0; self.unknowns()];
+        let all = self.jump.rows();
+        (self.jump).mul_transpose_add(&rows.extend(p, all), &mut u);
+        self.products.fetch_add(1, Relaxed);
+        if self.stiffness.solve(&mut u).is_err() {
+            // Only a body that cannot be factored, or no memory for a vector: what no judge accepts.
+            v.fill(f64::NAN);
+            return;
         }
+        let mut jump = vec![0.0; all];
+        self.jump.mul(&u, &mut jump);
+        let moved = rows.source.iter().map(|&i| jump[i]);
+        v.iter_mut().zip(moved).for_each(|(v, jump)| *v += jump);
     }
 
-    fn new_factor(&self, k: &SymmetricMatrix, order: &[usize]) -> Result<Factor, MethodError> {
-        let pins = pins(k, &self.floating)?;
-        let clock = Instant::now();
-        let mut in_contact = vec![false; k.size()];
-        for &i in &self.rows().source {
-            for (j, b) in self.jump.row(i) {
-                in_contact[j] |= b != 0.0;
-            }
-        }
-        let ordering = ordering::contact_last(k, order, &in_contact);
-        let ordering_s = clock.elapsed().as_secs_f64();
-        let mut factor = Factor::new(k, ordering, pins)?;
-        factor.analysis_s += ordering_s;
-        Ok(factor)
+    /// W on [`rows`](Self::rows), formed unless it exists.
+    pub(crate) fn formed(&self) -> Result<Arc<Dense>, MethodError> {
+        let build = || {
+            self.factorise()?;
+            let clock = Instant::now();
+            let rows = self.rows();
+            let (w, diagonal) = self.stiffness.delassus(&self.jump, &rows.source)?;
+            self.diagonal.get_or_init(|| Ok(diagonal));
+            Ok((Arc::new(Dense::new(w)), clock.elapsed().as_secs_f64()))
+        };
+        let formed = self.delassus.get_or_init(build).as_ref();
+        formed.map(|w| w.0.clone()).map_err(Clone::clone)
     }
 
-    /// The Delassus operator W = B K⁻¹ Bᵀ, computed unless it exists: `dim` rows per point, in m/N (2D: m²/N); where the body
+    /// The operator on [`rows`](Self::rows) with W formed, shared by all systems that use them all.
+    pub(crate) fn condensed(&self) -> Result<Arc<ContactOperator>, MethodError> {
+        let build = || {
+            let w = self.formed()?;
+            let scale = Scale::new(self, &self.rows())?;
+            Ok(Arc::new(ContactOperator::new(w, &scale)))
+        };
+        self.condensed.get_or_init(build).clone()
+    }
+
+    /// The Delassus operator W = B K⁻¹ Bᵀ, formed unless it exists: `dim` rows per point, in m/N (2D: m²/N); where the body
     /// floats, that of the body held at the pinned unknowns.
     ///
     /// # Errors
@@ -407,38 +352,7 @@ impl Elastic {
         if self.frictionless {
             return Err(MethodError::NoTangentialRows);
         }
-        delassus::lower(&self.condensed()?.w)
-    }
-
-    /// Rows that are condensed.
-    pub(crate) fn rows(&self) -> RowSet {
-        let components = if self.frictionless { 1 } else { self.dim };
-        RowSet::new(self.dim, &vec![components; self.points()])
-    }
-
-    /// The Delassus operator on [`rows`](Self::rows), computed unless it exists.
-    pub(crate) fn condensed(&self) -> Result<Arc<Condensed>, MethodError> {
-        let build = || {
-            let rows = self.rows();
-            let (w, clock) = match &self.response {
-                Response::Stiffness { .. } => {
-                    let factor = self.factor()?;
-                    let clock = Instant::now();
-                    (delassus::condense(factor, &self.jump, &rows.source)?, clock)
-                }
-                Response::Compliance(w) => {
-                    let clock = Instant::now();
-                    (delassus::dense(w)?, clock)
-                }
-            };
-            let condensed = Condensed::new(self, w, &rows)?;
-            Ok((Arc::new(condensed), clock.elapsed().as_secs_f64()))
-        };
-        self.condensed
-            .get_or_init(build)
-            .as_ref()
-            .map(|c| c.0.clone())
-            .map_err(Clone::clone)
+        self.formed()?.lower()
     }
 
     /// The condensed traction operator on [`rows`](Self::rows), computed unless it exists.
@@ -446,13 +360,53 @@ impl Elastic {
         let build = || {
             self.factorise()?;
             let clock = Instant::now();
-            let tractions = Tractions::new(self)?;
+            let s = self.traction().ok_or(MethodError::NoTraction)?;
+            let rows = self.rows().source;
+            let tractions = Tractions::new(&*self.stiffness, s, &self.jump, &rows)?;
+            self.solves.fetch_add(rows.len(), Relaxed);
             Ok((Arc::new(tractions), clock.elapsed().as_secs_f64()))
         };
-        self.tractions
-            .get_or_init(build)
-            .as_ref()
-            .map(|t| t.0.clone())
-            .map_err(Clone::clone)
+        let tractions = self.tractions.get_or_init(build).as_ref();
+        tractions.map(|t| t.0.clone()).map_err(Clone::clone)
+    }
+}
+
+/// All rows of every point, or the normal ones where there will be no friction.
+fn condensed_rows(dim: usize, points: usize, frictionless: bool) -> RowSet {
+    RowSet::new(dim, &vec![if frictionless { 1 } else { dim }; points])
+}
+
+/// What bodies of any kind must fulfil.
+fn check_contact(
+    dim: usize,
+    unknowns: usize,
+    jump: &JumpOperator,
+    weight: &[f64],
+    floating: &[Vec<f64>],
+) -> Result<(), MethodError> {
+    if !(dim == 2 || dim == 3) {
+        return Err(MethodError::Range {
+            what: "dimension",
+            index: 0,
+            value: dim as f64,
+            allowed: "2 or 3",
+        });
+    }
+    check_len("jump operator rows", jump.rows(), dim * weight.len())?;
+    check_len("jump operator columns", jump.cols(), unknowns)?;
+    check_positive("weight", weight.iter().copied())?;
+    for mode in floating {
+        check_len("floating mode", mode.len(), unknowns)?;
+        check_finite("floating mode", mode)?;
+    }
+    Ok(())
+}
+
+/// Refuses rigid motions that no contact law can hold.
+fn check_motions(jump: &JumpOperator, floating: &[Vec<f64>]) -> Result<(), MethodError> {
+    let all: Vec<usize> = (0..jump.rows()).collect();
+    match ModeJumps::new(jump, &all, floating).free {
+        0 => Ok(()),
+        modes => Err(MethodError::FreeRigidMotion { modes }),
     }
 }

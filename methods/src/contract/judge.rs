@@ -1,10 +1,10 @@
 //! The judge: how well a state fulfils equilibrium and contact law, whatever method produced it.
 
-use crate::algebra::dense::mul_add;
-use crate::algebra::factor::norm;
+use crate::algebra::dense::{norm, ratio};
+use crate::algebra::rows::RowSet;
 use crate::contract::barrier_law::BarrierLaw;
 use crate::contract::law::{natural_map_squared, return_map, tangential_norm};
-use crate::contract::operator::{Condensed, RowSet};
+use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState};
 use crate::contract::system::Increment;
 use crate::error::{MethodError, check_finite, check_len};
@@ -49,7 +49,7 @@ pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, Metho
 /// computed from `s.u`; nothing a method reports is trusted.
 ///
 /// Without contact forces and penetration the contact laws hold for any scale, so the natural map is 0 and the body is
-/// not condensed.
+/// not even factored further.
 ///
 /// # Errors
 /// Arrays of the wrong length or with non-finite entries; a claim of Nitsche's laws on a body without traction
@@ -80,17 +80,18 @@ pub fn residuals_of(
         return Ok(result);
     }
 
-    let condensed = system.condensed()?;
-    let rows = system.row_set();
+    // W is not formed to judge: one product, which is one solve, and the trace in ρ.
+    let operator = system.operator(DelassusForm::Products)?;
+    let (rho, rows) = (operator.rho, system.row_set());
     let v = slip_from(rows, dim, &jump, &i.start_jump());
     let p = rows.restrict(&s.p);
     let mut q = rows.restrict(&jump);
     let mut wp = vec![0.0; q.len()];
-    mul_add(&condensed.w, &p, &mut wp);
+    operator.w.apply_add(&p, &mut wp);
     q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
-    let free = free_jump(i, &condensed, &q, &condensed.modes.components(&p));
-    let p_ref = reference_force(&condensed, &p, free);
-    let u_ref = p_ref / condensed.rho;
+    let free = free_jump(i, &operator, &q, &operator.modes.components(&p));
+    let p_ref = reference_force(rho, &p, free);
+    let u_ref = p_ref / rho;
 
     for point in 0..rows.points() {
         let (p, v, mu) = (
@@ -121,8 +122,7 @@ pub fn residuals_of(
         );
     }
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
-    let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &v)
-        .hypot(forbidden.max(0.0).sqrt());
+    let e = natural_map_norm(system.friction(), rows, rho, &p, &v).hypot(forbidden.max(0.0).sqrt());
     result.natural_map = ratio(e, p_ref);
     result.claimed = match claim {
         Claim::Exact => result.natural_map,
@@ -136,7 +136,7 @@ pub fn residuals_of(
                     (p[k] - i.start.p[row]) / tangential
                 };
             }
-            let e = natural_map_norm(system.friction(), rows, condensed.rho, &p, &stretched);
+            let e = natural_map_norm(system.friction(), rows, rho, &p, &stretched);
             ratio(e, p_ref)
         }
         Claim::Barrier {
@@ -152,7 +152,7 @@ pub fn residuals_of(
             let square = |i: usize| {
                 let own = rows.of(i);
                 let mu = system.friction()[i];
-                law.mismatch_squared(mu, condensed.rho, &p[own.clone()], &v[own])
+                law.mismatch_squared(mu, rho, &p[own.clone()], &v[own])
             };
             ratio((0..rows.points()).map(square).sum::<f64>().sqrt(), p_ref)
         }
@@ -220,11 +220,6 @@ fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64,
     Ok(elastic.imbalance(&s.u, &[&i.load.force, &contact, &further]))
 }
 
-/// x / reference with 0/0 = 0.
-pub(crate) fn ratio(x: f64, reference: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { x / reference }
-}
-
 /// Rows (g, d): normal gap, and tangential jump since the start of the increment.
 pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) -> Vec<f64> {
     rows.source
@@ -260,25 +255,25 @@ pub(crate) fn natural_map_norm(
 /// starts from takes its place, the larger of |P|/ρ and the jump.
 pub(crate) fn free_jump(
     i: &Increment<'_>,
-    condensed: &Condensed,
+    operator: &ContactOperator,
     q: &[f64],
     balance: &[f64],
 ) -> f64 {
     if i.unloaded() {
-        return (norm(&i.start.p) / condensed.rho).max(norm(&i.start_jump()));
+        return (norm(&i.start.p) / operator.rho).max(norm(&i.start_jump()));
     }
     if balance.is_empty() {
         return norm(q);
     }
     let mut least = vec![0.0; q.len()];
-    condensed.modes.add(balance, &mut least);
+    operator.modes.add(balance, &mut least);
     let mut free = q.to_vec();
-    mul_add(&condensed.w, &least, &mut free);
-    condensed.modes.project_out(&mut free);
+    operator.w.apply_add(&least, &mut free);
+    operator.modes.project_out(&mut free);
     norm(&free)
 }
 
 /// P_ref = max(ρ |q|, |P|).
-pub(crate) fn reference_force(condensed: &Condensed, p: &[f64], free_jump: f64) -> f64 {
-    (condensed.rho * free_jump).max(norm(p))
+pub(crate) fn reference_force(rho: f64, p: &[f64], free_jump: f64) -> f64 {
+    (rho * free_jump).max(norm(p))
 }

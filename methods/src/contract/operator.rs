@@ -1,91 +1,54 @@
-//! The problem seen from the contact points: `[[u]] = q + W P + Q β`.
+//! The body seen from the contact points: `[[u]] = q + W P + Q β`.
 //!
 //! W is the Delassus operator on the rows in use; Q spans the jumps of rigid motions (no columns if K is definite).
 
-use faer::Mat;
+use std::sync::Arc;
 
-use crate::algebra::dense::mul_add;
-use crate::algebra::floating::{ModeJumps, dot};
+use crate::MethodError;
+use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::dot;
+use crate::algebra::floating::ModeJumps;
+use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
-use crate::error::MethodError;
 
 /// Below this fraction of the local compliance the trace of W is rounding.
 const NO_TRACE: f64 = 1e-10;
 
-/// Rows in use: one (normal) or `dim` per contact point.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct RowSet {
-    /// First row of each point; one more entry for the end.
-    pub start: Vec<usize>,
-    /// Row of B behind each row.
-    pub source: Vec<usize>,
-    /// Number of rows of the point each row belongs to.
-    pub size_at: Vec<usize>,
-}
-
-impl RowSet {
-    /// `components[i]` rows for point i.
-    pub fn new(dim: usize, components: &[usize]) -> Self {
-        let (mut start, mut source, mut size_at) = (vec![0], Vec::new(), Vec::new());
-        for (i, &c) in components.iter().enumerate() {
-            size_at.extend(std::iter::repeat_n(c, c));
-            source.extend((0..c).map(|k| dim * i + k));
-            start.push(source.len());
-        }
-        Self {
-            start,
-            source,
-            size_at,
-        }
-    }
-
-    /// Number of rows.
-    pub fn len(&self) -> usize {
-        self.source.len()
-    }
-
-    /// Rows of point `i`.
-    pub fn of(&self, i: usize) -> std::ops::Range<usize> {
-        self.start[i]..self.start[i + 1]
-    }
-
-    /// Number of points.
-    pub fn points(&self) -> usize {
-        self.start.len() - 1
-    }
-
-    /// Row by row of B; 0 for those not in use.
-    pub fn positions(&self, all: usize) -> Vec<usize> {
-        let mut position = vec![0; all];
-        for (k, &i) in self.source.iter().enumerate() {
-            position[i] = k;
-        }
-        position
-    }
-
-    /// Entries of a vector with all `dim` rows per point.
-    pub fn restrict(&self, all: &[f64]) -> Vec<f64> {
-        self.source.iter().map(|&i| all[i]).collect()
-    }
+/// How a method works with the Delassus operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DelassusForm {
+    /// As a matrix: formed once per body, its columns cost nothing.
+    #[default]
+    Formed,
+    /// By products alone, each a solve with K: never formed.
+    Products,
 }
 
 /// W, Q and the scale of the natural map for one set of rows.
-pub(crate) struct Condensed {
-    /// Delassus operator, symmetric positive semi-definite, in m/N.
-    pub w: Mat<f64>,
+pub struct ContactOperator {
+    /// Delassus operator.
+    pub w: Arc<dyn Delassus>,
     /// Jumps of rigid motions.
-    pub modes: ModeJumps,
+    pub(crate) modes: ModeJumps,
     /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
     pub rho: f64,
 }
 
-impl Condensed {
-    pub fn new(elastic: &Elastic, w: Mat<f64>, rows: &RowSet) -> Result<Self, MethodError> {
+/// Q and ρ of a set of rows. However W is held elsewhere, they come out the same to the bit: the diagonal and the product
+/// are those of [`Products`].
+#[derive(Debug, Clone)]
+pub(crate) struct Scale {
+    pub modes: ModeJumps,
+    pub rho: f64,
+}
+
+impl Scale {
+    pub fn new(elastic: &Elastic, rows: &RowSet) -> Result<Self, MethodError> {
         let modes = ModeJumps::new(elastic.jump(), &rows.source, elastic.floating());
-        let mut trace: f64 = (0..rows.len()).map(|i| w[(i, i)]).sum();
+        let mut trace: f64 = elastic.diagonal(rows)?.iter().sum();
         for q in &modes.q {
             let mut wq = vec![0.0; q.len()];
-            mul_add(&w, q, &mut wq);
+            elastic.product_add(rows, q, &mut wq);
             trace -= dot(q, &wq);
         }
         let local = elastic.local_compliance(&rows.source);
@@ -93,25 +56,66 @@ impl Condensed {
             return Err(MethodError::RigidContact);
         }
         // Where every contact row moves rigidly, W⊥ vanishes and the local compliance sets the scale.
-        let rho = rows.len() as f64
-            / if trace > NO_TRACE * local {
-                trace
-            } else {
-                local
-            };
-        Ok(Self { w, modes, rho })
+        let compliance = if trace > NO_TRACE * local {
+            trace
+        } else {
+            local
+        };
+        let rho = rows.len() as f64 / compliance;
+        Ok(Self { modes, rho })
+    }
+}
+
+impl ContactOperator {
+    pub(crate) fn new(w: Arc<impl Delassus + 'static>, scale: &Scale) -> Self {
+        Self {
+            w,
+            modes: scale.modes.clone(),
+            rho: scale.rho,
+        }
+    }
+}
+
+/// W that is never formed: a product is one solve with K.
+pub(crate) struct Products {
+    elastic: Arc<Elastic>,
+    rows: RowSet,
+    diagonal: Vec<f64>,
+}
+
+impl Products {
+    pub fn new(elastic: Arc<Elastic>, rows: RowSet) -> Result<Self, MethodError> {
+        Ok(Self {
+            diagonal: elastic.diagonal(&rows)?,
+            elastic,
+            rows,
+        })
+    }
+}
+
+impl Delassus for Products {
+    fn rows(&self) -> usize {
+        self.rows.len()
     }
 
-    /// The same for some of the rows.
-    pub fn select(
-        &self,
-        elastic: &Elastic,
-        from: &RowSet,
-        rows: &RowSet,
-    ) -> Result<Self, MethodError> {
-        let position = from.positions(elastic.jump().rows());
-        let at = |k: usize| position[rows.source[k]];
-        let w = Mat::from_fn(rows.len(), rows.len(), |i, j| self.w[(at(i), at(j))]);
-        Self::new(elastic, w, rows)
+    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
+        self.elastic.product_add(&self.rows, p, v);
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
+        let mut unit = vec![0.0; self.rows.len()];
+        unit[k] = 1.0;
+        work.clear();
+        work.resize(self.rows.len(), 0.0);
+        self.apply_add(&unit, work);
+        work
+    }
+
+    fn formed(&self) -> bool {
+        false
     }
 }

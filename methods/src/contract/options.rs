@@ -1,39 +1,149 @@
-//! Options of methods: declared once, with range, unit, default and help; checked before a method is built.
+//! Options of methods: declared once, with type, range, default and help; checked before a method is built.
 
-/// One numerical option of a method.
+use std::fmt;
+
+/// An option with a real value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OptionSpec {
+pub struct Real {
     /// Name in case files and on the command line.
     pub name: &'static str,
-    /// Unit, `-` if dimensionless.
-    pub unit: &'static str,
     /// Value if the user gives none.
     pub default: f64,
     /// Smallest allowed value.
     pub min: f64,
     /// Largest allowed value.
     pub max: f64,
-    /// Whether only whole numbers are allowed.
-    pub integer: bool,
     /// What it does, in one sentence.
     pub help: &'static str,
 }
 
+/// An option with a whole number for a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Whole {
+    /// Name in case files and on the command line.
+    pub name: &'static str,
+    /// Value if the user gives none.
+    pub default: i64,
+    /// Smallest allowed value.
+    pub min: i64,
+    /// Largest allowed value.
+    pub max: i64,
+    /// What it does, in one sentence.
+    pub help: &'static str,
+}
+
+/// An option that is on or off, written 1 or 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Switch {
+    /// Name in case files and on the command line.
+    pub name: &'static str,
+    /// Value if the user gives none.
+    pub default: bool,
+    /// What it does, in one sentence.
+    pub help: &'static str,
+}
+
+/// One option of a method, as the registry lists it. All options are dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OptionSpec {
+    /// A number.
+    Real(Real),
+    /// A whole number.
+    Whole(Whole),
+    /// On or off.
+    Switch(Switch),
+}
+
+/// Value of an option.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OptionValue {
+    /// A number.
+    Real(f64),
+    /// A whole number.
+    Whole(i64),
+    /// On or off.
+    Switch(bool),
+}
+
+impl OptionValue {
+    /// As it is written: 1 or 0 for a switch.
+    pub fn number(self) -> f64 {
+        match self {
+            OptionValue::Real(value) => value,
+            OptionValue::Whole(value) => value as f64,
+            OptionValue::Switch(on) => f64::from(u8::from(on)),
+        }
+    }
+}
+
+impl fmt::Display for OptionValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.number(), f)
+    }
+}
+
+impl fmt::LowerExp for OptionValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::LowerExp::fmt(&self.number(), f)
+    }
+}
+
 impl OptionSpec {
-    /// The allowed values in words, e.g. `a number from 0.001 to 1000`.
-    pub fn allowed(&self) -> String {
-        let kind = if self.integer {
-            "a whole number"
-        } else {
-            "a number"
-        };
-        format!("{kind} from {} to {}", plain(self.min), plain(self.max))
+    /// Name in case files and on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            OptionSpec::Real(option) => option.name,
+            OptionSpec::Whole(option) => option.name,
+            OptionSpec::Switch(option) => option.name,
+        }
     }
 
-    /// Whether `value` may be given.
-    pub fn accepts(&self, value: f64) -> bool {
-        // NaN fails both comparisons.
-        value >= self.min && value <= self.max && (!self.integer || value.fract() == 0.0)
+    /// What it does, in one sentence.
+    pub fn help(&self) -> &'static str {
+        match self {
+            OptionSpec::Real(option) => option.help,
+            OptionSpec::Whole(option) => option.help,
+            OptionSpec::Switch(option) => option.help,
+        }
+    }
+
+    /// Value if the user gives none.
+    pub fn default(&self) -> OptionValue {
+        match self {
+            OptionSpec::Real(option) => OptionValue::Real(option.default),
+            OptionSpec::Whole(option) => OptionValue::Whole(option.default),
+            OptionSpec::Switch(option) => OptionValue::Switch(option.default),
+        }
+    }
+
+    /// The allowed values in words, e.g. `a number from 0.001 to 1000`.
+    pub fn allowed(&self) -> String {
+        let (kind, min, max) = match self {
+            OptionSpec::Real(option) => ("a number", option.min, option.max),
+            OptionSpec::Whole(option) => ("a whole number", option.min as f64, option.max as f64),
+            OptionSpec::Switch(_) => ("a whole number", 0.0, 1.0),
+        };
+        format!("{kind} from {} to {}", plain(min), plain(max))
+    }
+
+    /// The value a number stands for; `None` if it may not be given.
+    pub fn value(&self, number: f64) -> Option<OptionValue> {
+        // NaN fails all comparisons.
+        match self {
+            OptionSpec::Real(option) => {
+                (number >= option.min && number <= option.max).then_some(OptionValue::Real(number))
+            }
+            OptionSpec::Whole(option) => {
+                let whole = number.fract() == 0.0;
+                (whole && number >= option.min as f64 && number <= option.max as f64)
+                    .then_some(OptionValue::Whole(number as i64))
+            }
+            OptionSpec::Switch(_) => match number {
+                0.0 => Some(OptionValue::Switch(false)),
+                1.0 => Some(OptionValue::Switch(true)),
+                _ => None,
+            },
+        }
     }
 }
 
@@ -86,8 +196,7 @@ pub enum OptionError {
 /// A checked set of options: one value for each that the method declares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    specs: &'static [OptionSpec],
-    values: Vec<f64>,
+    values: Vec<(OptionSpec, OptionValue)>,
 }
 
 impl Options {
@@ -95,59 +204,76 @@ impl Options {
     ///
     /// # Errors
     /// Unknown or repeated names and values out of range.
-    pub fn new(specs: &'static [OptionSpec], given: &[(String, f64)]) -> Result<Self, OptionError> {
-        let known = || specs.iter().map(|s| s.name).collect::<Vec<_>>().join(", ");
-        let mut values: Vec<Option<f64>> = vec![None; specs.len()];
+    pub fn new(specs: &[OptionSpec], given: &[(String, f64)]) -> Result<Self, OptionError> {
+        let known = || {
+            let names: Vec<&str> = specs.iter().map(OptionSpec::name).collect();
+            names.join(", ")
+        };
+        let mut found: Vec<Option<OptionValue>> = vec![None; specs.len()];
         for (name, value) in given {
             let (name, value) = (name.clone(), *value);
-            let Some(k) = specs.iter().position(|s| s.name == name) else {
-                return Err(OptionError::Unknown {
-                    name,
-                    value,
-                    known: known(),
-                });
+            let Some(k) = specs.iter().position(|s| s.name() == name) else {
+                let known = known();
+                return Err(OptionError::Unknown { name, value, known });
             };
-            if !specs[k].accepts(value) {
+            let Some(accepted) = specs[k].value(value) else {
                 return Err(OptionError::OutOfRange {
                     name,
                     value,
                     allowed: specs[k].allowed(),
                     known: known(),
                 });
-            }
-            if values[k].replace(value).is_some() {
-                return Err(OptionError::Repeated {
-                    name,
-                    value,
-                    known: known(),
-                });
+            };
+            if found[k].replace(accepted).is_some() {
+                let known = known();
+                return Err(OptionError::Repeated { name, value, known });
             }
         }
-        let values = specs
-            .iter()
-            .zip(values)
-            .map(|(s, v)| v.unwrap_or(s.default))
-            .collect();
-        Ok(Self { specs, values })
+        let values = specs.iter().zip(found);
+        let values = values.map(|(spec, value)| (*spec, value.unwrap_or(spec.default())));
+        Ok(Self {
+            values: values.collect(),
+        })
     }
 
     /// Value of the option `name`; `None` if the method does not declare it.
-    pub fn get(&self, name: &str) -> Option<f64> {
-        self.specs
-            .iter()
-            .position(|s| s.name == name)
-            .map(|k| self.values[k])
+    pub fn get(&self, name: &str) -> Option<OptionValue> {
+        let found = self.values.iter().find(|(spec, _)| spec.name() == name);
+        found.map(|(_, value)| *value)
     }
 
     /// All options with their values, in declared order.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static OptionSpec, f64)> + '_ {
-        self.specs.iter().zip(self.values.iter().copied())
+    pub fn iter(&self) -> impl Iterator<Item = (OptionSpec, OptionValue)> + '_ {
+        self.values.iter().copied()
     }
 
-    /// Value of an option the caller itself declares. `builder` functions use it: a missing name is a slip in the
-    /// method's own file, found by the first test that builds the method.
-    pub(crate) fn own(&self, name: &'static str) -> f64 {
-        self.get(name).unwrap_or(f64::NAN)
+    /// Value of a real option; its default if the method does not declare it.
+    pub fn real(&self, option: &Real) -> f64 {
+        match self.get(option.name) {
+            Some(OptionValue::Real(value)) => value,
+            _ => option.default,
+        }
+    }
+
+    /// Value of a whole option; its default if the method does not declare it.
+    pub fn whole(&self, option: &Whole) -> i64 {
+        match self.get(option.name) {
+            Some(OptionValue::Whole(value)) => value,
+            _ => option.default,
+        }
+    }
+
+    /// Value of a whole option that counts something: not negative.
+    pub fn count(&self, option: &Whole) -> usize {
+        usize::try_from(self.whole(option)).unwrap_or(0)
+    }
+
+    /// Value of a switch; its default if the method does not declare it.
+    pub fn switch(&self, option: &Switch) -> bool {
+        match self.get(option.name) {
+            Some(OptionValue::Switch(on)) => on,
+            _ => option.default,
+        }
     }
 }
 
@@ -155,29 +281,33 @@ impl Options {
 mod tests {
     use super::*;
 
-    static SPECS: [OptionSpec; 2] = [
-        OptionSpec {
-            name: "r",
-            unit: "-",
-            default: 1.0,
-            min: 1e-3,
-            max: 1e3,
-            integer: false,
-            help: "scale",
-        },
-        OptionSpec {
-            name: "max_iterations",
-            unit: "-",
-            default: 50.0,
-            min: 1.0,
-            max: 1e9,
-            integer: true,
-            help: "limit",
-        },
-    ];
+    const R: Real = Real {
+        name: "r",
+        default: 1.0,
+        min: 1e-3,
+        max: 1e3,
+        help: "scale",
+    };
+    const LIMIT: Whole = Whole {
+        name: "max_iterations",
+        default: 50,
+        min: 1,
+        max: 1_000_000_000,
+        help: "limit",
+    };
+    const POLISH: Switch = Switch {
+        name: "polish",
+        default: true,
+        help: "finish by Newton steps",
+    };
 
     fn given(name: &str, value: f64) -> Result<Options, OptionError> {
-        Options::new(&SPECS, &[(name.to_string(), value)])
+        let specs = [
+            OptionSpec::Real(R),
+            OptionSpec::Whole(LIMIT),
+            OptionSpec::Switch(POLISH),
+        ];
+        Options::new(&specs, &[(name.to_string(), value)])
     }
 
     #[test]
@@ -191,13 +321,17 @@ mod tests {
         }
         let text = given("max_iterations", 2.5).unwrap_err().to_string();
         assert!(text.contains("a whole number from 1 to 1e9"), "{text}");
+        for value in [0.5, 2.0, f64::NAN] {
+            let text = given("polish", value).unwrap_err().to_string();
+            assert!(text.contains("a whole number from 0 to 1"), "{text}");
+        }
     }
 
     #[test]
     fn unknown_names_are_refused_with_the_known_ones() {
         let text = given("gamma", 1.0).unwrap_err().to_string();
         assert!(
-            text.contains("gamma") && text.contains("r, max_iterations"),
+            text.contains("gamma") && text.contains("r, max_iterations, polish"),
             "{text}"
         );
     }
@@ -205,17 +339,15 @@ mod tests {
     #[test]
     fn defaults_hold_until_overridden() {
         let options = given("r", 2.0).unwrap();
-        assert_eq!(
-            (
-                options.get("r"),
-                options.get("max_iterations"),
-                options.get("x")
-            ),
-            (Some(2.0), Some(50.0), None)
-        );
+        assert_eq!((options.real(&R), options.count(&LIMIT)), (2.0, 50));
+        assert!(options.switch(&POLISH) && !given("polish", 0.0).unwrap().switch(&POLISH));
+        assert_eq!(options.get("x"), None);
+        // What a method reads without having declared it has its default, not a number that means nothing.
+        let none = Options::new(&[], &[]).unwrap();
+        assert_eq!((none.real(&R), none.whole(&LIMIT)), (1.0, 50));
         let twice = [("r".to_string(), 2.0), ("r".to_string(), 3.0)];
         assert!(matches!(
-            Options::new(&SPECS, &twice),
+            Options::new(&[OptionSpec::Real(R)], &twice),
             Err(OptionError::Repeated { .. })
         ));
     }

@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
+use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
-use crate::contract::operator::{Condensed, RowSet};
+use crate::contract::operator::{ContactOperator, DelassusForm, Products, Scale};
 use crate::contract::state::ContactState;
 use crate::error::{MethodError, check_finite, check_len};
 
@@ -13,7 +14,9 @@ pub struct ContactSystem {
     elastic: Arc<Elastic>,
     friction: Vec<f64>,
     rows: RowSet,
-    condensed: OnceLock<Result<Arc<Condensed>, MethodError>>,
+    scale: OnceLock<Result<Scale, MethodError>>,
+    formed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
+    products: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
 }
 
 impl std::fmt::Debug for ContactSystem {
@@ -59,7 +62,9 @@ impl ContactSystem {
             elastic,
             friction,
             rows,
-            condensed: OnceLock::new(),
+            scale: OnceLock::new(),
+            formed: OnceLock::new(),
+            products: OnceLock::new(),
         })
     }
 
@@ -102,31 +107,48 @@ impl ContactSystem {
         self.elastic.weight()
     }
 
-    /// Which rows of B are in use.
-    pub(crate) fn row_set(&self) -> &RowSet {
+    /// Which rows of the jump operator are in use.
+    pub fn row_set(&self) -> &RowSet {
         &self.rows
     }
 
-    /// Computes the Delassus operator of the rows in use unless that is done. Solving an increment does it when a load
-    /// closes the contact; a timed run may want it before.
+    /// Forms the Delassus operator of the rows in use unless that is done. Solving an increment does it when a load
+    /// closes the contact and the method asks for it; a timed run may want it before.
     ///
     /// # Errors
     /// Too many rows; the errors of the factorisation.
     pub fn condense(&self) -> Result<(), MethodError> {
-        self.condensed().map(|_| ())
+        self.operator(DelassusForm::Formed).map(|_| ())
     }
 
-    /// W and Q on the rows in use; shared with the body where those are all rows, a copy of the block elsewhere.
-    pub(crate) fn condensed(&self) -> Result<Arc<Condensed>, MethodError> {
-        let build = || {
-            let whole = self.elastic.condensed()?;
-            let from = self.elastic.rows();
-            if from == self.rows {
-                return Ok(whole);
-            }
-            whole.select(&self.elastic, &from, &self.rows).map(Arc::new)
+    /// Q and ρ on the rows in use; W is not formed for them.
+    pub(crate) fn scale(&self) -> Result<&Scale, MethodError> {
+        let build = || Scale::new(&self.elastic, &self.rows);
+        self.scale.get_or_init(build).as_ref().map_err(Clone::clone)
+    }
+
+    /// W, Q and ρ on the rows in use. A formed W is shared with the body where those are all rows, a copy of the block
+    /// elsewhere.
+    ///
+    /// # Errors
+    /// Those of the factorisation; too many rows to form W.
+    pub fn operator(&self, form: DelassusForm) -> Result<Arc<ContactOperator>, MethodError> {
+        let products = || {
+            let w = Arc::new(Products::new(self.elastic.clone(), self.rows.clone())?);
+            Ok(Arc::new(ContactOperator::new(w, self.scale()?)))
         };
-        self.condensed.get_or_init(build).clone()
+        let formed = || {
+            let (whole, from) = (self.elastic.formed()?, self.elastic.rows());
+            if from == self.rows {
+                return self.elastic.condensed();
+            }
+            let w = Arc::new(whole.select(&self.rows.positions_in(&from)));
+            Ok(Arc::new(ContactOperator::new(w, self.scale()?)))
+        };
+        match form {
+            DelassusForm::Formed => self.formed.get_or_init(formed).clone(),
+            DelassusForm::Products => self.products.get_or_init(products).clone(),
+        }
     }
 }
 

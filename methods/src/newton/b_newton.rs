@@ -47,16 +47,14 @@
 
 #![allow(non_snake_case)]
 
-use crate::algebra::dense::mul_add;
-use crate::condensed::problem::{Begin, Limits, Reduced};
-use crate::contract::law::tangential_norm;
-use crate::newton::b_equations::{Piece, Row, equations, linearise};
-use crate::newton::iteration::{At, Iterate, Safeguards, Scheme, newton, trial};
-use crate::newton::step::{MONOLITHIC, Tangent};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::condensed::forces::Forces;
+use crate::condensed::point_row::PointRow;
+use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
+use crate::contract::options::{OptionSpec, Whole};
+use crate::contract::registry::Method;
+use crate::error::MethodError;
+use crate::newton::iteration::{At, Newton, R, Scheme, max_iterations, trial};
+use crate::newton::step::Tangent;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -67,100 +65,44 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("b_newton.rs"),
-    build: |options| Ok(Box::new(BNewton::new(options))),
+    build: |options| Box::new(Newton::new(BEquations, options, &MAX_ITERATIONS)),
 };
 
+const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "r",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "multiple of 1/W_ii that turns gaps and slips into forces",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 100.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "Newton steps before giving up",
-    },
-    MONOLITHIC,
+    OptionSpec::Real(R),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    Tangent::OPTION,
 ];
 
-/// Steps without progress after which the iteration counts as cycling.
-const PATIENCE: usize = 60;
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;
 
-struct BNewton {
-    r: f64,
-    max_iterations: usize,
-    tangent: Tangent,
-}
-
-impl BNewton {
-    fn new(options: &Options) -> Self {
-        Self {
-            r: options.own("r"),
-            max_iterations: options.own("max_iterations") as usize,
-            tangent: Tangent::new(options),
-        }
-    }
-}
-
-impl Enforcement for BNewton {
-    fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        self.tangent.refuses(system)
-    }
-
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let start = (Iterate::start(&problem), self.r);
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
-        let safeguards = Safeguards {
-            line_search: true,
-            rescue: true,
-        };
-        let how = (limits, safeguards);
-        let (status, x) = newton(
-            &BEquations,
-            &mut problem,
-            &mut self.tangent,
-            start,
-            how,
-            monitor,
-        )?;
-        problem.finish(status, &x.P, &x.beta)
-    }
-}
-
-/// H and the pieces of H'.
+/// H and the pieces of H'; the loop is [`Newton::run`].
+#[derive(Clone, Copy)]
 pub(crate) struct BEquations;
+
+/// Pieces of H' in use at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Piece {
+    closed: bool,
+    /// δs = μ δP_n instead of 0.
+    bound_moves: bool,
+    slip: bool,
+}
 
 impl Scheme for BEquations {
     type Piece = Piece;
 
+    /// H_n = min(r_n g, P_n),  H_t = P_t − proj_s(P_t − r_t d),  s = μ max(P_n, 0)
     fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        equations(mu, r, P, v)
+        let mut H = trial(r, P, v);
+        H[0] = (r[0] * v[0]).min(P[0]);
+        project_ball(mu * P[0].max(0.0), &mut H[1..P.len()]);
+        for k in 1..P.len() {
+            H[k] = P[k] - H[k];
+        }
+        H
     }
 
     /// Closed and sticking on a kink.
@@ -175,8 +117,40 @@ impl Scheme for BEquations {
         }
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [Row; 3] {
-        linearise(mu, r, P, v, piece)
+    /// The row of H' for each piece, as in the table above.
+    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [PointRow; 3] {
+        let H = self.equations(mu, r, P, v);
+        let mut rows = H.map(PointRow::reading);
+        if piece.closed {
+            rows[0].c[0] = r[0];
+        } else {
+            rows[0].a[0] = 1.0;
+        }
+        let z = trial(r, P, v);
+        let z = &z[..P.len()];
+        if !piece.slip {
+            for k in 1..P.len() {
+                rows[k].c[k] = r[k];
+            }
+        } else {
+            let t = tangential_norm(z);
+            let (e, S) = if t > 0.0 {
+                ball_derivative(mu * P[0].max(0.0), &z[1..])
+            } else {
+                Default::default()
+            };
+            for k in 1..P.len() {
+                rows[k].a[k] = 1.0;
+                if piece.bound_moves {
+                    rows[k].a[0] = -mu * e[k - 1];
+                }
+                for l in 1..P.len() {
+                    rows[k].a[l] -= S[k - 1][l - 1];
+                    rows[k].c[l] += S[k - 1][l - 1] * r[l];
+                }
+            }
+        }
+        rows
     }
 
     /// The direction that asks for the pieces it was computed with.
@@ -184,11 +158,11 @@ impl Scheme for BEquations {
         &self,
         at: &mut At<'_, '_>,
         pieces: &[Piece],
-    ) -> Result<Option<Iterate>, MethodError> {
+    ) -> Result<Option<Forces>, MethodError> {
         let kinks: Vec<Kink> = (0..pieces.len())
             .map(|i| {
                 let own = at.problem.rows.of(i);
-                let (r, P) = (&at.r[own.clone()], &at.x.P[own.clone()]);
+                let (r, P) = (&at.r[own.clone()], &at.x.p[own.clone()]);
                 Kink::at(at.problem.friction(i), r, P, &at.v[own])
             })
             .collect();
@@ -234,23 +208,23 @@ fn bound_and_trial(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (f64, f64) {
 }
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.
-fn correct_pieces(at: &At<'_, '_>, step: &Iterate, kinks: &[Kink], pieces: &mut [Piece]) -> bool {
+fn correct_pieces(at: &At<'_, '_>, step: &Forces, kinks: &[Kink], pieces: &mut [Piece]) -> bool {
     if !kinks.iter().any(|k| k.normal || k.bound || k.tangential) {
         return false;
     }
     let problem = &*at.problem;
     let mut dv = vec![0.0; problem.len()];
-    mul_add(&problem.condensed.w, &step.P, &mut dv);
-    problem.condensed.modes.add(&step.beta, &mut dv);
+    problem.operator.w.apply_add(&step.p, &mut dv);
+    problem.operator.modes.add(&step.beta, &mut dv);
     let mut contradicted = false;
     for (i, piece) in pieces.iter_mut().enumerate() {
         let rows = problem.rows.of(i);
         let (r, P, v) = (
             &at.r[rows.clone()],
-            &at.x.P[rows.clone()],
+            &at.x.p[rows.clone()],
             &at.v[rows.clone()],
         );
-        let (dP, dv) = (&step.P[rows.clone()], &dv[rows]);
+        let (dP, dv) = (&step.p[rows.clone()], &dv[rows]);
         let mu = problem.friction(i);
         let mut wanted = *piece;
         if kinks[i].normal {

@@ -39,20 +39,22 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{self, Saddle};
 use crate::condensed::stages::alternate;
 use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::{Branch, return_map};
+use crate::contract::options::{OptionSpec, Options, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::{Monitor, Status};
+use crate::error::MethodError;
 use crate::newton::b_newton::BEquations;
-use crate::newton::iteration::{Iterate, Safeguards, Scheme, newton};
+use crate::newton::iteration::{Newton, R, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome, Status,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -63,37 +65,27 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("hybrid.rs"),
-    build: |options| Ok(Box::new(Hybrid::new(options))),
+    build: |options| Box::new(Hybrid::new(options)),
 };
 
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 50_000,
+    min: 1,
+    max: 100_000_000,
+    help: "sweeps and Newton steps before giving up",
+};
+const FIRST: Whole = Whole {
+    name: "first",
+    default: 5,
+    min: 1,
+    max: 10_000,
+    help: "sweeps of the first round",
+};
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "r",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "multiple of 1/W_ii that turns gaps and slips into forces",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 50_000.0,
-        min: 1.0,
-        max: 1e8,
-        integer: true,
-        help: "sweeps and Newton steps before giving up",
-    },
-    OptionSpec {
-        name: "first",
-        unit: "-",
-        default: 5.0,
-        min: 1.0,
-        max: 1e4,
-        integer: true,
-        help: "sweeps of the first round",
-    },
+    OptionSpec::Real(R),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    OptionSpec::Whole(FIRST),
 ];
 
 /// Newton steps without progress after which a run is given up.
@@ -118,43 +110,35 @@ struct Hybrid {
 impl Hybrid {
     fn new(options: &Options) -> Self {
         Self {
-            first: options.own("first") as usize,
-            r: options.own("r"),
-            max_iterations: options.own("max_iterations") as usize,
+            first: options.count(&FIRST),
+            r: options.real(&R),
+            max_iterations: options.count(&MAX_ITERATIONS),
         }
     }
 }
 
-impl Enforcement for Hybrid {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Hybrid {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let mut rounds = Rounds::new(&problem, self);
-        let (status, end) = loop {
-            if let Some(end) = rounds.sweep(&mut problem, monitor)? {
-                break end;
+    ) -> Result<End, MethodError> {
+        let mut rounds = Rounds::new(problem, self);
+        loop {
+            if let Some(end) = rounds.sweep(problem, monitor)? {
+                return Ok(end);
             }
-            if let Some(end) = rounds.newton(&Sets, &mut problem, monitor)? {
-                break end;
+            if let Some(end) = rounds.newton(Sets, problem, monitor)? {
+                return Ok(end);
             }
-            if let Some(end) = rounds.newton(&BEquations, &mut problem, monitor)? {
-                break end;
+            if let Some(end) = rounds.newton(BEquations, problem, monitor)? {
+                return Ok(end);
             }
-            if !rounds.next(&mut problem)? {
-                break (Status::Stalled, rounds.best.clone());
+            if !rounds.next(problem)? {
+                let (status, at) = (Status::Stalled, rounds.best);
+                return Ok(End { status, at });
             }
-        };
-        problem.finish(status, &end.P, &end.beta)
+        }
     }
 }
 
@@ -172,14 +156,14 @@ struct Rounds {
     /// Restarts so far.
     restarts: usize,
     /// Where the sweeps ended last.
-    best: Iterate,
+    best: Forces,
     r: f64,
     max_iterations: usize,
 }
 
 impl Rounds {
-    fn new(problem: &Reduced<'_>, method: &Hybrid) -> Self {
-        let saddle = Saddle::new(problem.condensed.clone());
+    fn new(problem: &ContactProblem<'_>, method: &Hybrid) -> Self {
+        let saddle = Saddle::new(problem.operator.clone());
         Self {
             sweeps: Sweeps::new(problem, &saddle),
             x: saddle.start(problem),
@@ -189,7 +173,7 @@ impl Rounds {
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
-            best: Iterate::start(problem),
+            best: Forces::start(problem),
             r: method.r,
             max_iterations: method.max_iterations,
         }
@@ -205,9 +189,9 @@ impl Rounds {
     /// The sweeps of a round; how the method ends, if it does.
     fn sweep(
         &mut self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<(Status, Iterate)>, MethodError> {
+    ) -> Result<Option<End>, MethodError> {
         let limits = self.limits(usize::MAX / 2);
         problem.begin_phase();
         self.saddle.refresh(problem, &mut self.x);
@@ -215,46 +199,42 @@ impl Rounds {
         for _ in 0..self.count {
             let (saddle, x) = (&self.saddle, &mut self.x);
             if let Some(status) = saddle.ends(problem, x, changes, limits, monitor)? {
-                return Ok(Some((status, self.iterate(problem))));
+                let at = self.forces(problem);
+                return Ok(Some(End { status, at }));
             }
             saddle.update_multipliers(problem, x);
             let (omega, branches) = (self.relaxation, &mut self.branches);
             changes = self.sweeps.sweep(problem, saddle, omega, x, branches);
         }
-        self.best = self.iterate(problem);
-        let v = problem.jump(&self.best.P, &self.best.beta);
-        self.reached.0 = problem.natural_map(&self.best.P, &v);
+        self.best = self.forces(problem);
+        let v = problem.jump(&self.best.p, &self.best.beta);
+        self.reached.0 = problem.natural_map(&self.best.p, &v);
         Ok(None)
     }
 
     /// Newton's method from where the sweeps ended; how the method ends, if it does.
     fn newton<S: Scheme>(
         &self,
-        scheme: &S,
-        problem: &mut Reduced<'_>,
+        scheme: S,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<(Status, Iterate)>, MethodError> {
-        let safeguards = Safeguards {
+    ) -> Result<Option<End>, MethodError> {
+        problem.begin_phase();
+        let mut newton = Newton {
+            scheme,
+            multiple: self.r,
+            limits: self.limits(NEWTON_PATIENCE),
             line_search: true,
             rescue: false,
+            tangent: Tangent::Condensed,
         };
-        let how = (self.limits(NEWTON_PATIENCE), safeguards);
-        problem.begin_phase();
-        let start = (self.best.clone(), self.r);
-        let end = newton(
-            scheme,
-            problem,
-            &mut Tangent::Condensed,
-            start,
-            how,
-            monitor,
-        )?;
+        let end = newton.run(problem, self.best.clone(), monitor)?;
         let final_status = [Status::Converged, Status::Stopped, Status::MaxIterations];
-        Ok(final_status.contains(&end.0).then_some(end))
+        Ok(final_status.contains(&end.status).then_some(end))
     }
 
     /// Prepares the next round; false if nothing is left to try.
-    fn next(&mut self, problem: &mut Reduced<'_>) -> Result<bool, MethodError> {
+    fn next(&mut self, problem: &mut ContactProblem<'_>) -> Result<bool, MethodError> {
         self.count = (2 * self.count).min(MAX_SWEEPS);
         let progress = self.reached.0 < PROGRESS * self.reached.1;
         self.reached.1 = self.reached.1.min(self.reached.0);
@@ -282,36 +262,36 @@ impl Rounds {
     }
 
     /// As if all points were tied: W P + Q β = −q, with tension cut off.
-    fn restart_tied(&mut self, problem: &mut Reduced<'_>) {
+    fn restart_tied(&mut self, problem: &mut ContactProblem<'_>) {
         problem.counters.factorisations += 1;
         let Some(mut p) = tied_forces(problem) else {
             return;
         };
-        for i in 0..problem.rows.points() {
-            return_map(problem.friction(i), &mut p[problem.rows.of(i)]);
+        for (i, own) in problem.rows.iter().enumerate() {
+            return_map(problem.friction(i), &mut p[own]);
         }
         self.x = self.saddle.at(problem, p);
     }
 
     /// With the normal forces reached so far and no friction force.
-    fn restart_without_friction(&mut self, problem: &Reduced<'_>) {
-        let mut p = self.best.P.clone();
-        for i in 0..problem.rows.points() {
-            p[problem.rows.of(i)][1..].fill(0.0);
+    fn restart_without_friction(&mut self, problem: &ContactProblem<'_>) {
+        let mut p = self.best.p.clone();
+        for own in problem.rows.iter() {
+            p[own][1..].fill(0.0);
         }
         self.x = self.saddle.at(problem, p);
     }
 
     /// From ever more sweeps of an alternating method.
-    fn restart_alternating(&mut self, problem: &mut Reduced<'_>) -> Result<(), MethodError> {
+    fn restart_alternating(&mut self, problem: &mut ContactProblem<'_>) -> Result<(), MethodError> {
         if let Some(pair) = alternate(problem, RESTART_SWEEPS << self.restarts)? {
             self.x = self.saddle.at(problem, pair.p);
         }
         Ok(())
     }
 
-    fn iterate(&self, problem: &Reduced<'_>) -> Iterate {
-        let (P, beta) = self.saddle.balanced(problem, &self.x);
-        Iterate { P, beta }
+    fn forces(&self, problem: &ContactProblem<'_>) -> Forces {
+        let (p, beta) = self.saddle.balanced(problem, &self.x);
+        Forces { p, beta }
     }
 }

@@ -40,16 +40,18 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
-use crate::algebra::dense::{DenseLu, mul_add};
+use crate::algebra::dense::along;
 use crate::condensed::branches::Branches;
-use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::newton::iteration::max_iterations;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -60,28 +62,20 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("interior_point.rs"),
-    build: |options| Ok(Box::new(InteriorPoint::new(options))),
+    build: |options| Box::new(InteriorPoint::new(options)),
 };
 
+const FRACTION: Real = Real {
+    name: "fraction",
+    default: 0.99,
+    min: 0.5,
+    max: 0.9999,
+    help: "fraction of the way to the boundary of the cones that a step may take",
+};
+const MAX_ITERATIONS: Whole = max_iterations(200, "steps before giving up");
 static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec {
-        name: "fraction",
-        unit: "-",
-        default: 0.99,
-        min: 0.5,
-        max: 0.9999,
-        integer: false,
-        help: "fraction of the way to the boundary of the cones that a step may take",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 200.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "steps before giving up",
-    },
+    OptionSpec::Real(FRACTION),
+    OptionSpec::Whole(MAX_ITERATIONS),
 ];
 
 /// Steps without progress after which the iteration counts as stalled.
@@ -99,8 +93,8 @@ struct InteriorPoint {
 impl InteriorPoint {
     fn new(options: &Options) -> Self {
         Self {
-            fraction: options.own("fraction"),
-            max_iterations: options.own("max_iterations") as usize,
+            fraction: options.real(&FRACTION),
+            max_iterations: options.count(&MAX_ITERATIONS),
         }
     }
 }
@@ -115,57 +109,48 @@ struct Iterate {
     lambda: Vec<f64>,
 }
 
-impl Enforcement for InteriorPoint {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for InteriorPoint {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
+    ) -> Result<End, MethodError> {
         let limits = Limits {
             iterations: self.max_iterations,
             patience: PATIENCE,
         };
-        let mut P = problem.start_forces();
-        let mut beta = problem.start_amplitudes(&P);
+        let Forces { p: mut P, mut beta } = Forces::start(problem);
         let mut branches = Branches::default();
         let mut path: Option<Iterate> = None;
         let mut depth = 0.0;
 
         let status = loop {
             let v = problem.jump(&P, &beta);
-            let changes = branches.changes(&problem, &P, &v);
+            let changes = branches.changes(problem, &P, &v);
             let natural_map = problem.natural_map(&P, &v);
-            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                match problem.confirm(status, &P, &beta)? {
-                    Some(status) => break status,
-                    None => continue,
-                }
+            match problem.check(natural_map, (&P, &beta), changes, limits, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => continue,
+                Check::End(status) => break status,
             }
             let x = path.take().unwrap_or_else(|| {
                 depth = next_depth(depth, &P, natural_map);
-                Iterate::inside(&problem, &P, &beta, depth)
+                Iterate::inside(problem, &P, &beta, depth)
             });
             problem.counters.factorisations += 1;
-            let Some(step) = Newton::new(&problem, &x).and_then(|n| n.corrected(&problem, &x))
+            let Some(step) = PathStep::new(problem, &x).and_then(|s| s.corrected(problem, &x))
             else {
                 break problem.singular();
             };
-            let t = x.step_length(&problem, &step, self.fraction.max(1.0 - natural_map));
+            let t = x.step_length(problem, &step, self.fraction.max(1.0 - natural_map));
             let x = x.moved(t, &step);
             P.clone_from(&x.P);
             problem.rebalance(&mut P);
             beta.clone_from(&x.beta);
             path = (t >= JAMMED).then_some(x);
         };
-        problem.finish(status, &P, &beta)
+        let at = Forces { p: P, beta };
+        Ok(End { status, at })
     }
 }
 
@@ -181,10 +166,10 @@ fn next_depth(before: f64, P: &[f64], natural_map: f64) -> f64 {
 
 impl Iterate {
     /// (P, β) and its jump, moved inside the cones by `depth` times the reference force per point.
-    fn inside(problem: &Reduced<'_>, P: &[f64], beta: &[f64], depth: f64) -> Self {
+    fn inside(problem: &ContactProblem<'_>, P: &[f64], beta: &[f64], depth: f64) -> Self {
         let points = problem.rows.points();
         let force = depth * problem.reference_force(P) / (points as f64).sqrt();
-        let length = force / problem.condensed.rho;
+        let length = force / problem.operator.rho;
         let (mut P, mut v) = (P.to_vec(), problem.jump(P, beta));
         let lambda = (0..points)
             .map(|i| {
@@ -197,7 +182,7 @@ impl Iterate {
         Self { P, beta, v, lambda }
     }
 
-    fn at(&self, problem: &Reduced<'_>, i: usize) -> ConePoint<'_> {
+    fn at(&self, problem: &ContactProblem<'_>, i: usize) -> ConePoint<'_> {
         let rows = problem.rows.of(i);
         ConePoint {
             mu: problem.friction(i),
@@ -208,23 +193,22 @@ impl Iterate {
     }
 
     fn moved(&self, t: f64, step: &Iterate) -> Iterate {
-        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
         Iterate {
-            P: add(&self.P, &step.P),
-            beta: add(&self.beta, &step.beta),
-            v: add(&self.v, &step.v),
-            lambda: add(&self.lambda, &step.lambda),
+            P: along(&self.P, t, &step.P),
+            beta: along(&self.beta, t, &step.beta),
+            v: along(&self.v, t, &step.v),
+            lambda: along(&self.lambda, t, &step.lambda),
         }
     }
 
     /// Products of all points.
-    fn products(&self, problem: &Reduced<'_>) -> Vec<Products> {
+    fn products(&self, problem: &ContactProblem<'_>) -> Vec<Products> {
         let points = 0..problem.rows.points();
         points.map(|i| self.at(problem, i).products()).collect()
     }
 
     /// min(1, `fraction` · longest step inside all cones).
-    fn step_length(&self, problem: &Reduced<'_>, step: &Iterate, fraction: f64) -> f64 {
+    fn step_length(&self, problem: &ContactProblem<'_>, step: &Iterate, fraction: f64) -> f64 {
         let points = 0..problem.rows.points();
         fraction
             * points.fold(1.0 / fraction, |t, i| {
@@ -234,68 +218,43 @@ impl Iterate {
 }
 
 /// ν: the mean over all cones, two per point with friction and one per point without.
-fn mean(problem: &Reduced<'_>, products: &[Products]) -> f64 {
+fn mean(problem: &ContactProblem<'_>, products: &[Products]) -> f64 {
     let points = 0..problem.rows.points();
     let cones: usize = points.map(|i| problem.rows.of(i).len().min(2)).sum();
     products.iter().map(|p| p.normal + p.scalar).sum::<f64>() / cones as f64
 }
 
 /// Newton's equations at one iterate, condensed to (P, β) and factored.
-struct Newton {
-    lu: DenseLu,
-    /// By row, scaled to unit size.
-    rows: Vec<PathRow>,
+struct PathStep {
+    system: Bordered,
+    /// Coefficients of δv by row, scaled like all of the row to unit size.
+    c: Vec<[f64; 3]>,
     scale: Vec<f64>,
 }
 
-impl Newton {
+impl PathStep {
     /// `None` if the matrix is singular.
-    fn new(problem: &Reduced<'_>, x: &Iterate) -> Option<Self> {
-        let (W, rho) = (&problem.condensed.w, problem.condensed.rho);
-        let modes = &problem.condensed.modes.q;
+    fn new(problem: &ContactProblem<'_>, x: &Iterate) -> Option<Self> {
         let n = problem.len();
-        let (mut rows, mut scale) = (Vec::with_capacity(n), Vec::with_capacity(n));
-        for i in 0..problem.rows.points() {
-            let equations = x.at(problem, i).equations();
-            for mut row in equations.into_iter().take(problem.rows.of(i).len()) {
+        let (mut a, mut c, mut scale) = (Vec::new(), Vec::new(), Vec::with_capacity(n));
+        for (i, own) in problem.rows.iter().enumerate() {
+            for PathRow { a: of_p, c: of_v } in
+                x.at(problem, i).equations().into_iter().take(own.len())
+            {
                 let size = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let s = 1.0 / (size(&row.a) + size(&row.c) / rho);
-                row.a.iter_mut().chain(&mut row.c).for_each(|x| *x *= s);
-                rows.push(row);
+                let s = 1.0 / (size(&of_p) + size(&of_v) / problem.operator.rho);
+                a.push(of_p.map(|x| x * s));
+                c.push(of_v.map(|x| x * s));
                 scale.push(s);
             }
         }
-        // The unknown is ρ β, a force.
-        let mut J = Mat::<f64>::zeros(n + modes.len(), n + modes.len());
-        for i in 0..problem.rows.points() {
-            let point = problem.rows.of(i);
-            for k in point.clone() {
-                for (l, a) in point.clone().zip(rows[k].a) {
-                    J[(k, l)] = a;
-                }
-            }
-        }
-        for j in 0..n {
-            add_product(
-                problem,
-                &rows,
-                W.col_as_slice(j),
-                1.0,
-                J.col_as_slice_mut(j),
-            );
-        }
-        for (j, q) in modes.iter().enumerate() {
-            add_product(problem, &rows, q, 1.0 / rho, J.col_as_slice_mut(n + j));
-            for (k, q) in q.iter().enumerate() {
-                J[(n + j, k)] = *q;
-            }
-        }
-        let lu = DenseLu::new(&J)?;
-        Some(Self { lu, rows, scale })
+        let all: Vec<usize> = (0..n).collect();
+        let system = Bordered::new(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        Some(Self { system, c, scale })
     }
 
     /// Mehrotra's direction: predictor, then the corrector that aims at σ ν.
-    fn corrected(&self, problem: &Reduced<'_>, x: &Iterate) -> Option<Iterate> {
+    fn corrected(&self, problem: &ContactProblem<'_>, x: &Iterate) -> Option<Iterate> {
         let products = x.products(problem);
         let lack = |nu: f64, second: &[Products]| -> Vec<Products> {
             let pairs = products.iter().zip(second);
@@ -311,45 +270,39 @@ impl Newton {
     }
 
     /// The direction that makes up for `lack` and for v ≠ q + W P + Q β, Qᵀ P ≠ c.
-    fn direction(&self, problem: &Reduced<'_>, x: &Iterate, lack: &[Products]) -> Option<Iterate> {
-        let n = problem.len();
+    fn direction(
+        &self,
+        problem: &ContactProblem<'_>,
+        x: &Iterate,
+        lack: &[Products],
+    ) -> Option<Iterate> {
         let jump = problem.jump(&x.P, &x.beta);
         let mut dv: Vec<f64> = jump.iter().zip(&x.v).map(|(jump, v)| jump - v).collect();
-        let mut known = vec![0.0; n];
-        add_product(problem, &self.rows, &dv, 1.0, &mut known);
-        let mut rhs = Vec::with_capacity(n + problem.modes());
-        for (i, lack) in lack.iter().enumerate() {
+        let mut f = Vec::with_capacity(problem.len());
+        for ((i, own), lack) in problem.rows.iter().enumerate().zip(lack) {
             let h = x.at(problem, i).right_side(lack);
-            let rows = problem.rows.of(i).zip(h);
-            rhs.extend(rows.map(|(k, h)| self.scale[k] * h - known[k]));
+            for (k, h) in own.clone().zip(h) {
+                let known: f64 = dv[own.clone()]
+                    .iter()
+                    .zip(self.c[k])
+                    .map(|(v, c)| v * c)
+                    .sum();
+                f.push(self.scale[k] * h - known);
+            }
         }
-        rhs.extend(problem.missing(&x.P));
-        let solution = self.lu.solve(&rhs)?;
-        let (dP, beta) = solution.split_at(n);
-        let beta: Vec<f64> = beta.iter().map(|b| b / problem.condensed.rho).collect();
-        mul_add(&problem.condensed.w, dP, &mut dv);
-        problem.condensed.modes.add(&beta, &mut dv);
-        let lambda = lack.iter().enumerate().map(|(i, lack)| {
-            let rows = problem.rows.of(i);
+        let (dP, beta) = self.system.solve(&f, &problem.missing(&x.P))?;
+        problem.operator.w.apply_add(&dP, &mut dv);
+        problem.operator.modes.add(&beta, &mut dv);
+        let lambda = problem.rows.iter().zip(lack).enumerate();
+        let lambda = lambda.map(|(i, (own, lack))| {
             x.at(problem, i)
-                .lambda_step(lack, &dP[rows.clone()], &dv[rows])
+                .lambda_step(lack, &dP[own.clone()], &dv[own])
         });
         Some(Iterate {
             lambda: lambda.collect(),
-            P: dP.to_vec(),
+            P: dP,
             beta,
             v: dv,
         })
-    }
-}
-
-/// y_k += s Σ_l c_kl x_l, the sum over the rows of the point of row k.
-fn add_product(problem: &Reduced<'_>, rows: &[PathRow], x: &[f64], s: f64, y: &mut [f64]) {
-    for i in 0..problem.rows.points() {
-        let point = problem.rows.of(i);
-        let x = &x[point.clone()];
-        for k in point {
-            y[k] += s * x.iter().zip(rows[k].c).map(|(x, c)| x * c).sum::<f64>();
-        }
     }
 }

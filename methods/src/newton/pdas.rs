@@ -46,17 +46,14 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::newton::b_equations::Row;
+use crate::contract::options::{OptionSpec, Whole};
+use crate::contract::registry::Method;
 use crate::newton::iteration::{
-    Iterate, Safeguards, Scheme, augmented_branch, augmented_equations, newton, trial,
+    Newton, R, Scheme, augmented_branch, augmented_equations, max_iterations, trial,
 };
-use crate::newton::step::{MONOLITHIC, Tangent};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::newton::step::Tangent;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -67,84 +64,24 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("pdas.rs"),
-    build: |options| Ok(Box::new(Pdas::new(options))),
+    build: |options| {
+        Box::new(Newton {
+            // Steps are full.
+            line_search: false,
+            ..Newton::new(Sets, options, &MAX_ITERATIONS)
+        })
+    },
 };
 
+const MAX_ITERATIONS: Whole = max_iterations(200, "changes of the sets before giving up");
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "r",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "multiple of 1/W_ii that turns gaps and slips into forces",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 200.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "changes of the sets before giving up",
-    },
-    MONOLITHIC,
+    OptionSpec::Real(R),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    Tangent::OPTION,
 ];
 
-/// Steps without progress after which the iteration counts as cycling.
-const PATIENCE: usize = 60;
-
-struct Pdas {
-    r: f64,
-    max_iterations: usize,
-    tangent: Tangent,
-}
-
-impl Pdas {
-    fn new(options: &Options) -> Self {
-        Self {
-            r: options.own("r"),
-            max_iterations: options.own("max_iterations") as usize,
-            tangent: Tangent::new(options),
-        }
-    }
-}
-
-impl Enforcement for Pdas {
-    fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        self.tangent.refuses(system)
-    }
-
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let start = (Iterate::start(&problem), self.r);
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
-        let safeguards = Safeguards {
-            line_search: false,
-            rescue: true,
-        };
-        let how = (limits, safeguards);
-        let (status, x) = newton(&Sets, &mut problem, &mut self.tangent, start, how, monitor)?;
-        problem.finish(status, &x.P, &x.beta)
-    }
-}
-
-/// The sets and their conditions.
+/// The sets and their conditions; the loop is [`Newton::run`].
+#[derive(Clone, Copy)]
 pub(crate) struct Sets;
 
 impl Scheme for Sets {
@@ -159,9 +96,9 @@ impl Scheme for Sets {
         augmented_branch(mu, r, P, v)
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], set: Branch) -> [Row; 3] {
+    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], set: Branch) -> [PointRow; 3] {
         let size = P.len();
-        let mut rows = self.equations(mu, r, P, v).map(Row::reading);
+        let mut rows = self.equations(mu, r, P, v).map(PointRow::reading);
         if set == Branch::Open {
             (0..size).for_each(|k| rows[k].a[k] = 1.0);
             return rows;

@@ -21,17 +21,17 @@
 
 use faer::Mat;
 
-use crate::algebra::dense::{mul_add, solve_dense};
-use crate::condensed::problem::Reduced;
+use crate::algebra::dense::{along, mul_add, ratio, solve_dense};
+use crate::condensed::forces::{Forces, Pair};
+use crate::condensed::point_row::{Bordered, Law, PointRow};
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
-use crate::condensed::whole_body::{Global, TwoVectors};
-use crate::contract::judge::ratio;
+use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
-use crate::contract::state::{Monitor, Status};
+use crate::contract::state::{Iteration, Monitor, Status};
 use crate::error::MethodError;
-use crate::newton::b_equations::Row;
 use crate::newton::line_search::LineSearch;
-use crate::newton::step::{Tangent, amplitudes, whole_body};
+use crate::newton::step::{Tangent, monolithic_step};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
@@ -66,12 +66,12 @@ pub(crate) struct Point {
 
 impl Springs<'_> {
     /// Compliance 1/k by row.
-    fn compliance(&self, problem: &Reduced<'_>) -> Vec<f64> {
+    fn compliance(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
         problem.by_row(1.0 / self.normal, 1.0 / self.tangential)
     }
 
     /// r by row.
-    fn scales(&self, problem: &Reduced<'_>) -> Vec<f64> {
+    fn scales(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
         let mut compliance = self.compliance(problem);
         if let Some(coupled) = &self.coupled {
             for (k, c) in compliance.iter_mut().enumerate() {
@@ -82,7 +82,7 @@ impl Springs<'_> {
     }
 
     /// v' by row.
-    fn stretched(&self, problem: &Reduced<'_>, p: &[f64], beta: &[f64]) -> Vec<f64> {
+    fn stretched(&self, problem: &ContactProblem<'_>, p: &[f64], beta: &[f64]) -> Vec<f64> {
         let mut v = problem.jump(p, beta);
         for (k, c) in self.compliance(problem).into_iter().enumerate() {
             v[k] += c * (p[k] - self.anchor[k]);
@@ -97,15 +97,15 @@ impl Springs<'_> {
     }
 
     /// The trial z = P − r v' for given contact forces and rigid amplitudes.
-    pub fn predict(&self, problem: &Reduced<'_>, p: &[f64], beta: Vec<f64>) -> Point {
+    pub fn predict(&self, problem: &ContactProblem<'_>, Forces { p, beta }: Forces) -> Point {
         let r = self.scales(problem);
-        let v = self.stretched(problem, p, &beta);
+        let v = self.stretched(problem, &p, &beta);
         let z = (0..p.len()).map(|k| p[k] - r[k] * v[k]).collect();
         Point::new(problem, z, beta)
     }
 
     /// F by row, in m.
-    fn mismatch(&self, problem: &Reduced<'_>, r: &[f64], at: &Point) -> Vec<f64> {
+    fn mismatch(&self, problem: &ContactProblem<'_>, r: &[f64], at: &Point) -> Vec<f64> {
         let mut f = self.stretched(problem, &at.p, &at.beta);
         for k in 0..f.len() {
             f[k] += (at.z[k] - at.p[k]) / r[k];
@@ -117,12 +117,12 @@ impl Springs<'_> {
     /// the scale of the natural map. `report(iterate, changes)` is called for every iterate and may stop.
     pub fn solve(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         mut at: Point,
         stop: f64,
         max_iterations: usize,
         tangent: &mut Tangent,
-        mut report: impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool,
+        mut report: impl FnMut(&mut ContactProblem<'_>, &Point, usize) -> bool,
     ) -> Result<(Status, Point), MethodError> {
         let (r, c) = (self.scales(problem), self.compliance(problem));
         let mut search = LineSearch::default();
@@ -160,15 +160,15 @@ impl Springs<'_> {
                     let coupled = self.coupled.as_ref();
                     direction(problem, coupled, &r, &c, &at, &mismatch)
                 }
-                Tangent::Monolithic(global) => {
-                    whole_direction(global, problem, &r, &c, &at, &mismatch)?
+                Tangent::Monolithic(body) => {
+                    whole_direction(body, problem, &r, &c, &at, &mismatch)?
                 }
             };
             let Some((dz, dbeta)) = step else {
                 if problem.rescue_left()
                     && let Some(pair) = rescue(problem)?
                 {
-                    at = self.predict(problem, &pair.p, pair.beta);
+                    at = self.predict(problem, pair.into());
                     continue;
                 }
                 return Ok((problem.singular(), at));
@@ -187,105 +187,80 @@ impl Springs<'_> {
 }
 
 /// Mismatch and missing balance on the scale of the natural map.
-fn residual(problem: &Reduced<'_>, at: &Point, mismatch: &[f64]) -> f64 {
-    let rho = problem.condensed.rho;
+fn residual(problem: &ContactProblem<'_>, at: &Point, mismatch: &[f64]) -> f64 {
+    let rho = problem.operator.rho;
     let missing: f64 = problem.missing(&at.p).iter().map(|c| c * c).sum();
     let square: f64 = mismatch.iter().map(|f| (rho * f).powi(2)).sum();
     ratio((square + missing).sqrt(), problem.reference_force(&at.p))
 }
 
 /// Σ r F² plus the missing balance, an energy.
-fn merit(problem: &Reduced<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 {
+fn merit(problem: &ContactProblem<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 {
     let missing: f64 = problem
         .missing(&at.p)
         .iter()
-        .map(|c| c * c / problem.condensed.rho)
+        .map(|c| c * c / problem.operator.rho)
         .sum();
     missing + mismatch.iter().zip(r).map(|(f, r)| r * f * f).sum::<f64>()
 }
+
+/// (δz, δβ).
+type SpringStep = (Vec<f64>, Vec<f64>);
 
 /// Newton step (δz, δβ); `None` if the tangent is singular.
 ///
 /// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + C + 1/k − 1/r) S y + Q δβ = −F.
 fn direction(
-    problem: &mut Reduced<'_>,
+    problem: &mut ContactProblem<'_>,
     coupled: Option<&Coupled<'_>>,
     r: &[f64],
     c: &[f64],
     at: &Point,
     mismatch: &[f64],
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<SpringStep> {
     problem.counters.factorisations += 1;
-    let (w, modes, rho) = (
-        &problem.condensed.w,
-        &problem.condensed.modes,
-        problem.condensed.rho,
-    );
-    // Active rows with the first row of their point, and the rows of S within the point.
-    let mut active: Vec<(usize, usize)> = Vec::new();
-    let mut slope = vec![[0.0; 3]; problem.len()];
-    for i in (0..problem.rows.points()).filter(|&i| at.branches[i] != Branch::Open) {
-        let rows = problem.rows.of(i);
-        let d = return_map_derivative(problem.friction(i), &at.z[rows.clone()], at.branches[i]);
-        for k in rows.clone() {
-            active.push((k, rows.start));
-            for l in rows.clone() {
-                slope[k][l - rows.start] = d[k - rows.start][l - rows.start] * r[l];
+    let n = problem.len();
+    let (mut active, mut e, mut s) = (Vec::new(), vec![[0.0; 3]; n], vec![[0.0; 3]; n]);
+    for (i, own) in problem.rows.iter().enumerate() {
+        if at.branches[i] == Branch::Open {
+            continue;
+        }
+        let d = return_map_derivative(problem.friction(i), &at.z[own.clone()], at.branches[i]);
+        active.extend(own.clone());
+        for (a, k) in own.clone().enumerate() {
+            for (b, l) in own.clone().enumerate() {
+                s[k][b] = d[a][b] * r[l];
+                e[k][b] = (c[k] - 1.0 / r[k]) * s[k][b];
             }
+            e[k][a] += 1.0;
         }
     }
+    let law = Law::Columns {
+        e: &e,
+        s: &s,
+        series: coupled.map(|c| c.compliance),
+    };
+    let f: Vec<f64> = active.iter().map(|&k| -mismatch[k]).collect();
+    let system = Bordered::new(problem, &active, &law)?;
+    let (solution, dbeta) = system.solve(&f, &problem.missing(&at.p))?;
 
-    let (n, size) = (active.len(), active.len() + problem.modes());
-    let mut tangent = Mat::<f64>::zeros(size, size);
-    let mut rhs = vec![0.0; size];
-    for (b, &(k, start)) in active.iter().enumerate() {
-        let column = tangent.col_as_slice_mut(b);
-        column[b] += 1.0;
-        for l in start..start + problem.rows_at(start) {
-            let s = slope[l][k - start];
-            if s != 0.0 {
-                let compliances = [Some(w), coupled.map(|c| c.compliance)];
-                for compliance in compliances.into_iter().flatten() {
-                    let w = compliance.col_as_slice(l);
-                    for (entry, &(a, _)) in column[..n].iter_mut().zip(&active) {
-                        *entry += w[a] * s;
-                    }
-                }
-                // Rows of one point follow each other, so row l of this point is active row b − k + l.
-                column[b + l - k] += (c[l] - 1.0 / r[l]) * s;
-                for (entry, q) in column[n..].iter_mut().zip(&modes.q) {
-                    *entry += q[l] * s / rho;
-                }
-            }
-        }
-        rhs[b] = -mismatch[k];
-        for (j, q) in modes.q.iter().enumerate() {
-            tangent[(b, n + j)] = q[k];
+    let mut y = vec![0.0; n];
+    active.iter().zip(&solution).for_each(|(&k, x)| y[k] = *x);
+    let mut dp = vec![0.0; n];
+    for own in problem.rows.iter() {
+        for k in own.clone() {
+            dp[k] = own.clone().zip(s[k]).map(|(l, s)| s * y[l]).sum();
         }
     }
-    for (j, missing) in problem.missing(&at.p).iter().enumerate() {
-        rhs[n + j] = missing / rho;
-    }
-    let solution = solve_dense(&tangent, &rhs)?;
-
-    let mut dp = vec![0.0; problem.len()];
-    for (b, &(k, start)) in active.iter().enumerate() {
-        for l in start..start + problem.rows_at(start) {
-            dp[l] += slope[l][k - start] * solution[b];
-        }
-    }
-    let dbeta = solution[n..].to_vec();
     // Open rows follow: y = −F − (W + C) δP − Q δβ.
-    let mut dv = vec![0.0; problem.len()];
-    mul_add(w, &dp, &mut dv);
+    let mut dv = vec![0.0; n];
+    problem.operator.w.apply_add(&dp, &mut dv);
     if let Some(coupled) = coupled {
         mul_add(coupled.compliance, &dp, &mut dv);
     }
-    modes.add(&dbeta, &mut dv);
+    problem.operator.modes.add(&dbeta, &mut dv);
     let mut y: Vec<f64> = mismatch.iter().zip(&dv).map(|(f, dv)| -f - dv).collect();
-    for (b, &(k, _)) in active.iter().enumerate() {
-        y[k] = solution[b];
-    }
+    active.iter().zip(&solution).for_each(|(&k, x)| y[k] = *x);
     let dz = y.iter().zip(r).map(|(y, r)| y * r).collect();
     Some((dz, dbeta))
 }
@@ -294,13 +269,13 @@ fn direction(
 ///
 /// With T = Π'(z) and M = (I − T)/r + T/k, which never loses digits, the springs read δP = −T M⁻¹ (F + δv).
 fn whole_direction(
-    global: &mut Option<Box<Global>>,
-    problem: &mut Reduced<'_>,
+    body: &mut Option<Box<WholeBody>>,
+    problem: &mut ContactProblem<'_>,
     r: &[f64],
     c: &[f64],
     at: &Point,
     mismatch: &[f64],
-) -> Result<Option<TwoVectors>, MethodError> {
+) -> Result<Option<SpringStep>, MethodError> {
     let mut rows = Vec::with_capacity(problem.rows.points());
     for i in 0..problem.rows.points() {
         let own = problem.rows.of(i);
@@ -311,7 +286,7 @@ fn whole_direction(
         let m = Mat::from_fn(size, size, |b, a| {
             (unit(a, b) - t[a][b]) / r[first + a] + c[first + a] * t[a][b]
         });
-        let mut of_point = [0.0; 3].map(Row::reading);
+        let mut of_point = [0.0; 3].map(PointRow::reading);
         for a in 0..size {
             let Some(slope) = solve_dense(&m, &t[a][..size]) else {
                 return Ok(None);
@@ -322,17 +297,24 @@ fn whole_direction(
         }
         rows.push(of_point);
     }
-    let Some((dp, dv)) = whole_body(global, problem, &at.p, &mut rows, Global::explicit)? else {
+    let step = monolithic_step(body, problem, &at.p, &mut rows, WholeBody::explicit)?;
+    let Some(Pair { p: dp, v: dv, beta }) = step else {
         return Ok(None);
     };
     let dz = (0..dp.len())
         .map(|k| dp[k] - r[k] * (mismatch[k] + dv[k] + c[k] * dp[k]))
         .collect();
-    Ok(Some((dz, amplitudes(problem, &dp, dv))))
+    Ok(Some((dz, beta)))
+}
+
+impl From<Point> for Forces {
+    fn from(Point { p, beta, .. }: Point) -> Self {
+        Self { p, beta }
+    }
 }
 
 impl Point {
-    fn new(problem: &Reduced<'_>, z: Vec<f64>, beta: Vec<f64>) -> Self {
+    fn new(problem: &ContactProblem<'_>, z: Vec<f64>, beta: Vec<f64>) -> Self {
         let mut p = z.clone();
         let branches = (0..problem.rows.points())
             .map(|i| return_map(problem.friction(i), &mut p[problem.rows.of(i)]))
@@ -345,9 +327,8 @@ impl Point {
         }
     }
 
-    fn moved(&self, problem: &Reduced<'_>, t: f64, dz: &[f64], dbeta: &[f64]) -> Self {
-        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
-        Self::new(problem, add(&self.z, dz), add(&self.beta, dbeta))
+    fn moved(&self, problem: &ContactProblem<'_>, t: f64, dz: &[f64], dbeta: &[f64]) -> Self {
+        Self::new(problem, along(&self.z, t, dz), along(&self.beta, t, dbeta))
     }
 }
 
@@ -357,13 +338,13 @@ impl Point {
 /// `jump(problem, iterate)` is v, without what lies in series.
 pub(crate) fn recorded<'m>(
     monitor: &'m mut dyn Monitor,
-    jump: impl Fn(&Reduced<'_>, &Point) -> Vec<f64> + 'm,
-) -> impl FnMut(&mut Reduced<'_>, &Point, usize) -> bool + 'm {
+    jump: impl Fn(&ContactProblem<'_>, &Point) -> Vec<f64> + 'm,
+) -> impl FnMut(&mut ContactProblem<'_>, &Point, usize) -> bool + 'm {
     move |problem, at, changes| {
         let v = jump(problem, at);
         let natural_map = problem.natural_map(&at.p, &v);
         problem.counters.iterations = problem.history.len();
-        problem.history.push(crate::contract::state::Iteration {
+        problem.history.push(Iteration {
             natural_map,
             changes,
         });

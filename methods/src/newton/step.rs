@@ -7,38 +7,38 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
-use crate::algebra::dense::{mul_add, solve_dense};
-use crate::condensed::problem::Reduced;
-use crate::condensed::whole_body::{Global, TwoVectors};
-use crate::newton::b_equations::Row;
-use crate::newton::iteration::Iterate;
-use crate::{ContactSystem, MethodError, OptionSpec, Options};
+use crate::condensed::forces::{Forces, Pair};
+use crate::condensed::point_row::{Bordered, Law, PointRow};
+use crate::condensed::problem::ContactProblem;
+use crate::condensed::whole_body::WholeBody;
+use crate::contract::operator::DelassusForm;
+use crate::contract::options::{OptionSpec, Options, Switch};
+use crate::contract::registry::Needs;
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 
 /// Where the linear problems of a method are solved.
 pub(crate) enum Tangent {
     /// On the contact rows, with W.
     Condensed,
-    /// On all unknowns and contact forces; the pattern is analysed once per system.
-    Monolithic(Option<Box<Global>>),
+    /// On all unknowns and contact forces; the pattern is analysed once per system. W is not formed.
+    Monolithic(Option<Box<WholeBody>>),
 }
 
 /// The option that chooses.
-pub(crate) const MONOLITHIC: OptionSpec = OptionSpec {
+const MONOLITHIC: Switch = Switch {
     name: "monolithic",
-    unit: "-",
-    default: 0.0,
-    min: 0.0,
-    max: 1.0,
-    integer: true,
+    default: false,
     help: "1: factor the matrix of the whole body in every iteration instead of the condensed one",
 };
 
 impl Tangent {
+    /// The option that chooses.
+    pub const OPTION: OptionSpec = OptionSpec::Switch(MONOLITHIC);
+
     /// As the options say.
     pub fn new(options: &Options) -> Self {
-        if options.own(MONOLITHIC.name) == 1.0 {
+        if options.switch(&MONOLITHIC) {
             Tangent::Monolithic(None)
         } else {
             Tangent::Condensed
@@ -52,141 +52,100 @@ impl Tangent {
         blind.then(|| "the monolithic variant needs the stiffness of the body".to_string())
     }
 
+    /// What it needs of the body.
+    pub fn needs(&self) -> Needs {
+        let delassus = match self {
+            Tangent::Condensed => DelassusForm::Formed,
+            Tangent::Monolithic(_) => DelassusForm::Products,
+        };
+        Needs {
+            delassus,
+            ..Needs::default()
+        }
+    }
+
     /// (δP, δβ); `None` if the tangent is singular.
     pub fn solve(
         &mut self,
-        problem: &mut Reduced<'_>,
-        x: &Iterate,
-        rows: &mut [[Row; 3]],
-    ) -> Result<Option<Iterate>, MethodError> {
+        problem: &mut ContactProblem<'_>,
+        x: &Forces,
+        rows: &mut [[PointRow; 3]],
+    ) -> Result<Option<Forces>, MethodError> {
         match self {
             Tangent::Condensed => {
                 problem.counters.factorisations += 1;
                 Ok(condensed_step(problem, x, rows))
             }
-            Tangent::Monolithic(global) => {
-                let step = whole_body(global, problem, &x.P, rows, Global::saddle)?;
-                Ok(step.map(|(P, dv)| {
-                    let beta = amplitudes(problem, &P, dv);
-                    Iterate { P, beta }
-                }))
+            Tangent::Monolithic(body) => {
+                let Pair { p, beta, .. } =
+                    match monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)? {
+                        Some(step) => step,
+                        None => return Ok(None),
+                    };
+                Ok(Some(Forces { p, beta }))
             }
         }
     }
 }
 
-/// (δP, δv) from the matrix of the whole body, analysed by `new` where that was not done for the system; `None` if it is
+/// The step from the matrix of the whole body, analysed by `new` where that was not done for the system; `None` if it is
 /// singular.
-pub(crate) fn whole_body(
-    global: &mut Option<Box<Global>>,
-    problem: &mut Reduced<'_>,
+pub(crate) fn monolithic_step(
+    body: &mut Option<Box<WholeBody>>,
+    problem: &mut ContactProblem<'_>,
     P: &[f64],
-    rows: &mut [[Row; 3]],
-    new: fn(&ContactSystem) -> Result<Global, MethodError>,
-) -> Result<Option<TwoVectors>, MethodError> {
-    problem.counters.global_factorisations += 1;
-    // Without balance there is no equilibrium to linearise: step from the nearest balanced forces P + Q (c − Qᵀ P).
-    let (mut lack, mut response) = (vec![0.0; P.len()], vec![0.0; P.len()]);
-    if problem.modes() > 0 {
-        problem.condensed.modes.add(&problem.missing(P), &mut lack);
-        mul_add(&problem.condensed.w, &lack, &mut response);
-    }
-    for (i, of_point) in rows.iter_mut().enumerate() {
-        let own = problem.rows.of(i);
-        for row in of_point.iter_mut().take(own.len()) {
-            for (l, k) in own.clone().enumerate() {
-                row.h += row.a[l] * lack[k] + row.c[l] * response[k];
-            }
-        }
-    }
+    rows: &mut [[PointRow; 3]],
+    new: fn(&ContactSystem) -> Result<WholeBody, MethodError>,
+) -> Result<Option<Pair>, MethodError> {
     let system = problem.increment.system;
-    let global = match global {
-        Some(global) if global.belongs_to(system) => global,
+    let body = match body {
+        Some(body) if body.belongs_to(system) => body,
         stale => stale.insert(Box::new(new(system)?)),
     };
-    let Some((mut dP, mut dv)) = global.solve(rows)? else {
-        return Ok(None);
-    };
-    dP.iter_mut().zip(&lack).for_each(|(x, l)| *x += l);
-    dv.iter_mut().zip(&response).for_each(|(x, l)| *x += l);
-    Ok(Some((dP, dv)))
+    body.step(problem, P, rows)
 }
 
-/// δβ = Qᵀ (δv − W δP).
-pub(crate) fn amplitudes(problem: &Reduced<'_>, dP: &[f64], mut dv: Vec<f64>) -> Vec<f64> {
-    if problem.modes() > 0 {
-        let minus: Vec<f64> = dP.iter().map(|p| -p).collect();
-        mul_add(&problem.condensed.w, &minus, &mut dv);
-    }
-    problem.condensed.modes.components(&dv)
-}
-
-fn condensed_step(problem: &Reduced<'_>, x: &Iterate, rows: &[[Row; 3]]) -> Option<Iterate> {
-    let (W, rho, modes) = (
-        &problem.condensed.w,
-        problem.condensed.rho,
-        &problem.condensed.modes,
-    );
-    let mut step = Iterate {
-        P: vec![0.0; problem.len()],
-        beta: Vec::new(),
-    };
-    // Rows δP = −H are known; the others are active, kept with the first row of their point.
-    let mut active: Vec<(usize, usize, &Row)> = Vec::new();
-    for (i, of_point) in rows.iter().enumerate() {
-        let own = problem.rows.of(i);
+fn condensed_step(
+    problem: &ContactProblem<'_>,
+    x: &Forces,
+    rows: &[[PointRow; 3]],
+) -> Option<Forces> {
+    let mut p = vec![0.0; problem.len()];
+    let (mut a, mut c) = (vec![[0.0; 3]; p.len()], vec![[0.0; 3]; p.len()]);
+    // Rows δP = −H are known, the others active.
+    let mut active = Vec::new();
+    for (own, of_point) in problem.rows.iter().zip(rows) {
         for (k, row) in own.clone().zip(of_point) {
             let local = k - own.start;
             let alone = (0..own.len()).all(|l| row.c[l] == 0.0 && (l == local || row.a[l] == 0.0));
+            (a[k], c[k]) = (row.a, row.c);
             if alone {
-                step.P[k] = -row.h / row.a[local];
+                p[k] = -row.h / row.a[local];
             } else {
-                active.push((k, own.start, row));
+                active.push(k);
             }
         }
     }
-    let mut known = vec![0.0; problem.len()];
-    mul_add(W, &step.P, &mut known);
+    let mut known = vec![0.0; p.len()];
+    problem.operator.w.apply_add(&p, &mut known);
+    let system = Bordered::new(problem, &active, &Law::Rows { a: &a, c: &c })?;
 
-    let (n, size) = (active.len(), active.len() + problem.modes());
-    let mut J = Mat::<f64>::zeros(size, size);
-    let mut rhs = vec![0.0; size];
-    for (column, &(k, point, _)) in active.iter().enumerate() {
-        let w = W.col_as_slice(k);
-        for (entry, (_, start, row)) in J.col_as_slice_mut(column)[..n].iter_mut().zip(&active) {
-            for l in 0..problem.rows_at(*start) {
-                *entry += row.c[l] * w[start + l];
-            }
-            if *start == point {
-                *entry += row.a[k - point];
-            }
-        }
-    }
-    for (a, (_, start, row)) in active.iter().enumerate() {
-        rhs[a] = -row.h;
-        for l in 0..problem.rows_at(*start) {
+    let mut f = Vec::with_capacity(active.len());
+    let mut next = active.iter().peekable();
+    for (own, of_point) in problem.rows.iter().zip(rows) {
+        while let Some(k) = next.next_if(|k| own.contains(k)) {
+            let row = &of_point[k - own.start];
             // δP is still zero on active rows.
-            rhs[a] -= row.a[l] * step.P[start + l] + row.c[l] * known[start + l];
-            for (j, q) in modes.q.iter().enumerate() {
-                J[(a, n + j)] += row.c[l] * q[start + l] / rho;
-            }
+            let lacking = |f: f64, l: usize| {
+                f - (row.a[l] * p[own.start + l] + row.c[l] * known[own.start + l])
+            };
+            f.push((0..own.len()).fold(-row.h, lacking));
         }
     }
-    for (j, q) in modes.q.iter().enumerate() {
-        for (b, (k, ..)) in active.iter().enumerate() {
-            J[(n + j, b)] = q[*k];
-        }
-        rhs[n + j] = problem.balance[j]
-            - q.iter()
-                .zip(x.P.iter().zip(&step.P))
-                .map(|(q, (p, s))| q * (p + s))
-                .sum::<f64>();
+    let reached: Vec<f64> = x.p.iter().zip(&p).map(|(x, step)| x + step).collect();
+    let (solution, beta) = system.solve(&f, &problem.missing(&reached))?;
+    for (&k, &step) in active.iter().zip(&solution) {
+        p[k] = step;
     }
-
-    let solution = solve_dense(&J, &rhs)?;
-    for (a, (k, ..)) in active.iter().enumerate() {
-        step.P[*k] = solution[a];
-    }
-    step.beta = solution[n..].iter().map(|b| b / rho).collect();
-    Some(step)
+    Some(Forces { p, beta })
 }

@@ -47,21 +47,22 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
-use crate::algebra::dense::solve_dense;
-use crate::condensed::problem::{Begin, Reduced};
-use crate::condensed::stages::{Pair, rescue};
+use crate::algebra::dense::{along, ratio};
+use crate::condensed::forces::{Forces, Pair};
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::ContactProblem;
+use crate::condensed::stages::rescue;
 use crate::condensed::unloaded::unloaded;
 use crate::contract::barrier_law::{BarrierLaw, resolvent};
-use crate::contract::judge::ratio;
 use crate::contract::law::{Branch, tangential_norm};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::{Iteration, Monitor, Status};
+use crate::error::MethodError;
+use crate::newton::iteration::max_iterations;
 use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Outcome, Status,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -72,46 +73,34 @@ pub static METHOD: Method = Method {
     exact: false,
     options: &OPTIONS,
     source: include_str!("barrier.rs"),
-    build: |options| Ok(Box::new(Barrier::new(options))),
+    build: |options| Box::new(Barrier::new(options)),
 };
 
+const GAP: Real = Real {
+    name: "gap",
+    default: 1e-4,
+    min: 1e-9,
+    max: 1.0,
+    help: "gap below which points repel each other, as a multiple of the mean jump without contact forces",
+};
+const SLIP: Real = Real {
+    name: "slip",
+    help: "slip from which on friction is full, as a multiple of the same jump",
+    ..GAP
+};
+const STIFFNESS: Real = Real {
+    name: "stiffness",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "contact force at half the gap as a multiple of rho times the same jump",
+};
+const MAX_ITERATIONS: Whole = max_iterations(200, "Newton steps before giving up");
 static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec {
-        name: "gap",
-        unit: "-",
-        default: 1e-4,
-        min: 1e-9,
-        max: 1.0,
-        integer: false,
-        help: "gap below which points repel each other, as a multiple of the mean jump without contact forces",
-    },
-    OptionSpec {
-        name: "slip",
-        unit: "-",
-        default: 1e-4,
-        min: 1e-9,
-        max: 1.0,
-        integer: false,
-        help: "slip from which on friction is full, as a multiple of the same jump",
-    },
-    OptionSpec {
-        name: "stiffness",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "contact force at half the gap as a multiple of rho times the same jump",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 200.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "Newton steps before giving up",
-    },
+    OptionSpec::Real(GAP),
+    OptionSpec::Real(SLIP),
+    OptionSpec::Real(STIFFNESS),
+    OptionSpec::Whole(MAX_ITERATIONS),
 ];
 
 /// The smoothed equations are solved this much more accurately than asked: the judge holds the claim to them in another
@@ -138,10 +127,10 @@ struct Barrier {
 impl Barrier {
     fn new(options: &Options) -> Self {
         Self {
-            gap: options.own("gap"),
-            slip: options.own("slip"),
-            stiffness: options.own("stiffness"),
-            max_iterations: options.own("max_iterations") as usize,
+            gap: options.real(&GAP),
+            slip: options.real(&SLIP),
+            stiffness: options.real(&STIFFNESS),
+            max_iterations: options.count(&MAX_ITERATIONS),
         }
     }
 }
@@ -155,10 +144,9 @@ struct Iterate {
 
 impl Iterate {
     fn moved(&self, t: f64, step: &Iterate) -> Iterate {
-        let add = |x: &[f64], s: &[f64]| x.iter().zip(s).map(|(x, s)| x + t * s).collect();
         Iterate {
-            v: add(&self.v, &step.v),
-            beta: add(&self.beta, &step.beta),
+            v: along(&self.v, t, &step.v),
+            beta: along(&self.beta, t, &step.beta),
         }
     }
 }
@@ -174,7 +162,7 @@ struct Balance {
 }
 
 impl Balance {
-    fn of(problem: &Reduced<'_>, law: &BarrierLaw, x: &Iterate) -> Self {
+    fn of(problem: &ContactProblem<'_>, law: &BarrierLaw, x: &Iterate) -> Self {
         let mut P = vec![0.0; problem.len()];
         let mut branches = Vec::with_capacity(problem.rows.points());
         for i in 0..problem.rows.points() {
@@ -208,22 +196,14 @@ impl Balance {
     }
 }
 
-impl Enforcement for Barrier {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Barrier {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let (rho, unit) = (problem.condensed.rho, problem.mean_jump());
-        if unit == 0.0 || increment.unloaded() {
+    ) -> Result<End, MethodError> {
+        let (rho, unit) = (problem.operator.rho, problem.mean_jump());
+        if unit == 0.0 || problem.increment.unloaded() {
             return unloaded(problem);
         }
         let narrowest = self.law(rho, unit);
@@ -231,34 +211,34 @@ impl Enforcement for Barrier {
         // How many times the narrowest law the present one is wide.
         let mut width = (WIDEST / self.gap.max(self.slip)).max(1.0);
         let mut law = narrowest.widened(width);
-        let mut x = sticking(&problem, inside(&problem, &law, Pair::start(&problem)));
+        let mut x = sticking(problem, inside(problem, &law, Pair::start(problem)));
         let mut search = LineSearch::default();
         let mut best = (f64::INFINITY, 0);
         let mut before: Vec<Branch> = Vec::new();
         let mut corrections = 0;
 
         let (status, P) = loop {
-            let mut at = Balance::of(&problem, &law, &x);
+            let mut at = Balance::of(problem, &law, &x);
             let residual = ratio(at.merit(rho).sqrt(), problem.reference_force(&at.P));
             let pairs = at.branches.iter().zip(&before);
             let changes = pairs.filter(|(a, b)| a != b).count();
             before.clone_from(&at.branches);
             let solved = width == 1.0 && residual <= CLAIM_FRACTION * problem.stop;
             let found = (residual, solved);
-            let ended = self.ends(&mut problem, &at, &x.beta, found, changes, monitor);
+            let ended = self.ends(problem, &at, &x.beta, found, changes, monitor);
             if let Some(status) = ended {
                 problem.rebalance(&mut at.P);
                 if status != Status::Converged {
                     break (status, at.P);
                 }
-                match confirm(&mut problem, &at.P, &x.beta, &mut corrections)? {
+                match confirm(problem, &at.P, &x.beta, &mut corrections)? {
                     Some(status) => break (status, at.P),
                     None if problem.counters.iterations == self.max_iterations => {
                         break (Status::MaxIterations, at.P);
                     }
                     None => {
                         problem.counters.iterations += 1;
-                        at = Balance::of(&problem, &law, &x);
+                        at = Balance::of(problem, &law, &x);
                     }
                 }
             }
@@ -269,19 +249,19 @@ impl Enforcement for Barrier {
             // A wide barrier needs no better solution than it is wide.
             if width > 1.0 && residual <= law.gap / unit {
                 let factor = NARROWING.max(1.0 / width);
-                narrow(&problem, &law, factor, &mut x);
+                narrow(problem, &law, factor, &mut x);
                 width = (width * factor).max(1.0);
                 law = narrowest.widened(width);
                 (search, best) = (LineSearch::default(), (f64::INFINITY, iteration));
                 continue;
             }
             let stuck = iteration >= best.1 + PATIENCE;
-            let step = (!stuck).then(|| direction(&mut problem, &law, &x, &at));
+            let step = (!stuck).then(|| direction(problem, &law, &x, &at));
             let Some(step) = step.flatten() else {
                 if problem.rescue_left()
-                    && let Some(pair) = rescue(&mut problem)?
+                    && let Some(pair) = rescue(problem)?
                 {
-                    x = inside(&problem, &law, pair);
+                    x = inside(problem, &law, pair);
                     (search, best) = (LineSearch::default(), (f64::INFINITY, iteration));
                     continue;
                 }
@@ -289,12 +269,13 @@ impl Enforcement for Barrier {
                 break (if stuck { Status::Stalled } else { singular }, at.P);
             };
             search.record(at.merit(rho));
-            let reach = reach(&problem, &x, &step);
+            let reach = reach(problem, &x, &step);
             let t = search
-                .length(|t| Balance::of(&problem, &law, &x.moved(t * reach, &step)).merit(rho));
+                .length(|t| Balance::of(problem, &law, &x.moved(t * reach, &step)).merit(rho));
             x = x.moved(t * reach, &step);
         };
-        problem.finish(status, &P, &x.beta)
+        let at = Forces { p: P, beta: x.beta };
+        Ok(End { status, at })
     }
 }
 
@@ -312,7 +293,7 @@ impl Barrier {
     /// how. Otherwise counts an iteration.
     fn ends(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         at: &Balance,
         beta: &[f64],
         (residual, solved): (f64, bool),
@@ -344,9 +325,9 @@ impl Barrier {
 }
 
 /// The jump of contact forces, with every gap positive.
-fn inside(problem: &Reduced<'_>, law: &BarrierLaw, pair: Pair) -> Iterate {
+fn inside(problem: &ContactProblem<'_>, law: &BarrierLaw, pair: Pair) -> Iterate {
     let mut v = pair.v;
-    for &k in &problem.rows.start[..problem.rows.points()] {
+    for &k in problem.rows.normal() {
         // Half of ĝ also where nothing closes yet: a floating piece needs something to hold on to.
         if v[k] < 0.5 * law.gap || problem.modes() > 0 {
             v[k] = 0.5 * law.gap;
@@ -357,7 +338,7 @@ fn inside(problem: &Reduced<'_>, law: &BarrierLaw, pair: Pair) -> Iterate {
 
 /// The same without slip. Friction that sticks is nearly linear, and points leave it one by one; from the slip without
 /// friction Newton's method for large μ does not come back.
-fn sticking(problem: &Reduced<'_>, mut x: Iterate) -> Iterate {
+fn sticking(problem: &ContactProblem<'_>, mut x: Iterate) -> Iterate {
     for i in 0..problem.rows.points() {
         x.v[problem.rows.of(i)][1..].fill(0.0);
     }
@@ -365,7 +346,7 @@ fn sticking(problem: &Reduced<'_>, mut x: Iterate) -> Iterate {
 }
 
 /// Takes the points in contact along to the narrower law, so that their forces stay.
-fn narrow(problem: &Reduced<'_>, law: &BarrierLaw, factor: f64, x: &mut Iterate) {
+fn narrow(problem: &ContactProblem<'_>, law: &BarrierLaw, factor: f64, x: &mut Iterate) {
     for i in 0..problem.rows.points() {
         let rows = problem.rows.of(i);
         let v = &mut x.v[rows];
@@ -379,70 +360,55 @@ fn narrow(problem: &Reduced<'_>, law: &BarrierLaw, factor: f64, x: &mut Iterate)
 }
 
 /// Longest step that leaves every gap a part of what it is, at most 1.
-fn reach(problem: &Reduced<'_>, x: &Iterate, step: &Iterate) -> f64 {
-    let normal = &problem.rows.start[..problem.rows.points()];
+fn reach(problem: &ContactProblem<'_>, x: &Iterate, step: &Iterate) -> f64 {
+    let normal = problem.rows.normal();
     let ratios = normal.iter().map(|&k| -step.v[k] / x.v[k]);
     let steepest = ratios.fold(0.0, f64::max);
     (TO_BOUNDARY / steepest).min(1.0)
 }
 
 /// Newton step (δv, δβ); `None` if the tangent is singular.
+///
+/// With δv = S y, S = (I − r⁻¹ D)⁻¹ and D = ∂P/∂v: S y − W D S y − Q δβ = −F, Qᵀ D S y = c − Qᵀ P. Turned round in sign this is
+/// the form by columns with the step −D S y of the forces.
 fn direction(
-    problem: &mut Reduced<'_>,
+    problem: &mut ContactProblem<'_>,
     law: &BarrierLaw,
     x: &Iterate,
     at: &Balance,
 ) -> Option<Iterate> {
     problem.counters.factorisations += 1;
-    let (W, modes, rho) = (
-        &problem.condensed.w,
-        &problem.condensed.modes,
-        problem.condensed.rho,
-    );
-    let r = problem.scales(&vec![0.0; problem.len()]);
-    let (n, size) = (problem.len(), problem.len() + problem.modes());
-    let mut J = Mat::<f64>::zeros(size, size);
-    let mut S = vec![[0.0; 3]; n];
-    for i in 0..problem.rows.points() {
-        let rows = problem.rows.of(i);
-        let D = law.derivative(problem.friction(i), &x.v[rows.clone()]);
-        let own = resolvent(&D, &r[rows.clone()]);
-        S[rows.clone()].copy_from_slice(&own[..rows.len()]);
-        for (b, k) in rows.clone().enumerate() {
-            let column = J.col_as_slice_mut(k);
-            for (a, l) in rows.clone().enumerate() {
-                column[l] += own[a][b];
-                let ds: f64 = (0..rows.len()).map(|c| D[a][c] * own[c][b]).sum();
-                if ds != 0.0 {
-                    let w = W.col_as_slice(l);
-                    column[..n]
-                        .iter_mut()
-                        .zip(w)
-                        .for_each(|(J, w)| *J -= w * ds);
-                    for (J, q) in column[n..].iter_mut().zip(&modes.q) {
-                        *J += q[l] * ds / rho;
-                    }
-                }
+    let n = problem.len();
+    let r = problem.scales(&vec![0.0; n]);
+    let (mut S, mut minus_DS) = (vec![[0.0; 3]; n], vec![[0.0; 3]; n]);
+    for (i, own) in problem.rows.iter().enumerate() {
+        let D = law.derivative(problem.friction(i), &x.v[own.clone()]);
+        let of_point = resolvent(&D, &r[own.clone()]);
+        S[own.clone()].copy_from_slice(&of_point[..own.len()]);
+        for (a, k) in own.clone().enumerate() {
+            for b in 0..own.len() {
+                let ds: f64 = (0..own.len()).map(|c| D[a][c] * of_point[c][b]).sum();
+                minus_DS[k][b] = -ds;
             }
         }
     }
-    for (j, q) in modes.q.iter().enumerate() {
-        let column = J.col_as_slice_mut(n + j);
-        column[..n].iter_mut().zip(q).for_each(|(J, q)| *J = -q);
-    }
-    let mut rhs: Vec<f64> = at.F.iter().map(|F| -F).collect();
-    rhs.extend(at.missing.iter().map(|c| c / rho));
-    let y = solve_dense(&J, &rhs)?;
-
+    let all: Vec<usize> = (0..n).collect();
+    let law = Law::Columns {
+        e: &S,
+        s: &minus_DS,
+        series: None,
+    };
+    let f: Vec<f64> = at.F.iter().map(|F| -F).collect();
+    let excess: Vec<f64> = at.missing.iter().map(|c| -c).collect();
+    let (y, beta) = Bordered::new(problem, &all, &law)?.solve(&f, &excess)?;
     let mut v = vec![0.0; n];
-    for i in 0..problem.rows.points() {
-        let rows = problem.rows.of(i);
-        for k in rows.clone() {
-            v[k] = rows.clone().map(|l| S[k][l - rows.start] * y[l]).sum();
+    for own in problem.rows.iter() {
+        for k in own.clone() {
+            v[k] = own.clone().zip(S[k]).map(|(l, s)| s * y[l]).sum();
         }
     }
     Some(Iterate {
         v,
-        beta: y[n..].to_vec(),
+        beta: beta.iter().map(|b| -b).collect(),
     })
 }

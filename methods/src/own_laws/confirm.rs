@@ -3,8 +3,8 @@
 //! Their Newton methods stop by another norm than the judge's, which weights slip by μ, and they solve with W where the
 //! judge takes K: either can turn a claim false.
 
-use crate::condensed::problem::Reduced;
-use crate::contract::judge::{residuals_of, slip_from};
+use crate::condensed::problem::ContactProblem;
+use crate::contract::judge::residuals_of;
 use crate::contract::state::Status;
 use crate::error::MethodError;
 
@@ -23,7 +23,7 @@ pub(crate) enum Judged {
 
 /// Judges an iterate by the laws of `problem.claim`. After as many corrections as are worthwhile a wrong one is `Stalled`.
 pub(crate) fn judge(
-    problem: &mut Reduced<'_>,
+    problem: &mut ContactProblem<'_>,
     p: &[f64],
     beta: &[f64],
     corrections: usize,
@@ -48,7 +48,7 @@ pub(crate) fn judge(
 /// Judges an iterate of laws on v alone. `None`: the claim would be false, and q has taken up the difference between the
 /// jump of the recovered displacements and the condensed one, so that the method can go on from where it is.
 pub(crate) fn confirm(
-    problem: &mut Reduced<'_>,
+    problem: &mut ContactProblem<'_>,
     p: &[f64],
     beta: &[f64],
     corrections: &mut usize,
@@ -58,12 +58,7 @@ pub(crate) fn confirm(
         Judged::Wrong(u) => u,
     };
     *corrections += 1;
-    let increment = problem.increment;
-    let (jump, start) = (increment.jump(&u), increment.start_jump());
-    let found = slip_from(problem.rows, increment.system.dim(), &jump, &start);
-    let condensed = problem.jump(p, beta);
-    for ((q, found), condensed) in problem.q.iter_mut().zip(&found).zip(&condensed) {
-        *q += found - condensed;
-    }
+    let found = problem.slip_of(&u);
+    problem.correct(&found, p, beta);
     Ok(None)
 }

@@ -16,7 +16,7 @@
 //! [`Claim::Nitsche`]; the natural map that fills the history ends at the distance from the laws of the contact points.
 //!
 //! K does not change, so u is eliminated once: what is left is the exact contact law with a further compliance C ~ 1/γ
-//! between the points, on as many unknowns as a multiplier method has (`problem/nitsche_condensed.rs`). A semismooth Newton
+//! between the points, on as many unknowns as a multiplier method has (`own_laws/stabilisation.rs`). A semismooth Newton
 //! method with the consistent tangent solves it.
 //!
 //! # Options
@@ -50,15 +50,19 @@
 
 use std::sync::Arc;
 
-use crate::condensed::problem::{Begin, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
+use crate::newton::iteration::max_iterations;
 use crate::newton::springs::recorded;
 use crate::newton::step::Tangent;
 use crate::own_laws::stabilisation::Stabilisation;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome, Status,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -69,37 +73,28 @@ pub static METHOD: Method = Method {
     exact: false,
     options: &OPTIONS,
     source: include_str!("nitsche.rs"),
-    build: |options| Ok(Box::new(Nitsche::new(options))),
+    build: |options| Box::new(Nitsche::new(options)),
 };
 
+const GAMMA: Real = Real {
+    name: "gamma",
+    default: 2.0,
+    min: 1e-2,
+    max: 1e6,
+    help: "stabilisation gamma as a multiple of the constant of the discrete trace inequality",
+};
+const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
+const THETA: Whole = Whole {
+    name: "theta",
+    default: 1,
+    min: -1,
+    max: 1,
+    help: "1 symmetric, 0 incomplete, -1 skew-symmetric variant",
+};
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "gamma",
-        unit: "-",
-        default: 2.0,
-        min: 1e-2,
-        max: 1e6,
-        integer: false,
-        help: "stabilisation gamma as a multiple of the constant of the discrete trace inequality",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 100.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "Newton steps before giving up",
-    },
-    OptionSpec {
-        name: "theta",
-        unit: "-",
-        default: 1.0,
-        min: -1.0,
-        max: 1.0,
-        integer: true,
-        help: "1 symmetric, 0 incomplete, -1 skew-symmetric variant",
-    },
+    OptionSpec::Real(GAMMA),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    OptionSpec::Whole(THETA),
 ];
 
 /// The law is solved this much more accurately than asked: the judge holds the claim to it in another norm.
@@ -113,38 +108,37 @@ struct Nitsche {
     theta: f64,
     gamma: f64,
     max_iterations: usize,
+    /// The terms of a system, kept for as long as it stays the same.
     terms: Option<Arc<Stabilisation>>,
-    /// Factorisations not yet counted in an outcome.
-    new_factors: usize,
 }
 
 impl Nitsche {
     fn new(options: &Options) -> Self {
         Self {
-            theta: options.own("theta"),
-            gamma: options.own("gamma"),
-            max_iterations: options.own("max_iterations") as usize,
+            theta: options.whole(&THETA) as f64,
+            gamma: options.real(&GAMMA),
+            max_iterations: options.count(&MAX_ITERATIONS),
             terms: None,
-            new_factors: 0,
         }
     }
 
-    /// The terms of a system; kept for as long as the system stays the same.
-    fn terms(&mut self, system: &ContactSystem) -> Result<Arc<Stabilisation>, MethodError> {
-        let condensed = system.condensed()?;
-        if let Some(terms) = &self.terms
-            && terms.belongs_to(&condensed)
-        {
-            return Ok(terms.clone());
+    fn terms(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+    ) -> Result<Arc<Stabilisation>, MethodError> {
+        match &self.terms {
+            Some(terms) if terms.belongs_to(&problem.operator) => Ok(terms.clone()),
+            _ => {
+                let (system, operator) = (problem.increment.system, problem.operator.clone());
+                let terms = Stabilisation::new(system, operator, self.theta, self.gamma)?;
+                problem.counters.factorisations += 1;
+                Ok(self.terms.insert(Arc::new(terms)).clone())
+            }
         }
-        let terms = Stabilisation::new(system, condensed, self.theta, self.gamma)?;
-        let terms = self.terms.insert(Arc::new(terms)).clone();
-        self.new_factors += 1;
-        Ok(terms)
     }
 }
 
-impl Enforcement for Nitsche {
+impl CondensedMethod for Nitsche {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
         let least = 0.25 * (1.0 + self.theta).powi(2);
         if system.elastic().traction().is_none() {
@@ -162,32 +156,25 @@ impl Enforcement for Nitsche {
         }
     }
 
-    fn needs_traction(&self) -> bool {
-        true
+    fn needs(&self) -> Needs {
+        Needs {
+            traction: true,
+            ..Needs::default()
+        }
     }
 
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let terms = self.terms(increment.system)?;
-        problem.counters.factorisations += std::mem::take(&mut self.new_factors);
+    ) -> Result<End, MethodError> {
+        let terms = self.terms(problem)?;
         problem.claim = terms.claim();
         // The Newton iteration measures jumps on the scale of ρ, the claim measures them on that of Γ.
-        let scale = (problem.condensed.rho / terms.stiffest()).min(1.0);
+        let scale = (problem.operator.rho / terms.stiffest()).min(1.0);
         let stop = CLAIM_FRACTION * scale * problem.stop;
-        let mut s = terms.free_stress(&problem)?;
-        let mut p = problem.start_forces();
-        let mut beta = problem.start_amplitudes(&p);
+        let mut s = terms.free_stress(problem)?;
+        let mut x = Forces::start(problem);
         let mut corrections = 0;
 
         let status = loop {
@@ -196,31 +183,31 @@ impl Enforcement for Nitsche {
                 break Status::MaxIterations;
             }
             let springs = terms.springs(&s);
-            let start = springs.predict(&problem, &p, beta);
+            let start = springs.predict(problem, x);
             let report = recorded(monitor, |problem, at| {
                 terms.jump(problem, &s, &at.p, &at.beta)
             });
             let (round, tangent) = (left.min(ROUND), &mut Tangent::Condensed);
-            let (status, end) = springs.solve(&mut problem, start, stop, round, tangent, report)?;
-            (p, beta) = (end.p, end.beta);
+            let (status, end) = springs.solve(problem, start, stop, round, tangent, report)?;
+            x = end.into();
             match status {
                 // Stalled: solved to rounding, which may be enough.
                 Status::Converged | Status::Stalled => {
-                    match terms.confirm(&mut problem, &mut s, &p, &beta, corrections)? {
+                    match terms.confirm(problem, &mut s, &x.p, &x.beta, corrections)? {
                         Some(status) => break status,
                         None => corrections += 1,
                     }
                 }
                 Status::MaxIterations if left > ROUND && problem.rescue_left() => {
-                    let Some(pair) = rescue(&mut problem)? else {
+                    let Some(pair) = rescue(problem)? else {
                         break problem.singular();
                     };
-                    (p, beta) = (pair.p, pair.beta);
+                    x = pair.into();
                 }
                 _ => break status,
             }
         };
-        problem.further = terms.consistency(&problem, &s, &p)?;
-        problem.finish(status, &p, &beta)
+        problem.further = terms.consistency(problem, &s, &x.p)?;
+        Ok(End { status, at: x })
     }
 }

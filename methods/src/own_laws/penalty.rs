@@ -32,14 +32,18 @@
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
 //! to W as compliances 1/k.
 
-use crate::condensed::problem::{Begin, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::ContactProblem;
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Claim, Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
+use crate::newton::iteration::max_iterations;
 use crate::newton::springs::{Springs, recorded};
-use crate::newton::step::{MONOLITHIC, Tangent};
+use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome, Status,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -50,38 +54,27 @@ pub static METHOD: Method = Method {
     exact: false,
     options: &OPTIONS,
     source: include_str!("penalty.rs"),
-    build: |options| Ok(Box::new(Penalty::new(options))),
+    build: |options| Box::new(Penalty::new(options)),
 };
 
+const NORMAL: Real = Real {
+    name: "normal",
+    default: 1e4,
+    min: 1e-2,
+    max: 1e10,
+    help: "normal penalty stiffness as a multiple of rho = rows/trace(W)",
+};
+const TANGENTIAL: Real = Real {
+    name: "tangential",
+    help: "tangential penalty stiffness as a multiple of rho",
+    ..NORMAL
+};
+const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
 static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec {
-        name: "normal",
-        unit: "-",
-        default: 1e4,
-        min: 1e-2,
-        max: 1e10,
-        integer: false,
-        help: "normal penalty stiffness as a multiple of rho = rows/trace(W)",
-    },
-    OptionSpec {
-        name: "tangential",
-        unit: "-",
-        default: 1e4,
-        min: 1e-2,
-        max: 1e10,
-        integer: false,
-        help: "tangential penalty stiffness as a multiple of rho",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 100.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "Newton steps before giving up",
-    },
-    MONOLITHIC,
+    OptionSpec::Real(NORMAL),
+    OptionSpec::Real(TANGENTIAL),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    Tangent::OPTION,
 ];
 
 /// The penalised equations are solved this much more accurately than asked, because the judge holds the claim to them in
@@ -98,40 +91,39 @@ struct Penalty {
 impl Penalty {
     fn new(options: &Options) -> Self {
         Self {
-            normal: options.own("normal"),
-            tangential: options.own("tangential"),
-            max_iterations: options.own("max_iterations") as usize,
+            normal: options.real(&NORMAL),
+            tangential: options.real(&TANGENTIAL),
+            max_iterations: options.count(&MAX_ITERATIONS),
             tangent: Tangent::new(options),
         }
     }
 }
 
-impl Enforcement for Penalty {
+impl CondensedMethod for Penalty {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
         self.tangent.refuses(system)
     }
 
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
+    fn needs(&self) -> Needs {
+        self.tangent.needs()
     }
 
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let claim = |rho: f64| Claim::Penalised {
+    fn claim(&self, rho: f64) -> Claim {
+        Claim::Penalised {
             normal: self.normal * rho,
             tangential: self.tangential * rho,
-        };
-        let mut problem = match Reduced::begin(increment, claim)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let rho = problem.condensed.rho;
+        }
+    }
+
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let rho = problem.operator.rho;
         // Springs start unloaded along the normal, and loaded by the friction force of the start along the tangent.
-        let mut anchor = problem.rows.restrict(&increment.start.p);
-        for &row in &problem.rows.start[..problem.rows.points()] {
+        let mut anchor = problem.rows.restrict(&problem.increment.start.p);
+        for &row in problem.rows.normal() {
             anchor[row] = 0.0;
         }
         let springs = Springs {
@@ -141,33 +133,28 @@ impl Enforcement for Penalty {
             coupled: None,
         };
 
-        let p = problem.start_forces();
-        let beta = problem.start_amplitudes(&p);
-        let mut start = springs.predict(&problem, &p, beta);
+        let mut start = springs.predict(problem, Forces::start(problem));
         let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
-
-        let (status, end) = loop {
+        loop {
             let left = (self.max_iterations).saturating_sub(problem.history.len());
             let report = recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta));
             let tangent = &mut self.tangent;
-            let (status, mut end) =
-                springs.solve(&mut problem, start, stop, left, tangent, report)?;
-            problem.rebalance(&mut end.p);
+            let (status, end) = springs.solve(problem, start, stop, left, tangent, report)?;
+            let mut at = Forces::from(end);
+            problem.rebalance(&mut at.p);
             // Stalled: solved to rounding, which may be enough.
             if status != Status::Converged && status != Status::Stalled {
-                break (status, end);
+                return Ok(End { status, at });
             }
-            match confirm(&mut problem, &end.p, &end.beta, &mut corrections)? {
-                Some(status) => break (status, end),
-                None if problem.counters.iterations >= self.max_iterations => {
-                    break (Status::MaxIterations, end);
-                }
-                None => {
-                    stop *= CLAIM_FRACTION;
-                    start = springs.predict(&problem, &end.p, end.beta);
-                }
+            if let Some(status) = confirm(problem, &at.p, &at.beta, &mut corrections)? {
+                return Ok(End { status, at });
             }
-        };
-        problem.finish(status, &end.p, &end.beta)
+            if problem.counters.iterations >= self.max_iterations {
+                let status = Status::MaxIterations;
+                return Ok(End { status, at });
+            }
+            stop *= CLAIM_FRACTION;
+            start = springs.predict(problem, at);
+        }
     }
 }

@@ -27,63 +27,24 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Accum, Mat, MatMut, Par, Side};
 
+use crate::algebra::delassus::Dense;
 use crate::algebra::dense::{mul_add, mul_transpose_add};
 use crate::algebra::factor::kernel;
 use crate::algebra::floating::ModeJumps;
+use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::extremes;
-use crate::condensed::problem::Reduced;
-use crate::contract::elastic::Elastic;
-use crate::contract::judge::{implied_forces, slip_from};
-use crate::contract::operator::{Condensed, RowSet};
+use crate::condensed::problem::ContactProblem;
+use crate::contract::judge::implied_forces;
+use crate::contract::operator::ContactOperator;
 use crate::contract::state::{Claim, Status};
 use crate::contract::system::ContactSystem;
 use crate::error::MethodError;
 use crate::newton::springs::{Coupled, Springs};
 use crate::own_laws::confirm::{Judged, judge};
 
-/// Columns of Sᵀ solved for together.
-const PANEL: usize = 128;
-
-/// T and X on the rows of a body.
-pub(crate) struct Tractions {
-    /// S K⁻¹ Sᵀ, symmetric positive semi-definite, in N/m.
-    t: Mat<f64>,
-    /// B K⁻¹ Sᵀ, dimensionless.
-    x: Mat<f64>,
-}
-
-impl Tractions {
-    /// Back-solves for all rows of S; unlike rows of B they reach beyond the trailing block of the factor.
-    pub fn new(elastic: &Elastic) -> Result<Self, MethodError> {
-        let s = elastic.traction().ok_or(MethodError::NoTraction)?;
-        let b = elastic.jump();
-        let rows = elastic.rows().source;
-        let m = rows.len();
-        let (mut t, mut x) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
-        for begin in (0..m).step_by(PANEL) {
-            let panel = &rows[begin..(begin + PANEL).min(m)];
-            let mut u = Mat::<f64>::zeros(elastic.unknowns(), panel.len());
-            for (column, &i) in panel.iter().enumerate() {
-                s.row(i).for_each(|(j, v)| u[(j, column)] += v);
-            }
-            elastic.solve_columns(&mut u)?;
-            for column in 0..panel.len() {
-                let u = u.col_as_slice(column);
-                for (k, &i) in rows.iter().enumerate() {
-                    t[(k, begin + column)] = s.row(i).map(|(j, v)| v * u[j]).sum();
-                    x[(k, begin + column)] = b.row(i).map(|(j, v)| v * u[j]).sum();
-                }
-            }
-        }
-        // Each pair is read from one triangle, so the result is symmetric to the bit.
-        let t = Mat::from_fn(m, m, |i, j| t[(i.max(j), i.min(j))]);
-        Ok(Self { t, x })
-    }
-}
-
 /// Nitsche's terms for one system, θ and γ.
 pub(crate) struct Stabilisation {
-    condensed: Arc<Condensed>,
+    operator: Arc<ContactOperator>,
     theta: f64,
     /// γ in N/m³.
     gamma: f64,
@@ -101,22 +62,21 @@ impl Stabilisation {
     /// γ = `multiple` · λ.
     pub fn new(
         system: &ContactSystem,
-        condensed: Arc<Condensed>,
+        operator: Arc<ContactOperator>,
         theta: f64,
         multiple: f64,
     ) -> Result<Self, MethodError> {
         let elastic = system.elastic();
         let all = elastic.tractions()?;
         let rows = system.row_set();
-        let position = elastic.rows().positions(elastic.jump().rows());
-        let at = |k: usize| position[rows.source[k]];
+        let at = rows.positions_in(&elastic.rows());
         let m = rows.len();
-        let t = Mat::from_fn(m, m, |i, j| all.t[(at(i), at(j))]);
-        let x = Mat::from_fn(m, m, |i, j| all.x[(at(i), at(j))]);
+        let t = Mat::from_fn(m, m, |i, j| all.t[(at[i], at[j])]);
+        let x = Mat::from_fn(m, m, |i, j| all.x[(at[i], at[j])]);
 
         let weight = weights(system, rows);
         let scaled = Mat::from_fn(m, m, |i, j| t[(i, j)] / (weight[i] * weight[j]).sqrt());
-        let (_, lambda) = extremes(&scaled, &ModeJumps::empty()).ok_or_else(|| {
+        let (_, lambda) = extremes(&Dense::new(scaled), &ModeJumps::empty()).ok_or_else(|| {
             kernel(
                 "condensation of Nitsche's method",
                 "no displacement causes stress at the contact points".into(),
@@ -142,7 +102,7 @@ impl Stabilisation {
             Par::Seq,
         );
         Ok(Self {
-            condensed,
+            operator,
             theta,
             gamma,
             stiffness,
@@ -154,8 +114,8 @@ impl Stabilisation {
     }
 
     /// Whether the terms were made for this operator.
-    pub fn belongs_to(&self, condensed: &Arc<Condensed>) -> bool {
-        Arc::ptr_eq(&self.condensed, condensed)
+    pub fn belongs_to(&self, operator: &Arc<ContactOperator>) -> bool {
+        Arc::ptr_eq(&self.operator, operator)
     }
 
     /// Which laws hold at the end.
@@ -172,7 +132,7 @@ impl Stabilisation {
     }
 
     /// s = S K⁻¹ f + t by row.
-    pub fn free_stress(&self, problem: &Reduced<'_>) -> Result<Vec<f64>, MethodError> {
+    pub fn free_stress(&self, problem: &ContactProblem<'_>) -> Result<Vec<f64>, MethodError> {
         stress(problem, &problem.free)
     }
 
@@ -200,7 +160,13 @@ impl Stabilisation {
     }
 
     /// v = q + W P + θ X y + Q β.
-    pub fn jump(&self, problem: &Reduced<'_>, s: &[f64], p: &[f64], beta: &[f64]) -> Vec<f64> {
+    pub fn jump(
+        &self,
+        problem: &ContactProblem<'_>,
+        s: &[f64],
+        p: &[f64],
+        beta: &[f64],
+    ) -> Vec<f64> {
         let mut v = problem.jump(p, beta);
         let y = self.mismatch(s, p);
         mul_add(&self.x, &scaled(self.theta, &y), &mut v);
@@ -210,7 +176,7 @@ impl Stabilisation {
     /// θ Sᵀ y, the consistency term of equilibrium.
     pub fn consistency(
         &self,
-        problem: &Reduced<'_>,
+        problem: &ContactProblem<'_>,
         s: &[f64],
         p: &[f64],
     ) -> Result<Vec<f64>, MethodError> {
@@ -226,13 +192,12 @@ impl Stabilisation {
     /// between what they imply and the condensed values, and the method goes on from where it is (`None`).
     pub fn confirm(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         s: &mut [f64],
         p: &[f64],
         beta: &[f64],
         corrections: usize,
     ) -> Result<Option<Status>, MethodError> {
-        let increment = problem.increment;
         problem.further = self.consistency(problem, s, p)?;
         let u = match judge(problem, p, beta, corrections)? {
             Judged::End(status) => return Ok(Some(status)),
@@ -241,9 +206,7 @@ impl Stabilisation {
         let (v, mut tau) = (self.jump(problem, s, p, beta), s.to_vec());
         mul_transpose_add(&self.x, p, &mut tau);
         mul_add(&self.t, &scaled(self.theta, &self.mismatch(s, p)), &mut tau);
-        let jump = increment.jump(&u);
-        let dim = increment.system.dim();
-        let v_found = slip_from(problem.rows, dim, &jump, &increment.start_jump());
+        let v_found = problem.slip_of(&u);
         let tau_found = stress(problem, &u)?;
         for k in 0..v.len() {
             problem.q[k] += v_found[k] - v[k];
@@ -261,7 +224,7 @@ impl Stabilisation {
 }
 
 /// S u + t by row.
-fn stress(problem: &Reduced<'_>, u: &[f64]) -> Result<Vec<f64>, MethodError> {
+fn stress(problem: &ContactProblem<'_>, u: &[f64]) -> Result<Vec<f64>, MethodError> {
     let all = implied_forces(problem.increment, u)?;
     Ok(problem.rows.restrict(&all))
 }
@@ -284,8 +247,8 @@ mod tests {
     use faer::linalg::solvers::PartialPivLu;
 
     use super::*;
-    use crate::algebra::floating::dot;
-    use crate::{ElasticParts, JumpOperator, SymmetricMatrix};
+    use crate::algebra::dense::dot;
+    use crate::{Elastic, ElasticParts, JumpOperator, SymmetricMatrix};
 
     /// Numbers without symmetry between −1 and 1.
     fn number(k: usize) -> f64 {
@@ -339,8 +302,8 @@ mod tests {
             let rows = system.row_set().source.clone();
             let p: Vec<f64> = (0..rows.len()).map(|k| number(300 + k)).collect();
             for theta in [1.0, 0.0, -1.0] {
-                let condensed = system.condensed().unwrap();
-                let terms = Stabilisation::new(&system, condensed.clone(), theta, 1.5).unwrap();
+                let operator = system.operator(crate::DelassusForm::Formed).unwrap();
+                let terms = Stabilisation::new(&system, operator.clone(), theta, 1.5).unwrap();
                 let stiffness = |k: usize| terms.gamma * weight[rows[k] / 2];
                 let sum = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).sum::<f64>();
                 let whole = Mat::from_fn(n, n, |i, j| {
@@ -353,7 +316,7 @@ mod tests {
                 let times =
                     |of: &dyn Fn(usize) -> f64| (0..n).map(|j| of(j) * u[(j, 0)]).sum::<f64>();
                 let mut v = vec![0.0; rows.len()];
-                mul_add(&condensed.w, &p, &mut v);
+                operator.w.apply_add(&p, &mut v);
                 mul_add(&terms.compliance, &p, &mut v);
                 let y = terms.mismatch(&vec![0.0; rows.len()], &p);
                 for l in 0..rows.len() {

@@ -40,14 +40,16 @@
 
 use std::sync::Arc;
 
-use crate::algebra::factor::norm;
-use crate::condensed::problem::{Begin, Limits, Reduced};
-use crate::condensed::stages::{GlobalStage, Pair};
+use crate::algebra::dense::norm;
+use crate::condensed::forces::Pair;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
+use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -58,37 +60,34 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("admm.rs"),
-    build: |options| Ok(Box::new(Admm::new(options))),
+    build: |options| Box::new(Admm::new(options)),
 };
 
+const PENALTY: Real = Real {
+    name: "penalty",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)",
+};
+const OVER_RELAXATION: Real = Real {
+    name: "over_relaxation",
+    default: 1.6,
+    min: 0.5,
+    max: 1.9,
+    help: "over-relaxation; 1 is the plain method",
+};
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 20_000,
+    min: 1,
+    max: 10_000_000,
+    help: "pairs of steps before giving up",
+};
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "penalty",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)",
-    },
-    OptionSpec {
-        name: "over_relaxation",
-        unit: "-",
-        default: 1.6,
-        min: 0.5,
-        max: 1.9,
-        integer: false,
-        help: "over-relaxation; 1 is the plain method",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 20_000.0,
-        min: 1.0,
-        max: 1e7,
-        integer: true,
-        help: "pairs of steps before giving up",
-    },
+    OptionSpec::Real(PENALTY),
+    OptionSpec::Real(OVER_RELAXATION),
+    OptionSpec::Whole(MAX_ITERATIONS),
 ];
 
 /// Iterations without progress after which the iteration counts as stalled.
@@ -106,7 +105,7 @@ const KEPT: usize = 3;
 struct Admm {
     penalty: f64,
     over_relaxation: f64,
-    max_iterations: usize,
+    limits: Limits,
     /// The linear step with its power of 2, the last one used at the end.
     stages: Vec<(i32, Arc<GlobalStage>)>,
 }
@@ -114,9 +113,12 @@ struct Admm {
 impl Admm {
     fn new(options: &Options) -> Self {
         Self {
-            penalty: options.own("penalty"),
-            over_relaxation: options.own("over_relaxation"),
-            max_iterations: options.own("max_iterations") as usize,
+            penalty: options.real(&PENALTY),
+            over_relaxation: options.real(&OVER_RELAXATION),
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
             stages: Vec::new(),
         }
     }
@@ -124,18 +126,18 @@ impl Admm {
     /// The linear step with k = penalty ρ 2^power.
     fn stage(
         &mut self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         power: i32,
     ) -> Result<Arc<GlobalStage>, MethodError> {
         self.stages
-            .retain(|(_, stage)| stage.belongs_to(&problem.condensed));
+            .retain(|(_, stage)| stage.belongs_to(&problem.operator));
         let kept = self.stages.iter().position(|(kept, _)| *kept == power);
         let stage = if let Some(place) = kept {
             self.stages.remove(place).1
         } else {
-            let k = self.penalty * problem.condensed.rho * 2.0_f64.powi(power);
+            let k = self.penalty * problem.operator.rho * 2.0_f64.powi(power);
             problem.counters.factorisations += 1;
-            Arc::new(GlobalStage::along(problem.condensed.clone(), k)?)
+            Arc::new(GlobalStage::along(problem.operator.clone(), k)?)
         };
         self.stages.push((power, stage.clone()));
         if self.stages.len() > KEPT {
@@ -145,62 +147,40 @@ impl Admm {
     }
 }
 
-impl Enforcement for Admm {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Admm {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
+    ) -> Result<End, MethodError> {
         let (mut power, mut balance) = (0, Balance::default());
-        let mut stage = self.stage(&mut problem, power)?;
-        let mut pair = Pair::start(&problem);
-        let mut cone = Cone::start(&problem, &pair, stage.k0());
+        let mut stage = self.stage(problem, power)?;
+        let mut pair = Pair::start(problem);
+        let mut cone = Cone::start(problem, &pair, stage.k0());
         let (mut changes, mut alpha) = (0, self.over_relaxation);
 
         let status = loop {
-            let mut natural_map = problem.natural_map(&pair.p, &pair.v);
-            if natural_map <= problem.stop {
-                pair.v = problem.jump(&pair.p, &pair.beta);
-                natural_map = problem.natural_map(&pair.p, &pair.v);
-            }
-            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                match problem.confirm(status, &pair.p, &pair.beta)? {
-                    Some(status) => break status,
-                    None => {
-                        pair.v = problem.jump(&pair.p, &pair.beta);
-                        continue;
-                    }
-                }
+            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+                break status;
             }
             if problem.idle() >= STAGNATION {
                 alpha = alpha.min(1.0);
             }
             let growth;
-            (changes, growth) = cone.project(&mut problem, &pair, alpha);
+            (changes, growth) = cone.project(problem, &pair, alpha);
             let power_step = balance.moves(problem.counters.iterations, growth);
             if power_step != 0 {
                 power += power_step;
-                stage = self.stage(&mut problem, power)?;
+                stage = self.stage(problem, power)?;
                 cone.rescale(stage.k0());
             }
-            match stage.global_stage(&problem, &cone.target(&problem)) {
+            match stage.global_stage(problem, &cone.target(problem)) {
                 Some(new) => pair = new,
                 None => break problem.singular(),
             }
         };
-        problem.finish(status, &pair.p, &pair.beta)
+        let at = pair.into();
+        Ok(End { status, at })
     }
 }
 
@@ -246,7 +226,7 @@ struct Cone {
 
 impl Cone {
     /// y = P, ξ = −k ṽ.
-    fn start(problem: &Reduced<'_>, pair: &Pair, k: f64) -> Self {
+    fn start(problem: &ContactProblem<'_>, pair: &Pair, k: f64) -> Self {
         let mut xi: Vec<f64> = pair.v.iter().map(|v| -k * v).collect();
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
@@ -262,7 +242,12 @@ impl Cone {
     }
 
     /// y and ξ from the new P. Returns how many points changed their branch, and the factor by which k should grow.
-    fn project(&mut self, problem: &mut Reduced<'_>, pair: &Pair, alpha: f64) -> (usize, f64) {
+    fn project(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        pair: &Pair,
+        alpha: f64,
+    ) -> (usize, f64) {
         problem.counters.local_solves += problem.rows.points();
         let mut z: Vec<f64> = (0..self.y.len())
             .map(|k| alpha * pair.p[k] + (1.0 - alpha) * self.y[k] + self.xi[k])
@@ -281,7 +266,7 @@ impl Cone {
             a.iter().zip(&self.y).map(square).sum::<f64>().sqrt()
         };
         let relative = norm(&pair.p).max(norm(&self.y)) / norm(&self.xi);
-        let scaled = problem.condensed.rho / self.k;
+        let scaled = problem.operator.rho / self.k;
         let ratio = distance(&old) / distance(&pair.p) * (relative * scaled).sqrt();
         (changes, ratio.sqrt())
     }
@@ -294,7 +279,7 @@ impl Cone {
     }
 
     /// y − ξ − k s: what P + k v of the linear step has to be.
-    fn target(&self, problem: &Reduced<'_>) -> Vec<f64> {
+    fn target(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
         let mut target: Vec<f64> = self.y.iter().zip(&self.xi).map(|(y, x)| y - x).collect();
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
@@ -308,7 +293,10 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ContactState, Elastic, Load, SymmetricMatrix};
+    use crate::condensed::problem::Begin;
+    use crate::{
+        Claim, ContactState, ContactSystem, DelassusForm, Elastic, Increment, Load, SymmetricMatrix,
+    };
 
     #[test]
     fn only_the_last_factors_are_kept() {
@@ -328,14 +316,14 @@ mod tests {
             index: 0,
             tolerance: 1e-9,
         };
-        let Begin::Contact(mut problem) = Reduced::begin(&increment, |_| Claim::Exact).unwrap()
-        else {
+        let begun = ContactProblem::begin(&increment, DelassusForm::Formed, |_| Claim::Exact);
+        let Begin::Contact(mut problem) = begun.unwrap() else {
             panic!("the point closes");
         };
         let mut admm = Admm::new(&Options::new(&OPTIONS, &[]).unwrap());
-        let counted = |admm: &mut Admm, problem: &mut Reduced<'_>, power: i32| {
+        let counted = |admm: &mut Admm, problem: &mut ContactProblem<'_>, power: i32| {
             let k0 = admm.stage(problem, power).unwrap().k0();
-            assert_eq!(k0, problem.condensed.rho * 2.0_f64.powi(power));
+            assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
             assert!(admm.stages.len() <= KEPT);
             problem.counters.factorisations
         };

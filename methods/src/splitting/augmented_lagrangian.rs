@@ -27,13 +27,16 @@
 //! # Failure modes
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
-use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 use crate::newton::springs::Springs;
-use crate::newton::step::{MONOLITHIC, Tangent};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome, Status,
-};
+use crate::newton::step::Tangent;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -44,38 +47,35 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("augmented_lagrangian.rs"),
-    build: |options| Ok(Box::new(AugmentedLagrangian::new(options))),
+    build: |options| Box::new(AugmentedLagrangian::new(options)),
 };
 
+const STIFFNESS: Real = Real {
+    name: "stiffness",
+    default: 1e3,
+    min: 1e-2,
+    max: 1e6,
+    help: "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)",
+};
+const MAX_OUTER: Whole = Whole {
+    name: "max_outer",
+    default: 1000,
+    min: 1,
+    max: 1_000_000,
+    help: "multiplier updates before giving up",
+};
+const MAX_INNER: Whole = Whole {
+    name: "max_inner",
+    default: 100,
+    min: 1,
+    max: 1_000_000,
+    help: "Newton steps per inner problem before giving up",
+};
 static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec {
-        name: "stiffness",
-        unit: "-",
-        default: 1e3,
-        min: 1e-2,
-        max: 1e6,
-        integer: false,
-        help: "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)",
-    },
-    OptionSpec {
-        name: "max_outer",
-        unit: "-",
-        default: 1000.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "multiplier updates before giving up",
-    },
-    OptionSpec {
-        name: "max_inner",
-        unit: "-",
-        default: 100.0,
-        min: 1.0,
-        max: 1e6,
-        integer: true,
-        help: "Newton steps per inner problem before giving up",
-    },
-    MONOLITHIC,
+    OptionSpec::Real(STIFFNESS),
+    OptionSpec::Whole(MAX_OUTER),
+    OptionSpec::Whole(MAX_INNER),
+    Tangent::OPTION,
 ];
 
 /// The inner problem is solved this much more accurately than the outer loop is stopped.
@@ -86,7 +86,7 @@ const PATIENCE: usize = 200;
 
 struct AugmentedLagrangian {
     stiffness: f64,
-    max_outer: usize,
+    outer: Limits,
     max_inner: usize,
     tangent: Tangent,
 }
@@ -94,62 +94,55 @@ struct AugmentedLagrangian {
 impl AugmentedLagrangian {
     fn new(options: &Options) -> Self {
         Self {
-            stiffness: options.own("stiffness"),
-            max_outer: options.own("max_outer") as usize,
-            max_inner: options.own("max_inner") as usize,
+            stiffness: options.real(&STIFFNESS),
+            outer: Limits {
+                iterations: options.count(&MAX_OUTER),
+                patience: PATIENCE,
+            },
+            max_inner: options.count(&MAX_INNER),
             tangent: Tangent::new(options),
         }
     }
 }
 
-impl Enforcement for AugmentedLagrangian {
+impl CondensedMethod for AugmentedLagrangian {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
         self.tangent.refuses(system)
     }
 
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
+    fn needs(&self) -> Needs {
+        self.tangent.needs()
     }
 
-    fn solve(
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let k = self.stiffness * problem.condensed.rho;
-        let mut p = problem.start_forces();
-        let mut beta = problem.start_amplitudes(&p);
+    ) -> Result<End, MethodError> {
+        let k = self.stiffness * problem.operator.rho;
+        let mut x = Forces::start(problem);
         let mut springs = Springs {
             normal: k,
             tangential: k,
-            anchor: p.clone(),
+            anchor: x.p.clone(),
             coupled: None,
         };
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;
-        let limits = Limits {
-            iterations: self.max_outer,
-            patience: PATIENCE,
-        };
 
         let status = loop {
-            let v = problem.jump(&p, &beta);
-            let natural_map = problem.natural_map(&p, &v);
-            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                match problem.confirm(status, &p, &beta)? {
-                    Some(status) => break status,
-                    None => continue,
-                }
+            let v = problem.jump(&x.p, &x.beta);
+            let natural_map = problem.natural_map(&x.p, &v);
+            match problem.check(natural_map, (&x.p, &x.beta), changes, self.outer, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => continue,
+                Check::End(status) => break status,
             }
-            springs.anchor.clone_from(&p);
-            let start = springs.predict(&problem, &p, beta);
+            springs.anchor.clone_from(&x.p);
+            let start = springs.predict(problem, x);
             changes = 0;
             let (inner, end) = springs.solve(
-                &mut problem,
+                problem,
                 start,
                 inner_stop,
                 self.max_inner,
@@ -159,13 +152,13 @@ impl Enforcement for AugmentedLagrangian {
                     true
                 },
             )?;
-            (p, beta) = (end.p, end.beta);
-            problem.rebalance(&mut p);
+            x = end.into();
+            problem.rebalance(&mut x.p);
             // Stalled: solved to rounding, which the outer loop can still use.
             if !matches!(inner, Status::Converged | Status::Stalled) {
                 break inner;
             }
         };
-        problem.finish(status, &p, &beta)
+        Ok(End { status, at: x })
     }
 }

@@ -31,13 +31,15 @@
 
 use std::sync::Arc;
 
-use crate::condensed::problem::{Begin, Limits, Reduced};
-use crate::condensed::stages::{GlobalStage, Pair};
+use crate::condensed::forces::Pair;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
+use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -48,37 +50,34 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("latin.rs"),
-    build: |options| Ok(Box::new(Latin::new(options))),
+    build: |options| Box::new(Latin::new(options)),
 };
 
+const SEARCH_DIRECTION: Real = Real {
+    name: "search_direction",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W",
+};
+const RELAXATION: Real = Real {
+    name: "relaxation",
+    default: 0.8,
+    min: 0.1,
+    max: 1.0,
+    help: "relaxation of the global stage",
+};
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 20_000,
+    min: 1,
+    max: 10_000_000,
+    help: "pairs of stages before giving up",
+};
 static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec {
-        name: "search_direction",
-        unit: "-",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        integer: false,
-        help: "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W",
-    },
-    OptionSpec {
-        name: "relaxation",
-        unit: "-",
-        default: 0.8,
-        min: 0.1,
-        max: 1.0,
-        integer: false,
-        help: "relaxation of the global stage",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 20_000.0,
-        min: 1.0,
-        max: 1e7,
-        integer: true,
-        help: "pairs of stages before giving up",
-    },
+    OptionSpec::Real(SEARCH_DIRECTION),
+    OptionSpec::Real(RELAXATION),
+    OptionSpec::Whole(MAX_ITERATIONS),
 ];
 
 /// Iterations without progress after which the iteration counts as stalled: plateaus of some hundred are normal.
@@ -87,87 +86,60 @@ const PATIENCE: usize = 2000;
 struct Latin {
     search_direction: f64,
     relaxation: f64,
-    max_iterations: usize,
+    limits: Limits,
+    /// The global stage, kept for as long as the system stays the same.
     global: Option<Arc<GlobalStage>>,
-    /// Factorisations not yet counted in an outcome.
-    new_factors: usize,
 }
 
 impl Latin {
     fn new(options: &Options) -> Self {
         Self {
-            search_direction: options.own("search_direction"),
-            relaxation: options.own("relaxation"),
-            max_iterations: options.own("max_iterations") as usize,
+            search_direction: options.real(&SEARCH_DIRECTION),
+            relaxation: options.real(&RELAXATION),
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
             global: None,
-            new_factors: 0,
         }
     }
 
-    /// The global stage of a system; kept for as long as the system stays the same.
-    fn stage(&mut self, system: &ContactSystem) -> Result<Arc<GlobalStage>, MethodError> {
-        let condensed = system.condensed()?;
-        if let Some(stage) = &self.global
-            && stage.belongs_to(&condensed)
-        {
-            return Ok(stage.clone());
+    fn stage(&mut self, problem: &mut ContactProblem<'_>) -> Result<Arc<GlobalStage>, MethodError> {
+        match &self.global {
+            Some(stage) if stage.belongs_to(&problem.operator) => Ok(stage.clone()),
+            _ => {
+                problem.counters.factorisations += 1;
+                let stage = GlobalStage::new(problem.operator.clone(), self.search_direction)?;
+                Ok(self.global.insert(Arc::new(stage)).clone())
+            }
         }
-        let stage = Arc::new(GlobalStage::new(condensed, self.search_direction)?);
-        self.global = Some(stage.clone());
-        self.new_factors += 1;
-        Ok(stage)
     }
 }
 
-impl Enforcement for Latin {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Latin {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let relaxation = self.relaxation;
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
-        let global = self.stage(increment.system)?;
-        problem.counters.factorisations += std::mem::take(&mut self.new_factors);
-        let mut pair = Pair::start(&problem);
+    ) -> Result<End, MethodError> {
+        let global = self.stage(problem)?;
+        let mut pair = Pair::start(problem);
         let mut before: Vec<Branch> = Vec::new();
         let mut changes = 0;
 
         let status = loop {
-            let mut natural_map = problem.natural_map(&pair.p, &pair.v);
-            if natural_map <= problem.stop {
-                // The relaxed v carries the rounding of all stages before: claim nothing without a fresh one.
-                pair.v = problem.jump(&pair.p, &pair.beta);
-                natural_map = problem.natural_map(&pair.p, &pair.v);
+            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+                break status;
             }
-            if let Some(status) = problem.ends(natural_map, changes, limits, monitor) {
-                match problem.confirm(status, &pair.p, &pair.beta)? {
-                    Some(status) => break status,
-                    None => {
-                        pair.v = problem.jump(&pair.p, &pair.beta);
-                        continue;
-                    }
-                }
-            }
-            let (target, branches) = global.local_stage(&mut problem, &pair);
+            let (target, branches) = global.local_stage(problem, &pair);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
             before = branches;
-            let Some(new) = global.global_stage(&problem, &target) else {
+            let Some(new) = global.global_stage(problem, &target) else {
                 break problem.singular();
             };
-            pair.relax(&problem, relaxation, &new);
+            pair.relax(problem, self.relaxation, &new);
         };
-        problem.finish(status, &pair.p, &pair.beta)
+        let at = pair.into();
+        Ok(End { status, at })
     }
 }

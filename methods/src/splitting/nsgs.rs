@@ -10,8 +10,8 @@
 //!   γ <- γ + κ (Qᵀ P − c)                                     bodies that float: method of multipliers
 //! until the natural map is small
 //! ```
-//! The local problem is solved by cases in 2D and as one scalar equation in 3D (`problem/local.rs`, swept by
-//! `problem/sweeps.rs`); the balance of floating bodies is augmented (`problem/saddle.rs`).
+//! The local problem is solved by cases in 2D and as one scalar equation in 3D (`condensed/local.rs`, swept by
+//! `condensed/sweeps.rs`); the balance of floating bodies is augmented (`condensed/saddle.rs`).
 //!
 //! # Options
 //! `relaxation`: ω to begin with. Every 300 sweeps in a row without progress halve it, at most four times: cycles at large
@@ -30,14 +30,16 @@
 //! A point whose force does not change, as an open one that stays open, leaves v as it is and costs one local problem. v
 //! is computed afresh only every now and then, and before anything is claimed.
 
-use crate::condensed::problem::{Begin, Limits, Reduced};
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -48,28 +50,26 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("nsgs.rs"),
-    build: |options| Ok(Box::new(Nsgs::new(options))),
+    build: |options| Box::new(Nsgs::new(options)),
 };
 
+const RELAXATION: Real = Real {
+    name: "relaxation",
+    default: 1.0,
+    min: 0.1,
+    max: 1.9,
+    help: "fraction of the step to the solution of each local problem",
+};
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 100_000,
+    min: 1,
+    max: 100_000_000,
+    help: "sweeps over all points before giving up",
+};
 static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec {
-        name: "relaxation",
-        unit: "-",
-        default: 1.0,
-        min: 0.1,
-        max: 1.9,
-        integer: false,
-        help: "fraction of the step to the solution of each local problem",
-    },
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 100_000.0,
-        min: 1.0,
-        max: 1e8,
-        integer: true,
-        help: "sweeps over all points before giving up",
-    },
+    OptionSpec::Real(RELAXATION),
+    OptionSpec::Whole(MAX_ITERATIONS),
 ];
 
 /// Sweeps without progress after which the iteration counts as stalled.
@@ -81,55 +81,47 @@ const MAX_HALVINGS: usize = 4;
 
 struct Nsgs {
     relaxation: f64,
-    max_iterations: usize,
+    limits: Limits,
 }
 
 impl Nsgs {
     fn new(options: &Options) -> Self {
         Self {
-            relaxation: options.own("relaxation"),
-            max_iterations: options.own("max_iterations") as usize,
+            relaxation: options.real(&RELAXATION),
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
         }
     }
 }
 
-impl Enforcement for Nsgs {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Nsgs {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
-        let saddle = Saddle::new(problem.condensed.clone());
-        let sweeps = Sweeps::new(&problem, &saddle);
-        let mut x = saddle.start(&problem);
+    ) -> Result<End, MethodError> {
+        let saddle = Saddle::new(problem.operator.clone());
+        let sweeps = Sweeps::new(problem, &saddle);
+        let mut x = saddle.start(problem);
         let mut branches = vec![Branch::Open; problem.rows.points()];
         let (mut changes, mut halvings) = (0, 0);
 
         let status = loop {
-            if let Some(status) = saddle.ends(&mut problem, &mut x, changes, limits, monitor)? {
+            if let Some(status) = saddle.ends(problem, &mut x, changes, self.limits, monitor)? {
                 break status;
             }
-            saddle.update_multipliers(&problem, &mut x);
+            saddle.update_multipliers(problem, &mut x);
             if problem.counters.iterations.is_multiple_of(REFRESH) {
-                saddle.refresh(&problem, &mut x);
+                saddle.refresh(problem, &mut x);
             }
             halvings = halvings.max((problem.idle() / STAGNATION).min(MAX_HALVINGS));
             let omega = self.relaxation / f64::from(1_u32 << halvings);
-            changes = sweeps.sweep(&mut problem, &saddle, omega, &mut x, &mut branches);
+            changes = sweeps.sweep(problem, &saddle, omega, &mut x, &mut branches);
         };
-        let (p, beta) = saddle.balanced(&problem, &x);
-        problem.finish(status, &p, &beta)
+        let (p, beta) = saddle.balanced(problem, &x);
+        let at = Forces { p, beta };
+        Ok(End { status, at })
     }
 }

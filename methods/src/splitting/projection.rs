@@ -18,7 +18,7 @@
 //! r = 1/mean(W'_ii) per point makes τ a number near 1; it is the same for both tangents, so that their frame does not matter.
 //! The normal takes r/max(μ, 1): the correction μ|d| would otherwise dominate for large μ. That halves the iterations at
 //! μ = 5, and with it μ = 50 converges at all. Norms and projections are those of this metric, |P|²/r and r |v|². W', q', γ:
-//! `problem/saddle.rs`.
+//! `condensed/saddle.rs`.
 //!
 //! # Options
 //! `max_iterations`. `variant`: 0 fixed point, 1 extragradient. 0 is the default, by measurement: it solves as many
@@ -37,14 +37,16 @@
 //! Nothing is factored. v follows P by columns of W', without those whose force did not change; it is computed afresh
 //! only every now and then, and before anything is claimed.
 
-use crate::algebra::dense::{minus, mul_add};
-use crate::condensed::problem::{Begin, COMPLIANCE_FLOOR, Limits, Reduced};
+use crate::algebra::dense::minus;
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{COMPLIANCE_FLOOR, ContactProblem, Limits};
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::{
-    Claim, ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, OptionSpec,
-    Options, Outcome,
-};
+use crate::contract::options::{OptionSpec, Options, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -55,28 +57,26 @@ pub static METHOD: Method = Method {
     exact: true,
     options: &OPTIONS,
     source: include_str!("projection.rs"),
-    build: |options| Ok(Box::new(Projection::new(options))),
+    build: |options| Box::new(Projection::new(options)),
 };
 
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 100_000,
+    min: 1,
+    max: 100_000_000,
+    help: "steps before giving up",
+};
+const VARIANT: Whole = Whole {
+    name: "variant",
+    default: 0,
+    min: 0,
+    max: 1,
+    help: "0: fixed point, one projection per step; 1: extragradient, two",
+};
 static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec {
-        name: "max_iterations",
-        unit: "-",
-        default: 100_000.0,
-        min: 1.0,
-        max: 1e8,
-        integer: true,
-        help: "steps before giving up",
-    },
-    OptionSpec {
-        name: "variant",
-        unit: "-",
-        default: 0.0,
-        min: 0.0,
-        max: 1.0,
-        integer: true,
-        help: "0: fixed point, one projection per step; 1: extragradient, two",
-    },
+    OptionSpec::Whole(MAX_ITERATIONS),
+    OptionSpec::Whole(VARIANT),
 ];
 
 /// Iterations without progress after which the iteration counts as stalled: at large μ plateaus of several thousand end in
@@ -91,65 +91,55 @@ const SHRINK: f64 = 2.0 / 3.0;
 
 struct Projection {
     extragradient: bool,
-    max_iterations: usize,
+    limits: Limits,
 }
 
 impl Projection {
     fn new(options: &Options) -> Self {
         Self {
-            extragradient: options.own("variant") == 1.0,
-            max_iterations: options.own("max_iterations") as usize,
+            extragradient: options.whole(&VARIANT) == 1,
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
         }
     }
 }
 
-impl Enforcement for Projection {
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError> {
-        system.elastic().factorise()
-    }
-
-    fn solve(
+impl CondensedMethod for Projection {
+    fn iterate(
         &mut self,
-        increment: &Increment<'_>,
+        problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError> {
-        let mut problem = match Reduced::begin(increment, |_| Claim::Exact)? {
-            Begin::Done(outcome) => return Ok(outcome),
-            Begin::Contact(problem) => problem,
-        };
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
-        let step = Step::new(&problem, self.extragradient);
-        let mut x = step.saddle.start(&problem);
+    ) -> Result<End, MethodError> {
+        let step = Step::new(problem, self.extragradient);
+        let saddle = &step.saddle;
+        let mut x = saddle.start(problem);
         let (mut tau, mut changes) = (1.0, 0);
         let mut before = vec![Branch::Open; problem.rows.points()];
 
         let status = loop {
-            if let Some(status) =
-                (step.saddle).ends(&mut problem, &mut x, changes, limits, monitor)?
-            {
+            if let Some(status) = saddle.ends(problem, &mut x, changes, self.limits, monitor)? {
                 break status;
             }
             if !self.extragradient {
-                step.saddle.update_multipliers(&problem, &mut x);
+                saddle.update_multipliers(problem, &mut x);
             }
             if problem.counters.iterations.is_multiple_of(REFRESH) {
-                step.saddle.refresh(&problem, &mut x);
+                saddle.refresh(problem, &mut x);
             }
-            let (trial, branches, next_tau) = step.adapted(&mut problem, &x, &mut tau);
+            let (trial, branches, next_tau) = step.adapted(problem, &x, &mut tau);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
             before = branches;
-            x = if self.extragradient {
-                step.project(&mut problem, &x, &trial, tau).0
-            } else {
-                trial
+            x = match self.extragradient {
+                true => step.project(problem, &x, &trial, tau).0,
+                false => trial,
             };
             tau = next_tau;
         };
-        let (p, beta) = step.saddle.balanced(&problem, &x);
-        problem.finish(status, &p, &beta)
+        let (p, beta) = saddle.balanced(problem, &x);
+        let at = Forces { p, beta };
+        Ok(End { status, at })
     }
 }
 
@@ -163,13 +153,13 @@ struct Step {
 }
 
 impl Step {
-    fn new(problem: &Reduced<'_>, moves_gamma: bool) -> Self {
-        let saddle = Saddle::new(problem.condensed.clone());
-        let floor = COMPLIANCE_FLOOR / problem.condensed.rho;
+    fn new(problem: &ContactProblem<'_>, moves_gamma: bool) -> Self {
+        let saddle = Saddle::new(problem.operator.clone());
+        let floor = COMPLIANCE_FLOOR / problem.operator.rho;
         let mut r = vec![0.0; problem.len()];
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
-            let trace: f64 = rows.clone().map(|k| saddle.w()[(k, k)]).sum();
+            let trace: f64 = saddle.w().diagonal()[rows.clone()].iter().sum();
             let mean = trace / rows.len() as f64;
             r[rows.clone()].fill(1.0 / mean.max(floor));
             r[rows.start] /= problem.friction(i).max(1.0);
@@ -184,7 +174,7 @@ impl Step {
     /// (P̄, γ̄) with `tau` shortened until l <= 0.9, and the τ to begin the next step with.
     fn adapted(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         x: &Iterate,
         tau: &mut f64,
     ) -> (Iterate, Vec<Branch>, f64) {
@@ -203,7 +193,7 @@ impl Step {
     /// The step from `x` against F at `at`.
     fn project(
         &self,
-        problem: &mut Reduced<'_>,
+        problem: &mut ContactProblem<'_>,
         x: &Iterate,
         at: &Iterate,
         tau: f64,
@@ -227,11 +217,8 @@ impl Step {
             }
         }
         let mut v = x.v.clone();
-        mul_add(self.saddle.w(), &minus(&p, &x.p), &mut v);
-        problem
-            .condensed
-            .modes
-            .add(&minus(&gamma, &x.gamma), &mut v);
+        self.saddle.w().apply_add(&minus(&p, &x.p), &mut v);
+        problem.operator.modes.add(&minus(&gamma, &x.gamma), &mut v);
         (Iterate { p, gamma, v }, branches)
     }
 
@@ -246,7 +233,7 @@ impl Step {
     }
 
     /// |F(b) − F(a)| / |b − a|.
-    fn lipschitz(&self, problem: &Reduced<'_>, a: &Iterate, b: &Iterate) -> f64 {
+    fn lipschitz(&self, problem: &ContactProblem<'_>, a: &Iterate, b: &Iterate) -> f64 {
         let (dp, mut dv) = (minus(&b.p, &a.p), minus(&b.v, &a.v));
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
@@ -261,7 +248,7 @@ impl Step {
         }
         for (dgamma, dc) in minus(&b.gamma, &a.gamma)
             .iter()
-            .zip(problem.condensed.modes.components(&dp))
+            .zip(problem.operator.modes.components(&dp))
         {
             forces += dgamma * dgamma / kappa;
             jumps += kappa * dc * dc;
