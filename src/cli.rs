@@ -17,11 +17,10 @@ use stickslip_methods::{METHODS, Tier};
 
 use self::output::say;
 pub use self::output::warn;
-use self::progress::Bar;
-use crate::analytic::SOLUTIONS;
+use stickslip_xfem::exact::SOLUTIONS;
+
 use crate::harness::body::{Body, Needs};
 use crate::harness::case::{self, Case};
-use crate::harness::expect;
 use crate::harness::export::ExportError;
 use crate::harness::infsup::InfSupError;
 use crate::harness::loading::Loading;
@@ -30,15 +29,17 @@ use crate::harness::record::Results;
 use crate::harness::run::{
     Choice, ChoiceError, Fields, RunError, Settings, choices, friction_values, run_case,
 };
-use crate::harness::shipped;
 use crate::harness::stress::StressError;
+use crate::harness::{expect, shipped};
 use crate::pages;
 use crate::paper::{self, PaperError};
-use crate::report::{self, page::PageError};
-use crate::report::{Provenance, ReportError, prepare_output, standard};
+use crate::report::page::PageError;
+use crate::report::{self, Provenance, ReportError, prepare_output, standard};
 use crate::sweep::conduct::ConductError;
 use crate::sweep::plan::PlanError;
 use crate::sweep::store::StoreError;
+
+use self::progress::Bar;
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
 #[derive(Debug, Parser)]

@@ -384,8 +384,8 @@ fn refinement_rows(
         plate.sweep.refine = factors.to_vec();
         plate.expects.clear();
         let results = run_case(&plate, std::slice::from_ref(&method), settings, progress)?;
-        let width = plate.mesh.lines[0].last().unwrap_or(&0.0) - plate.mesh.lines[0][0];
-        let columns = plate.mesh.lines[0].len() - 1;
+        let width = plate.mesh.grid.lines[0].last().unwrap_or(&0.0) - plate.mesh.grid.lines[0][0];
+        let columns = plate.mesh.grid.lines[0].len() - 1;
         for run in &results.runs {
             // The label begins with the number of columns.
             let found: usize = run

@@ -13,7 +13,7 @@ use stickslip::harness::infsup::{
 };
 use stickslip::harness::run::Quiet;
 use stickslip::report::{csv, infsup as report};
-use stickslip::xfem::mass::mass;
+use stickslip_xfem::fields::mass::mass;
 
 /// All scenes and spaces without the finest meshes.
 static COARSE: LazyLock<Vec<Sequence>> = LazyLock::new(|| {

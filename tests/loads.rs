@@ -6,7 +6,7 @@ use common::*;
 use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::case::Case;
 use stickslip::harness::sides::Sides;
-use stickslip::xfem::basis::FunctionKind;
+use stickslip_xfem::enrichment::basis::FunctionKind;
 
 /// Forces of supports and loads over all unknowns: K u − Bᵀ P, and the loads alone.
 fn forces(found: &Solved) -> (Vec<f64>, Vec<f64>) {

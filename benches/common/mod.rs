@@ -77,7 +77,7 @@ impl Problem {
 
     /// Case and mesh, e.g. `plate_mesh1 88x88`.
     fn mesh(&self) -> String {
-        let lines = self.case().mesh.refined(self.refine).lines;
+        let lines = self.case().mesh.grid.refined(self.refine).lines;
         let cells: Vec<String> = lines.iter().map(|l| (l.len() - 1).to_string()).collect();
         format!("{} {}", self.case, cells.join("x"))
     }

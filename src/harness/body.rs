@@ -6,30 +6,31 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
+use stickslip_xfem::contact::conforming;
+use stickslip_xfem::contact::edge_pairs::edge_pairs;
+use stickslip_xfem::contact::facet_samples::facet_samples;
+use stickslip_xfem::contact::integrated::integrated_surface;
+use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
+use stickslip_xfem::cut::crack::{Crack, arms};
+use stickslip_xfem::enrichment::orthonormal::SolverBasis;
+use stickslip_xfem::enrichment::pieces::free_motions;
+use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::material::Lame;
+use stickslip_xfem::mesh::Mesh;
+use stickslip_xfem::mesh::box_mesh::box_mesh;
+use stickslip_xfem::mesh::ordering::nested_dissection;
+use stickslip_xfem::stiffness::assembly::{Cells, Scatter};
+use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
+use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
+use stickslip_xfem::stiffness::elasticity::CellMatrix;
 
-use crate::fem::assembly::{Cells, Scatter};
-use crate::fem::block_matrix::BlockMatrix;
-use crate::fem::box_mesh::box_mesh;
-use crate::fem::elasticity::{CellMatrix, Lame};
-use crate::fem::mesh::Mesh;
-use crate::fem::ordering::nested_dissection;
 use crate::harness::boundary::{Prescribed, prescribed, region_nodes};
 use crate::harness::case::{Case, CaseError, ContactSpace, Quadrature};
 use crate::harness::loading::{FixedLoad, fixed_loads};
 use crate::harness::refusals::{check_probes, check_supports, crack_error, motion_error};
 use crate::harness::step::Setup;
-use crate::xfem::cell_matrix::{CellError, CellIntegrator};
-use crate::xfem::conforming;
-use crate::xfem::crack::{Crack, arms};
-use crate::xfem::edge_pairs::edge_pairs;
-use crate::xfem::enrichment::{Enrichment, EnrichmentError};
-use crate::xfem::facet_samples::facet_samples;
-use crate::xfem::integrated::integrated_surface;
-use crate::xfem::orthonormal::SolverBasis;
-use crate::xfem::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
-use crate::xfem::pieces::free_motions;
-use crate::xfem::surface_point::SurfacePoint;
-use crate::xfem::traction::{integrated_rows, traction_rows};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -139,7 +140,7 @@ impl Body {
     /// Discretises a case on its mesh refined by a factor.
     pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
         let clock = Instant::now();
-        let spec = case.mesh.refined(refine);
+        let spec = case.mesh.grid.refined(refine);
         let cells: Vec<String> = spec
             .lines
             .iter()
@@ -148,7 +149,7 @@ impl Body {
         let label = cells.join("x");
         let mut mesh = box_mesh(&spec).map_err(|fold| {
             let allowed = "a motion of the grid points that keeps all cells convex";
-            case.error(&fold.span, &label, allowed, &fold)
+            case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
         let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
         let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
@@ -391,7 +392,7 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
     let mut doubled = BTreeMap::new();
     let mut through = Vec::new();
     for (number, spec) in case.cracks.iter().enumerate() {
-        let crack = Crack::new(number, spec, mesh);
+        let crack = Crack::new(number, &spec.geometry, spec.tip, mesh);
         match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
             Some(surface) => {
                 doubled.insert(number, surface);
@@ -402,7 +403,10 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
     // Level sets belong to the final nodes.
     let cracks = through
         .into_iter()
-        .map(|number| Crack::new(number, &case.cracks[number], mesh))
+        .map(|number| {
+            let spec = &case.cracks[number];
+            Crack::new(number, &spec.geometry, spec.tip, mesh)
+        })
         .collect();
     Ok((arms(cracks, mesh), doubled))
 }

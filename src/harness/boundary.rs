@@ -2,10 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::enrichment::cell_facets::pieces;
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
 use crate::harness::case::{Amount, Case, Region};
-use crate::xfem::basis::FunctionKind;
-use crate::xfem::cell_facets::pieces;
-use crate::xfem::cell_matrix::CellIntegrator;
 
 /// A prescribed unknown: a number times the history factor of the support, or the value the closed form gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -20,14 +20,19 @@ pub use error::CaseError;
 pub use exact::ExactSpec;
 pub use load::{Amount, CrackSide, History, Linear, LoadKind, LoadSpec, Region, SupportSpec};
 pub use parse::{parse, parse_with, read};
+pub use stickslip_xfem::contact::ContactSpace;
+pub use stickslip_xfem::cut::crack::Tip;
+pub use stickslip_xfem::geometry::CrackShape;
+pub use stickslip_xfem::material::{Material, Model};
+pub use stickslip_xfem::quadrature::Quadrature;
 
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use stickslip_methods::Tier;
-
 use error::Source;
+use stickslip_methods::Tier;
+use stickslip_xfem::mesh::box_mesh::{GridSpec, Motion};
 
 /// Byte range of a key's value in the case file, for error messages.
 pub type Span = Range<usize>;
@@ -99,86 +104,24 @@ impl Case {
     }
 }
 
-/// Kinematics of a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
-    /// ε_zz = 0; quad4, quantities per metre of thickness.
-    PlaneStrain,
-    /// σ_zz = 0; quad4, quantities per metre of thickness.
-    PlaneStress,
-    /// Three-dimensional; hex8.
-    Solid,
-}
-
-impl Model {
-    /// Space dimension, 2 or 3.
-    pub fn dim(self) -> usize {
-        if self == Model::Solid { 3 } else { 2 }
-    }
-}
-
-/// Isotropic linear elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// Young's modulus E > 0 [Pa].
-    pub young: f64,
-    /// Poisson's ratio, 0 <= ν < 0.5 (the upper end is excluded: the solid is then incompressible).
-    pub poisson: f64,
-}
-
-/// A structured box mesh. Unused third entries (2D) are zero and one cell.
+/// `[mesh]`: a structured box mesh.
 #[derive(Debug, Clone)]
 pub struct MeshSpec {
     /// Where `mesh` stands in the file.
     pub span: Span,
-    /// Grid-line coordinates per axis, strictly increasing, at least two each; `dim` axes [m].
-    pub lines: Vec<Vec<f64>>,
-    /// Bends the second family of grid lines so that it follows a straight line.
-    pub follow: Option<Follow>,
-    /// Turns the grid lines about the centre; after following, 2D only.
-    pub twist: Option<Twist>,
-    /// Moves the inner nodes at random; after everything else, 2D only.
-    pub distort: Option<Distort>,
+    /// Grid lines and what moves their points.
+    pub grid: GridSpec,
+    /// Where the motions of the grid points stand in the file.
+    pub motion_spans: Vec<(Motion, Span)>,
 }
 
-/// Grid lines turned about the centre of a 2D box by angle × w(x) w(y), w(s) = (1 − s²)² with s = ±1 on the border: the
-/// border and the directions of the lines there stay.
-#[derive(Debug, Clone)]
-pub struct Twist {
-    /// Where the table stands in the file.
-    pub span: Span,
-    /// Turn at the centre, counter-clockwise [rad], less than 180 degrees either way.
-    pub angle: f64,
-}
-
-/// Inner nodes moved along every axis by up to amplitude × the narrower interval between grid lines beside them.
-#[derive(Debug, Clone)]
-pub struct Distort {
-    /// Where the table stands in the file.
-    pub span: Span,
-    /// Largest move in intervals, 0 <= amplitude < 0.5.
-    pub amplitude: f64,
-    /// Seed of the moves; every node has a stream of its own.
-    pub seed: u64,
-}
-
-/// Grid lines that follow a straight line inside the body and stay straight on its border.
-///
-/// The last coordinate (y in 2D, z in 3D) of a grid point is shifted by s(x) · r: s(x) = (x − x₀) tan(angle) within
-/// `half_length` of the point (measured along x), returning linearly to 0 at the sides x = min, max; r falls linearly
-/// from 1 on the row (or grid line) that holds the point to 0 at the two ends of that axis. The parser has checked that
-/// every cell keeps a positive height.
-#[derive(Debug, Clone)]
-pub struct Follow {
-    /// Where the table stands in the file.
-    pub span: Span,
-    /// A point of the line [m], inside the box.
-    pub point: [f64; 3],
-    /// Angle from the x axis [rad], less than 80 degrees either way.
-    pub angle: f64,
-    /// Half of the followed extent along x [m], less than the distance to either side; infinite: the line is followed
-    /// from side to side.
-    pub half_length: f64,
+impl MeshSpec {
+    /// Where a motion of the grid points stands in the file; of one that is not in the file, where `mesh` stands.
+    pub fn motion_span(&self, motion: Motion) -> &Span {
+        let spans = &self.motion_spans;
+        let found = spans.iter().find(|(own, _)| *own == motion);
+        found.map_or(&self.span, |(_, span)| span)
+    }
 }
 
 /// One crack.
@@ -198,97 +141,6 @@ pub struct CrackSpec {
     pub tip_span: Span,
     /// Contact space.
     pub contact: ContactSpace,
-}
-
-/// Geometry of a crack.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CrackShape {
-    /// 2D chain of straight segments through at least two points [m]; n is the tangent turned by +90 degrees.
-    Polyline(Vec<[f64; 2]>),
-    /// 2D circular arc, counter-clockwise for `to > from` [rad]; n is the tangent turned by +90 degrees, towards the
-    /// centre of a counter-clockwise arc. |to − from| = 2π: a closed circle.
-    Arc {
-        /// Centre [m].
-        centre: [f64; 2],
-        /// Radius [m].
-        radius: f64,
-        /// Angle of the first end from the x axis [rad].
-        from: f64,
-        /// Angle of the second end [rad].
-        to: f64,
-    },
-    /// Flat elliptic crack inside a solid; a disc if both half axes are equal.
-    Ellipse {
-        /// Centre [m].
-        centre: [f64; 3],
-        /// Unit normal, from side 2 to side 1.
-        normal: [f64; 3],
-        /// Unit direction of the first half axis, perpendicular to the normal; the local axis a.
-        axis: [f64; 3],
-        /// Half axes along `axis` and along normal × axis [m].
-        half_axes: [f64; 2],
-    },
-    /// 3D plane through the whole body: a point [m] and a unit normal n (normalised by the parser).
-    Plane {
-        /// A point of the plane [m].
-        point: [f64; 3],
-        /// Unit normal, from side 2 to side 1.
-        normal: [f64; 3],
-    },
-}
-
-/// Tip enrichment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tip {
-    /// No tip functions: the crack ends at the last cell edge it crosses.
-    None,
-    /// Four branch functions on the nodes of the cells with the tip (topological enrichment).
-    Branch,
-    /// Four branch functions on all nodes within a radius of the tip [m] (geometric enrichment).
-    Radius(f64),
-}
-
-/// Contact space of a crack.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactSpace {
-    /// One point pair per crossed mesh edge, point forces (the founding paper's).
-    EdgePairs,
-    /// One multiplier per crossed mesh edge, linear in between, integrated over the crack.
-    Facet,
-    /// One multiplier per star of crossed edges, integrated over the crack: stable.
-    Star,
-    /// One constant multiplier per cut cell.
-    P0,
-}
-
-impl ContactSpace {
-    /// All spaces.
-    pub const ALL: [Self; 4] = [Self::EdgePairs, Self::Facet, Self::Star, Self::P0];
-
-    /// The space of that name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|space| space.name() == name)
-    }
-
-    /// Name in case files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            ContactSpace::EdgePairs => "edge-pairs",
-            ContactSpace::Facet => "facet",
-            ContactSpace::Star => "star",
-            ContactSpace::P0 => "p0",
-        }
-    }
-}
-
-/// Quadrature of cut cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quadrature {
-    /// Sub-cells on both sides of the crack: exact for the cut integrand on affine cells.
-    SubCells,
-    /// `gauss-N`: N points per direction on the whole cut cell, sides told apart point by point. Inexact; only to
-    /// reproduce published numbers, and marked so in every report.
-    Gauss(usize),
 }
 
 /// Load path: times t_k = end · k / increments, k = 1..=increments.

@@ -16,9 +16,10 @@ pub use tips::{Regularity, regularity};
 use std::collections::BTreeSet;
 
 use stickslip_methods::ContactSystem;
+use stickslip_xfem::mesh::box_mesh::GridSpec;
 
 use super::body::{Body, BodyError, Needs};
-use super::case::{Case, ContactSpace, MeshSpec, Tip};
+use super::case::{Case, ContactSpace, Tip};
 use super::errors::{Deviation, errors};
 use super::loading::Loading;
 use super::path::Path;
@@ -234,7 +235,7 @@ fn run_one(
         regularity: regularity(case),
         mesh: key.mesh,
         refine,
-        h: cell_size(&case.mesh.refined(refine)),
+        h: cell_size(&case.mesh.grid.refined(refine)),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
@@ -283,7 +284,7 @@ pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -
 }
 
 /// Largest distance of neighbouring grid lines [m].
-pub(crate) fn cell_size(mesh: &MeshSpec) -> f64 {
+pub(crate) fn cell_size(mesh: &GridSpec) -> f64 {
     let lines = mesh.lines.iter().flat_map(|line| line.windows(2));
     lines.map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
 }

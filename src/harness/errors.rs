@@ -23,14 +23,15 @@ mod front;
 mod stick_boundary;
 mod surface;
 
-use crate::analytic::Field;
-use crate::fem::{Point, dot, sub};
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::cut::placement;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::geometry::tip_frame::TipFrame;
+use stickslip_xfem::geometry::{Point, dot, sub};
+use stickslip_xfem::stiffness::cell_matrix::CellError;
+
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
-use crate::xfem::basis::TipFrame;
-use crate::xfem::cell_matrix::CellError;
-use crate::xfem::placement;
-use crate::xfem::surface_point::SurfacePoint;
 
 pub use bulk::{Bulk, bulk};
 pub use front::{tip_fronts, tip_intensities};

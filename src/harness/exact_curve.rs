@@ -9,11 +9,12 @@
 
 use std::f64::consts::PI;
 
+use stickslip_xfem::cut::crack::{Crack, Geometry};
+use stickslip_xfem::cut::placement::cells_at;
+
 use crate::harness::case::Case;
 use crate::harness::loading::Loading;
 use crate::harness::record::ExactRow;
-use crate::xfem::crack::{Crack, Geometry};
-use crate::xfem::placement::cells_at;
 
 /// Intervals N of the curve: half a millimetre at most on a figure of 85 mm.
 const INTERVALS: usize = 160;
@@ -31,7 +32,7 @@ pub fn exact_rows(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<Exac
         return Vec::new();
     };
     // From the case file: a crack along cell edges has no level set.
-    let crack = Crack::new(0, spec, mesh);
+    let crack = Crack::new(0, &spec.geometry, spec.tip, mesh);
     let Geometry::Curve(curve) = &crack.geometry else {
         return Vec::new();
     };

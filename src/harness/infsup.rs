@@ -25,13 +25,13 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use stickslip_methods::{Elastic, ElasticParts, MethodError, SymmetricMatrix};
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::fields::mass::mass;
+use stickslip_xfem::stiffness::cell_matrix::CellError;
 
 use crate::harness::body::{Body, BodyError, Needs, elimination_order, free_rows};
 use crate::harness::case::{CaseError, ContactSpace};
 use crate::harness::run::Progress;
-use crate::xfem::basis::FunctionKind;
-use crate::xfem::cell_matrix::CellError;
-use crate::xfem::mass::mass;
 
 pub use pencil::{PencilError, eigenvalues};
 pub use scene::{LENGTH, SCENES, Scene, YOUNG};

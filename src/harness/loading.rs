@@ -15,18 +15,18 @@
 
 use rayon::prelude::*;
 use stickslip_methods::Load;
+use stickslip_xfem::contact::pairs::ContactPoint;
+use stickslip_xfem::cut::placement::ends_inside;
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::exact::{Field, Setting};
+use stickslip_xfem::geometry::{Point, add_scaled, dot, sub};
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
 
-use crate::analytic::{Field, Setting};
-use crate::fem::{Point, add_scaled, dot, sub};
 use crate::harness::body::{Body, BodyError};
 use crate::harness::case::{Amount, Case, CaseError, ExactSpec, History, LoadKind};
 use crate::harness::nodal_forces::{add_exact_forces, fixed_forces, no_force};
 use crate::harness::refusals::{load_error, one_sided_error};
 use crate::harness::sides::Sides;
-use crate::xfem::basis::FunctionKind;
-use crate::xfem::cell_matrix::CellIntegrator;
-use crate::xfem::pairs::ContactPoint;
-use crate::xfem::placement::ends_inside;
 
 /// A load that keeps its shape: its nodal forces and how they evolve.
 pub struct FixedLoad {
@@ -118,7 +118,7 @@ impl<'a> Loading<'a> {
         };
         let ends = |end: fn(&Vec<f64>) -> Option<&f64>| {
             let mut corner = [0.0; 3];
-            for (x, line) in corner.iter_mut().zip(&case.mesh.lines) {
+            for (x, line) in corner.iter_mut().zip(&case.mesh.grid.lines) {
                 *x = end(line).copied().unwrap_or_default();
             }
             corner

@@ -6,16 +6,19 @@
 //!
 //! φ runs over all functions of the body, enriched ones too; split facets and cells are integrated side by side.
 
-use crate::analytic::Field;
-use crate::fem::quadrature::{WeightedPoint, gauss_cell, segment, triangle, triangle_collapsed};
-use crate::fem::{Point, cross, dot, norm, sub};
+use stickslip_xfem::enrichment::basis::Region as CellRegion;
+use stickslip_xfem::enrichment::cell_facets::{Piece, pieces};
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::geometry::clip::fan;
+use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
+use stickslip_xfem::quadrature::{
+    WeightedPoint, gauss_cell, segment, triangle, triangle_collapsed,
+};
+use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+
 use crate::harness::boundary::region_nodes;
 use crate::harness::case::{LoadKind, Region};
 use crate::harness::sides::Sides;
-use crate::xfem::basis::Region as CellRegion;
-use crate::xfem::cell_facets::{Piece, pieces};
-use crate::xfem::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use crate::xfem::cut;
 
 /// Gauss points per segment where loads act: exact for linear shape functions times linear densities, for closed forms
 /// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
@@ -281,7 +284,7 @@ fn facet_force(
                 let density = |cell, x: &Point, region| density(cell, x, region, &normal);
                 add_points(integrator, facet.cell, &points, &density, force)?;
             } else {
-                for t in cut::fan(&part) {
+                for t in fan(&part) {
                     let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
                     let size = norm(&normal);
                     if size > 0.0 {

@@ -18,6 +18,8 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 use stickslip_methods::{ContactSystem, Tier};
+use stickslip_xfem::exact::{Field, Setting, solution};
+use stickslip_xfem::geometry::{dot, norm, sub};
 
 use super::body::{Body, BodyError, Needs};
 use super::case::{Case, ContactSpace};
@@ -28,8 +30,6 @@ use super::record::RunKey;
 use super::run::{Choice, Progress, RunError};
 use super::sides::Sides;
 use super::verdict::Accuracy;
-use crate::analytic::{Field, Setting, solution};
-use crate::fem::{dot, norm, sub};
 
 /// Largest errors of a patch test that counts as passed.
 pub const PASSED: f64 = 1e-10;

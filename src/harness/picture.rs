@@ -3,17 +3,16 @@
 use std::collections::HashMap;
 
 use stickslip_methods::PointStatus;
+use stickslip_xfem::contact::pairs::SurfaceCorner;
+use stickslip_xfem::cut::crack::Parent;
+use stickslip_xfem::cut::partition::{Part, Partition};
+use stickslip_xfem::geometry::clip::{Side, crossing};
+use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, norm, polygon, sub};
+use stickslip_xfem::mesh::cell::CellKind;
 
-use crate::fem::cell::CellKind;
-use crate::fem::{Point, add_scaled, cross, dot, norm, sub};
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
 use crate::harness::record::{FieldStep, Picture, PictureCell, PictureShape};
-use crate::xfem::crack::Parent;
-use crate::xfem::cut::{self, Side};
-use crate::xfem::pairs::SurfaceCorner;
-use crate::xfem::partition::{Part, Partition};
-use crate::xfem::polygon;
 
 /// Body and crack faces at one increment.
 pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
@@ -219,9 +218,7 @@ fn hexahedron(kind: CellKind, corners: &[Point], phi: &[f64; 8], side: Side) -> 
                 .find(|&j| (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis)))
         };
         let part = (0..8).map(|i| match opposite(i) {
-            Some(j) if phi[i] * side < 0.0 => {
-                cut::crossing(&corners[i], phi[i], &corners[j], phi[j])
-            }
+            Some(j) if phi[i] * side < 0.0 => crossing(&corners[i], phi[i], &corners[j], phi[j]),
             _ => corners[i],
         });
         Some(part.collect())

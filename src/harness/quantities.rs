@@ -1,13 +1,13 @@
 //! Quantities of interest of one increment: reactions, displacements, contact resultants, energies.
 
 use stickslip_methods::{ContactState, PointStatus};
+use stickslip_xfem::contact::surface_point::max_penetration;
 
 use crate::harness::body::Body;
 use crate::harness::boundary::region_name;
 use crate::harness::case::Case;
 use crate::harness::loading::Loading;
 use crate::harness::record::{PointRow, QuantityRow, RunKey};
-use crate::xfem::surface_point::max_penetration;
 
 /// The mechanics at the end of an increment, over all unknowns and points.
 #[derive(Debug, Clone)]

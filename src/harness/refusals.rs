@@ -1,13 +1,14 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
-use crate::fem::mesh::Mesh;
+use stickslip_xfem::enrichment::pieces::MotionError;
+use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::mesh::Mesh;
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
 use crate::harness::body::BodyError;
 use crate::harness::boundary::region_nodes;
 use crate::harness::case::{Case, CaseError, LoadKind, Span};
 use crate::harness::nodal_forces::LoadError;
-use crate::xfem::cell_matrix::CellIntegrator;
-use crate::xfem::enrichment::{Enrichment, EnrichmentError};
-use crate::xfem::pieces::MotionError;
 
 /// Refuses a support whose region holds no node.
 pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {

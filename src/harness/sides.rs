@@ -2,12 +2,13 @@
 //!
 //! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
 
-use crate::fem::{Point, add_scaled, dot};
+use stickslip_xfem::cut::crack::Crack;
+use stickslip_xfem::enrichment::basis::Region;
+use stickslip_xfem::geometry::clip::Side;
+use stickslip_xfem::geometry::{Point, add_scaled, dot};
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
 use crate::harness::case::Case;
-use crate::xfem::basis::Region;
-use crate::xfem::cell_matrix::CellIntegrator;
-use crate::xfem::crack::Crack;
-use crate::xfem::cut::Side;
 
 /// Sides of the first crack of a case, in a mesh.
 pub struct Sides {
@@ -27,7 +28,8 @@ impl Sides {
             });
         }
         // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
-        let crack = Crack::new(0, case.cracks.first()?, mesh);
+        let spec = case.cracks.first()?;
+        let crack = Crack::new(0, &spec.geometry, spec.tip, mesh);
         let mut nodes: Vec<Side> = (0..mesh.nodes.len()).map(|n| crack.side_of(n)).collect();
         for cell in 0..mesh.cell_count() {
             let side = sign(crack.distance(&mesh.centre(cell)));

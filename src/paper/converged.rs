@@ -13,8 +13,10 @@
 //! Williams, J. Appl. Mech. 19 (1952) 526. The third mesh is Mesh I turned by 20 degrees at its centre: the crack crosses its
 //! cells in every way.
 
+use stickslip_xfem::mesh::grid_motion::Twist;
+
 use super::{PaperError, case, choice};
-use crate::harness::case::{Case, ContactSpace, Tip, Twist};
+use crate::harness::case::{Case, ContactSpace, Tip};
 use crate::harness::converge::orders::{self, Kind};
 use crate::harness::converge::{self, Study};
 use crate::harness::run::Progress;
@@ -97,8 +99,7 @@ fn plate(name: &str, turned: bool) -> Result<Case, PaperError> {
     let mut plate = case(name)?;
     plate.expects.clear();
     if turned {
-        plate.mesh.twist = Some(Twist {
-            span: plate.mesh.span.clone(),
+        plate.mesh.grid.twist = Some(Twist {
             angle: TURN.to_radians(),
         });
     }

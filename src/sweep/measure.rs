@@ -286,7 +286,7 @@ fn size(scene: &Scene<'_>) -> ProblemSize {
     ProblemSize {
         mesh: body.label.clone(),
         space: body.space.clone(),
-        h_m: cell_size(&case.mesh.refined(scene.refine)),
+        h_m: cell_size(&case.mesh.grid.refined(scene.refine)),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),

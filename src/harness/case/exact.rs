@@ -1,10 +1,11 @@
 //! `[exact]` of a case file: the closed form the case has, with its parameters and its history.
 
+use stickslip_xfem::exact::SolutionSpec;
+
 use super::error::CaseError;
 use super::load::history;
 use super::reader::Table;
 use super::{History, PathSpec, Span};
-use crate::analytic::SolutionSpec;
 
 /// The closed form of a case.
 #[derive(Debug, Clone)]

@@ -1,9 +1,12 @@
 //! `[mesh]` and `[sweep]` of a case file: grid lines, the line they follow, refinement.
 
+use stickslip_xfem::mesh::box_mesh::{GridSpec, Motion};
+use stickslip_xfem::mesh::grid_motion::{Distort, Follow, Twist};
+
 use super::error::CaseError;
 use super::reader::{Table, Value};
 use super::schema::friction;
-use super::{Distort, Follow, MeshSpec, Sweep, Twist};
+use super::{MeshSpec, Sweep};
 
 /// Largest number of cells, also after refinement: beyond it the matrix does not fit the machines meant here.
 const MAX_CELLS: usize = 20_000_000;
@@ -23,39 +26,6 @@ const MAX_TURN: f64 = 180.0;
 /// Largest seed: every integer up to it is written and read the same everywhere.
 const MAX_SEED: usize = u32::MAX as usize;
 
-impl MeshSpec {
-    /// The same box with every interval of every axis divided into `factor` >= 1 equal parts.
-    ///
-    /// The given grid lines keep their bits, so probes and sides stay where they are. Zero is taken as one.
-    pub fn refined(&self, factor: usize) -> MeshSpec {
-        let parts = factor.max(1) as f64;
-        let divided = |line: &Vec<f64>| {
-            let inner = |w: &[f64]| {
-                let (a, b) = (w[0], w[1]);
-                // j = 0 keeps a as it is; the interpolation would round it.
-                (0..factor.max(1)).map(move |j| {
-                    if j == 0 {
-                        a
-                    } else {
-                        (a * (parts - j as f64) + b * j as f64) / parts
-                    }
-                })
-            };
-            line.windows(2)
-                .flat_map(inner)
-                .chain(line.last().copied())
-                .collect()
-        };
-        MeshSpec {
-            span: self.span.clone(),
-            lines: self.lines.iter().map(divided).collect(),
-            follow: self.follow.clone(),
-            twist: self.twist.clone(),
-            distort: self.distort.clone(),
-        }
-    }
-}
-
 /// `[mesh]`.
 pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> {
     let table = root
@@ -69,12 +39,25 @@ pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> 
         .get("follow")
         .map(|v| follow(v, dim, &lines))
         .transpose()?;
-    Ok(MeshSpec {
-        span: table.span(),
+    let grid = GridSpec {
         lines,
         follow,
         twist: table.get("twist").map(|v| twist(v, dim)).transpose()?,
         distort: table.get("distort").map(|v| distort(v, dim)).transpose()?,
+    };
+    let keys = [
+        ("follow", Motion::Follow),
+        ("twist", Motion::Twist),
+        ("distort", Motion::Distort),
+    ];
+    let motion_spans = keys
+        .into_iter()
+        .filter_map(|(key, motion)| Some((motion, table.get(key)?.span())))
+        .collect();
+    Ok(MeshSpec {
+        span: table.span(),
+        grid,
+        motion_spans,
     })
 }
 
@@ -88,7 +71,6 @@ fn twist(value: Value<'_>, dim: usize) -> Result<Twist, CaseError> {
         .required("angle_deg")?
         .number_if("-180 < angle_deg < 180", |a| a.abs() < MAX_TURN)?;
     Ok(Twist {
-        span: table.span(),
         angle: degrees.to_radians(),
     })
 }
@@ -109,7 +91,6 @@ fn distort(value: Value<'_>, dim: usize) -> Result<Distort, CaseError> {
         .get("seed")
         .map_or(Ok(1), |v| v.integer(0..=MAX_SEED))?;
     Ok(Distort {
-        span: table.span(),
         amplitude,
         seed: seed as u64,
     })
@@ -245,7 +226,6 @@ fn follow(value: Value<'_>, dim: usize, lines: &[Vec<f64>]) -> Result<Follow, Ca
         ));
     }
     Ok(Follow {
-        span: table.span(),
         point,
         angle,
         half_length,
@@ -272,11 +252,12 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
         Some(v) => distinct(v, friction)?,
         None => Vec::new(),
     };
-    let cells: Vec<usize> = mesh.lines.iter().map(|l| l.len() - 1).collect();
+    let cells: Vec<usize> = mesh.grid.lines.iter().map(|l| l.len() - 1).collect();
     let factor = |v: Value<'_>| {
         let factor = v.integer(1..=MAX_REFINE)?;
         count_cells(v, &cells, factor)?;
         let narrow = mesh
+            .grid
             .lines
             .iter()
             .any(|l| l.windows(2).any(|w| !wide_enough(w[0], w[1], factor)));

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use stickslip_methods::Tier;
+use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
 use toml::de::DeTable;
 
 use super::error::{CaseError, Source};
@@ -12,7 +13,6 @@ use super::expect::Runs;
 use super::reader::{Table, Value};
 use super::schema::Scene;
 use super::{Case, Model, schema};
-use crate::analytic::{SOLUTIONS, SolutionSpec};
 
 /// Largest case file read [bytes]; the largest of this project has 8 kB.
 const MAX_BYTES: u64 = 1 << 20;

@@ -57,7 +57,7 @@ pub fn regularity(case: &Case) -> Regularity {
 /// Whether a crack has a tip or front inside the body.
 fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
     let inside = |x: [f64; 2]| {
-        case.mesh.lines.iter().zip(x).all(|(line, x)| {
+        case.mesh.grid.lines.iter().zip(x).all(|(line, x)| {
             let [low, high] = [line.first(), line.last()].map(|end| end.copied().unwrap_or(0.0));
             // An end on the border is none, whatever the rounding.
             let border = 1e-9 * (high - low);

@@ -1,13 +1,14 @@
 //! Norms over the body: energy and displacement.
 
 use rayon::prelude::*;
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::fields::sampling::{CellField, comparison_points};
+use stickslip_xfem::geometry::{Point, dot, sub};
+use stickslip_xfem::material::{double_dot, strain, stress};
+use stickslip_xfem::stiffness::cell_matrix::CellError;
 
-use crate::analytic::Field;
-use crate::fem::{Point, dot, sub};
 use crate::harness::body::Body;
-use crate::xfem::basis::FunctionKind;
-use crate::xfem::cell_matrix::CellError;
-use crate::xfem::sampling::{CellField, comparison_points, double_dot, strain, stress};
 
 use super::{fronts, side_of};
 

@@ -2,18 +2,19 @@
 
 use std::f64::consts::PI;
 
-use crate::analytic::Field;
-use crate::fem::{Point, add_scaled, norm, sub};
+use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
+use stickslip_xfem::cut::crack::{Crack, Geometry};
+use stickslip_xfem::cut::placement::{self, cells_at};
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::fields::sampling::{CellField, ComparisonPoint};
+use stickslip_xfem::geometry::tip_frame::{FrontShape, TipFrame};
+use stickslip_xfem::geometry::{Point, add_scaled, norm, sub};
+use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
+use stickslip_xfem::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
+use stickslip_xfem::stiffness::cell_matrix::CellError;
+
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
-use crate::xfem::basis::{FrontShape, TipFrame};
-use crate::xfem::cell_matrix::CellError;
-use crate::xfem::crack::{Crack, Geometry};
-use crate::xfem::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
-use crate::xfem::interaction::{Domain, Fields, interaction};
-use crate::xfem::placement::{self, cells_at};
-use crate::xfem::sampling::{CellField, ComparisonPoint};
-use crate::xfem::surface_point::{SurfacePoint, jump_at};
 
 use super::{Deviation, RULE, Scales, fronts, side_of};
 

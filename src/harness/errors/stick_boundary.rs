@@ -12,11 +12,11 @@
 //! (s* − s)(s − s₀)^{1/3} along the line an error of order h² (s₀: the other end of the zone).
 
 use stickslip_methods::PointStatus;
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::exact::Field;
 
-use crate::analytic::Field;
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
-use crate::xfem::surface_point::SurfacePoint;
 
 use super::Deviation;
 

@@ -8,11 +8,12 @@
 //! A point of an integrated space holds the mean of the jump over its function φ_k. Near a tip the mean of √r differs from
 //! the value at the centroid by percents, however exact the field is: like is compared with like.
 
-use crate::analytic::Field;
-use crate::fem::{Point, add_scaled};
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::geometry::{Point, add_scaled};
+
 use crate::harness::body::Body;
 use crate::harness::quantities::Snapshot;
-use crate::xfem::surface_point::SurfacePoint;
 
 use super::{Deviation, Scales, ZERO, norm_row};
 

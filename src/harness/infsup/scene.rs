@@ -1,6 +1,7 @@
 //! The bodies of the inf-sup test: a unit square or cube with one crack that lies in the grid in its own way.
 
-use crate::fem::{add_scaled, unit};
+use stickslip_xfem::geometry::{add_scaled, unit};
+
 use crate::harness::case::{self, Case, CaseError, ContactSpace};
 
 /// Edge of the body [m].

@@ -7,12 +7,14 @@
 
 use std::fmt;
 
+use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub, unit};
+use stickslip_xfem::mesh::box_mesh::box_mesh;
+
+use crate::harness::case::{Case, CaseError, parse};
+
 use super::text::{
     POISSON, PRESSURE, YOUNG, boundary, chain, head, load, parted, support, uniform,
 };
-use crate::fem::box_mesh::box_mesh;
-use crate::fem::{Point, add_scaled, dot, norm, sub, unit};
-use crate::harness::case::{Case, CaseError, parse};
 
 /// Distances of the crack from a node in cell sizes, on both sides of it.
 pub const DISTANCES: [f64; 27] = [
@@ -142,9 +144,9 @@ impl Grid {
         size: f64,
     ) -> Result<Self, CaseError> {
         let case = parse("patch.toml", head(model, &text))?;
-        let mesh = box_mesh(&case.mesh).map_err(|fold| {
+        let mesh = box_mesh(&case.mesh.grid).map_err(|fold| {
             let allowed = "a motion that keeps all cells convex";
-            case.error(&fold.span, name, allowed, &fold)
+            case.error(case.mesh.motion_span(fold.motion), name, allowed, &fold)
         })?;
         let away = |x: &Point| norm(&sub(x, &near));
         let nearest = mesh.nodes.iter().min_by(|p, q| away(p).total_cmp(&away(q)));

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use stickslip_xfem::geometry::Point;
+
 use super::catalogue::{Loaded, State};
-use crate::fem::Point;
 
 /// Pressure, or size of a stress [Pa].
 pub(super) const PRESSURE: f64 = 1e6;
