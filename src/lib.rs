@@ -6,12 +6,16 @@
 //! ```
 //!
 //! The discretisation is the package `stickslip-xfem`, the algebraic half (the contact problem, its judge and the methods)
-//! the package `stickslip-methods`.
+//! the package `stickslip-methods`. The modules below stand in their order: each imports only those above it.
+
+pub mod case;
+pub mod model;
+
+pub mod files;
+
+pub mod run;
+pub mod studies;
+
+pub mod report;
 
 pub mod cli;
-pub mod harness;
-pub mod interchange;
-pub mod pages;
-pub mod paper;
-pub mod report;
-pub mod sweep;

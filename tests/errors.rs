@@ -6,11 +6,11 @@ use std::f64::consts::TAU;
 
 use common::fields::*;
 use common::*;
-use stickslip::harness::body::Body;
-use stickslip::harness::case::{Material, Model};
-use stickslip::harness::converge::slope;
-use stickslip::harness::errors::{Deviation, RULE, bulk, errors};
-use stickslip::harness::quantities::Snapshot;
+use stickslip::case::{Material, Model};
+use stickslip::model::body::Body;
+use stickslip::model::errors::{Deviation, RULE, bulk, errors};
+use stickslip::model::quantities::Snapshot;
+use stickslip::studies::convergence::slope;
 use stickslip_xfem::contact::surface_point::{SurfacePoint, max_penetration};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::geometry::{Point, add_scaled};

@@ -6,9 +6,9 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::harness::body::Body;
-use stickslip::harness::errors::{Deviation, errors};
-use stickslip::harness::quantities::Snapshot;
+use stickslip::model::body::Body;
+use stickslip::model::errors::{Deviation, errors};
+use stickslip::model::quantities::Snapshot;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
 };

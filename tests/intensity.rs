@@ -4,10 +4,10 @@ mod common;
 
 use common::fields::*;
 use common::*;
-use stickslip::harness::body::Body;
-use stickslip::harness::case::{Material, Model};
-use stickslip::harness::errors::{fronts, tip_fronts, tip_intensities};
-use stickslip::harness::quantities::Snapshot;
+use stickslip::case::{Material, Model};
+use stickslip::model::body::Body;
+use stickslip::model::errors::{fronts, tip_fronts, tip_intensities};
+use stickslip::model::quantities::Snapshot;
 use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
 use stickslip_xfem::cut::placement::cells_at;
 use stickslip_xfem::enrichment::basis::FunctionKind;

@@ -4,7 +4,7 @@ mod common;
 
 use common::bodies::{motion_of, motions, piecewise};
 use common::*;
-use stickslip::harness::body::{Body, Needs};
+use stickslip::model::body::{Body, Needs};
 use stickslip_xfem::enrichment::cell_facets::region_at;
 use stickslip_xfem::enrichment::pieces::pieces;
 use stickslip_xfem::geometry::{add_scaled, norm, sub};

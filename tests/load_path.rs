@@ -5,10 +5,10 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::Case;
-use stickslip::harness::record::Results;
-use stickslip::harness::shipped;
+use stickslip::case::Case;
+use stickslip::case::shipped;
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::Results;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, METHODS, Options, Outcome, Silent, Status,
 };

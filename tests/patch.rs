@@ -5,7 +5,7 @@ mod common;
 use common::bodies::{bodies, motion_of, motions};
 use common::*;
 use nalgebra::{DMatrix, SymmetricEigen};
-use stickslip::harness::body::{Body, Needs};
+use stickslip::model::body::{Body, Needs};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::enrichment::pieces::pieces;
 

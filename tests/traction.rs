@@ -4,7 +4,7 @@ mod common;
 
 use common::bodies::{bodies, motions, piecewise};
 use common::*;
-use stickslip::harness::body::{Body, Needs};
+use stickslip::model::body::{Body, Needs};
 use stickslip_xfem::contact::traction::traction_rows;
 use stickslip_xfem::material::Lame;
 

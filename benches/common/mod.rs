@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode};
-use stickslip::harness::case::Case;
-use stickslip::harness::shipped;
+use stickslip::case::Case;
+use stickslip::case::shipped;
 use stickslip::report::timings::BenchmarkName;
 
 /// Stages before a method starts.

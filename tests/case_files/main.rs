@@ -6,7 +6,7 @@ mod refusals;
 mod robustness;
 mod shipped;
 
-use stickslip::harness::case::{
+use stickslip::case::{
     self, Amount, Case, CaseError, ContactSpace, CrackShape, ExpectKind, History, LoadKind, Model,
     Quadrature, Tip, Tolerance,
 };

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use stickslip::harness::case::{self, Case, CrackShape, Expect, ExpectKind, Tolerance};
+use stickslip::case::{self, Case, CrackShape, Expect, ExpectKind, Tolerance};
 
 fn case_dir() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")

@@ -1,6 +1,6 @@
 //! Cracked bodies in general and special position, and fields on their pieces.
 
-use stickslip::harness::body::{Body, Needs};
+use stickslip::model::body::{Body, Needs};
 use stickslip_xfem::enrichment::pieces::pieces;
 
 use super::{clamped, crack, parse, plane, solid};

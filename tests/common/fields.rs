@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use nalgebra::Complex;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::Amount;
-use stickslip::harness::quantities::Snapshot;
+use stickslip::case::Amount;
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::quantities::Snapshot;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
 };

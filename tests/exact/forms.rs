@@ -1,6 +1,6 @@
 //! Closed forms made for tests of what supports and loads take from them.
 
-use stickslip::harness::case::CrackShape;
+use stickslip::case::CrackShape;
 use stickslip_xfem::exact::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 use stickslip_xfem::material::Lame;
 
