@@ -7,9 +7,10 @@ use std::path::Path;
 use std::process::Command;
 
 /// What decides about results; a changed report does not make the build dirty.
-const SOURCES: [&str; 6] = [
+const SOURCES: [&str; 7] = [
     "src",
     "methods",
+    "xfem",
     "cases",
     "build.rs",
     "Cargo.toml",

@@ -10,7 +10,7 @@ use common::{
     ASSEMBLY, CONDENSATION, FACTORISATION, MESH_TO_SYSTEM, PROBLEMS, bench, group, settings,
 };
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use stickslip::harness::body::{Body, Needs};
+use stickslip::model::body::{Body, Needs};
 use stickslip_methods::ContactSystem;
 
 fn discretisation(criterion: &mut Criterion) {

@@ -7,10 +7,10 @@ mod common;
 
 use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_methods, settings};
 use criterion::{Criterion, criterion_group, criterion_main};
-use stickslip::harness::case;
-use stickslip::harness::record::Results;
-use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
-use stickslip::paper::as_expected;
+use stickslip::case;
+use stickslip::run::record::Results;
+use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::studies::paper::as_expected;
 use stickslip_methods::method;
 
 const SETTINGS: Settings = Settings {

@@ -19,15 +19,15 @@ use common::scene::Scene;
 use common::{
     ALL_METHODS, EXACT, PREPARE, PROBLEMS, Problem, SOLVE, STAGES, one_thread, runs_all_methods,
 };
-use stickslip::harness::run::{Choice, Progress};
 use stickslip::report::page;
 use stickslip::report::sweep;
 use stickslip::report::timings::{self, BenchmarkName, Expected, Ignored, harvest, last_built};
 use stickslip::report::{Bundle, Provenance, prepare_output};
-use stickslip::sweep::conduct::{Conduct, Shard, conduct};
-use stickslip::sweep::plan::Plan;
-use stickslip::sweep::store::Store;
-use stickslip::sweep::worker::Limits;
+use stickslip::run::run_case::{Choice, Progress};
+use stickslip::studies::sweep::conduct::{Conduct, Shard, conduct};
+use stickslip::studies::sweep::plan::Plan;
+use stickslip::studies::sweep::store::Store;
+use stickslip::studies::sweep::worker::Limits;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -2,6 +2,7 @@
 
 mod converge;
 mod exchange;
+pub mod method_manual;
 mod output;
 mod page;
 mod progress;
@@ -17,28 +18,29 @@ use stickslip_methods::{METHODS, Tier};
 
 use self::output::say;
 pub use self::output::warn;
-use self::progress::Bar;
-use crate::analytic::SOLUTIONS;
-use crate::harness::body::{Body, Needs};
-use crate::harness::case::{self, Case};
-use crate::harness::expect;
-use crate::harness::export::ExportError;
-use crate::harness::infsup::InfSupError;
-use crate::harness::loading::Loading;
-use crate::harness::problem_file::ProblemFileError;
-use crate::harness::record::Results;
-use crate::harness::run::{
+use stickslip_xfem::exact::SOLUTIONS;
+
+use crate::case::shipped;
+use crate::case::{self, Case};
+use crate::model::body::{Body, Needs};
+use crate::model::loading::Loading;
+use crate::report::page::PageError;
+use crate::report::{self, Provenance, ReportError, prepare_output, standard};
+use crate::run::expect;
+use crate::run::record::Results;
+use crate::run::run_case::{
     Choice, ChoiceError, Fields, RunError, Settings, choices, friction_values, run_case,
 };
-use crate::harness::shipped;
-use crate::harness::stress::StressError;
-use crate::pages;
-use crate::paper::{self, PaperError};
-use crate::report::{self, page::PageError};
-use crate::report::{Provenance, ReportError, prepare_output, standard};
-use crate::sweep::conduct::ConductError;
-use crate::sweep::plan::PlanError;
-use crate::sweep::store::StoreError;
+use crate::studies::exchange::export::ExportError;
+use crate::studies::exchange::problem_file::ProblemFileError;
+use crate::studies::paper::{self, PaperError};
+use crate::studies::spaces::infsup::InfSupError;
+use crate::studies::stress::StressError;
+use crate::studies::sweep::conduct::ConductError;
+use crate::studies::sweep::plan::PlanError;
+use crate::studies::sweep::store::StoreError;
+
+use self::progress::Bar;
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
 #[derive(Debug, Parser)]
@@ -465,7 +467,7 @@ fn list_text() -> String {
 
 fn show_text(name: &str) -> Result<String, CliError> {
     if name == "methods" {
-        return Ok(pages::all());
+        return Ok(method_manual::all());
     }
     if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
         return Ok((*text).to_owned());
@@ -483,5 +485,5 @@ fn show_text(name: &str) -> Result<String, CliError> {
             .collect::<Vec<_>>()
             .join(", "),
     })?;
-    Ok(pages::page(method))
+    Ok(method_manual::page(method))
 }

@@ -5,15 +5,17 @@
 //!           -> per increment: Enforcement::solve -> Outcome -> residuals() -> Verdict -> tables, figures, fields
 //! ```
 //!
-//! The algebraic half (the contact problem, its judge and the methods) is the package `stickslip-methods`.
+//! The discretisation is the package `stickslip-xfem`, the algebraic half (the contact problem, its judge and the methods)
+//! the package `stickslip-methods`. The modules below stand in their order: each imports only those above it.
 
-pub mod analytic;
-pub mod cli;
-pub mod fem;
-pub mod harness;
-pub mod interchange;
-pub mod pages;
-pub mod paper;
+pub mod case;
+pub mod model;
+
+pub mod files;
+
+pub mod run;
+pub mod studies;
+
 pub mod report;
-pub mod sweep;
-pub mod xfem;
+
+pub mod cli;

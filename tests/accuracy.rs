@@ -3,12 +3,12 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::{Case, ContactSpace, CrackShape, Tip};
-use stickslip::harness::converge::{self, Measured, Study, slope};
-use stickslip::harness::errors::Deviation;
-use stickslip::harness::run::{Choice, Quiet};
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
+use stickslip::case::{Case, ContactSpace, CrackShape, Tip};
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::errors::Deviation;
+use stickslip::run::run_case::{Choice, Quiet};
+use stickslip::studies::convergence::{self, Measured, Study, slope};
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -22,7 +22,7 @@ impl Errors {
             tips: tip.map(|tip| vec![tip]),
             choice: Choice::new(stickslip_methods::method("hybrid").unwrap(), &[]).unwrap(),
         };
-        let samples = converge::run(case, &study, &converge::closed_form, &Quiet).unwrap();
+        let samples = convergence::run(case, &study, &convergence::closed_form, &Quiet).unwrap();
         let rows = samples.into_iter().map(|sample| {
             let Measured::Exact(deviations) = sample.measured else {
                 panic!("{}: {}", sample.mesh, sample.verdict)
@@ -286,9 +286,8 @@ fn a_circular_interface_has_its_pressures_and_orders() {
     case.sweep.refine = vec![4];
     let results = run(&case, &[METHOD]);
     let pressure = |angle: f64| {
-        let away = |p: &&stickslip::harness::record::PointRow| {
-            (p.y_m.atan2(p.x_m) - angle.to_radians()).abs()
-        };
+        let away =
+            |p: &&stickslip::run::record::PointRow| (p.y_m.atan2(p.x_m) - angle.to_radians()).abs();
         let points = results.points.iter();
         let nearest = points.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap();
         nearest.p_n / nearest.weight / 1e6

@@ -8,7 +8,7 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use common::*;
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
 use stickslip_methods::METHODS;
 
 fn stickslip(arguments: &[&str], dir: &Path) -> Output {

@@ -9,10 +9,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use stickslip::harness::run::{Fields, Quiet, Settings};
-use stickslip::paper;
 use stickslip::report::Provenance;
 use stickslip::report::converged::{agreements, summary};
+use stickslip::run::run_case::{Fields, Quiet, Settings};
+use stickslip::studies::paper;
 
 /// Columns printed with two to four digits.
 const FEW_DIGITS: [&str; 15] = [

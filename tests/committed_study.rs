@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use stickslip::harness::run::Choice;
-use stickslip::sweep::Bench;
-use stickslip::sweep::measure::{Repeats, measure};
-use stickslip::sweep::plan::Plan;
+use stickslip::run::run_case::Choice;
+use stickslip::studies::sweep::Bench;
+use stickslip::studies::sweep::measure::{Repeats, measure};
+use stickslip::studies::sweep::plan::Plan;
 
 fn root(path: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)

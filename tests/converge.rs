@@ -7,12 +7,12 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use common::*;
-use stickslip::harness::case::{Case, ContactSpace, Tip};
-use stickslip::harness::converge::orders::{self, ErrorRow, Kind, OrderRow};
-use stickslip::harness::converge::{self, Measured, Regularity, Sample, Study};
-use stickslip::harness::errors::Deviation;
-use stickslip::harness::run::{Choice, Quiet};
+use stickslip::case::{Case, ContactSpace, Tip};
+use stickslip::model::errors::Deviation;
 use stickslip::report::{Provenance, csv as table};
+use stickslip::run::run_case::{Choice, Quiet};
+use stickslip::studies::convergence::orders::{self, ErrorRow, Kind, OrderRow};
+use stickslip::studies::convergence::{self, Measured, Regularity, Sample, Study};
 
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
@@ -49,9 +49,9 @@ fn study(method: &str, tips: Option<Vec<Tip>>) -> Study {
 }
 
 /// Error of a given order in h, in an energy norm and a traction.
-fn power_law(case: &Case, body: &stickslip::harness::body::Body) -> Vec<Deviation> {
+fn power_law(case: &Case, body: &stickslip::model::body::Body) -> Vec<Deviation> {
     let cells = (body.mesh.cell_count() as f64).sqrt();
-    let order = match converge::regularity(case) {
+    let order = match convergence::regularity(case) {
         Regularity::Tip => 0.5,
         _ => 1.0,
     };
@@ -69,8 +69,9 @@ fn power_law(case: &Case, body: &stickslip::harness::body::Body) -> Vec<Deviatio
 }
 
 fn samples(case: &Case, study: &Study) -> Vec<Sample> {
-    let exact: &converge::ClosedForm<'_> = &|loading, _| Ok(Some(power_law(case, loading.body())));
-    converge::run(case, study, exact, &Quiet).unwrap()
+    let exact: &convergence::ClosedForm<'_> =
+        &|loading, _| Ok(Some(power_law(case, loading.body())));
+    convergence::run(case, study, exact, &Quiet).unwrap()
 }
 
 /// Goal: errors against a closed form arrive as measured, with their orders beside the theoretical ones, for every tip option.
@@ -179,7 +180,7 @@ fn meshes_spaces_and_tips_come_from_the_case_unless_asked_for() {
     assert_eq!(given.spaces(&case), [Some(ContactSpace::EdgePairs)]);
     assert_eq!(given.tips(&case), [Some(Tip::Radius(0.2))]);
     case.cracks[0].tip = Tip::Radius(0.2);
-    assert_eq!(converge::regularity(&case), Regularity::FixedRadius);
+    assert_eq!(convergence::regularity(&case), Regularity::FixedRadius);
 }
 
 /// Source: for h → 0 Mesh I tends to −1121.3 MN/m at μ = 0.8, by extrapolation from finer meshes. Goal: the verb writes

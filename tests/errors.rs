@@ -6,15 +6,15 @@ use std::f64::consts::TAU;
 
 use common::fields::*;
 use common::*;
-use stickslip::fem::elasticity::Lame;
-use stickslip::fem::{Point, add_scaled};
-use stickslip::harness::body::Body;
-use stickslip::harness::case::{Material, Model};
-use stickslip::harness::converge::slope;
-use stickslip::harness::errors::{Deviation, RULE, bulk, errors};
-use stickslip::harness::quantities::Snapshot;
-use stickslip::xfem::basis::FunctionKind;
-use stickslip::xfem::surface_point::{SurfacePoint, max_penetration};
+use stickslip::case::{Material, Model};
+use stickslip::model::body::Body;
+use stickslip::model::errors::{Deviation, RULE, bulk, errors};
+use stickslip::model::quantities::Snapshot;
+use stickslip::studies::convergence::slope;
+use stickslip_xfem::contact::surface_point::{SurfacePoint, max_penetration};
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::geometry::{Point, add_scaled};
+use stickslip_xfem::material::Lame;
 
 fn row<'a>(rows: &'a [Deviation], quantity: &str) -> &'a Deviation {
     let found = rows.iter().find(|r| r.quantity == quantity);
@@ -254,7 +254,7 @@ struct Uniform {
     displacement: Point,
 }
 
-impl stickslip::analytic::Field for Uniform {
+impl stickslip_xfem::exact::Field for Uniform {
     fn displacement(&self, _x: &Point, _side: f64) -> Point {
         self.displacement
     }

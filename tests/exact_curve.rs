@@ -3,9 +3,9 @@
 mod common;
 
 use common::run;
-use stickslip::harness::case::Case;
-use stickslip::harness::record::{ExactRow, Results};
-use stickslip::harness::shipped;
+use stickslip::case::Case;
+use stickslip::case::shipped;
+use stickslip::run::record::{ExactRow, Results};
 
 fn case(name: &str) -> Case {
     shipped::find(name).unwrap().unwrap()

@@ -6,15 +6,15 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::fem::{add_scaled, dot, norm};
-use stickslip::harness::body::Body;
-use stickslip::harness::errors::{Deviation, errors};
-use stickslip::harness::quantities::Snapshot;
-use stickslip::xfem::near_front::Effort;
-use stickslip::xfem::partition::Partition;
+use stickslip::model::body::Body;
+use stickslip::model::errors::{Deviation, errors};
+use stickslip::model::quantities::Snapshot;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
 };
+use stickslip_xfem::cut::partition::Partition;
+use stickslip_xfem::geometry::{add_scaled, dot, norm};
+use stickslip_xfem::stiffness::near_front::Effort;
 
 /// A body 2.8 × 2.8 × 1.4 m around the origin, held by the closed form of its elliptic crack on all sides.
 ///

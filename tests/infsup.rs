@@ -6,14 +6,14 @@ use std::sync::LazyLock;
 
 use assert_cmd::Command;
 use nalgebra::DMatrix;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::ContactSpace;
-use stickslip::harness::infsup::{
+use stickslip::case::ContactSpace;
+use stickslip::model::body::{Body, Needs};
+use stickslip::report::{csv, infsup as report};
+use stickslip::run::run_case::Quiet;
+use stickslip::studies::spaces::infsup::{
     self, LENGTH, SCENES, SPACES, Sample, Scene, Sequence, YOUNG, multiplier_norm,
 };
-use stickslip::harness::run::Quiet;
-use stickslip::report::{csv, infsup as report};
-use stickslip::xfem::mass::mass;
+use stickslip_xfem::fields::mass::mass;
 
 /// All scenes and spaces without the finest meshes.
 static COARSE: LazyLock<Vec<Sequence>> = LazyLock::new(|| {

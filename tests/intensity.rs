@@ -4,20 +4,21 @@ mod common;
 
 use common::fields::*;
 use common::*;
-use stickslip::analytic::Field;
-use stickslip::fem::elasticity::Lame;
-use stickslip::fem::{Point, add_scaled, dot, norm, sub};
-use stickslip::harness::body::Body;
-use stickslip::harness::case::{Material, Model};
-use stickslip::harness::errors::{fronts, tip_fronts, tip_intensities};
-use stickslip::harness::quantities::Snapshot;
-use stickslip::xfem::basis::{FunctionKind, TipFrame};
-use stickslip::xfem::intensity::{FitRange, JumpSample, jump_fit};
-use stickslip::xfem::interaction::{Domain, Fields, interaction};
-use stickslip::xfem::placement::cells_at;
-use stickslip::xfem::sampling::{ComparisonPoint, stress};
-use stickslip::xfem::surface_point::{SurfacePoint, jump_at};
-use stickslip::xfem::williams::{Mode, Williams};
+use stickslip::case::{Material, Model};
+use stickslip::model::body::Body;
+use stickslip::model::errors::{fronts, tip_fronts, tip_intensities};
+use stickslip::model::quantities::Snapshot;
+use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
+use stickslip_xfem::cut::placement::cells_at;
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::fields::sampling::ComparisonPoint;
+use stickslip_xfem::geometry::tip_frame::TipFrame;
+use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub};
+use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
+use stickslip_xfem::intensity::williams::{Mode, Williams};
+use stickslip_xfem::intensity::{FitRange, JumpSample, jump_fit};
+use stickslip_xfem::material::{Lame, stress};
 
 fn lame() -> Lame {
     let material = Material {

@@ -7,10 +7,10 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use common::*;
-use stickslip::harness::case::Case;
-use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
-use stickslip::harness::shipped;
-use stickslip::interchange::{Problem, fclib, matrix_market};
+use stickslip::case::Case;
+use stickslip::case::shipped;
+use stickslip::files::{Problem, fclib, matrix_market};
+use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{METHODS, Tier};
 use tempfile::TempDir;
 

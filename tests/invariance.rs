@@ -3,10 +3,10 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::record::Results;
-use stickslip::harness::run::{Fields, Quiet, Settings, run_case};
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::Results;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 
 /// Rounding times the conditioning of a plate of a few hundred unknowns.
 const EQUAL: f64 = 1e-10;

@@ -4,10 +4,10 @@ mod common;
 
 use common::bodies::{motion_of, motions, piecewise};
 use common::*;
-use stickslip::fem::{add_scaled, norm, sub};
-use stickslip::harness::body::{Body, Needs};
-use stickslip::xfem::cell_facets::region_at;
-use stickslip::xfem::pieces::pieces;
+use stickslip::model::body::{Body, Needs};
+use stickslip_xfem::enrichment::cell_facets::region_at;
+use stickslip_xfem::enrichment::pieces::pieces;
+use stickslip_xfem::geometry::{add_scaled, norm, sub};
 
 /// A polyline crack.
 fn bent(points: &str, tip: &str) -> String {

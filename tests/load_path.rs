@@ -5,10 +5,10 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::Case;
-use stickslip::harness::record::Results;
-use stickslip::harness::shipped;
+use stickslip::case::Case;
+use stickslip::case::shipped;
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::Results;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, METHODS, Options, Outcome, Silent, Status,
 };
@@ -76,7 +76,8 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
     for name in ["sliding_block_cycle", "cyclic"] {
         let mut case = shipped::find(name).unwrap().unwrap();
         if name == "cyclic" {
-            case.mesh.lines = vec![(0..=9).map(|i| -2.0 + 4.0 * f64::from(i) / 9.0).collect(); 2];
+            case.mesh.grid.lines =
+                vec![(0..=9).map(|i| -2.0 + 4.0 * f64::from(i) / 9.0).collect(); 2];
         }
         let path = Path::new(case);
         let increments = path.case.path.increments;

@@ -3,10 +3,10 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::Case;
-use stickslip::harness::sides::Sides;
-use stickslip::xfem::basis::FunctionKind;
+use stickslip::case::Case;
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::sides::Sides;
+use stickslip_xfem::enrichment::basis::FunctionKind;
 
 /// Forces of supports and loads over all unknowns: K u − Bᵀ P, and the loads alone.
 fn forces(found: &Solved) -> (Vec<f64>, Vec<f64>) {

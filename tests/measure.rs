@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use stickslip::harness::run::{Choice, friction_values};
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
 use stickslip::report::{Provenance, sweep};
-use stickslip::sweep::Bench;
-use stickslip::sweep::cell::{Cell, digest};
-use stickslip::sweep::measure::{Repeats, measure};
-use stickslip::sweep::record::Record;
+use stickslip::run::run_case::{Choice, friction_values};
+use stickslip::studies::sweep::Bench;
+use stickslip::studies::sweep::cell::{Cell, digest};
+use stickslip::studies::sweep::measure::{Repeats, measure};
+use stickslip::studies::sweep::record::Record;
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Silent,
     Status,

@@ -1,12 +1,12 @@
 //! Every method has a complete page, and `docs/methods.md` is what the code says.
 
-use stickslip::pages;
+use stickslip::cli::method_manual;
 use stickslip_methods::METHODS;
 
 #[test]
 fn every_page_says_what_a_user_has_to_know() {
     for method in METHODS {
-        let page = pages::page(method);
+        let page = method_manual::page(method);
         for section in [
             "### Options",
             "### Guarantees",
@@ -33,7 +33,7 @@ fn the_manual_is_that_of_this_source() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/methods.md");
     let committed = std::fs::read_to_string(path).expect("docs/methods.md");
     assert!(
-        committed == pages::all(),
+        committed == method_manual::all(),
         "docs/methods.md is stale: write it with `stickslip show methods`"
     );
 }

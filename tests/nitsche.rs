@@ -3,11 +3,11 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::{Case, Expect, Tolerance};
-use stickslip::harness::record::{Results, RunKey};
-use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
+use stickslip::case::{Case, Expect, Tolerance};
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::{Results, RunKey};
+use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
     method,

@@ -5,9 +5,9 @@ mod common;
 use common::bodies::{bodies, motion_of, motions};
 use common::*;
 use nalgebra::{DMatrix, SymmetricEigen};
-use stickslip::harness::body::{Body, Needs};
-use stickslip::xfem::basis::FunctionKind;
-use stickslip::xfem::pieces::pieces;
+use stickslip::model::body::{Body, Needs};
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::enrichment::pieces::pieces;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
@@ -64,7 +64,7 @@ fn check_points(body: &Body) -> usize {
         cut += 1;
         let corners = body.mesh.corners(cell);
         let kind = body.mesh.kind;
-        let exact: f64 = stickslip::fem::quadrature::gauss_cell(kind.dim(), 2)
+        let exact: f64 = stickslip_xfem::quadrature::gauss_cell(kind.dim(), 2)
             .iter()
             .map(|(xi, w)| w * kind.gradients(&corners[..kind.nodes()], xi).1)
             .sum();

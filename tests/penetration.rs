@@ -3,8 +3,8 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::{Case, ContactSpace};
+use stickslip::case::{Case, ContactSpace};
+use stickslip::model::body::{Body, Needs};
 
 /// A crack oblique to the grid, pulled open at one end and pressed together at the other: the pressure of the uncracked body
 /// rises from −0.3 to 0.9 along it. The sides move as the closed form says.

@@ -3,8 +3,8 @@
 mod common;
 
 use common::*;
-use stickslip::harness::record::Results;
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
+use stickslip::run::record::Results;
 use stickslip_methods::METHODS;
 
 fn exact() -> Vec<&'static str> {
@@ -39,9 +39,8 @@ fn table_1_mesh_1_is_reproduced_by_every_exact_method() {
     for (_, numbers) in rows {
         let (friction, reaction) = (numbers[0], numbers[1]);
         let of = |method: &str| {
-            let key = |k: &stickslip::harness::record::RunKey| {
-                k.friction == friction && k.method == method
-            };
+            let key =
+                |k: &stickslip::run::record::RunKey| k.friction == friction && k.method == method;
             -value(&results, key, ["reaction", "top", "y"]) / 1e6
         };
         let reference = of(METHOD);
@@ -64,7 +63,7 @@ fn table_1_mesh_1_is_reproduced_by_every_exact_method() {
 
 /// u of P1 … P7 for one component [m].
 fn probes(results: &Results, friction: f64, method: &str, component: &str) -> Vec<f64> {
-    let key = |k: &stickslip::harness::record::RunKey| k.friction == friction && k.method == method;
+    let key = |k: &stickslip::run::record::RunKey| k.friction == friction && k.method == method;
     (1..=7)
         .map(|i| value(results, key, ["displacement", &format!("P{i}"), component]))
         .collect()

@@ -5,10 +5,10 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::*;
-use stickslip::harness::body::BodyError;
-use stickslip::harness::random::{Kind, Specimen, Stream};
-use stickslip::harness::record::Results;
-use stickslip::harness::run::{Fields, Quiet, RunError, Settings, run_case};
+use stickslip::model::body::BodyError;
+use stickslip::run::record::Results;
+use stickslip::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
+use stickslip::studies::stress::random::{Kind, Specimen, Stream};
 use stickslip_methods::METHODS;
 
 const SETTINGS: Settings = Settings {

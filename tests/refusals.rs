@@ -4,7 +4,7 @@ mod common;
 
 use assert_cmd::Command;
 use common::*;
-use stickslip::harness::body::BodyError;
+use stickslip::model::body::BodyError;
 
 /// A good case; every fault below changes one thing in it.
 fn good() -> String {
@@ -218,7 +218,7 @@ fn a_mesh_folded_by_following_a_steep_line_is_refused() {
     let mesh = "mesh = { box = { min_m = [-1.0, -1.0], max_m = [1.0, 1.0], cells = [8, 8] } }";
     let follow = "mesh = { box = { min_m = [-1.0, -1.0], max_m = [1.0, 1.0], cells = [8, 9] }, follow = { point_m = [0, 0], angle_deg = 45, half_length_m = 0.97 } }";
     let text = replaced(mesh, follow);
-    let error = stickslip::harness::case::parse("t.toml", text.as_str()).unwrap_err();
+    let error = stickslip::case::parse("t.toml", text.as_str()).unwrap_err();
     assert_eq!(
         (error.line(), error.column()),
         place(&text, "45, half"),
@@ -295,7 +295,7 @@ fn probes_between_the_faces_and_expectations_without_an_answer_are_refused() {
                  relative = 1e-3\nkind = \"analytic\"\nsource = \"none\"\n"
             );
         let case = parse(&text);
-        let error = stickslip::harness::expect::check(&case).expect_err("no run has it");
+        let error = stickslip::run::expect::check(&case).expect_err("no run has it");
         assert_eq!(
             (error.line(), error.column()),
             place(&text, "[[expect]]"),

@@ -7,8 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 use report_data::{beam, crack_line, plate, results};
 use std::collections::BTreeMap;
 use std::io::Read;
-use stickslip::harness::record::{Picture, PictureShape};
 use stickslip::report::{Provenance, standard, vtu};
+use stickslip::run::record::{Picture, PictureShape};
 
 /// Arrays of a `.vtu` file by name, decoded: base64, header, zlib blocks.
 fn decoded(vtu: &[u8]) -> BTreeMap<String, Vec<u8>> {

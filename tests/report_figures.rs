@@ -4,9 +4,9 @@ mod report_data;
 
 use report_data::figures::figures;
 use report_data::{beam, beam_step, cycle, exact, key, plate, points};
-use stickslip::harness::record::{HistoryRow, Picture, PictureCell};
 use stickslip::report::ReportError;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification};
+use stickslip::run::record::{HistoryRow, Picture, PictureCell};
 
 /// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.
 fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {

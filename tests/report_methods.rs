@@ -3,8 +3,8 @@
 mod report_data;
 
 use report_data::{key, results_of_all_methods};
-use stickslip::harness::record::PointRow;
 use stickslip::report::plot;
+use stickslip::run::record::PointRow;
 use stickslip_methods::METHODS;
 
 #[test]

@@ -6,9 +6,6 @@ use report_data::{METHODS, key, results};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use stickslip::harness::converge::orders::{ErrorRow, OrderRow};
-use stickslip::harness::patch::PatchRow;
-use stickslip::harness::record::RunRow;
 use stickslip::report::comparison::{ComparisonRow, VariantRow};
 use stickslip::report::converged::{ConvergedRow, SequenceRow};
 use stickslip::report::csv::Row;
@@ -19,6 +16,9 @@ use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::report::tables::{Align, Column, Table};
 use stickslip::report::timings::TimingRow;
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
+use stickslip::run::record::RunRow;
+use stickslip::studies::convergence::orders::{ErrorRow, OrderRow};
+use stickslip::studies::spaces::patch::PatchRow;
 
 fn text(bundle: &Bundle, path: &str) -> String {
     let bytes = bundle

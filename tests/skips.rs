@@ -3,8 +3,8 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::shipped;
+use stickslip::case::shipped;
+use stickslip::model::body::{Body, Needs};
 use stickslip_methods::METHODS;
 
 fn names(exact: bool) -> Vec<&'static str> {

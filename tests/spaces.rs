@@ -3,9 +3,11 @@
 mod common;
 
 use common::{choices, parse, run as run_case, value};
-use stickslip::harness::case::ContactSpace::{self, EdgePairs, Facet, P0, Star};
-use stickslip::harness::patch::{DISTANCES, PASSED, Patch, PatchRow, State, flat, run, solid};
-use stickslip::harness::run::Quiet;
+use stickslip::case::ContactSpace::{self, EdgePairs, Facet, P0, Star};
+use stickslip::run::run_case::Quiet;
+use stickslip::studies::spaces::patch::{
+    DISTANCES, PASSED, Patch, PatchRow, State, flat, run, solid,
+};
 
 /// Distances of the crack from a node for the meshes that cost most, in cell sizes.
 const FEW: [f64; 9] = [3e-1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-11, -1e-8, -1e-1];

@@ -7,10 +7,10 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use common::*;
-use stickslip::harness::run::Quiet;
-use stickslip::harness::stress::{self, Study, Trial};
-use stickslip::harness::verdict::Verdict;
 use stickslip::report::{Provenance, robustness};
+use stickslip::run::run_case::Quiet;
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::stress::{self, Study, Trial};
 use stickslip_methods::{METHODS, Status, Tier};
 
 const FRICTION: [f64; 3] = [0.0, 0.6, 5.0];
@@ -96,7 +96,7 @@ fn a_problem_taken_alone_gives_the_same_bits() {
         let own: Vec<&Trial> = expected.iter().filter(|t| t.dim == dim).collect();
         assert_eq!(results.runs.len(), own.len());
         for trial in own {
-            let same = |key: &stickslip::harness::record::RunKey| {
+            let same = |key: &stickslip::run::record::RunKey| {
                 key.method == trial.method && key.friction == trial.friction
             };
             let row = results.runs.iter().find(|r| same(&r.key)).unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use stickslip::sweep::record::Record;
+use stickslip::studies::sweep::record::Record;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
 

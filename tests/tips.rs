@@ -3,8 +3,8 @@
 mod common;
 
 use common::*;
-use stickslip::harness::body::{Body, BodyError};
-use stickslip::xfem::basis::FunctionKind;
+use stickslip::model::body::{Body, BodyError};
+use stickslip_xfem::enrichment::basis::FunctionKind;
 
 /// A plate 4 × 4 m in 8 × 8 cells under compression and shear, with one crack.
 fn sheared(crack: &str) -> String {

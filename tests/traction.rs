@@ -4,9 +4,9 @@ mod common;
 
 use common::bodies::{bodies, motions, piecewise};
 use common::*;
-use stickslip::fem::elasticity::Lame;
-use stickslip::harness::body::{Body, Needs};
-use stickslip::xfem::traction::traction_rows;
+use stickslip::model::body::{Body, Needs};
+use stickslip_xfem::contact::traction::traction_rows;
+use stickslip_xfem::material::Lame;
 
 const TRACTION: Needs = Needs {
     frictionless: false,
@@ -130,7 +130,8 @@ fn sides_are_weighted_by_their_part_of_the_cut_cells() {
             )
             .unwrap();
             let h = [gradient(&mut random, dim), gradient(&mut random, dim)];
-            let lower = stickslip::xfem::pieces::pieces(&body.mesh, &body.enrichment).of_node(0);
+            let lower =
+                stickslip_xfem::enrichment::pieces::pieces(&body.mesh, &body.enrichment).of_node(0);
             let u = piecewise(&body, |p, x| linear(&h[usize::from(p == lower)], x));
             let expected = exact(&body, |_| {
                 let [upper, lower] = [hooke(body.lame, &h[0]), hooke(body.lame, &h[1])];
@@ -194,7 +195,7 @@ fn stresses_of_branch_functions_are_those_of_the_displacement() {
         for (point, tau) in body.points.iter().zip(found.chunks_exact(2)) {
             let mut mean = [[0.0; 3]; 3];
             let mut total = 0.0;
-            for cell in stickslip::xfem::placement::cells_at(&body.mesh, &point.x) {
+            for cell in stickslip_xfem::cut::placement::cells_at(&body.mesh, &point.x) {
                 near_tip += usize::from(body.enrichment.has_branch(cell));
                 let points = integrator.points(cell).unwrap();
                 for region in 0..body.enrichment.regions(cell) {

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode};
-use stickslip::harness::case::Case;
-use stickslip::harness::shipped;
+use stickslip::case::Case;
+use stickslip::case::shipped;
 use stickslip::report::timings::BenchmarkName;
 
 /// Stages before a method starts.
@@ -77,7 +77,7 @@ impl Problem {
 
     /// Case and mesh, e.g. `plate_mesh1 88x88`.
     fn mesh(&self) -> String {
-        let lines = self.case().mesh.refined(self.refine).lines;
+        let lines = self.case().mesh.grid.refined(self.refine).lines;
         let cells: Vec<String> = lines.iter().map(|l| (l.len() - 1).to_string()).collect();
         format!("{} {}", self.case, cells.join("x"))
     }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use stickslip::harness::attempt::{attempt, prepare};
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::loading::Loading;
-use stickslip::harness::run::Choice;
-use stickslip::harness::verdict::Verdict;
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::loading::Loading;
+use stickslip::run::attempt::{attempt, prepare};
+use stickslip::run::run_case::Choice;
+use stickslip::run::verdict::Verdict;
 use stickslip_methods::{
     ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier, method,
 };

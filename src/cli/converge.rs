@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use super::output::{say, warn};
 use super::progress::Bar;
 use super::{CliError, find_case, refuse_twins};
-use crate::harness::case::{ContactSpace, Tip};
-use crate::harness::converge::{self, Study, orders};
-use crate::harness::run::Choice;
+use crate::case::{ContactSpace, Tip};
 use crate::report::{Provenance, prepare_output};
+use crate::run::run_case::Choice;
+use crate::studies::convergence::{self, Study, orders};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -79,7 +79,12 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let bar = Bar::new();
     let mut samples = Vec::new();
     for case in &cases {
-        samples.extend(converge::run(case, &study, &converge::closed_form, &bar)?);
+        samples.extend(convergence::run(
+            case,
+            &study,
+            &convergence::closed_form,
+            &bar,
+        )?);
     }
     bar.finish();
 

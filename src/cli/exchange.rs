@@ -7,16 +7,16 @@ use stickslip_methods::{Residuals, Tier};
 
 use super::output::say;
 use super::{Bar, CliError, find_case, methods_or_all, provenance, refuse_twins};
-use crate::harness::export::{Request, export};
-use crate::harness::problem_file::ProblemFile;
-use crate::harness::record::Results;
-use crate::harness::run::Choice;
-use crate::harness::run::{Fields, Progress, Settings};
-use crate::harness::verdict::EQUILIBRIUM;
-use crate::paper;
 use crate::report::number::residual;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, prepare_output, standard};
+use crate::run::record::Results;
+use crate::run::run_case::Choice;
+use crate::run::run_case::{Fields, Progress, Settings};
+use crate::run::verdict::EQUILIBRIUM;
+use crate::studies::exchange::export::{Request, export};
+use crate::studies::exchange::problem_file::ProblemFile;
+use crate::studies::paper;
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]

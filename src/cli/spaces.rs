@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::harness::case::ContactSpace;
-use crate::harness::infsup::{self, SCENES, Scene};
-use crate::harness::patch::{self, PatchRow};
-use crate::harness::run::Choice;
+use crate::case::ContactSpace;
 use crate::report::{Bundle, Provenance, prepare_output};
+use crate::run::run_case::Choice;
+use crate::studies::spaces::infsup::{self, SCENES, Scene};
+use crate::studies::spaces::patch::{self, PatchRow};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]

@@ -7,9 +7,9 @@ use stickslip_methods::Tier;
 use super::output::{say, warn};
 use super::progress::Bar;
 use super::{CliError, methods_or_all};
-use crate::harness::stress::{self, Study, Trial};
-use crate::harness::verdict::Verdict;
 use crate::report::{Provenance, prepare_output, robustness};
+use crate::run::verdict::Verdict;
+use crate::studies::stress::{self, Study, Trial};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]

@@ -9,13 +9,13 @@ use super::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, page, prepare_output, sweep};
-use crate::sweep::compare::compare;
-use crate::sweep::conduct::{Conduct, Shard, conduct};
-use crate::sweep::merge::merge;
-use crate::sweep::plan::Plan;
-use crate::sweep::record::{Origin, Record};
-use crate::sweep::store::Store;
-use crate::sweep::worker::{Limits, serve};
+use crate::studies::sweep::compare::compare;
+use crate::studies::sweep::conduct::{Conduct, Shard, conduct};
+use crate::studies::sweep::merge::merge;
+use crate::studies::sweep::plan::Plan;
+use crate::studies::sweep::record::{Origin, Record};
+use crate::studies::sweep::store::Store;
+use crate::studies::sweep::worker::{Limits, serve};
 
 /// The sweep that is run without a file: work and precision of all methods.
 const STANDARD: (&str, &str) = (

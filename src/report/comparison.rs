@@ -8,7 +8,7 @@ use super::number::{residual, significant, time, value};
 use super::plot::method_cost;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper, standard};
-use crate::harness::record::RunRow;
+use crate::run::record::RunRow;
 
 /// One method on one case: all meshes, friction coefficients and increments together.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,8 @@ use super::csv::{self, Row};
 use super::number::{fixed, significant, time, value};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, error_figures, paper};
-use crate::harness::converge::Variant;
-use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
+use crate::studies::convergence::Variant;
+use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
 /// Significant digits of errors: they are no better than the order of the method.
 const ERROR_DIGITS: usize = 4;

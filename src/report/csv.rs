@@ -2,7 +2,7 @@
 
 use super::number::{residual, time, value};
 use super::{Bundle, ReportError};
-use crate::harness::record::{
+use crate::run::record::{
     ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, Results, RunKey, RunRow,
 };
 use std::cmp::Ordering;

@@ -6,8 +6,8 @@ use super::number::{fixed, significant, value};
 use super::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
 use super::standard::file_name;
 use super::{Bundle, ReportError, quantity_name};
-use crate::harness::case::ContactSpace;
-use crate::harness::converge::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
+use crate::case::ContactSpace;
+use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
 /// Panels of one figure; with more of them each place has a figure of its own.
 const PANELS: usize = 6;

@@ -8,8 +8,10 @@ use super::number::{fixed, significant, value};
 use super::plot::{Lattice, SmallPanel, italic, lattice};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
-use crate::harness::case::ContactSpace;
-use crate::harness::infsup::{LARGEST_SLOPE, LEAST_SHARE, SCENES, SPACES, Sample, Sequence};
+use crate::case::ContactSpace;
+use crate::studies::spaces::infsup::{
+    LARGEST_SLOPE, LEAST_SHARE, SCENES, SPACES, Sample, Sequence,
+};
 
 /// Significant digits of β: some of its square is rounding.
 const BETA_DIGITS: usize = 4;

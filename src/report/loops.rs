@@ -3,7 +3,7 @@
 use super::number::significant;
 use super::standard::problem_name;
 use super::{Bundle, ReportError, plot};
-use crate::harness::record::{QuantityRow, Results, RunKey};
+use crate::run::record::{QuantityRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Significant digits of a dissipation.

@@ -7,7 +7,7 @@ use super::csv::{self, Row};
 use super::number::{significant, value};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
-use crate::harness::patch::{Loaded, PASSED, PatchRow, State};
+use crate::studies::spaces::patch::{Loaded, PASSED, PatchRow, State};
 
 /// Significant digits of errors.
 const DIGITS: usize = 3;

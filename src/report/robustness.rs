@@ -10,9 +10,9 @@ use super::number::{fixed, residual, significant, time, value};
 use super::plot::success_rates;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, paper};
-use crate::harness::stress::{Study, Trial};
-use crate::harness::verdict::Verdict;
-use crate::sweep::analysis::proportion::wilson;
+use crate::run::verdict::Verdict;
+use crate::studies::stress::{Study, Trial};
+use crate::studies::sweep::analysis::proportion::wilson;
 
 /// Ends without a claim that have a column of their own.
 const GIVE_UPS: [Status; 5] = [

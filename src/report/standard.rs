@@ -7,8 +7,8 @@ use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
-use crate::harness::expect;
-use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use crate::run::expect;
+use crate::run::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 //!
 //! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
 //! `success.*`, `profiles.csv`, `data_profiles.csv` and their figures. All others belong to the machine. Times stand beside
-//! honest verdicts only, see [`published_times`](crate::sweep::analysis::published_times).
+//! honest verdicts only, see [`published_times`](crate::studies::sweep::analysis::published_times).
 
 mod accuracy;
 mod cells;
@@ -24,9 +24,9 @@ use stickslip_methods::Tier;
 use super::csv::{self, Row};
 use super::number::value;
 use super::{Bundle, Provenance, ReportError};
-use crate::sweep::analysis::test_set::TestSet;
-use crate::sweep::analysis::{compare_methods, compare_problems, problems};
-use crate::sweep::record::{Record, SCHEMA};
+use crate::studies::sweep::analysis::test_set::TestSet;
+use crate::studies::sweep::analysis::{compare_methods, compare_problems, problems};
+use crate::studies::sweep::record::{Record, SCHEMA};
 
 /// Files of a study; `total`: cells that the sweep has in all. Paths have no common folder.
 ///

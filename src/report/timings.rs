@@ -18,7 +18,7 @@ use super::csv::{self, Row};
 use super::number::{significant, time};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
-use crate::sweep::statistics::Timing;
+use crate::studies::sweep::statistics::Timing;
 
 /// Significant digits of the readable table: more is noise.
 const DIGITS: usize = 3;

@@ -5,7 +5,7 @@
 //! comment, the time in a numeric `TimeValue`. Format: VTK file formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 
 use super::{Bundle, ReportError};
-use crate::harness::record::{Picture, PictureShape, RunFields};
+use crate::run::record::{Picture, PictureShape, RunFields};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;

@@ -1,6 +1,6 @@
 //! Shapes, tips and contact spaces of cracks: what is accepted arrives as stated, what is not is refused at its place.
 
-use stickslip::harness::case::{ContactSpace, CrackShape, Tip};
+use stickslip::case::{ContactSpace, CrackShape, Tip};
 
 use super::refusals::assert_refused;
 use super::{PLANE, SOLID, accepted};

@@ -1,7 +1,7 @@
 //! The closed form of a case and what supports and loads take from it; loads that vary in space or know sides.
 
-use stickslip::analytic::{ParameterSpec, SolutionSpec};
-use stickslip::harness::case::{self, Amount, Case, CaseError, History, LoadKind};
+use stickslip::case::{self, Amount, Case, CaseError, History, LoadKind};
+use stickslip_xfem::exact::{ParameterSpec, SolutionSpec};
 
 use super::{PLANE, SOLID, accepted, place, refused};
 

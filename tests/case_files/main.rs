@@ -6,7 +6,7 @@ mod refusals;
 mod robustness;
 mod shipped;
 
-use stickslip::harness::case::{
+use stickslip::case::{
     self, Amount, Case, CaseError, ContactSpace, CrackShape, ExpectKind, History, LoadKind, Model,
     Quadrature, Tip, Tolerance,
 };
@@ -137,18 +137,23 @@ fn every_table_arrives_in_the_case() {
     );
     assert_eq!((case.material.young, case.material.poisson), (1e10, 0.3));
     assert_eq!(
-        case.mesh.lines.iter().map(Vec::len).collect::<Vec<_>>(),
+        case.mesh
+            .grid
+            .lines
+            .iter()
+            .map(Vec::len)
+            .collect::<Vec<_>>(),
         [23, 24]
     );
     assert_eq!(
         (
-            case.mesh.lines[0][0],
-            case.mesh.lines[0][11],
-            case.mesh.lines[0][22]
+            case.mesh.grid.lines[0][0],
+            case.mesh.grid.lines[0][11],
+            case.mesh.grid.lines[0][22]
         ),
         (-10.0, 0.0, 10.0)
     );
-    let follow = case.mesh.follow.as_ref().unwrap();
+    let follow = case.mesh.grid.follow.as_ref().unwrap();
     assert_eq!(
         (follow.angle, follow.half_length),
         (std::f64::consts::FRAC_PI_4, 5.5)
@@ -235,7 +240,10 @@ fn the_documented_example_is_accepted() {
 #[test]
 fn comments_line_endings_and_a_byte_order_mark_change_nothing() {
     let windows = format!("\u{feff}# a comment\r\n{}", SOLID.replace('\n', "\r\n"));
-    assert_eq!(accepted(&windows).mesh.lines, accepted(SOLID).mesh.lines);
+    assert_eq!(
+        accepted(&windows).mesh.grid.lines,
+        accepted(SOLID).mesh.grid.lines
+    );
     let error = refused(&windows.replace("friction = 0", "friction = -1"));
     assert_eq!((error.line(), error.column()), (11, 12), "{error}");
     assert_eq!(error.source_line(), "friction = -1");

@@ -393,11 +393,14 @@ fn motions_of_the_grid_are_read_and_refused_at_their_place() {
     let mesh = accepted(&with(
         "[mesh.twist]\nangle_deg = -30\n\n[mesh.distort]\namplitude = 0.25\nseed = 7",
     ))
-    .mesh;
+    .mesh
+    .grid;
     let (twist, distort) = (mesh.twist.unwrap(), mesh.distort.unwrap());
     assert_eq!(twist.angle, -30f64.to_radians());
     assert_eq!((distort.amplitude, distort.seed), (0.25, 7));
-    let mesh = accepted(&with("[mesh.distort]\namplitude = 0.25")).mesh;
+    let mesh = accepted(&with("[mesh.distort]\namplitude = 0.25"))
+        .mesh
+        .grid;
     assert_eq!(mesh.distort.unwrap().seed, 1);
     assert!(mesh.twist.is_none());
     for (table, mark, allowed) in [

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
-use stickslip::harness::case;
+use stickslip::case;
 
 use super::{PLANE, SOLID, refused};
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use stickslip::harness::case::{self, Case, CrackShape, Expect, ExpectKind, Tolerance};
+use stickslip::case::{self, Case, CrackShape, Expect, ExpectKind, Tolerance};
 
 fn case_dir() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")
@@ -65,7 +65,13 @@ fn every_shipped_case_is_accepted() {
 #[test]
 fn boxes_symmetric_about_zero_have_symmetric_grid_lines() {
     for case in shipped().into_values() {
-        for line in case.mesh.lines.iter().filter(|l| l[0] == -l[l.len() - 1]) {
+        for line in case
+            .mesh
+            .grid
+            .lines
+            .iter()
+            .filter(|l| l[0] == -l[l.len() - 1])
+        {
             let mirrored: Vec<f64> = line.iter().rev().map(|x| -x).collect();
             assert_eq!(line, &mirrored, "{}", case.name);
         }
@@ -76,8 +82,8 @@ fn boxes_symmetric_about_zero_have_symmetric_grid_lines() {
 fn refinement_keeps_the_given_grid_lines_to_the_bit() {
     for case in shipped().into_values() {
         for factor in [1, 2, 3, 7] {
-            let fine = case.mesh.refined(factor);
-            for (coarse, fine) in case.mesh.lines.iter().zip(&fine.lines) {
+            let fine = case.mesh.grid.refined(factor);
+            for (coarse, fine) in case.mesh.grid.lines.iter().zip(&fine.lines) {
                 assert_eq!(fine.len(), (coarse.len() - 1) * factor + 1);
                 let kept: Vec<f64> = fine.iter().copied().step_by(factor).collect();
                 assert_eq!(&kept, coarse);
@@ -291,7 +297,7 @@ fn cracks_of_the_sliding_blocks_lie_on_the_followed_line() {
         .iter()
         .filter(|(name, _)| name.starts_with("sliding_block"))
     {
-        let Some(follow) = case.mesh.follow.as_ref() else {
+        let Some(follow) = case.mesh.grid.follow.as_ref() else {
             assert!(["sliding_block_off_grid", "sliding_block_star"].contains(&name.as_str()));
             continue;
         };
@@ -306,7 +312,7 @@ fn cracks_of_the_sliding_blocks_lie_on_the_followed_line() {
                 "{name}: the crack leaves the block"
             );
         }
-        let conforming = case.mesh.lines[1].contains(&follow.point[1]);
+        let conforming = case.mesh.grid.lines[1].contains(&follow.point[1]);
         assert_eq!(conforming, name.contains("conforming"), "{name}");
     }
 }

@@ -1,7 +1,7 @@
 //! Cracked bodies in general and special position, and fields on their pieces.
 
-use stickslip::harness::body::{Body, Needs};
-use stickslip::xfem::pieces::pieces;
+use stickslip::model::body::{Body, Needs};
+use stickslip_xfem::enrichment::pieces::pieces;
 
 use super::{clamped, crack, parse, plane, solid};
 

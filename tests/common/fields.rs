@@ -4,21 +4,20 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use nalgebra::Complex;
-use stickslip::analytic::Field;
-use stickslip::fem::elasticity::Lame;
-use stickslip::fem::quadrature::gauss;
-use stickslip::fem::{Point, add_scaled, dot, norm, sub};
-use stickslip::harness::body::{Body, Needs};
-use stickslip::harness::case::Amount;
-use stickslip::harness::quantities::Snapshot;
-use stickslip::xfem::basis::FunctionKind;
-use stickslip::xfem::crack::Geometry;
-use stickslip::xfem::sampling::{strain, stress};
-use stickslip::xfem::surface_point::SurfacePoint;
-use stickslip::xfem::williams::{kolosov, plane_modulus};
+use stickslip::case::Amount;
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::quantities::Snapshot;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
 };
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::cut::crack::Geometry;
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub};
+use stickslip_xfem::intensity::williams::{kolosov, plane_modulus};
+use stickslip_xfem::material::{Lame, strain, stress};
+use stickslip_xfem::quadrature::gauss;
 
 use super::{METHOD, TOLERANCE, friction, loading, no_load, parse};
 

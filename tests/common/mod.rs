@@ -8,11 +8,11 @@ pub mod fields;
 
 use std::sync::Arc;
 
-use stickslip::harness::body::{Body, BodyError, Needs};
-use stickslip::harness::case::{self, Case};
-use stickslip::harness::loading::Loading;
-use stickslip::harness::record::Results;
-use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::case::{self, Case};
+use stickslip::model::body::{Body, BodyError, Needs};
+use stickslip::model::loading::Loading;
+use stickslip::run::record::Results;
+use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
 };
@@ -186,7 +186,7 @@ pub fn choices(methods: &[&str]) -> Vec<Choice> {
 /// The only value of a quantity in the rows that fulfil a condition.
 pub fn value(
     results: &Results,
-    keep: impl Fn(&stickslip::harness::record::RunKey) -> bool,
+    keep: impl Fn(&stickslip::run::record::RunKey) -> bool,
     [quantity, at, component]: [&str; 3],
 ) -> f64 {
     let found: Vec<f64> = results

@@ -1,8 +1,8 @@
 //! Closed forms made for tests of what supports and loads take from them.
 
-use stickslip::analytic::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
-use stickslip::fem::elasticity::Lame;
-use stickslip::harness::case::CrackShape;
+use stickslip::case::CrackShape;
+use stickslip_xfem::exact::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use stickslip_xfem::material::Lame;
 
 pub type Point = [f64; 3];
 

@@ -7,14 +7,14 @@ mod forms;
 use assert_cmd::Command;
 use common::*;
 use forms::{FORMS, K, Point, Smooth, map};
-use stickslip::analytic::Field;
-use stickslip::fem::elasticity::Lame;
-use stickslip::harness::body::{Body, BodyError, Needs};
-use stickslip::harness::case::{self, Amount, Case};
-use stickslip::harness::loading::Loading;
-use stickslip::harness::sides::Sides;
-use stickslip::xfem::cell_facets::region_at;
+use stickslip::case::{self, Amount, Case};
+use stickslip::model::body::{Body, BodyError, Needs};
+use stickslip::model::loading::Loading;
+use stickslip::model::sides::Sides;
 use stickslip_methods::Load;
+use stickslip_xfem::enrichment::cell_facets::region_at;
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::material::Lame;
 
 fn exact_case(text: &str) -> Case {
     case::parse_with("test.toml", text, FORMS).unwrap_or_else(|e| panic!("{e}\n{text}"))

@@ -1,7 +1,7 @@
 //! Random problems.
 
 use proptest::prelude::*;
-use stickslip::interchange::{
+use stickslip::files::{
     GlobalEquality, GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix,
 };
 

@@ -1,11 +1,11 @@
 //! Every kind of figure of made-up results.
 
 use super::{beam, beam_step, cycle, exact, plate, rates, results, results_of_all_methods};
-use stickslip::harness::record::{HistoryRow, PointRow};
 use stickslip::report::comparison::comparison;
 use stickslip::report::plot::{
     self, Axis3, Curve, CurvePlot, ErrorCurve, ErrorFigure, ErrorPanel, Guide, Magnification, Tier,
 };
+use stickslip::run::record::{HistoryRow, PointRow};
 use stickslip_methods::METHODS;
 
 /// Every kind of figure, with the texts that it must show.

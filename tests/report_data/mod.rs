@@ -5,8 +5,8 @@
 
 pub mod figures;
 
-use stickslip::harness::record::*;
 use stickslip::report::robustness::RobustnessRow;
+use stickslip::run::record::*;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];

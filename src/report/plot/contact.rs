@@ -13,9 +13,9 @@ use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector, unfi
 use super::parts::{Lookup, Parts, Plane, dot, sum};
 use super::solid::{Deformed, Sheet, draw_triad, project};
 use super::style::{draw_marker, status_marker};
-use crate::harness::record::{FieldStep, Picture, PictureShape};
 use crate::report::ReportError;
 use crate::report::number::significant;
+use crate::run::record::{FieldStep, Picture, PictureShape};
 
 /// Status by its value in the point scalar `status`, and its tint; in grey the tints are 1, 0.5 and 0.8.
 const STATUS: [(&str, Rgb); 3] = [

@@ -8,8 +8,8 @@ use super::colour::{BLACK, LIGHT};
 use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
-use crate::harness::record::{Picture, PictureShape};
 use crate::report::ReportError;
+use crate::run::record::{Picture, PictureShape};
 use std::collections::BTreeSet;
 
 /// Faces below this size on paper are not refined [pixels].

@@ -7,8 +7,8 @@ use super::legend::Entry;
 use super::methods;
 use super::names::{Names, by_run};
 use super::style::Style;
-use crate::harness::record::{HistoryRow, RunKey};
 use crate::report::ReportError;
+use crate::run::record::{HistoryRow, RunKey};
 
 /// Residuals below this are drawn here: a logarithmic axis has no zero.
 const RESIDUAL_SHOWN: f64 = 1e-16;

@@ -4,8 +4,8 @@ use super::axis::{nice_step, prefixed, range};
 use super::bands::Levels;
 use super::canvas::{italic, plain, subscript};
 use super::outline::cell_scalar;
-use crate::harness::record::{Picture, PictureCell, PictureShape};
 use crate::report::ReportError;
+use crate::run::record::{Picture, PictureCell, PictureShape};
 
 /// Name of the point vector that deforms a body.
 pub const DISPLACEMENT: &str = "displacement_m";

@@ -8,9 +8,9 @@ use super::method_curves::method_curves;
 use super::names::by_run;
 use super::route;
 use super::style::Style;
-use crate::harness::record::{QuantityRow, RunKey};
 use crate::report::ReportError;
 use crate::report::number::value;
+use crate::run::record::{QuantityRow, RunKey};
 use std::collections::BTreeMap;
 
 /// Paths of fewer increments are no loops.

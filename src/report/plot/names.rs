@@ -2,9 +2,9 @@
 
 use super::canvas::{italic, plain};
 use super::methods;
-use crate::harness::record::RunKey;
 use crate::report::csv::compare_keys;
 use crate::report::number::value;
+use crate::run::record::RunKey;
 
 /// Rows grouped by run, runs in the order of the registry of methods, then of the tables, rows by `order`.
 pub fn by_run<R>(

@@ -3,7 +3,7 @@
 //! Parts of a cut cell have points of their own, so neighbours are found by place. The two faces of a crack lie in the
 //! same place too; they stay apart because their cells are on opposite sides, or because their displacements differ.
 
-use crate::harness::record::Picture;
+use crate::run::record::Picture;
 use std::collections::BTreeMap;
 
 /// Points nearer than this fraction of the body's size are one place.
@@ -150,7 +150,7 @@ fn without_hanging(picture: &Picture, single: Vec<[usize; 2]>, weld: &Weld<'_>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::harness::record::{PictureCell, PictureShape};
+    use crate::run::record::{PictureCell, PictureShape};
 
     /// A square left of a square that is cut at half height, every part with points of its own.
     fn cut_beside_whole(jump: f64) -> (Picture, Vec<Face>, Vec<[f64; 3]>) {

@@ -3,7 +3,7 @@
 use super::outline::Weld;
 use super::solid::{Deformed, VIEW};
 use super::surface::Patch;
-use crate::harness::record::{Picture, PictureShape};
+use crate::run::record::{Picture, PictureShape};
 use std::collections::BTreeMap;
 
 /// Patches whose normals make an angle with a larger cosine meet in no edge.

@@ -9,8 +9,8 @@ use super::legend::Entry;
 use super::method_curves::{MethodCurve, method_curves};
 use super::names::{Names, by_run};
 use super::style::{Style, status_marker};
-use crate::harness::record::{ExactRow, PointRow, RunKey};
 use crate::report::ReportError;
+use crate::run::record::{ExactRow, PointRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Jumps below this fraction of the crack's length are what the tolerance of a method leaves.

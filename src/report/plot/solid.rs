@@ -12,8 +12,8 @@ use super::contour::{Box2, split, stroke};
 use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::Weld;
 use super::surface::{self, Patch};
-use crate::harness::record::Picture;
 use crate::report::ReportError;
+use crate::run::record::Picture;
 
 /// Component of a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,8 +5,8 @@
 
 use super::field::unfit;
 use super::outline::{Weld, cell_scalar};
-use crate::harness::record::{Picture, PictureCell, PictureShape};
 use crate::report::ReportError;
+use crate::run::record::{Picture, PictureCell, PictureShape};
 use std::collections::BTreeMap;
 
 /// Name of the cell scalar that holds the number of the mesh cell.

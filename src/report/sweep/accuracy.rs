@@ -1,16 +1,16 @@
 //! Time to accuracy: the error of the discretisation beside what it takes to have the answer, mesh by mesh.
 
 use super::Study;
-use crate::harness::converge::Variant;
-use crate::harness::converge::orders::{ErrorRow, Kind, ROUND_OFF};
 use crate::report::csv::{self, Row};
 use crate::report::number::value;
 use crate::report::plot::{Guide, MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError, quantity_name};
-use crate::sweep::analysis::accuracy::{Refinement, refinements};
-use crate::sweep::analysis::problem_names;
-use crate::sweep::cell::Problem;
+use crate::studies::convergence::Variant;
+use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
+use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
+use crate::studies::sweep::analysis::problem_names;
+use crate::studies::sweep::cell::Problem;
 
 /// Orders that a triangle may show.
 const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];

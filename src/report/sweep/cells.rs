@@ -6,9 +6,9 @@ use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::accuracy::sequences;
-use crate::sweep::cell::Problem;
-use crate::sweep::record::{IncrementFound, Record};
+use crate::studies::sweep::analysis::accuracy::sequences;
+use crate::studies::sweep::cell::Problem;
+use crate::studies::sweep::record::{IncrementFound, Record};
 
 /// Significant digits of discretisation errors.
 const ERROR_DIGITS: usize = 4;
@@ -99,8 +99,9 @@ impl Row for CellRow<'_> {
         let record = self.0;
         let found = &record.found;
         let error = found.solver_error.as_ref();
-        let energy =
-            |d: &&crate::sweep::record::DeviationFound| d.quantity == "energy" && d.at.is_empty();
+        let energy = |d: &&crate::studies::sweep::record::DeviationFound| {
+            d.quantity == "energy" && d.at.is_empty()
+        };
         let energy = found.deviations.iter().find(energy).and_then(|d| d.error);
         let natural_map = match found.increments.is_empty() {
             true => f64::NAN,

@@ -6,7 +6,7 @@ use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant};
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::compare::{Change, Comparison, What};
+use crate::studies::sweep::compare::{Change, Comparison, What};
 
 /// One change.
 #[derive(Debug, Clone, PartialEq)]

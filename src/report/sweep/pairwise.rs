@@ -11,11 +11,11 @@ use crate::report::plot::{
     Matrix, MethodCurve, MethodPanel, MethodPanels, matrix, method_panels, stairs,
 };
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::compare_methods;
-use crate::sweep::analysis::costs::{Costs, Measure};
-use crate::sweep::analysis::pairwise::{Duel, Pair, duels, pairs};
-use crate::sweep::analysis::profile::Curve;
-use crate::sweep::analysis::ranking::ranking;
+use crate::studies::sweep::analysis::compare_methods;
+use crate::studies::sweep::analysis::costs::{Costs, Measure};
+use crate::studies::sweep::analysis::pairwise::{Duel, Pair, duels, pairs};
+use crate::studies::sweep::analysis::profile::Curve;
+use crate::studies::sweep::analysis::ranking::ranking;
 
 /// Digits of bounds and fractions.
 const DIGITS: usize = 6;

@@ -9,10 +9,10 @@ use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, method_panels, stairs};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::compare_methods;
-use crate::sweep::analysis::costs::{Costs, Measure};
-use crate::sweep::analysis::profile::{Budget, Curve, data, performance};
-use crate::sweep::analysis::test_set::TestSet;
+use crate::studies::sweep::analysis::compare_methods;
+use crate::studies::sweep::analysis::costs::{Costs, Measure};
+use crate::studies::sweep::analysis::profile::{Budget, Curve, data, performance};
+use crate::studies::sweep::analysis::test_set::TestSet;
 
 /// Digits of bounds and fractions.
 const DIGITS: usize = 6;

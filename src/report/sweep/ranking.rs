@@ -10,9 +10,9 @@ use crate::report::number::{fixed, significant, time};
 use crate::report::paper::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::compare_methods;
-use crate::sweep::analysis::costs::{Costs, Measure};
-use crate::sweep::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
+use crate::studies::sweep::analysis::compare_methods;
+use crate::studies::sweep::analysis::costs::{Costs, Measure};
+use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
 
 /// Adds `ranking.csv`, `.md` and `.tex`.
 pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {

@@ -8,7 +8,7 @@ use crate::report::number::significant;
 use crate::report::paper::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::recommendation::{Recommendation, recommendations};
+use crate::studies::sweep::analysis::recommendation::{Recommendation, recommendations};
 
 /// What stands for "anything".
 const ANY: &str = "any";

@@ -10,8 +10,8 @@ use crate::report::number::{fixed, significant};
 use crate::report::paper::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::compare_methods;
-use crate::sweep::analysis::success::{FAILURES, SuccessRow, success};
+use crate::studies::sweep::analysis::compare_methods;
+use crate::studies::sweep::analysis::success::{FAILURES, SuccessRow, success};
 
 /// Adds `success.csv`, `.md` and `.tex`.
 pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {

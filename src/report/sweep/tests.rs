@@ -2,9 +2,9 @@ use std::collections::BTreeMap;
 
 use stickslip_methods::METHODS;
 
-use super::*;
-use crate::sweep::analysis::support::{lying, record, timed};
-use crate::sweep::record::{DeviationFound, ValueFound};
+use crate::report::sweep::*;
+use crate::studies::sweep::analysis::support::{lying, record, timed};
+use crate::studies::sweep::record::{DeviationFound, ValueFound};
 
 /// Files that must not depend on times.
 const TIMELESS: [&str; 7] = [
@@ -291,7 +291,7 @@ fn a_comparison_lists_what_changed() {
     let a = study();
     let mut b = a.clone();
     b[0].found.verdict = "false-claim".into();
-    let comparison = crate::sweep::compare::compare(&a, &b);
+    let comparison = crate::studies::sweep::compare::compare(&a, &b);
     assert!(comparison.worse());
     let bundle = comparison_bundle(&comparison).unwrap();
     let text = |path: &str| String::from_utf8(bundle.get(path).unwrap().to_vec()).unwrap();
@@ -323,7 +323,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
 #[test]
 fn headers_are_those_of_the_documentation() {
     let mut found = files(&study());
-    let changes = crate::sweep::compare::compare(&[], &[]);
+    let changes = crate::studies::sweep::compare::compare(&[], &[]);
     let changes = comparison_bundle(&changes).unwrap();
     let table = changes.get("compare.csv").unwrap().to_vec();
     found.insert("compare.csv".into(), table);

@@ -8,12 +8,12 @@ use crate::report::number::{significant, time, value};
 use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::{
+use crate::studies::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
 };
-use crate::sweep::record::{Record, Spent};
-use crate::sweep::statistics::Timing;
+use crate::studies::sweep::record::{Record, Spent};
+use crate::studies::sweep::statistics::Timing;
 
 /// Stages in the order in which they come.
 const STAGES: [&str; 7] = [

@@ -8,9 +8,9 @@ use crate::report::number::{RESIDUAL_FLOOR, residual, time, value};
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
-use crate::sweep::analysis::series::{Point, Series, Swept, series};
-use crate::sweep::analysis::{problem_names, problems};
-use crate::sweep::cell::Problem;
+use crate::studies::sweep::analysis::series::{Point, Series, Swept, series};
+use crate::studies::sweep::analysis::{problem_names, problems};
+use crate::studies::sweep::cell::Problem;
 
 /// Points of a curve: problems that were solved at the three tiers alone have no figure.
 const CURVE: usize = 4;

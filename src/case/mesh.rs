@@ -1,0 +1,299 @@
+//! `[mesh]` and `[sweep]` of a case file: grid lines, the line they follow, refinement.
+
+use stickslip_xfem::mesh::box_mesh::{GridSpec, Motion};
+use stickslip_xfem::mesh::grid_motion::{Distort, Follow, Twist};
+
+use super::error::CaseError;
+use super::reader::{Table, Value};
+use super::schema::friction;
+use super::{MeshSpec, Sweep};
+
+/// Largest number of cells, also after refinement: beyond it the matrix does not fit the machines meant here.
+const MAX_CELLS: usize = 20_000_000;
+
+/// Largest refinement factor.
+pub(super) const MAX_REFINE: usize = 1000;
+
+/// Smallest width of a cell relative to its coordinates; below it neighbouring grid lines are rounding errors apart.
+const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
+
+/// Steepest line grid lines may follow [degrees]; cells are sheared by its tangent.
+const MAX_ANGLE: f64 = 80.0;
+
+/// Largest turn of grid lines [degrees].
+const MAX_TURN: f64 = 180.0;
+
+/// Largest seed: every integer up to it is written and read the same everywhere.
+const MAX_SEED: usize = u32::MAX as usize;
+
+/// `[mesh]`.
+pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> {
+    let table = root
+        .required("mesh")?
+        .table(&["box", "lines_m", "follow", "twist", "distort"])?;
+    let lines = match table.exactly_one(&["box", "lines_m"])? {
+        ("box", value) => box_lines(value, dim)?,
+        (_, value) => given_lines(value, dim)?,
+    };
+    let follow = table
+        .get("follow")
+        .map(|v| follow(v, dim, &lines))
+        .transpose()?;
+    let grid = GridSpec {
+        lines,
+        follow,
+        twist: table.get("twist").map(|v| twist(v, dim)).transpose()?,
+        distort: table.get("distort").map(|v| distort(v, dim)).transpose()?,
+    };
+    let keys = [
+        ("follow", Motion::Follow),
+        ("twist", Motion::Twist),
+        ("distort", Motion::Distort),
+    ];
+    let motion_spans = keys
+        .into_iter()
+        .filter_map(|(key, motion)| Some((motion, table.get(key)?.span())))
+        .collect();
+    Ok(MeshSpec {
+        span: table.span(),
+        grid,
+        motion_spans,
+    })
+}
+
+/// `[mesh.twist]`.
+fn twist(value: Value<'_>, dim: usize) -> Result<Twist, CaseError> {
+    let table = value.table(&["angle_deg"])?;
+    if dim != 2 {
+        return Err(value.refuse("a 2D model", "grid lines are turned in the plane only"));
+    }
+    let degrees = table
+        .required("angle_deg")?
+        .number_if("-180 < angle_deg < 180", |a| a.abs() < MAX_TURN)?;
+    Ok(Twist {
+        angle: degrees.to_radians(),
+    })
+}
+
+/// `[mesh.distort]`.
+fn distort(value: Value<'_>, dim: usize) -> Result<Distort, CaseError> {
+    let table = value.table(&["amplitude", "seed"])?;
+    if dim != 2 {
+        return Err(value.refuse(
+            "a 2D model",
+            "hexahedra can be cut only while their faces are planar",
+        ));
+    }
+    let amplitude = table
+        .required("amplitude")?
+        .number_if("0 <= amplitude < 0.5", |a| (0.0..0.5).contains(&a))?;
+    let seed = table
+        .get("seed")
+        .map_or(Ok(1), |v| v.integer(0..=MAX_SEED))?;
+    Ok(Distort {
+        amplitude,
+        seed: seed as u64,
+    })
+}
+
+/// `[mesh.box]`: evenly spaced grid lines.
+fn box_lines(value: Value<'_>, dim: usize) -> Result<Vec<Vec<f64>>, CaseError> {
+    let table = value.table(&["min_m", "max_m", "cells"])?;
+    let min = table.required("min_m")?.numbers(dim)?;
+    let mut max = Vec::new();
+    for (value, low) in table.required("max_m")?.list_of(dim)?.iter().zip(&min) {
+        max.push(value.number_if(&format!("more than min_m = {low}"), |high| high > *low)?);
+    }
+    let given = table.required("cells")?;
+    let cells = given
+        .list_of(dim)?
+        .iter()
+        .map(|v| v.integer(1..=MAX_CELLS))
+        .collect::<Result<Vec<_>, _>>()?;
+    count_cells(given, &cells, 1)?;
+    let narrow = (0..dim).find(|&i| !wide_enough(min[i], max[i], cells[i]));
+    if let Some(axis) = narrow {
+        return Err(given.refuse(
+            "cells that double precision can tell apart",
+            format_args!("axis {} has cells without width", axis + 1),
+        ));
+    }
+    let line = |i: usize| {
+        let n = cells[i] as f64;
+        // Weighted from both ends: a box symmetric about zero gets grid lines that are.
+        let inner = (1..cells[i])
+            .map(|k| k as f64)
+            .map(|k| (min[i] * (n - k) + max[i] * k) / n);
+        std::iter::once(min[i])
+            .chain(inner)
+            .chain(std::iter::once(max[i]))
+            .collect()
+    };
+    Ok((0..dim).map(line).collect())
+}
+
+/// `lines_m`: grid lines one by one.
+fn given_lines(value: Value<'_>, dim: usize) -> Result<Vec<Vec<f64>>, CaseError> {
+    let mut lines = Vec::new();
+    for axis in value.list_of(dim)? {
+        let entries = axis.list()?;
+        if entries.len() < 2 {
+            return Err(axis.refuse("at least 2 grid lines per axis", "empty mesh"));
+        }
+        let mut line: Vec<f64> = Vec::new();
+        for entry in entries {
+            let low = line.last().copied();
+            let allowed = low.map_or("a finite number".to_string(), |low| {
+                format!("more than {low} (strictly increasing)")
+            });
+            line.push(entry.number_if(&allowed, |x| low.is_none_or(|low| wide_enough(low, x, 1)))?);
+        }
+        lines.push(line);
+    }
+    let cells: Vec<usize> = lines.iter().map(|l| l.len() - 1).collect();
+    count_cells(value, &cells, 1)?;
+    Ok(lines)
+}
+
+fn count_cells(value: Value<'_>, cells: &[usize], factor: usize) -> Result<(), CaseError> {
+    let total: f64 = cells.iter().map(|n| *n as f64 * factor as f64).product();
+    if total > MAX_CELLS as f64 {
+        return Err(value.refuse(
+            format_args!("at most {MAX_CELLS} cells"),
+            format_args!("{total:.0} cells in total"),
+        ));
+    }
+    Ok(())
+}
+
+/// Whether an interval can be divided into that many cells. A width that overflows counts as too narrow.
+fn wide_enough(low: f64, high: f64, parts: usize) -> bool {
+    let width = (high - low) / parts as f64;
+    width.is_finite() && width > MIN_WIDTH * low.abs().max(high.abs())
+}
+
+/// `[mesh.follow]`.
+fn follow(value: Value<'_>, dim: usize, lines: &[Vec<f64>]) -> Result<Follow, CaseError> {
+    let table = value.table(&["point_m", "angle_deg", "half_length_m"])?;
+    let mut point = [0.0; 3];
+    for (i, entry) in table.required("point_m")?.list_of(dim)?.iter().enumerate() {
+        let (low, high) = ends(&lines[i]);
+        point[i] = entry.number_if(&format!("between {low} and {high}, inside the body"), |x| {
+            low < x && x < high
+        })?;
+    }
+    let angle_value = table.required("angle_deg")?;
+    let degrees = angle_value.number_if("-80 < angle_deg < 80", |a| a.abs() < MAX_ANGLE)?;
+    let (left, right) = ends(&lines[0]);
+    let (before, after) = (point[0] - left, right - point[0]);
+    let half_length = match table.get("half_length_m") {
+        None => f64::INFINITY,
+        Some(v) => {
+            let room = before.min(after);
+            v.number_if(
+                &format!("0 < half_length_m < {room}, or leave it out"),
+                |l| 0.0 < l && l < room,
+            )?
+        }
+    };
+    let angle = degrees.to_radians();
+    // The rows beside the point are shifted as a whole; every cell above and below must keep some height.
+    let column = &lines[dim - 1];
+    let height = point[dim - 1];
+    let (bottom, top) = ends(column);
+    let below = column
+        .iter()
+        .copied()
+        .filter(|y| *y <= height)
+        .fold(bottom, f64::max)
+        - bottom;
+    let above = top
+        - column
+            .iter()
+            .copied()
+            .filter(|y| *y >= height)
+            .fold(top, f64::min);
+    let (fall, rise) = (
+        -before.min(half_length) * angle.tan(),
+        after.min(half_length) * angle.tan(),
+    );
+    let (lowest, highest) = (fall.min(rise), fall.max(rise));
+    if below + lowest <= 0.0 || above - highest <= 0.0 {
+        let allowed = format!("shifts between {} and {above} m", -below);
+        return Err(angle_value.refuse(
+            allowed,
+            format_args!("the line shifts grid lines by {lowest} to {highest} m, out of the body"),
+        ));
+    }
+    Ok(Follow {
+        point,
+        angle,
+        half_length,
+    })
+}
+
+fn ends(line: &[f64]) -> (f64, f64) {
+    (
+        line.first().copied().unwrap_or_default(),
+        line.last().copied().unwrap_or_default(),
+    )
+}
+
+/// `[sweep]`.
+pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseError> {
+    let Some(value) = root.get("sweep") else {
+        return Ok(Sweep {
+            friction: Vec::new(),
+            refine: vec![1],
+        });
+    };
+    let table = value.table(&["friction", "refine"])?;
+    let frictions = match table.get("friction") {
+        Some(v) => distinct(v, friction)?,
+        None => Vec::new(),
+    };
+    let cells: Vec<usize> = mesh.grid.lines.iter().map(|l| l.len() - 1).collect();
+    let factor = |v: Value<'_>| {
+        let factor = v.integer(1..=MAX_REFINE)?;
+        count_cells(v, &cells, factor)?;
+        let narrow = mesh
+            .grid
+            .lines
+            .iter()
+            .any(|l| l.windows(2).any(|w| !wide_enough(w[0], w[1], factor)));
+        if narrow {
+            return Err(v.refuse(
+                "cells that double precision can tell apart",
+                "cells without width",
+            ));
+        }
+        Ok(factor)
+    };
+    let refine = match table.get("refine") {
+        Some(v) => distinct(v, factor)?,
+        None => vec![1],
+    };
+    Ok(Sweep {
+        friction: frictions,
+        refine,
+    })
+}
+
+/// A non-empty list without repetitions.
+fn distinct<T: PartialEq>(
+    value: Value<'_>,
+    read: impl Fn(Value<'_>) -> Result<T, CaseError>,
+) -> Result<Vec<T>, CaseError> {
+    let mut found = Vec::new();
+    for entry in value.list()? {
+        let item = read(entry)?;
+        if found.contains(&item) {
+            return Err(entry.refuse("each value once", "repeated value"));
+        }
+        found.push(item);
+    }
+    if found.is_empty() {
+        return Err(value.refuse("at least one value", "empty sweep"));
+    }
+    Ok(found)
+}

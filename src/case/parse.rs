@@ -1,0 +1,237 @@
+//! From a file to a checked [`Case`].
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use stickslip_methods::Tier;
+use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
+use toml::de::DeTable;
+
+use super::error::{CaseError, Source};
+use super::expect::Runs;
+use super::reader::{Table, Value};
+use super::schema::Scene;
+use super::{Case, Model, schema};
+
+/// Largest case file read [bytes]; the largest of this project has 8 kB.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Keys of the document itself.
+const KEYS: [&str; 16] = [
+    "title",
+    "model",
+    "quadrature",
+    "tier",
+    "tolerance",
+    "material",
+    "mesh",
+    "crack",
+    "support",
+    "load",
+    "exact",
+    "path",
+    "sweep",
+    "method",
+    "probe",
+    "expect",
+];
+
+/// Reads and checks a case file; the file stem becomes the name of the case.
+///
+/// # Errors
+/// The first fault found, with its place: a file that cannot be read, is larger than 1 MiB or not UTF-8, text that is
+/// not TOML, unknown or missing keys, wrong types, numbers that are not finite or out of range, contradictions.
+pub fn read(path: impl AsRef<Path>) -> Result<Case, CaseError> {
+    let path = path.as_ref();
+    parse(path, read_text(path)?)
+}
+
+/// The text of a file.
+pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
+    let unreadable = |e: std::io::Error| {
+        CaseError::unreadable(path, e, "a readable TOML file", "cannot be read")
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let described = file.metadata().map_err(unreadable)?;
+    if described.is_dir() {
+        return Err(CaseError::unreadable(
+            path,
+            "a directory",
+            "a readable TOML file",
+            "cannot be read",
+        ));
+    }
+    if described.len() > MAX_BYTES {
+        return Err(too_large(path, &format!("{} bytes", described.len())));
+    }
+    // The length of a pipe is not known beforehand.
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(too_large(path, &format!("more than {MAX_BYTES} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(e.as_bytes());
+        let value = format!("byte 0x{:02X}", e.as_bytes()[at]);
+        // The text before the first bad byte is unchanged, so its place is the same in the repaired text.
+        let source = Source {
+            file: path,
+            text: &text,
+        };
+        source.error(&(at..at + 1), value, "UTF-8 text", "not a text file")
+    })
+}
+
+fn too_large(path: &Path, size: &str) -> CaseError {
+    let source = Source {
+        file: path,
+        text: "",
+    };
+    source.error(
+        &(0..0),
+        size,
+        format_args!("at most {MAX_BYTES} bytes"),
+        "file too large for a case",
+    )
+}
+
+/// Checks the text of a case file; `file` names it in messages and gives the case its name.
+///
+/// # Errors
+/// As for [`read`], from the size on.
+pub fn parse(file: impl Into<PathBuf>, source: impl Into<String>) -> Result<Case, CaseError> {
+    parse_with(file, source, SOLUTIONS)
+}
+
+/// As [`parse`], with closed forms of one's own instead of [`SOLUTIONS`].
+///
+/// # Errors
+/// As for [`parse`].
+pub fn parse_with(
+    file: impl Into<PathBuf>,
+    source: impl Into<String>,
+    solutions: &'static [SolutionSpec],
+) -> Result<Case, CaseError> {
+    let (file, text): (PathBuf, String) = (file.into(), source.into());
+    if text.len() as u64 > MAX_BYTES {
+        return Err(too_large(&file, &format!("{} bytes", text.len())));
+    }
+    let document = document(&file, &text, &KEYS, |root| read_document(root, solutions))?;
+    let name = file
+        .file_stem()
+        .map(|s| s.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    Ok(Case {
+        name,
+        file,
+        source: text,
+        ..document
+    })
+}
+
+/// Reads a TOML document with the given top-level keys.
+///
+/// # Errors
+/// Text that is not TOML, other keys, and those of `read`.
+pub(crate) fn document<T>(
+    file: &Path,
+    text: &str,
+    keys: &[&str],
+    read: impl FnOnce(&Table<'_>) -> Result<T, CaseError>,
+) -> Result<T, CaseError> {
+    let source = Source { file, text };
+    let parsed = DeTable::parse(text).map_err(|e| syntax_error(source, &e))?;
+    read(&Table::root(source, parsed.get_ref(), keys)?)
+}
+
+/// Everything the document says; name, file and source are filled in by the caller.
+fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result<Case, CaseError> {
+    let title = root.required("title")?.line()?;
+    let model = root.required("model")?.one_of(&[
+        ("plane-strain", Model::PlaneStrain),
+        ("plane-stress", Model::PlaneStress),
+        ("solid", Model::Solid),
+    ])?;
+    let dim = model.dim();
+    let tier = root.get("tier").map_or(Ok(Tier::High), |v| {
+        v.one_of(&Tier::ALL.map(|tier| (tier.as_str(), tier)))
+    })?;
+    let tolerance = root.get("tolerance").map_or(Ok(tier.tolerance()), |v| {
+        let allowed = format!(
+            "1e-14 <= tolerance <= {:e}, that of the tier",
+            tier.tolerance()
+        );
+        v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
+    })?;
+    let quadrature = schema::quadrature(root)?;
+    let material = schema::material(root)?;
+    let mesh = schema::mesh(root, dim)?;
+    let sweep = schema::sweep(root, &mesh)?;
+    let path = schema::path(root)?;
+    let cracks = each(root, "crack", |v| schema::crack(v, dim))?;
+    let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
+    let mut runs = Runs::new(dim, &frictions, &sweep, &path);
+    let exact = schema::exact(root, solutions, cracks.len())?;
+    let scene = Scene {
+        dim,
+        cracks: cracks.len(),
+        exact: exact.is_some(),
+    };
+    let probes = each(root, "probe", |v| runs.probe(v, dim))?;
+    Ok(Case {
+        name: String::new(),
+        file: PathBuf::new(),
+        source: String::new(),
+        title,
+        model,
+        material,
+        mesh,
+        cracks,
+        supports: each(root, "support", |v| schema::support(v, &scene))?,
+        loads: each(root, "load", |v| schema::load(v, &scene))?,
+        exact,
+        quadrature,
+        path,
+        sweep,
+        methods: each(root, "method", schema::method)?,
+        tier,
+        tolerance,
+        probes,
+        expects: each(root, "expect", |v| runs.expect(v))?,
+    })
+}
+
+/// Tables of an array of tables, in file order.
+fn each<T>(
+    root: &Table<'_>,
+    key: &str,
+    read: impl FnMut(Value<'_>) -> Result<T, CaseError>,
+) -> Result<Vec<T>, CaseError> {
+    root.tables(key)?.into_iter().map(read).collect()
+}
+
+/// Splits the parser's `what, expected this` into message and allowed text.
+fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> CaseError {
+    let end = source.text.len();
+    let span = error.span().unwrap_or(end..end);
+    let (message, allowed) = error
+        .message()
+        .split_once(", expected ")
+        .unwrap_or((error.message(), "valid TOML"));
+    let found = source.slice(&span);
+    let value = if found.is_empty() {
+        "end of line or file"
+    } else {
+        found
+    };
+    source.error(
+        &span,
+        value,
+        allowed,
+        format_args!("not valid TOML: {message}"),
+    )
+}

@@ -1,0 +1,221 @@
+//! Files written together or not at all.
+//!
+//! Contents are collected in memory, written to a staging folder inside the output folder (same file system, so a rename
+//! is atomic), and renamed only when every file is complete. A file that stood in the way is moved aside first and moved
+//! back when a later rename fails.
+
+use crate::report::ReportError;
+use std::collections::BTreeMap;
+use std::fs;
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::path::{Component, Path, PathBuf};
+
+/// Files of one command, by path relative to the output folder.
+#[derive(Debug, Default)]
+pub struct Bundle {
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Bundle {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds one file; `path` is relative, with `/` between folders.
+    ///
+    /// # Errors
+    /// [`ReportError::Duplicate`] when the name is taken, [`ReportError::OutsideFolder`] when it is absolute, empty or
+    /// climbs out of the folder.
+    pub fn add(
+        &mut self,
+        path: impl Into<String>,
+        contents: impl Into<Vec<u8>>,
+    ) -> Result<(), ReportError> {
+        let path = path.into();
+        let inside = !path.is_empty()
+            && Path::new(&path)
+                .components()
+                .all(|c| matches!(c, Component::Normal(_)));
+        if !inside {
+            return Err(ReportError::OutsideFolder { path });
+        }
+        if self.files.contains_key(&path) {
+            return Err(ReportError::Duplicate { path });
+        }
+        self.files.insert(path, contents.into());
+        Ok(())
+    }
+
+    /// Adds the files of another bundle.
+    ///
+    /// # Errors
+    /// Those of [`Bundle::add`].
+    pub fn append(&mut self, other: Bundle) -> Result<(), ReportError> {
+        let mut files = other.files.into_iter();
+        files.try_for_each(|(path, contents)| self.add(path, contents))
+    }
+
+    /// Names of the files, sorted.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.files.keys().map(String::as_str)
+    }
+
+    /// Contents of one file.
+    pub fn get(&self, path: &str) -> Option<&[u8]> {
+        self.files.get(path).map(Vec::as_slice)
+    }
+
+    /// As [`commit`](Self::commit); then files of the sub-folder `own` that are not in the bundle go: what an earlier run drew
+    /// and this one does not would stay as if it were of this run.
+    ///
+    /// # Errors
+    /// Those of [`commit`](Self::commit), and a folder that cannot be listed or cleared.
+    pub fn commit_all(&self, dir: &Path, own: &str) -> Result<(), ReportError> {
+        self.commit(dir)?;
+        let folder = dir.join(own);
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        let listing = |e| ReportError::io("list folder", &folder, e);
+        for entry in fs::read_dir(&folder).map_err(listing)? {
+            let path = entry.map_err(listing)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if path.is_file() && !self.files.contains_key(&format!("{own}/{name}")) {
+                fs::remove_file(&path).map_err(|e| ReportError::io("remove file", &path, e))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes everything into `dir`, replacing files of the same name; other files stay.
+    ///
+    /// # Errors
+    /// [`ReportError::Io`] naming the path; the folder then holds what it held before.
+    pub fn commit(&self, dir: &Path) -> Result<(), ReportError> {
+        create_dir(dir)?;
+        let staging = Staging::create(dir)?;
+        for (name, contents) in &self.files {
+            write(&staging.new_files().join(name), contents)?;
+        }
+        let mut swapped = Vec::new();
+        for name in self.files.keys() {
+            if let Err(error) = staging.swap_in(dir, name, &mut swapped) {
+                staging.swap_out(dir, &swapped);
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Proves that files can be written into `dir`, which need not exist yet, and leaves nothing behind; to be called before
+/// any computing.
+///
+/// # Errors
+/// [`ReportError::Io`] naming the path.
+pub fn prepare_output(dir: &Path) -> Result<(), ReportError> {
+    // A folder that is still to be made takes its rights from the nearest one that exists.
+    let existing = dir.ancestors().find(|path| path.exists());
+    let folder = existing.unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let source = std::io::Error::from(std::io::ErrorKind::NotADirectory);
+        return Err(ReportError::io("create folder", dir, source));
+    }
+    let staging = Staging::create(folder)?;
+    write(&staging.new_files().join("probe"), b"probe")
+}
+
+/// Working folder inside the output folder, removed when dropped.
+struct Staging {
+    root: PathBuf,
+}
+
+/// One file that has been put in place.
+struct Swapped<'a> {
+    name: &'a str,
+    replaced: bool,
+}
+
+impl Staging {
+    fn create(dir: &Path) -> Result<Self, ReportError> {
+        let root = dir.join(format!(".stickslip-partial-{}", unique()));
+        fs::create_dir(&root).map_err(|e| ReportError::io("create folder", &root, e))?;
+        Ok(Self { root })
+    }
+
+    fn new_files(&self) -> PathBuf {
+        self.root.join("new")
+    }
+
+    fn old_files(&self) -> PathBuf {
+        self.root.join("old")
+    }
+
+    /// Moves one staged file to its place; what stood there is kept in the staging folder.
+    fn swap_in<'a>(
+        &self,
+        dir: &Path,
+        name: &'a str,
+        swapped: &mut Vec<Swapped<'a>>,
+    ) -> Result<(), ReportError> {
+        let target = dir.join(name);
+        if let Some(parent) = target.parent() {
+            create_dir(parent)?;
+        }
+        if target.is_dir() {
+            let source = std::io::Error::new(
+                std::io::ErrorKind::IsADirectory,
+                "a folder stands where a file goes",
+            );
+            return Err(ReportError::io("write file", &target, source));
+        }
+        let replaced = target.exists();
+        if replaced {
+            let old = self.old_files().join(name);
+            if let Some(parent) = old.parent() {
+                create_dir(parent)?;
+            }
+            fs::rename(&target, &old).map_err(|e| ReportError::io("replace file", &target, e))?;
+        }
+        swapped.push(Swapped { name, replaced });
+        fs::rename(self.new_files().join(name), &target)
+            .map_err(|e| ReportError::io("write file", &target, e))
+    }
+
+    /// Undoes [`Staging::swap_in`]. The first failure is what the user is told, so failures in here are not reported.
+    fn swap_out(&self, dir: &Path, swapped: &[Swapped<'_>]) {
+        for file in swapped.iter().rev() {
+            let target = dir.join(file.name);
+            let _ = fs::remove_file(&target);
+            if file.replaced {
+                let _ = fs::rename(self.old_files().join(file.name), &target);
+            }
+        }
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.root);
+    }
+}
+
+/// A word that no other command uses at the same time, also on other machines and in containers whose processes have the
+/// same numbers.
+pub fn unique() -> String {
+    // The standard library seeds its hash maps at random.
+    let random = RandomState::new().build_hasher().finish();
+    format!("{}-{random:016x}", std::process::id())
+}
+
+fn create_dir(dir: &Path) -> Result<(), ReportError> {
+    fs::create_dir_all(dir).map_err(|e| ReportError::io("create folder", dir, e))
+}
+
+fn write(path: &Path, contents: &[u8]) -> Result<(), ReportError> {
+    if let Some(parent) = path.parent() {
+        create_dir(parent)?;
+    }
+    fs::write(path, contents).map_err(|e| ReportError::io("write file", path, e))
+}

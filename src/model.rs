@@ -1,0 +1,11 @@
+//! A case as a discrete body: unknowns, what acts on it, the quantities read from a solution and their errors.
+
+pub mod body;
+pub mod boundary;
+pub mod errors;
+pub mod loading;
+pub mod nodal_forces;
+pub mod picture;
+pub mod quantities;
+pub mod refusals;
+pub mod sides;

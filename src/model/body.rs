@@ -1,0 +1,501 @@
+//! From a case to the contact system: mesh, cracks, enrichment, unknowns, stiffness, jump operator.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
+use stickslip_xfem::contact::conforming;
+use stickslip_xfem::contact::edge_pairs::edge_pairs;
+use stickslip_xfem::contact::facet_samples::facet_samples;
+use stickslip_xfem::contact::integrated::integrated_surface;
+use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
+use stickslip_xfem::cut::crack::{Crack, arms};
+use stickslip_xfem::enrichment::orthonormal::SolverBasis;
+use stickslip_xfem::enrichment::pieces::free_motions;
+use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::material::Lame;
+use stickslip_xfem::mesh::Mesh;
+use stickslip_xfem::mesh::box_mesh::box_mesh;
+use stickslip_xfem::mesh::ordering::nested_dissection;
+use stickslip_xfem::stiffness::assembly::{Cells, Scatter};
+use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
+use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
+use stickslip_xfem::stiffness::elasticity::CellMatrix;
+
+use crate::case::{Case, CaseError, ContactSpace, Quadrature};
+use crate::model::boundary::{Prescribed, prescribed, region_nodes};
+use crate::model::loading::{FixedLoad, fixed_loads};
+use crate::model::refusals::{check_probes, check_supports, crack_error, motion_error};
+use crate::run::step::Setup;
+
+/// A discretised case: everything that does not depend on friction, method or increment.
+pub struct Body {
+    /// Mesh, with doubled nodes where a crack runs along cell facets.
+    pub mesh: Mesh,
+    /// Cracks through cells.
+    pub cracks: Vec<Crack>,
+    /// Functions.
+    pub enrichment: Enrichment,
+    /// Quadrature of cut cells.
+    pub quadrature: Quadrature,
+    /// Material.
+    pub lame: Lame,
+    /// Contact points of all cracks, in case order.
+    pub points: Vec<ContactPoint>,
+    /// Faces of the cracks.
+    pub surface: CrackSurface,
+    /// Samples of the cracks through cells, much closer than the contact points.
+    pub samples: Vec<SurfacePoint>,
+    /// Stiffness over all unknowns.
+    pub stiffness: BlockMatrix,
+    /// Number of every unknown among the free ones; `None`: prescribed.
+    pub numbers: Vec<Option<u32>>,
+    /// Basis in which the solver works.
+    pub basis: SolverBasis,
+    /// Number of every unknown of that basis among the solver's; `None`: prescribed or dropped.
+    pub solver_numbers: Vec<Option<u32>>,
+    /// Prescribed unknowns.
+    pub prescribed: BTreeMap<usize, Prescribed>,
+    /// The algebraic side: K and B over the free unknowns.
+    pub elastic: Arc<Elastic>,
+    /// Mesh label, e.g. `22x22`.
+    pub label: String,
+    /// Contact space with its marks, e.g. `edge-pairs/gauss-6`.
+    pub space: String,
+    /// By crack of the case file: its contact points are means over multiplier functions, not places.
+    pub integrated: Vec<bool>,
+    /// Seconds for mesh, cutting, pattern and ordering.
+    pub setup_s: f64,
+    /// Seconds for cell matrices and their sum.
+    pub assembly_s: f64,
+    /// Jump operator over all unknowns: rows point by point, (n, a[, b]), as (unknown, coefficient).
+    pub jump_rows: Vec<Vec<(usize, f64)>>,
+    /// Traction operator over all unknowns, in the same form; empty unless a run [`Needs`] it.
+    pub traction_rows: Vec<Vec<(usize, f64)>>,
+    /// Loads whose nodal forces only change in size.
+    pub loads: Vec<FixedLoad>,
+}
+
+/// Why a case cannot be discretised.
+#[derive(Debug, thiserror::Error)]
+pub enum BodyError {
+    /// The case asks for something impossible; carries file, line and column.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A cut cell could not be integrated.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+    /// The algebraic system was refused.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}
+
+/// What the runs on a body will ask of it: a body pays for nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Needs {
+    /// No run has friction: only normal rows are ever condensed.
+    pub frictionless: bool,
+    /// A method needs the traction operator.
+    pub traction: bool,
+}
+
+/// Cell matrices, shared among cells of one shape.
+struct Matrices<'a> {
+    enrichment: &'a Enrichment,
+    users: &'a [Vec<u32>],
+    distinct: Vec<CellMatrix>,
+    of_cell: Vec<u32>,
+}
+
+impl Matrices<'_> {
+    /// Goes over to the basis of the solver.
+    fn transform(&mut self, basis: &SolverBasis, dim: usize) {
+        for cell in 0..self.of_cell.len() {
+            let functions = self.enrichment.cell(cell);
+            if let Some(k) = basis.matrix(dim, functions, self.matrix(cell)) {
+                // Cells with enriched functions have a matrix of their own.
+                self.distinct[self.of_cell[cell] as usize] = k;
+            }
+        }
+    }
+}
+
+impl Cells for Matrices<'_> {
+    fn functions(&self, cell: usize) -> &[u32] {
+        self.enrichment.cell(cell)
+    }
+    fn users(&self, function: usize) -> &[u32] {
+        &self.users[function]
+    }
+    fn matrix(&self, cell: usize) -> &CellMatrix {
+        &self.distinct[self.of_cell[cell] as usize]
+    }
+}
+
+impl Body {
+    /// Discretises a case on its mesh refined by a factor.
+    pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
+        let clock = Instant::now();
+        let spec = case.mesh.grid.refined(refine);
+        let cells: Vec<String> = spec
+            .lines
+            .iter()
+            .map(|l| (l.len() - 1).to_string())
+            .collect();
+        let label = cells.join("x");
+        let mut mesh = box_mesh(&spec).map_err(|fold| {
+            let allowed = "a motion of the grid points that keeps all cells convex";
+            case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
+        })?;
+        let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
+        let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
+        let lame = Lame::new(case.material, case.model);
+        let integrator = CellIntegrator {
+            mesh: &mesh,
+            cracks: &cracks,
+            enrichment: &enrichment,
+            quadrature: case.quadrature,
+            lame,
+        };
+        let fixed = prescribed(case, &integrator);
+        check_supports(case, &integrator)?;
+        check_probes(case, &mesh, &enrichment)?;
+        let dim = mesh.dim();
+        let mut free = 0;
+        let numbers: Vec<Option<u32>> = (0..enrichment.functions.len() * dim)
+            .map(|i| {
+                (!fixed.contains_key(&i)).then(|| {
+                    free += 1;
+                    free - 1
+                })
+            })
+            .collect();
+        let mut surface = ContactSurface::default();
+        for number in 0..case.cracks.len() {
+            let held = |unknown: usize| numbers[unknown].is_none();
+            if let Some(own) = doubled.remove(&number) {
+                surface.append(own.retain(|point| point.acts(dim, held)));
+            }
+            // The arms of a crack one after the other.
+            let arms = (0..cracks.len()).filter(|&index| cracks[index].number == number);
+            for index in arms {
+                surface.append(match case.cracks[number].contact {
+                    ContactSpace::EdgePairs => edge_pairs(&integrator, index, held)?,
+                    space => integrated_surface(&integrator, index, space, |f| {
+                        (0..dim).any(|a| held(f as usize * dim + a))
+                    })?,
+                });
+            }
+        }
+        for number in 0..case.cracks.len() {
+            if !surface.points.iter().any(|p| p.crack == number) {
+                return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
+            }
+        }
+        let ContactSurface { points, surface } = surface;
+        let samples = facet_samples(&integrator)?;
+        let jump = jump_rows(dim, &points);
+        let integrated: Vec<bool> = (case.cracks.iter().enumerate())
+            .map(|(number, spec)| {
+                let through = cracks.iter().any(|c| c.number == number);
+                through && spec.contact != ContactSpace::EdgePairs
+            })
+            .collect();
+        let traction = if needs.traction {
+            traction(&integrated, &integrator, &points, &surface)?
+        } else {
+            Vec::new()
+        };
+        let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
+            .map_err(|e| motion_error(case, &e))?;
+        let users = enrichment.users();
+        let mut stiffness = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
+        let mut matrices = Matrices {
+            enrichment: &enrichment,
+            users: &users,
+            distinct: Vec::new(),
+            of_cell: Vec::new(),
+        };
+        let scatter = Scatter::new(&stiffness, &matrices, mesh.cell_count());
+        let setup_s = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        (matrices.distinct, matrices.of_cell) = cell_matrices(&integrator)?;
+        scatter.assemble(&mut stiffness, &matrices);
+        let basis = SolverBasis::new(
+            &mesh,
+            &enrichment,
+            &users,
+            |cell| matrices.matrix(cell),
+            |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
+        );
+        let mut free = 0;
+        let solver_numbers: Vec<Option<u32>> = (0..numbers.len())
+            .map(|i| {
+                (numbers[i].is_some() && !basis.drops(i / dim)).then(|| {
+                    free += 1;
+                    free - 1
+                })
+            })
+            .collect();
+        let (col_ptr, row_idx, values) = if basis.is_identity() {
+            stiffness.restrict(&solver_numbers)
+        } else {
+            matrices.transform(&basis, dim);
+            let mut transformed = stiffness.clone();
+            scatter.assemble(&mut transformed, &matrices);
+            transformed.restrict(&solver_numbers)
+        };
+        let order = elimination_order(&mesh, &enrichment, &solver_numbers);
+        let rows = |rows: &[Vec<(usize, f64)>]| {
+            let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
+            free_rows(&rows, &solver_numbers, free as usize)
+        };
+        for mode in &mut motions.modes {
+            basis.solver_unknowns(dim, mode);
+            let kept = (0..mode.len()).filter(|&i| solver_numbers[i].is_some());
+            *mode = kept.map(|i| mode[i]).collect();
+        }
+        let assembly_s = clock.elapsed().as_secs_f64();
+        let elastic = Elastic::new(ElasticParts {
+            dim,
+            stiffness: SymmetricMatrix::new(free as usize, col_ptr, row_idx, values)?,
+            jump: rows(&jump)?,
+            weight: points.iter().map(|p| p.weight).collect(),
+            order,
+            floating: motions.modes,
+            frictionless: needs.frictionless,
+            traction: needs.traction.then(|| rows(&traction)).transpose()?,
+        })?;
+        let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
+        let space = space_name(case, &cracks);
+        Ok(Body {
+            quadrature: case.quadrature,
+            lame,
+            points,
+            surface,
+            samples,
+            stiffness,
+            numbers,
+            basis,
+            solver_numbers,
+            prescribed: fixed,
+            elastic,
+            label,
+            space,
+            integrated,
+            setup_s,
+            assembly_s,
+            jump_rows: jump,
+            traction_rows: traction,
+            loads,
+            mesh,
+            cracks,
+            enrichment,
+        })
+    }
+
+    /// Times shared by all runs on the body.
+    pub fn setup(&self) -> Setup {
+        Setup {
+            setup_s: self.setup_s,
+            assembly_s: self.assembly_s,
+        }
+    }
+
+    /// Integrator over the cells.
+    pub fn integrator(&self) -> CellIntegrator<'_> {
+        CellIntegrator {
+            mesh: &self.mesh,
+            cracks: &self.cracks,
+            enrichment: &self.enrichment,
+            quadrature: self.quadrature,
+            lame: self.lame,
+        }
+    }
+
+    /// Jump at the contact points in local frames (n, a[, b]) from all unknowns [m].
+    pub fn jump(&self, all: &[f64]) -> Vec<f64> {
+        products(&self.jump_rows, all)
+    }
+
+    /// Contact forces that the stress implies, in local frames, from all unknowns [N, in 2D N/m]; empty without a
+    /// traction operator.
+    pub fn traction(&self, all: &[f64]) -> Vec<f64> {
+        products(&self.traction_rows, all)
+    }
+
+    /// Nodes of a region of the case.
+    pub fn region_nodes(&self, region: &crate::case::Region) -> Vec<usize> {
+        region_nodes(&self.integrator(), region)
+    }
+}
+
+/// Traction operator: by the stress at the points, or integrated where the jump is.
+fn traction(
+    integrated: &[bool],
+    integrator: &CellIntegrator<'_>,
+    points: &[ContactPoint],
+    surface: &CrackSurface,
+) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
+    let dim = integrator.mesh.dim();
+    let inside = surface
+        .quadrature
+        .iter()
+        .filter(|q| integrated[q.crack])
+        .cloned();
+    let mut rows = integrated_rows(integrator, points.len(), &inside.collect::<Vec<_>>());
+    let at_places = points
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| !integrated[p.crack]);
+    let (numbers, own): (Vec<usize>, Vec<ContactPoint>) =
+        at_places.map(|(i, p)| (i, p.clone())).unzip();
+    for (i, block) in numbers
+        .into_iter()
+        .zip(traction_rows(integrator, &own)?.chunks(dim))
+    {
+        rows[i * dim..(i + 1) * dim].clone_from_slice(block);
+    }
+    Ok(rows)
+}
+
+/// Contact spaces of the cracks, each named once, with a mark for inexact quadrature.
+fn space_name(case: &Case, cracks: &[Crack]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for (number, spec) in case.cracks.iter().enumerate() {
+        let through = cracks.iter().any(|c| c.number == number);
+        let name = if through {
+            spec.contact.name()
+        } else {
+            "node-pairs"
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    match case.quadrature {
+        Quadrature::Gauss(n) if !cracks.is_empty() => format!("{}/gauss-{n}", names.join("+")),
+        _ => names.join("+"),
+    }
+}
+
+/// Cracks through cells, and the surfaces of the others by crack number.
+type PlacedCracks = (Vec<Crack>, BTreeMap<usize, ContactSurface>);
+
+/// Places the cracks: those along cell facets split the mesh, the others keep a level set.
+fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError> {
+    let mut doubled = BTreeMap::new();
+    let mut through = Vec::new();
+    for (number, spec) in case.cracks.iter().enumerate() {
+        let crack = Crack::new(number, &spec.geometry, spec.tip, mesh);
+        match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
+            Some(surface) => {
+                doubled.insert(number, surface);
+            }
+            None => through.push(number),
+        }
+    }
+    // Level sets belong to the final nodes.
+    let cracks = through
+        .into_iter()
+        .map(|number| {
+            let spec = &case.cracks[number];
+            Crack::new(number, &spec.geometry, spec.tip, mesh)
+        })
+        .collect();
+    Ok((arms(cracks, mesh), doubled))
+}
+
+/// Products of sparse rows with a vector.
+fn products(rows: &[Vec<(usize, f64)>], x: &[f64]) -> Vec<f64> {
+    rows.iter()
+        .map(|row| row.iter().map(|&(i, v)| v * x[i]).sum())
+        .collect()
+}
+
+/// Sparse rows over the free unknowns.
+pub(crate) fn free_rows(
+    rows: &[Vec<(usize, f64)>],
+    numbers: &[Option<u32>],
+    free: usize,
+) -> Result<JumpOperator, MethodError> {
+    let mut row_ptr = vec![0];
+    let (mut col_idx, mut values) = (Vec::new(), Vec::new());
+    for row in rows {
+        for &(i, v) in row {
+            if let Some(n) = numbers[i] {
+                col_idx.push(n as usize);
+                values.push(v);
+            }
+        }
+        row_ptr.push(col_idx.len());
+    }
+    JumpOperator::new(rows.len(), free, row_ptr, col_idx, values)
+}
+
+/// Nested dissection of the nodes, expanded to their free unknowns.
+pub(crate) fn elimination_order(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    numbers: &[Option<u32>],
+) -> Vec<usize> {
+    let dim = mesh.dim();
+    let mut order = Vec::new();
+    for node in nested_dissection(&mesh.grid) {
+        for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
+            order.extend(
+                (0..dim)
+                    .filter_map(|a| numbers[f * dim + a])
+                    .map(|n| n as usize),
+            );
+        }
+    }
+    order
+}
+
+/// Matrices of all cells: one per shape of plain cell, one per enriched cell.
+fn cell_matrices(
+    integrator: &CellIntegrator<'_>,
+) -> Result<(Vec<CellMatrix>, Vec<u32>), CellError> {
+    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
+    // Coordinates of a body 10⁴ cells wide carry rounding of 1e-12 of a cell.
+    let smallest = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+    let keys: Vec<[i64; 21]> = (0..mesh.cell_count())
+        .into_par_iter()
+        .map(|cell| integrator.shape_key(cell, 1e-10 * smallest))
+        .collect();
+    let mut shapes: HashMap<&[i64; 21], u32> = HashMap::new();
+    let mut first = Vec::new();
+    let shape: Vec<u32> = keys
+        .iter()
+        .enumerate()
+        .map(|(cell, key)| {
+            *shapes.entry(key).or_insert_with(|| {
+                first.push(cell);
+                first.len() as u32 - 1
+            })
+        })
+        .collect();
+    let mut distinct: Vec<CellMatrix> = first
+        .par_iter()
+        .map(|&cell| integrator.plain(cell))
+        .collect();
+    let enriched: Vec<usize> = (0..mesh.cell_count())
+        .filter(|&c| !enrichment.is_plain(mesh, c))
+        .collect();
+    let own: Vec<CellMatrix> = enriched
+        .par_iter()
+        .map(|&cell| integrator.stiffness(cell, &distinct[shape[cell] as usize]))
+        .collect::<Result<_, _>>()?;
+    let mut of_cell = shape;
+    for (position, &cell) in enriched.iter().enumerate() {
+        of_cell[cell] = (distinct.len() + position) as u32;
+    }
+    distinct.extend(own);
+    Ok((distinct, of_cell))
+}

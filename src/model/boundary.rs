@@ -1,0 +1,119 @@
+//! Regions and supports: from the words of a case to nodes and prescribed unknowns.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::enrichment::cell_facets::pieces;
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
+use crate::case::{Amount, Case, Region};
+
+/// A prescribed unknown: a number times the history factor of the support, or the value the closed form gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prescribed {
+    /// Support number in the case.
+    pub support: usize,
+    /// Stated displacement [m]; 0 for enriched functions beside stated numbers.
+    pub amount: Amount,
+}
+
+/// Nodes of a region, sorted.
+pub fn region_nodes(integrator: &CellIntegrator<'_>, region: &Region) -> Vec<usize> {
+    let mut nodes = integrator.mesh.meeting_nodes(&region.sides);
+    if let Some(condition) = &region.condition {
+        nodes.retain(|&node| condition.holds(&integrator.mesh.nodes[node]));
+    }
+    nodes
+}
+
+/// Name of a region in the tables: its sides joined by `+`.
+pub fn region_name(region: &Region) -> String {
+    region.sides.join("+")
+}
+
+/// Prescribed unknowns of all supports by unknown number (function-major). A later support wins.
+///
+/// A facet supported as a whole has its displacement prescribed on both sides of a crack: the enriched functions that do
+/// not vanish on it are fixed too. They are 0 where a number is stated. Under the closed form a Heaviside function takes
+/// the value that interpolates both sides; branch functions are 0, which leaves the interpolation of the standard ones.
+pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usize, Prescribed> {
+    let mesh = integrator.mesh;
+    let dim = mesh.dim();
+    let mut fixed = BTreeMap::new();
+    for (number, support) in case.supports.iter().enumerate() {
+        let nodes = region_nodes(integrator, &support.on);
+        for &node in &nodes {
+            for (component, amount) in support.displacement.iter().enumerate() {
+                if let Some(amount) = *amount {
+                    let value = Prescribed {
+                        support: number,
+                        amount,
+                    };
+                    fixed.insert(node * dim + component, value);
+                }
+            }
+        }
+        let held: BTreeSet<usize> = nodes.into_iter().collect();
+        let supported = |nodes: &[usize]| nodes.iter().all(|n| held.contains(n));
+        for side in &support.on.sides {
+            for &facet in mesh.sides.get(side).into_iter().flatten() {
+                let local = mesh.kind.facets()[facet.local];
+                // In 3D a support may hold only an edge of the facet.
+                let edges = (0..local.len()).map(|i| vec![local[i], local[(i + 1) % local.len()]]);
+                for part in std::iter::once(local.to_vec()).chain(edges) {
+                    let part_nodes: Vec<usize> = part
+                        .iter()
+                        .map(|&i| mesh.cell(facet.cell)[i] as usize)
+                        .collect();
+                    if !supported(&part_nodes) {
+                        continue;
+                    }
+                    for f in enriched_on(integrator, facet.cell, &part) {
+                        let kind = integrator.enrichment.functions[f].kind;
+                        let jumps = matches!(kind, FunctionKind::Heaviside { .. });
+                        for (component, amount) in support.displacement.iter().enumerate() {
+                            let Some(amount) = *amount else { continue };
+                            let value = Prescribed {
+                                support: number,
+                                amount: match amount {
+                                    Amount::Exact if jumps => Amount::Exact,
+                                    _ => Amount::Number(0.0),
+                                },
+                            };
+                            fixed.insert(f * dim + component, value);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    fixed
+}
+
+/// Enriched functions of some nodes of a cell that do not vanish between them.
+fn enriched_on(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) -> Vec<usize> {
+    let CellIntegrator {
+        mesh, enrichment, ..
+    } = integrator;
+    let nodes: Vec<u32> = local.iter().map(|&i| mesh.cell(cell)[i]).collect();
+    let functions = enrichment.cell(cell);
+    let steps = enrichment.steps(cell);
+    let regions: Vec<usize> = pieces(mesh, integrator.cracks, enrichment, cell, local)
+        .into_iter()
+        .map(|(_, region)| region)
+        .collect();
+    let lives = |i: usize, f: u32| match enrichment.functions[f as usize].kind {
+        FunctionKind::Standard => false,
+        FunctionKind::Branch { .. } => true,
+        // H differs from its value at the node somewhere on the part.
+        FunctionKind::Heaviside { .. } => regions
+            .iter()
+            .any(|r| steps[r * functions.len() + i] != 0.0),
+    };
+    functions
+        .iter()
+        .enumerate()
+        .filter(|&(i, &f)| nodes.contains(&enrichment.functions[f as usize].node) && lives(i, f))
+        .map(|(_, &f)| f as usize)
+        .collect()
+}

@@ -1,0 +1,314 @@
+//! What acts on a body in the increments of a run: nodal forces, prescribed displacements, the closed form.
+//!
+//! ```text
+//!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
+//!   f = f_ext − K u_prescribed   at the free unknowns,      offset = B u_prescribed
+//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ s_j (u(x_j, s_j) − u⁻(x_j)),  s_j = H(x_j)
+//!   u⁻(x) = 2 u(x', −s) − u(2 x' − x, −s)   u of the other side, continued to x: x' foot of x on the crack
+//! ```
+//!
+//! Closed forms tell the sides apart by the place of a point, but on the crack itself. So the other side's field is
+//! continued linearly, with the order of the interpolation it enters.
+//!
+//! The closed form depends on friction, so there is one [`Loading`] per friction coefficient; the body, its stiffness and
+//! all that is derived from it do not, and serve all of them.
+
+use rayon::prelude::*;
+use stickslip_methods::Load;
+use stickslip_xfem::contact::pairs::ContactPoint;
+use stickslip_xfem::cut::placement::ends_inside;
+use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::exact::{Field, Setting};
+use stickslip_xfem::geometry::{Point, add_scaled, dot, sub};
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
+use crate::case::{Amount, Case, CaseError, ExactSpec, History, LoadKind};
+use crate::model::body::{Body, BodyError};
+use crate::model::nodal_forces::{add_exact_forces, fixed_forces, no_force};
+use crate::model::refusals::{load_error, one_sided_error};
+use crate::model::sides::Sides;
+
+/// A load that keeps its shape: its nodal forces and how they evolve.
+pub struct FixedLoad {
+    /// Nodal forces at factor 1, over all unknowns [N, in 2D N/m].
+    pub force: Vec<f64>,
+    /// Contact forces that an initial stress implies at factor 1, `dim` per point [N, in 2D N/m]; empty for all other
+    /// loads, and where no method asks for the traction operator.
+    pub traction: Vec<f64>,
+    /// Evolution.
+    pub history: History,
+}
+
+/// The loads of a case that do not come from its closed form.
+pub fn fixed_loads(
+    case: &Case,
+    integrator: &CellIntegrator<'_>,
+    points: &[ContactPoint],
+    with_traction: bool,
+) -> Result<Vec<FixedLoad>, BodyError> {
+    let mut sides = None;
+    let mut loads = Vec::new();
+    for load in &case.loads {
+        if let LoadKind::Body(_, Some(side)) = &load.kind {
+            let found = sides.take().or_else(|| Sides::new(case, integrator));
+            if let Some(sides) = &found
+                && !ends_inside(integrator.mesh, sides.crack()).is_empty()
+            {
+                return Err(one_sided_error(case, &side.span).into());
+            }
+            sides = found;
+        }
+        let force = fixed_forces(integrator, sides.as_ref(), &load.kind)
+            .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+        let Some(force) = force else { continue };
+        let traction = match &load.kind {
+            LoadKind::InitialStress(stress) if with_traction => {
+                implied_forces(integrator.mesh.dim(), points, stress)
+            }
+            _ => Vec::new(),
+        };
+        loads.push(FixedLoad {
+            force,
+            traction,
+            history: load.history.clone(),
+        });
+    }
+    Ok(loads)
+}
+
+/// Forces on side 1 at the contact points that a uniform stress implies: −w e·σ n for every axis e of the local frame.
+fn implied_forces(dim: usize, points: &[ContactPoint], stress: &[Point; 3]) -> Vec<f64> {
+    let forces = points.iter().flat_map(|point| {
+        let on_normal = stress.map(|row| dot(&row, &point.frame[0]));
+        (0..dim).map(move |e| -point.weight * dot(&point.frame[e], &on_normal))
+    });
+    forces.collect()
+}
+
+/// The closed form at the end of an increment, on the body.
+struct ExactStep {
+    field: Box<dyn Field>,
+    /// Prescribed unknowns that take their value from it [m].
+    displacement: Vec<(usize, f64)>,
+    /// Nodal forces of the loads that do; empty if there are none.
+    force: Vec<f64>,
+}
+
+/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
+/// of the path; a closed form is evaluated for no others.
+pub struct Loading<'a> {
+    body: &'a Body,
+    case: &'a Case,
+    exact: Vec<ExactStep>,
+}
+
+impl<'a> Loading<'a> {
+    /// Evaluates the closed form, if the case has one, for all increments; `friction` is that of the only crack.
+    ///
+    /// # Errors
+    /// At `[exact]` where the closed form does not hold for the body, the friction coefficient or the path.
+    pub fn new(body: &'a Body, case: &'a Case, friction: f64) -> Result<Self, BodyError> {
+        let mut loading = Loading {
+            body,
+            case,
+            exact: Vec::new(),
+        };
+        let (Some(spec), Some(crack)) = (&case.exact, case.cracks.first()) else {
+            return Ok(loading);
+        };
+        let ends = |end: fn(&Vec<f64>) -> Option<&f64>| {
+            let mut corner = [0.0; 3];
+            for (x, line) in corner.iter_mut().zip(&case.mesh.grid.lines) {
+                *x = end(line).copied().unwrap_or_default();
+            }
+            corner
+        };
+        let setting = Setting {
+            material: case.material,
+            model: case.model,
+            friction,
+            crack: &crack.geometry,
+            body: [ends(|line| line.first()), ends(|line| line.last())],
+        };
+        let refuse = |message: String| exact_error(case, spec, friction, &message);
+        let solution = (spec.solution.build)(&setting, &spec.values).map_err(refuse)?;
+        let factors = spec.factors(&case.path);
+        let integrator = body.integrator();
+        let Some(sides) = Sides::new(case, &integrator) else {
+            return Ok(loading);
+        };
+        for increment in 1..=factors.len() {
+            let field = solution.at(&factors[..increment]).map_err(|message| {
+                refuse(match factors.len() {
+                    1 => message,
+                    _ => format!("increment {increment}: {message}"),
+                })
+            })?;
+            let mut force = Vec::new();
+            for load in &case.loads {
+                if matches!(load.kind, LoadKind::ExactTraction(_) | LoadKind::ExactBody) {
+                    force.resize(body.numbers.len(), 0.0);
+                    add_exact_forces(&integrator, &sides, &load.kind, field.as_ref(), &mut force)
+                        .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+                }
+            }
+            let displacement = exact_displacement(body, &sides, field.as_ref());
+            loading.exact.push(ExactStep {
+                field,
+                displacement,
+                force,
+            });
+        }
+        Ok(loading)
+    }
+
+    /// The body.
+    pub fn body(&self) -> &'a Body {
+        self.body
+    }
+
+    /// Number of increments.
+    pub fn increments(&self) -> usize {
+        self.case.path.increments
+    }
+
+    /// Time at the end of an increment.
+    pub fn time(&self, increment: usize) -> f64 {
+        self.case.path.time(increment)
+    }
+
+    /// The closed form at the end of an increment; `None` if the case names none.
+    pub fn exact(&self, increment: usize) -> Option<&dyn Field> {
+        self.step(increment).map(|step| step.field.as_ref())
+    }
+
+    fn step(&self, increment: usize) -> Option<&ExactStep> {
+        self.exact.get(increment.checked_sub(1)?)
+    }
+
+    fn factor(&self, history: &History, increment: usize) -> f64 {
+        history.factor(self.time(increment), self.case.path.end)
+    }
+
+    /// External forces at the end of an increment over all unknowns [N, in 2D N/m].
+    pub fn external_force(&self, increment: usize) -> Vec<f64> {
+        let mut force = no_force(&self.body.integrator());
+        let mut add = |factor: f64, vector: &[f64]| {
+            for (f, v) in force.iter_mut().zip(vector) {
+                *f += factor * v;
+            }
+        };
+        for load in &self.body.loads {
+            add(self.factor(&load.history, increment), &load.force);
+        }
+        if let Some(step) = self.step(increment) {
+            add(1.0, &step.force);
+        }
+        force
+    }
+
+    /// Prescribed part of the displacement at the end of an increment over all unknowns, 0 at the free ones [m].
+    pub fn prescribed_displacement(&self, increment: usize) -> Vec<f64> {
+        let mut u = vec![0.0; self.body.numbers.len()];
+        let factors: Vec<f64> = (self.case.supports.iter())
+            .map(|support| self.factor(&support.history, increment))
+            .collect();
+        for (&unknown, fixed) in &self.body.prescribed {
+            if let Amount::Number(amount) = fixed.amount {
+                u[unknown] = amount * factors[fixed.support];
+            }
+        }
+        if let Some(step) = self.step(increment) {
+            for &(unknown, value) in &step.displacement {
+                u[unknown] = value;
+            }
+        }
+        u
+    }
+
+    /// Right-hand side at the end of an increment: f = f_ext − K u_prescribed at the free unknowns, the jump the
+    /// prescribed ones carry, and the contact forces that their stress and an initial one imply.
+    pub fn at(&self, increment: usize) -> Load {
+        let body = self.body;
+        let prescribed = self.prescribed_displacement(increment);
+        let held = body.stiffness.mul(&prescribed);
+        let external = self.external_force(increment);
+        let mut traction = body.traction(&prescribed);
+        for load in &body.loads {
+            let factor = self.factor(&load.history, increment);
+            for (t, v) in traction.iter_mut().zip(&load.traction) {
+                *t += factor * v;
+            }
+        }
+        let mut force: Vec<f64> = external.iter().zip(&held).map(|(f, k)| f - k).collect();
+        body.basis.force(body.mesh.dim(), &mut force);
+        Load {
+            force: (0..force.len())
+                .filter(|&i| body.solver_numbers[i].is_some())
+                .map(|i| force[i])
+                .collect(),
+            offset: body.jump(&prescribed),
+            traction,
+        }
+    }
+
+    /// All unknowns at the end of an increment from the free ones [m].
+    pub fn all_unknowns(&self, increment: usize, u: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.body.numbers.len()];
+        for (value, number) in all.iter_mut().zip(&self.body.solver_numbers) {
+            if let Some(n) = number {
+                *value = u[*n as usize];
+            }
+        }
+        self.body.basis.unknowns(self.body.mesh.dim(), &mut all);
+        let prescribed = self.prescribed_displacement(increment);
+        for ((value, held), number) in all.iter_mut().zip(prescribed).zip(&self.body.numbers) {
+            if number.is_none() {
+                *value = held;
+            }
+        }
+        all
+    }
+}
+
+/// Values of the unknowns that the closed form prescribes; evaluated once per node.
+fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usize, f64)> {
+    let dim = body.mesh.dim();
+    let mut unknowns: Vec<(usize, usize)> = (body.prescribed.iter())
+        .filter(|(_, fixed)| fixed.amount == Amount::Exact)
+        .map(|(&i, _)| (body.enrichment.functions[i / dim].node as usize, i))
+        .collect();
+    unknowns.sort_unstable();
+    let of_node = |list: &[(usize, usize)]| -> Vec<(usize, f64)> {
+        let node = list[0].0;
+        let (x, side) = (&body.mesh.nodes[node], sides.of_node(node));
+        let own = field.displacement(x, side);
+        let jumps = |&(_, i): &(usize, usize)| {
+            body.enrichment.functions[i / dim].kind != FunctionKind::Standard
+        };
+        let half_jump = if list.iter().any(jumps) {
+            let foot = sides.foot(x);
+            let mirrored = add_scaled(&foot, 1.0, &sub(&foot, x));
+            let (near, far) = (
+                field.displacement(&foot, -side),
+                field.displacement(&mirrored, -side),
+            );
+            [0, 1, 2].map(|a| 0.5 * side * (own[a] - (2.0 * near[a] - far[a])))
+        } else {
+            [0.0; 3]
+        };
+        let value = |entry| if jumps(entry) { half_jump } else { own };
+        list.iter()
+            .map(|entry| (entry.1, value(entry)[entry.1 % dim]))
+            .collect()
+    };
+    let nodes: Vec<&[(usize, usize)]> = unknowns.chunk_by(|a, b| a.0 == b.0).collect();
+    nodes.into_par_iter().flat_map_iter(of_node).collect()
+}
+
+/// A closed form that does not hold, at its table.
+fn exact_error(case: &Case, spec: &ExactSpec, friction: f64, message: &str) -> CaseError {
+    let value = format!("{} with friction {friction}", spec.solution.name);
+    let allowed = "a body, crack, friction, parameters and history that the closed form holds for";
+    case.error(&spec.span, value, allowed, message)
+}

@@ -1,0 +1,391 @@
+//! Loads: from the words of a case to consistent nodal forces.
+//!
+//! ```text
+//!   f(φ e_a) = ∫_side t_a φ dA + ∫_edge l_a φ ds + ∫_body b_a φ dV − ∫_body σ₀_ab ∂_b φ dV
+//! ```
+//!
+//! φ runs over all functions of the body, enriched ones too; split facets and cells are integrated side by side.
+
+use stickslip_xfem::enrichment::basis::Region as CellRegion;
+use stickslip_xfem::enrichment::cell_facets::{Piece, pieces};
+use stickslip_xfem::exact::Field;
+use stickslip_xfem::geometry::clip::fan;
+use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
+use stickslip_xfem::quadrature::{
+    WeightedPoint, gauss_cell, segment, triangle, triangle_collapsed,
+};
+use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+
+use crate::case::{LoadKind, Region};
+use crate::model::boundary::region_nodes;
+use crate::model::sides::Sides;
+
+/// Gauss points per segment where loads act: exact for linear shape functions times linear densities, for closed forms
+/// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
+const SEGMENT_POINTS: usize = 3;
+const EXACT_POINTS: usize = 8;
+const BRANCH_POINTS: usize = 24;
+
+/// Points per direction of collapsed rules on the triangles of loaded 3D facets, for closed forms: degree 8.
+const EXACT_TRIANGLE: usize = 5;
+
+/// Gauss points per direction in whole cells for body forces of closed forms: degree 7.
+const EXACT_CELL: usize = 4;
+
+/// A density at a point in a region of a cell.
+type Density<'a> = &'a dyn Fn(usize, &Point, CellRegion) -> Point;
+
+/// A region that holds no facet or edge to load.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LoadError {
+    /// No facet or edge lies in the region.
+    #[error("the region holds no cell {0}")]
+    Empty(&'static str),
+    /// A cell could not be integrated.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+}
+
+/// Nodal forces of a load at factor 1, over all unknowns [N, in 2D N/m]; `None` if they come from the closed form.
+///
+/// `sides` is needed by loads on one side of a crack only.
+pub fn fixed_forces(
+    integrator: &CellIntegrator<'_>,
+    sides: Option<&Sides>,
+    kind: &LoadKind,
+) -> Result<Option<Vec<f64>>, LoadError> {
+    let mut force = no_force(integrator);
+    match kind {
+        LoadKind::Body(density, side) => {
+            let density = [density[0], density[1], third(density)];
+            let own = side.as_ref().map(|s| s.side).zip(sides);
+            let on_side = |cell, x: &Point, split| match own {
+                Some((side, sides)) if sides.of_point(integrator, cell, x, split) != side => {
+                    [0.0; 3]
+                }
+                _ => density,
+            };
+            body_force(integrator, Rule::Fixed, &on_side, &mut force)?;
+        }
+        LoadKind::Traction(region, traction) => {
+            let at = |x: &Point| {
+                let mut t = [0.0; 3];
+                for (t, linear) in t.iter_mut().zip(traction) {
+                    *t = linear.at(x);
+                }
+                t
+            };
+            facet_force(integrator, region, Rule::Fixed, &mut force, |_, x, _, _| {
+                at(x)
+            })?;
+        }
+        LoadKind::Pressure(region, pressure) => {
+            facet_force(integrator, region, Rule::Fixed, &mut force, |_, x, _, n| {
+                n.map(|v| -pressure.at(x) * v)
+            })?;
+        }
+        LoadKind::Line(region, line) => line_force(integrator, region, line, &mut force)?,
+        LoadKind::InitialStress(stress) => initial_stress(integrator, stress, &mut force)?,
+        LoadKind::ExactTraction(_) | LoadKind::ExactBody => return Ok(None),
+    }
+    Ok(Some(force))
+}
+
+/// Adds the nodal forces that a load takes from the closed form, over all unknowns [N, in 2D N/m].
+pub fn add_exact_forces(
+    integrator: &CellIntegrator<'_>,
+    sides: &Sides,
+    kind: &LoadKind,
+    field: &dyn Field,
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    let side = |cell, x: &Point, split| sides.of_point(integrator, cell, x, split);
+    match kind {
+        LoadKind::ExactTraction(region) => facet_force(
+            integrator,
+            region,
+            Rule::Exact,
+            force,
+            |cell, x, split, n| {
+                let stress = field.stress(x, side(cell, x, split));
+                stress.map(|row| dot(&row, n))
+            },
+        ),
+        LoadKind::ExactBody => {
+            let density = |cell, x: &Point, split| field.body_force(x, side(cell, x, split));
+            body_force(integrator, Rule::Exact, &density, force)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Nothing acts, over all unknowns.
+pub fn no_force(integrator: &CellIntegrator<'_>) -> Vec<f64> {
+    vec![0.0; integrator.enrichment.functions.len() * integrator.mesh.dim()]
+}
+
+/// Rule for what is integrated.
+#[derive(Clone, Copy, PartialEq)]
+enum Rule {
+    /// Constants and linear functions of space.
+    Fixed,
+    /// Smooth functions.
+    Exact,
+}
+
+fn third(v: &[f64]) -> f64 {
+    v.get(2).copied().unwrap_or(0.0)
+}
+
+/// f(φ) += Σ w φ(x) t(x) over points of a cell, each in a region of the cell.
+fn add_points(
+    integrator: &CellIntegrator<'_>,
+    cell: usize,
+    points: &[(WeightedPoint, CellRegion)],
+    density: Density<'_>,
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
+    let functions = integrator.enrichment.cell_basis(mesh, cell);
+    let corners = mesh.corners(cell);
+    let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
+    let mut values = vec![0.0; functions.len()];
+    let mut gradients = vec![[0.0; 3]; functions.len()];
+    for (p, region) in points {
+        let Some(xi) = mesh.kind.inverse_map(basis.corners, &p.x) else {
+            return Err(LoadError::Cell(CellError {
+                at: mesh.centre(cell),
+                reason: "a loaded point has no reference position".into(),
+            }));
+        };
+        let t = density(cell, &p.x, *region);
+        basis.evaluate(&xi, &p.x, *region, &mut values, &mut gradients);
+        for (&f, n) in integrator.enrichment.cell(cell).iter().zip(&values) {
+            for a in 0..dim {
+                force[f as usize * dim + a] += p.weight * n * t[a];
+            }
+        }
+    }
+    Ok(())
+}
+
+fn body_force(
+    integrator: &CellIntegrator<'_>,
+    rule: Rule,
+    density: Density<'_>,
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    for cell in 0..integrator.mesh.cell_count() {
+        let points = body_points(integrator, cell, rule)?;
+        add_points(integrator, cell, &points, density, force)?;
+    }
+    Ok(())
+}
+
+/// Points of a cell for a body force times its functions.
+fn body_points(
+    integrator: &CellIntegrator<'_>,
+    cell: usize,
+    rule: Rule,
+) -> Result<Vec<(WeightedPoint, CellRegion)>, LoadError> {
+    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
+    let corners = mesh.corners(cell);
+    let corners = &corners[..mesh.kind.nodes()];
+    let whole = |n: usize| {
+        let points = gauss_cell(mesh.dim(), n).into_iter().map(|(xi, w)| {
+            let weight = w * mesh.kind.gradients(corners, &xi).1;
+            let x = mesh.kind.map(corners, &xi);
+            (WeightedPoint { x, weight }, 0)
+        });
+        points.collect()
+    };
+    if enrichment.is_plain(mesh, cell) {
+        return Ok(whole(if rule == Rule::Exact { EXACT_CELL } else { 2 }));
+    }
+    if rule == Rule::Exact && !enrichment.has_branch(cell) {
+        let Some(partition) = enrichment.partition(cell) else {
+            return Ok(whole(EXACT_CELL));
+        };
+        let parts = partition
+            .parts
+            .iter()
+            .enumerate()
+            .flat_map(|(region, part)| {
+                let points = part.sub_cells().fine_points(mesh.kind, corners);
+                points.into_iter().map(move |p| (p, region))
+            });
+        return Ok(parts.collect());
+    }
+    let points = integrator.points(cell)?.into_iter().map(|p| {
+        let SidedPoint {
+            x, weight, region, ..
+        } = p;
+        (WeightedPoint { x, weight }, region)
+    });
+    Ok(points.collect())
+}
+
+/// f(φ e_a) −= ∫ σ₀_ab ∂_b φ, by the rule the stiffness is integrated with: both then vanish on the same modes.
+fn initial_stress(
+    integrator: &CellIntegrator<'_>,
+    stress: &[Point; 3],
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
+    for cell in 0..mesh.cell_count() {
+        let functions = integrator.enrichment.cell_basis(mesh, cell);
+        let corners = mesh.corners(cell);
+        let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
+        let mut values = vec![0.0; functions.len()];
+        let mut gradients = vec![[0.0; 3]; functions.len()];
+        for p in integrator.points(cell)? {
+            basis.evaluate(&p.xi, &p.x, p.region, &mut values, &mut gradients);
+            for (&f, g) in integrator.enrichment.cell(cell).iter().zip(&gradients) {
+                for a in 0..dim {
+                    force[f as usize * dim + a] -= p.weight * dot(&stress[a], g);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Traction on the facets of a side; `density(cell, x, region, n)` is the force per area for the outward normal n.
+fn facet_force(
+    integrator: &CellIntegrator<'_>,
+    region: &Region,
+    rule: Rule,
+    force: &mut [f64],
+    density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
+) -> Result<(), LoadError> {
+    let mesh = integrator.mesh;
+    let nodes = region_nodes(integrator, region);
+    let mut loaded = false;
+    for &facet in region
+        .sides
+        .iter()
+        .flat_map(|side| mesh.sides.get(side).into_iter().flatten())
+    {
+        if !mesh
+            .facet_nodes(facet)
+            .all(|n| nodes.binary_search(&n).is_ok())
+        {
+            continue;
+        }
+        loaded = true;
+        let local = mesh.kind.facets()[facet.local];
+        for (part, region) in divided(integrator, facet.cell, local) {
+            if mesh.dim() == 2 {
+                let (p, q) = (part[0], part[1]);
+                let d = sub(&q, &p);
+                let length = norm(&d);
+                let normal = [d[1] / length, -d[0] / length, 0.0];
+                let points = loaded_segment(integrator, rule, facet.cell, &p, &q, region);
+                let density = |cell, x: &Point, region| density(cell, x, region, &normal);
+                add_points(integrator, facet.cell, &points, &density, force)?;
+            } else {
+                for t in fan(&part) {
+                    let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
+                    let size = norm(&normal);
+                    if size > 0.0 {
+                        let normal = normal.map(|v| v / size);
+                        let points = match rule {
+                            Rule::Fixed => triangle(&t),
+                            Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
+                        };
+                        let points: Vec<_> = points.into_iter().map(|p| (p, region)).collect();
+                        let density = |cell, x: &Point, region| density(cell, x, region, &normal);
+                        add_points(integrator, facet.cell, &points, &density, force)?;
+                    }
+                }
+            }
+        }
+    }
+    if loaded {
+        Ok(())
+    } else {
+        Err(LoadError::Empty("facet"))
+    }
+}
+
+/// An edge or facet between local nodes, divided among the regions of the cell.
+fn divided(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) -> Vec<Piece> {
+    pieces(
+        integrator.mesh,
+        integrator.cracks,
+        integrator.enrichment,
+        cell,
+        local,
+    )
+}
+
+fn loaded_segment(
+    integrator: &CellIntegrator<'_>,
+    rule: Rule,
+    cell: usize,
+    p: &Point,
+    q: &Point,
+    region: CellRegion,
+) -> Vec<(WeightedPoint, CellRegion)> {
+    let n = if integrator.enrichment.has_branch(cell) {
+        BRANCH_POINTS
+    } else if rule == Rule::Exact {
+        EXACT_POINTS
+    } else {
+        SEGMENT_POINTS
+    };
+    segment(p, q, n)
+        .into_iter()
+        .map(|point| (point, region))
+        .collect()
+}
+
+/// Force per length on the edge where two sides of a 3D box meet.
+fn line_force(
+    integrator: &CellIntegrator<'_>,
+    region: &Region,
+    line: &[f64],
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    let mesh = integrator.mesh;
+    let nodes = region_nodes(integrator, region);
+    let density = [line[0], line[1], third(line)];
+    let mut loaded = false;
+    // Every mesh edge on the box edge belongs to one facet of the first side.
+    for &facet in region
+        .sides
+        .first()
+        .and_then(|side| mesh.sides.get(side))
+        .into_iter()
+        .flatten()
+    {
+        let local = mesh.kind.facets()[facet.local];
+        let cell = mesh.cell(facet.cell);
+        for i in 0..local.len() {
+            let ends = [local[i], local[(i + 1) % local.len()]];
+            if !ends
+                .iter()
+                .all(|&k| nodes.binary_search(&(cell[k] as usize)).is_ok())
+            {
+                continue;
+            }
+            loaded = true;
+            for (part, region) in divided(integrator, facet.cell, &ends) {
+                let points = loaded_segment(
+                    integrator,
+                    Rule::Fixed,
+                    facet.cell,
+                    &part[0],
+                    &part[1],
+                    region,
+                );
+                add_points(integrator, facet.cell, &points, &|_, _, _| density, force)?;
+            }
+        }
+    }
+    if loaded {
+        Ok(())
+    } else {
+        Err(LoadError::Empty("edge"))
+    }
+}

@@ -1,0 +1,326 @@
+//! Pictures of a body: cells with the displacement on them, cut cells split so that the jump is visible.
+
+use std::collections::HashMap;
+
+use stickslip_methods::PointStatus;
+use stickslip_xfem::contact::pairs::SurfaceCorner;
+use stickslip_xfem::cut::crack::Parent;
+use stickslip_xfem::cut::partition::{Part, Partition};
+use stickslip_xfem::geometry::clip::{Side, crossing};
+use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, norm, polygon, sub};
+use stickslip_xfem::mesh::cell::CellKind;
+
+use crate::model::body::Body;
+use crate::model::quantities::Snapshot;
+use crate::run::record::{FieldStep, Picture, PictureCell, PictureShape};
+
+/// Body and crack faces at one increment.
+pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
+    FieldStep {
+        time: now.time,
+        body: body_picture(body, now),
+        crack: crack_picture(body, now),
+    }
+}
+
+/// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
+fn body_picture(body: &Body, now: &Snapshot) -> Picture {
+    let (mesh, dim) = (&body.mesh, body.mesh.dim());
+    let integrator = body.integrator();
+    let mut cells = Vec::new();
+    let mut vertices = Vertices::new(body, now);
+    let (mut stress, mut sides) = (Vec::new(), Vec::new());
+    let whole = match mesh.kind {
+        CellKind::Quad4 => PictureShape::Quad,
+        CellKind::Hex8 => PictureShape::Hexahedron,
+    };
+    for cell in 0..mesh.cell_count() {
+        let corners = mesh.corners(cell);
+        let corners = &corners[..mesh.kind.nodes()];
+        let Some(partition) = body.enrichment.partition(cell) else {
+            cells.push(PictureCell {
+                shape: whole,
+                points: corners
+                    .iter()
+                    .map(|x| vertices.of(cell, x, 0, now))
+                    .collect(),
+            });
+            let h = integrator.displacement_gradient(cell, &[0.0; 3], 0, &now.u);
+            stress.push(body.lame.von_mises(&h, dim));
+            sides.push(0.0);
+            continue;
+        };
+        for (region, part) in partition.parts.iter().enumerate() {
+            for (shape, part) in pieces_of(body, cell, corners, partition, part) {
+                cells.push(PictureCell {
+                    shape,
+                    points: part
+                        .iter()
+                        .map(|x| vertices.of(cell, x, region, now))
+                        .collect(),
+                });
+                let mut centre = [0.0; 3];
+                for x in &part {
+                    centre = add_scaled(&centre, 1.0 / part.len() as f64, x);
+                }
+                let xi = mesh.kind.inverse_map(corners, &centre).unwrap_or_default();
+                let h = integrator.displacement_gradient(cell, &xi, region, &now.u);
+                stress.push(body.lame.von_mises(&h, dim));
+                sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
+            }
+        }
+    }
+    Picture {
+        dim,
+        points: vertices.points,
+        cells,
+        point_vectors: vec![("displacement_m".into(), vertices.displacement)],
+        point_scalars: Vec::new(),
+        cell_scalars: vec![("von_mises_pa".into(), stress), ("side".into(), sides)],
+    }
+}
+
+/// Faces of cracks that a point lies on: crack, and whether on side 1.
+type Faces = Vec<(usize, bool)>;
+
+/// Points of the picture, one per place and faces.
+struct Vertices<'a> {
+    body: &'a Body,
+    points: Vec<Point>,
+    displacement: Vec<Point>,
+    /// Number by place in quanta and faces, for the points that are no mesh nodes.
+    found: HashMap<([i64; 3], Faces), usize>,
+    /// Length below which places are equal [m]: far below a cell, far above rounding.
+    quantum: f64,
+}
+
+impl<'a> Vertices<'a> {
+    fn new(body: &'a Body, now: &Snapshot) -> Self {
+        let dim = body.mesh.dim();
+        let displacement = now.u[..body.mesh.nodes.len() * dim]
+            .chunks_exact(dim)
+            .map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)])
+            .collect();
+        let smallest = body
+            .mesh
+            .node_sizes()
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        Vertices {
+            body,
+            points: body.mesh.nodes.clone(),
+            displacement,
+            found: HashMap::new(),
+            quantum: 1e-7 * smallest,
+        }
+    }
+
+    /// Number of a vertex of a region of a cell: that of the node if it is one on its own side, otherwise one of its own.
+    fn of(&mut self, cell: usize, x: &Point, region: usize, now: &Snapshot) -> usize {
+        let body = self.body;
+        let nodes = body.mesh.cell(cell).iter().map(|&n| n as usize);
+        let node = nodes.into_iter().find(|&n| body.mesh.nodes[n] == *x);
+        let faces = match body.enrichment.partition(cell) {
+            Some(partition) => self.cut_faces(&partition.parts[region], x),
+            None => node.map_or_else(Vec::new, |node| self.reached_faces(cell, node)),
+        };
+        if let Some(node) = node {
+            let own =
+                |&(crack, upper): &(usize, bool)| (body.cracks[crack].side_of(node) > 0.0) == upper;
+            if faces.iter().all(own) {
+                return node;
+            }
+        }
+        let key = (x.map(|v| (v / self.quantum).round() as i64), faces);
+        *self.found.entry(key).or_insert_with(|| {
+            let u = body.integrator().displacement(cell, x, region, &now.u);
+            self.points.push(*x);
+            self.displacement.push(u.unwrap_or([f64::NAN; 3]));
+            self.points.len() - 1
+        })
+    }
+
+    /// True between the ends of a crack: ahead of a tip, and beyond a crack that it ends on, the two sides are one.
+    fn jumps(&self, crack: usize, x: &Point) -> bool {
+        let crack = &self.body.cracks[crack];
+        let beyond = |p: &Parent| self.body.cracks[p.crack].distance(x) * p.side < -self.quantum;
+        crack.jumps_at(x, self.quantum) && !crack.parents.iter().any(beyond)
+    }
+
+    /// Faces of a part of a cut cell at a point.
+    fn cut_faces(&self, part: &Part, x: &Point) -> Faces {
+        let on = |&&(crack, _): &&(usize, Side)| {
+            self.body.cracks[crack].distance(x).abs() <= self.quantum && self.jumps(crack, x)
+        };
+        part.sides
+            .iter()
+            .filter(on)
+            .map(|&(crack, side)| (crack, side > 0.0))
+            .collect()
+    }
+
+    /// Faces of a whole cell at a node that lies on a crack.
+    fn reached_faces(&self, cell: usize, node: usize) -> Faces {
+        let body = self.body;
+        let x = &body.mesh.nodes[node];
+        let centre = body.mesh.centre(cell);
+        let cracks = 0..body.cracks.len();
+        cracks
+            .filter(|&k| body.cracks[k].phi[node] == 0.0 && self.jumps(k, x))
+            .filter(|_| !body.enrichment.enriched_of(node).is_empty())
+            .map(|k| (k, body.cracks[k].distance(&centre) > 0.0))
+            .collect()
+    }
+}
+
+/// What a part of a cut cell is drawn as: a polygon in 2D, triangles if it is not convex; in 3D a hexahedron where one
+/// crack parts two opposite faces, tetrahedra elsewhere.
+fn pieces_of(
+    body: &Body,
+    cell: usize,
+    corners: &[Point],
+    partition: &Partition,
+    part: &Part,
+) -> Vec<(PictureShape, Vec<Point>)> {
+    let kind = body.mesh.kind;
+    if kind == CellKind::Quad4 {
+        let mut polygon = part.polygon.clone();
+        for &(_, tip) in body.enrichment.tip_cells.iter().filter(|(c, _)| *c == cell) {
+            insert_on_border(&mut polygon, &body.enrichment.tips[tip].position);
+        }
+        if polygon::is_convex(&polygon) {
+            return vec![(PictureShape::Polygon, polygon)];
+        }
+        let triangles = polygon::triangles(&polygon).into_iter();
+        return triangles
+            .map(|t| (PictureShape::Polygon, t.to_vec()))
+            .collect();
+    }
+    if let (&[(crack, side)], 2) = (part.sides.as_slice(), partition.parts.len()) {
+        let phi = body.cracks[crack].cell_phi(&body.mesh, cell);
+        if let Some(hexahedron) = hexahedron(kind, corners, &phi, side) {
+            return vec![(PictureShape::Hexahedron, hexahedron)];
+        }
+    }
+    let parts = part.tetrahedra.iter();
+    parts.map(|t| (PictureShape::Tetra, t.to_vec())).collect()
+}
+
+/// One side of a cell of which a crack parts two opposite faces.
+fn hexahedron(kind: CellKind, corners: &[Point], phi: &[f64; 8], side: Side) -> Option<Vec<Point>> {
+    (0..3).find_map(|axis| {
+        let level = phi[0].signum() * kind.corner(0)[axis];
+        if !(0..8).all(|i| phi[i] * level * kind.corner(i)[axis] > 0.0) {
+            return None;
+        }
+        let opposite = |i: usize| {
+            (0..8)
+                .find(|&j| (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis)))
+        };
+        let part = (0..8).map(|i| match opposite(i) {
+            Some(j) if phi[i] * side < 0.0 => crossing(&corners[i], phi[i], &corners[j], phi[j]),
+            _ => corners[i],
+        });
+        Some(part.collect())
+    })
+}
+
+/// Makes a point on an edge of a polygon a vertex of it.
+fn insert_on_border(polygon: &mut Vec<Point>, x: &Point) {
+    let count = polygon.len();
+    let on_edge = (0..count).find(|&i| {
+        let (p, q) = (&polygon[i], &polygon[(i + 1) % count]);
+        let (edge, to) = (sub(q, p), sub(x, p));
+        let t = dot(&to, &edge) / dot(&edge, &edge);
+        t > 1e-9 && t < 1.0 - 1e-9 && norm(&cross(&edge, &to)) <= 1e-9 * dot(&edge, &edge)
+    });
+    if let Some(i) = on_edge {
+        polygon.insert(i + 1, *x);
+    }
+}
+
+/// The crack faces with their fields; every corner shows what the contact points that speak for it say.
+fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
+    let dim = body.mesh.dim();
+    let corners = &body.surface.corners;
+    // Σ share · value of the point, component by component in space.
+    let in_space = |value: &dyn Fn(usize, usize) -> f64| -> Vec<[f64; 3]> {
+        let of_corner = |corner: &SurfaceCorner| {
+            let mut v = [0.0; 3];
+            for &(point, share) in &corner.shares {
+                let point = point as usize;
+                for (c, axis) in body.points[point].frame.iter().enumerate().take(dim) {
+                    v = add_scaled(&v, share * value(point, c), axis);
+                }
+            }
+            v
+        };
+        corners.iter().map(of_corner).collect()
+    };
+    let scalar = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let of_corner = |corner: &SurfaceCorner| {
+            let parts = corner.shares.iter();
+            parts
+                .map(|&(point, share)| share * value(point as usize))
+                .sum()
+        };
+        corners.iter().map(of_corner).collect()
+    };
+    // A state is not a mean: that of the point with the largest share.
+    let leading = |corner: &SurfaceCorner| -> f64 {
+        let most = corner.shares.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map_or(f64::NAN, |&(point, _)| match now.status[point as usize] {
+            PointStatus::Open => 0.0,
+            PointStatus::Stick => 1.0,
+            PointStatus::Slip => 2.0,
+        })
+    };
+    let tangential = |values: &[f64], i: usize| {
+        values[i * dim + 1..(i + 1) * dim]
+            .iter()
+            .map(|v| v * v)
+            .sum::<f64>()
+            .sqrt()
+    };
+    let weight = |i: usize| body.points[i].weight;
+    let cells = body
+        .surface
+        .facets
+        .iter()
+        .filter(|facet| facet.len() >= dim)
+        .map(|facet| PictureCell {
+            shape: if dim == 2 {
+                PictureShape::Line
+            } else {
+                PictureShape::Polygon
+            },
+            points: facet.clone(),
+        })
+        .collect();
+    Picture {
+        dim,
+        points: corners.iter().map(|corner| corner.x).collect(),
+        cells,
+        point_vectors: vec![
+            ("jump_m".into(), in_space(&|i, c| now.jump[i * dim + c])),
+            (
+                "contact_traction_pa".into(),
+                in_space(&|i, c| now.p[i * dim + c] / weight(i)),
+            ),
+        ],
+        point_scalars: vec![
+            ("gap_m".into(), scalar(&|i| now.jump[i * dim])),
+            ("slip_m".into(), scalar(&|i| tangential(&now.jump, i))),
+            (
+                "pressure_pa".into(),
+                scalar(&|i| now.p[i * dim] / weight(i)),
+            ),
+            (
+                "shear_pa".into(),
+                scalar(&|i| tangential(&now.p, i) / weight(i)),
+            ),
+            ("status".into(), corners.iter().map(leading).collect()),
+        ],
+        cell_scalars: Vec::new(),
+    }
+}

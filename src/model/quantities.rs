@@ -1,0 +1,280 @@
+//! Quantities of interest of one increment: reactions, displacements, contact resultants, energies.
+
+use stickslip_methods::{ContactState, PointStatus};
+use stickslip_xfem::contact::surface_point::max_penetration;
+
+use crate::case::Case;
+use crate::model::body::Body;
+use crate::model::boundary::region_name;
+use crate::model::loading::Loading;
+use crate::run::record::{PointRow, QuantityRow, RunKey};
+
+/// The mechanics at the end of an increment, over all unknowns and points.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Time.
+    pub time: f64,
+    /// All unknowns [m].
+    pub u: Vec<f64>,
+    /// Jump at the points in local frames, `dim` each [m].
+    pub jump: Vec<f64>,
+    /// Contact forces on side 1, `dim` each.
+    pub p: Vec<f64>,
+    /// External forces plus reactions over all unknowns: K u − Bᵀ P, less the consistency term of Nitsche's method.
+    pub force: Vec<f64>,
+    /// External forces over all unknowns.
+    pub external: Vec<f64>,
+    /// Open, stick or slip of every point.
+    pub status: Vec<PointStatus>,
+    /// Σ −P_t·d over all increments so far [J, in 2D J/m].
+    pub dissipation: f64,
+    /// ½ u·K u [J, in 2D J/m].
+    pub strain_energy: f64,
+    /// Relative residual of the discrete energy identity of the increment [-].
+    pub energy_identity: f64,
+}
+
+impl Snapshot {
+    /// The unloaded body.
+    pub fn virgin(body: &Body) -> Self {
+        let (n, m) = (body.numbers.len(), body.points.len() * body.mesh.dim());
+        Snapshot {
+            time: 0.0,
+            u: vec![0.0; n],
+            jump: vec![0.0; m],
+            p: vec![0.0; m],
+            force: vec![0.0; n],
+            external: vec![0.0; n],
+            status: vec![PointStatus::Open; body.points.len()],
+            dissipation: 0.0,
+            strain_energy: 0.0,
+            energy_identity: 0.0,
+        }
+    }
+
+    /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks.
+    pub fn new(
+        loading: &Loading<'_>,
+        increment: usize,
+        state: &ContactState,
+        consistency: Option<&[f64]>,
+        status: Vec<PointStatus>,
+        before: &Snapshot,
+    ) -> Self {
+        let body = loading.body();
+        let dim = body.mesh.dim();
+        let u = loading.all_unknowns(increment, &state.u);
+        let jump = body.jump(&u);
+        let internal = body.stiffness.mul(&u);
+        let mut force = internal.clone();
+        let contact = body.jump_rows.iter().zip(&state.p);
+        let further = body.traction_rows.iter().zip(consistency.unwrap_or(&[]));
+        for (row, p) in contact.chain(further) {
+            for &(i, coefficient) in row {
+                force[i] -= coefficient * p;
+            }
+        }
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+        let strain_energy = 0.5 * dot(&u, &internal);
+        let slip_work: f64 = (0..jump.len())
+            .filter(|i| i % dim != 0)
+            .map(|i| state.p[i] * (jump[i] - before.jump[i]))
+            .sum();
+        // F·du = dE + ½ du·K du + D + P_n g_old, because P_n g_new = 0; F includes the reactions.
+        let du: Vec<f64> = u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
+        let opening: f64 = (0..body.points.len())
+            .map(|i| state.p[i * dim] * before.jump[i * dim])
+            .sum();
+        let stored = strain_energy - before.strain_energy;
+        let second = 0.5 * dot(&du, &body.stiffness.mul(&du));
+        let work = dot(&force, &du);
+        let size = work.abs() + stored.abs() + second + slip_work.abs() + opening.abs();
+        let gap = work - (stored + second - slip_work + opening);
+        Snapshot {
+            external: loading.external_force(increment),
+            time: loading.time(increment),
+            jump,
+            p: state.p.clone(),
+            force,
+            status,
+            dissipation: before.dissipation - slip_work,
+            strain_energy,
+            energy_identity: if size > 0.0 { gap.abs() / size } else { 0.0 },
+            u,
+        }
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const LOCAL: [&str; 3] = ["n", "a", "b"];
+
+/// Rows of `quantities.csv` for one increment.
+pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<QuantityRow> {
+    let dim = body.mesh.dim();
+    let (force_unit, energy_unit) = if dim == 2 { ("N/m", "J/m") } else { ("N", "J") };
+    let mut rows = Vec::new();
+    let mut push = |quantity: &str, at: &str, component: &str, value: f64, unit: &str| {
+        rows.push(QuantityRow {
+            key: key.clone(),
+            quantity: quantity.into(),
+            at: at.into(),
+            component: component.into(),
+            value,
+            unit: unit.into(),
+        });
+    };
+    for (at, component, total) in reactions(case, body, now) {
+        push("reaction", &at, AXES[component], total, force_unit);
+    }
+    for probe in &case.probes {
+        if let Some(node) = body.mesh.node_at(&probe.point) {
+            for a in 0..dim {
+                push(
+                    "displacement",
+                    &probe.name,
+                    AXES[a],
+                    now.u[node * dim + a],
+                    "m",
+                );
+            }
+        }
+    }
+    let sampled = sampled_penetration(case, body, now);
+    // Every crack, and all of them together.
+    let all: Vec<usize> = (0..body.points.len()).collect();
+    let places = std::iter::once((
+        String::new(),
+        all.clone(),
+        sampled.iter().copied().fold(0.0, f64::max),
+    ))
+    .chain(sampled.iter().enumerate().map(|(crack, &deepest)| {
+        let own = all
+            .iter()
+            .copied()
+            .filter(|&i| body.points[i].crack == crack);
+        (format!("crack-{}", crack + 1), own.collect(), deepest)
+    }));
+    for (at, own, deepest) in places {
+        if !at.is_empty() {
+            for c in 0..dim {
+                let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
+                push("contact_force", &at, LOCAL[c], total, force_unit);
+            }
+        }
+        for (name, status) in [
+            ("points_open", PointStatus::Open),
+            ("points_stick", PointStatus::Stick),
+            ("points_slip", PointStatus::Slip),
+        ] {
+            let count = own.iter().filter(|&&i| now.status[i] == status).count();
+            push(name, &at, "", count as f64, "-");
+        }
+        let largest = |f: &dyn Fn(usize) -> f64| own.iter().map(|&i| f(i)).fold(0.0, f64::max);
+        push("max_gap", &at, "", largest(&|i| now.jump[i * dim]), "m");
+        push(
+            "max_penetration",
+            &at,
+            "",
+            largest(&|i| -now.jump[i * dim]),
+            "m",
+        );
+        push("max_penetration_sampled", &at, "", deepest, "m");
+        let slip = |i: usize| {
+            now.jump[i * dim + 1..(i + 1) * dim]
+                .iter()
+                .map(|v| v * v)
+                .sum::<f64>()
+                .sqrt()
+        };
+        push("max_slip", &at, "", largest(&slip), "m");
+        if !at.is_empty() {
+            // Mean over the surface of the crack: NaN for one without contact points.
+            let area: f64 = own.iter().map(|&i| body.points[i].weight).sum();
+            for c in 1..dim {
+                let part = |&i: &usize| body.points[i].weight * now.jump[i * dim + c];
+                let mean = own.iter().map(part).sum::<f64>() / area;
+                push("mean_slip", &at, LOCAL[c], mean, "m");
+            }
+        }
+    }
+    push("dissipation", "", "", now.dissipation, energy_unit);
+    push("strain_energy", "", "", now.strain_energy, energy_unit);
+    push("energy_identity", "", "", now.energy_identity, "-");
+    rows
+}
+
+/// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
+/// linear between its points, which then hold its extremes.
+fn sampled_penetration(case: &Case, body: &Body, now: &Snapshot) -> Vec<f64> {
+    let (dim, integrator) = (body.mesh.dim(), body.integrator());
+    let deepest = |crack: usize| {
+        if body.cracks.iter().any(|c| c.number == crack) {
+            let own = body.samples.iter().filter(|s| s.crack == crack);
+            return max_penetration(&integrator, own, &now.u);
+        }
+        let points = body.points.iter().zip(now.jump.chunks_exact(dim));
+        let own = points.filter(|(point, _)| point.crack == crack);
+        own.map(|(_, jump)| -jump[0]).fold(0.0, f64::max)
+    };
+    (0..case.cracks.len()).map(deepest).collect()
+}
+
+/// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place
+/// add up; an unknown that several places hold counts at the one whose support is in force, the last.
+fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<(String, usize, f64)> {
+    let dim = body.mesh.dim();
+    let mut totals: Vec<(String, usize, f64)> = Vec::new();
+    for (number, support) in case.supports.iter().enumerate() {
+        let (at, nodes) = (region_name(&support.on), body.region_nodes(&support.on));
+        for component in (0..dim).filter(|&a| support.displacement[a].is_some()) {
+            let own = nodes.iter().map(|&node| node * dim + component);
+            let force: f64 = own
+                .filter(|i| body.prescribed.get(i).is_some_and(|p| p.support == number))
+                .map(|i| now.force[i] - now.external[i])
+                .sum();
+            match totals.iter_mut().find(|t| t.0 == at && t.1 == component) {
+                Some(total) => total.2 += force,
+                None => totals.push((at.clone(), component, force)),
+            }
+        }
+    }
+    totals
+}
+
+/// Rows of `points.csv` for one increment.
+pub fn point_rows(body: &Body, key: &RunKey, now: &Snapshot) -> Vec<PointRow> {
+    let dim = body.mesh.dim();
+    let mut number = 0;
+    let mut last = usize::MAX;
+    let third = |values: &[f64]| values.get(2).copied().unwrap_or(0.0);
+    body.points
+        .iter()
+        .enumerate()
+        .map(|(i, point)| {
+            number = if point.crack == last { number + 1 } else { 1 };
+            last = point.crack;
+            let (jump, p) = (
+                &now.jump[i * dim..(i + 1) * dim],
+                &now.p[i * dim..(i + 1) * dim],
+            );
+            PointRow {
+                key: key.clone(),
+                crack: point.crack + 1,
+                point: number,
+                x_m: point.x[0],
+                y_m: point.x[1],
+                z_m: point.x[2],
+                s_m: point.s,
+                weight: point.weight,
+                gap_m: jump[0],
+                slip_a_m: jump[1],
+                slip_b_m: third(jump),
+                p_n: p[0],
+                p_a: p[1],
+                p_b: third(p),
+                force_unit: if dim == 2 { "N/m" } else { "N" }.into(),
+                status: now.status[i].as_str().into(),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,125 @@
+//! What only the discretisation finds wrong with a case, said at the place in its file.
+
+use stickslip_xfem::enrichment::pieces::MotionError;
+use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::mesh::Mesh;
+use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+
+use crate::case::{Case, CaseError, LoadKind, Span};
+use crate::model::body::BodyError;
+use crate::model::boundary::region_nodes;
+use crate::model::nodal_forces::LoadError;
+
+/// Refuses a support whose region holds no node.
+pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {
+    for support in &case.supports {
+        if region_nodes(integrator, &support.on).is_empty() {
+            let found = "no node";
+            return Err(case.error(
+                &support.on.span,
+                found,
+                "a region with at least one node",
+                "the support holds nothing",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a probe that is at no node, or on a crack, where the displacement has two values.
+pub fn check_probes(case: &Case, mesh: &Mesh, enrichment: &Enrichment) -> Result<(), CaseError> {
+    let (size, _) = mesh.extent();
+    for probe in &case.probes {
+        let refuse = |allowed: &str, reason: &str| {
+            let message = format!("probe `{}` {reason}", probe.name);
+            Err(case.error(&probe.span, case.text(&probe.span), allowed, message))
+        };
+        let Some(node) = mesh.node_at(&probe.point) else {
+            return refuse("the place of a node of the mesh", "is at no node");
+        };
+        let twin = mesh.nodes[node + 1..]
+            .iter()
+            .any(|x| (0..3).all(|a| (x[a] - probe.point[a]).abs() <= 1e-9 * size));
+        // A function that jumps at its own node: H reaches across, or the node lies between the faces.
+        let faces = enrichment.jumps_at(node);
+        if twin || faces {
+            return refuse(
+                "a node beside the crack",
+                "lies on a crack, where two displacements meet",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The error of a crack, at its geometry or its `tip`.
+pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
+    let (crack, allowed) = match error {
+        EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
+        EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
+        EnrichmentError::Crowded { ending, .. } => {
+            (*ending, "tips at least one cell away from other cracks")
+        }
+        EnrichmentError::Partition { crack, .. } => {
+            (*crack, "a finer mesh, or cracks farther apart")
+        }
+        EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
+        EnrichmentError::ConformingTip { crack } => (
+            *crack,
+            "tip = \"none\", or a mesh whose edges the crack crosses",
+        ),
+    };
+    let spec = &case.cracks[crack];
+    let span = match error {
+        EnrichmentError::ConformingTip { .. } => &spec.tip_span,
+        _ => &spec.geometry_span,
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+/// The error of a body that can move, at the crack that cuts a piece off or at the supports.
+pub fn motion_error(case: &Case, error: &MotionError) -> CaseError {
+    let (span, allowed) = match (error, case.supports.first()) {
+        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
+            &case.cracks[0].geometry_span,
+            "a support on every piece the cracks cut off",
+        ),
+        (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
+        (_, None) => (&case.mesh.span, "at least one [[support]]"),
+    };
+    case.error(span, case.text(span), allowed, error)
+}
+
+/// The error of a load, at its region.
+pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -> BodyError {
+    match error {
+        LoadError::Cell(e) => e.into(),
+        LoadError::Empty(_) => {
+            let span = match kind {
+                LoadKind::Traction(region, _)
+                | LoadKind::ExactTraction(region)
+                | LoadKind::Pressure(region, _)
+                | LoadKind::Line(region, _) => &region.span,
+                LoadKind::Body(..) | LoadKind::ExactBody | LoadKind::InitialStress(_) => span,
+            };
+            case.error(
+                span,
+                case.text(span),
+                "a region with facets or edges to load",
+                error,
+            )
+            .into()
+        }
+    }
+}
+
+/// The error of a load on one side of a crack that does not part the body.
+pub fn one_sided_error(case: &Case, span: &Span) -> CaseError {
+    let message = "the crack ends inside the body: it has no sides away from its faces";
+    case.error(
+        span,
+        case.text(span),
+        "a crack through the whole body",
+        message,
+    )
+}

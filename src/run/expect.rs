@@ -1,0 +1,159 @@
+//! Expected numbers of a case against what its runs found.
+
+use crate::case::{Case, CaseError, Expect, ExpectKind, Tolerance};
+use crate::model::boundary::region_name;
+use crate::run::record::{ExpectRow, QuantityRow, Results, RunKey};
+use crate::run::run_case::Choice;
+
+/// Verdict of a number within its tolerance.
+pub const MET: &str = "met";
+/// Verdict of a documented limitation.
+pub const MISSED_AS_DOCUMENTED: &str = "missed as documented";
+
+/// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
+///
+/// # Errors
+/// The first such expectation, at its place in the file.
+pub fn check(case: &Case) -> Result<(), CaseError> {
+    let plane = case.model.dim() == 2;
+    let (force, energy) = if plane { ("N/m", "J/m") } else { ("N", "J") };
+    let axes: &[&str] = if plane { &["x", "y"] } else { &["x", "y", "z"] };
+    let local: &[&str] = if plane { &["n", "a"] } else { &["n", "a", "b"] };
+    let cracks: Vec<String> = (1..=case.cracks.len())
+        .map(|i| format!("crack-{i}"))
+        .collect();
+    let body_or_crack = || {
+        std::iter::once(String::new())
+            .chain(cracks.clone())
+            .collect::<Vec<_>>()
+    };
+    for expect in &case.expects {
+        let (places, components, unit): (Vec<String>, &[&str], &str) =
+            match expect.quantity.as_str() {
+                "reaction" => (
+                    case.supports.iter().map(|s| region_name(&s.on)).collect(),
+                    axes,
+                    force,
+                ),
+                "displacement" => (
+                    case.probes.iter().map(|p| p.name.clone()).collect(),
+                    axes,
+                    "m",
+                ),
+                "contact_force" => (cracks.clone(), local, force),
+                "points_open" | "points_stick" | "points_slip" => (body_or_crack(), &[""], "-"),
+                "max_gap" | "max_penetration" | "max_penetration_sampled" | "max_slip" => {
+                    (body_or_crack(), &[""], "m")
+                }
+                "mean_slip" => (cracks.clone(), &local[1..], "m"),
+                "dissipation" | "strain_energy" => (vec![String::new()], &[""], energy),
+                "energy_identity" => (vec![String::new()], &[""], "-"),
+                unknown => {
+                    let allowed = "a quantity of quantities.csv, see docs/schema.md";
+                    return Err(case.error(&expect.span, unknown, allowed, "unknown quantity"));
+                }
+            };
+        let quote = |list: &[&str]| {
+            list.iter()
+                .map(|x| format!("{x:?}"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let names: Vec<&str> = places.iter().map(String::as_str).collect();
+        for (what, found, allowed) in [
+            ("at", expect.at.as_str(), names.as_slice()),
+            ("component", expect.component.as_str(), components),
+            ("unit", expect.unit.as_str(), &[unit]),
+        ] {
+            if !allowed.contains(&found) {
+                let message = format!("no run has a `{}` with this `{what}`", expect.quantity);
+                return Err(case.error(
+                    &expect.span,
+                    format!("{found:?}"),
+                    quote(allowed),
+                    message,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Rows of `expectations.csv` for one run, last increment `key`.
+pub fn expectation_rows(
+    case: &Case,
+    choice: &Choice,
+    refine: usize,
+    key: &RunKey,
+    results: &Results,
+) -> Vec<ExpectRow> {
+    case.expects
+        .iter()
+        .filter(|e| applies(e, choice, refine, key.friction))
+        .map(|e| {
+            let increment = e.increment.unwrap_or(case.path.increments);
+            let key = RunKey {
+                increment,
+                ..key.clone()
+            };
+            compare(e, key, &results.quantities)
+        })
+        .collect()
+}
+
+/// An expectation without a method speaks of the exact ones.
+fn applies(expect: &Expect, choice: &Choice, refine: usize, friction: f64) -> bool {
+    let method = match &expect.method {
+        Some(name) => name == choice.method.name,
+        None => choice.method.exact,
+    };
+    method
+        && expect.friction.is_none_or(|mu| mu == friction)
+        && expect.refine.is_none_or(|factor| factor == refine)
+}
+
+fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
+    let found = rows
+        .iter()
+        .find(|row| {
+            row.key.increment == key.increment
+                && row.quantity == expect.quantity
+                && row.at == expect.at
+                && row.component == expect.component
+                && row.unit == expect.unit
+        })
+        .map_or(f64::NAN, |row| row.value);
+    let allowed = match expect.tolerance {
+        Tolerance::Relative(t) => t * expect.value.abs(),
+        Tolerance::Absolute(t) => t,
+    };
+    // NaN (the run has no such number) is never within the tolerance.
+    let met = (found - expect.value).abs() <= allowed;
+    let verdict = match (met, expect.missed) {
+        (true, false) => MET,
+        (false, false) => "missed",
+        // A documented miss still needs a number: a run without one has failed.
+        (false, true) if found.is_finite() => MISSED_AS_DOCUMENTED,
+        (false, true) => "missed",
+        (true, true) => "met against the documentation",
+    };
+    ExpectRow {
+        key,
+        quantity: expect.quantity.clone(),
+        at: expect.at.clone(),
+        component: expect.component.clone(),
+        expected: expect.value,
+        found,
+        allowed,
+        unit: expect.unit.clone(),
+        kind: match expect.kind {
+            ExpectKind::Analytic => "analytic",
+            ExpectKind::Published => "published",
+            ExpectKind::Independent => "independent",
+            ExpectKind::Snapshot => "snapshot",
+        }
+        .into(),
+        source: expect.source.clone(),
+        verdict: verdict.into(),
+    }
+}

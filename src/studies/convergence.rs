@@ -1,0 +1,290 @@
+//! Convergence study: one exact method on a sequence of meshes, for several contact spaces and tip enrichments.
+//!
+//! Every combination is the case with another contact space and tip enrichment, run over its whole load path. Only honest
+//! verdicts are measured, at the end of the path: against the closed form where the case names one, otherwise by their
+//! quantities of interest, for which [`orders`] finds a reference.
+
+mod limit;
+pub mod orders;
+mod sample;
+mod tips;
+
+pub use limit::{Limit, limit, slope};
+pub use sample::{Measured, Sample, Seconds, Value, Variant};
+pub use tips::{Regularity, regularity};
+
+use std::collections::BTreeSet;
+
+use stickslip_methods::ContactSystem;
+use stickslip_xfem::mesh::box_mesh::GridSpec;
+
+use crate::case::{Case, ContactSpace, Tip};
+use crate::model::body::{Body, BodyError, Needs};
+use crate::model::errors::{Deviation, errors};
+use crate::model::loading::Loading;
+use crate::model::quantities::{Snapshot, quantity_rows};
+use crate::run::path::Path;
+use crate::run::record::RunKey;
+use crate::run::run_case::{Choice, Progress, RunError, friction_values};
+use crate::run::verdict::{Accuracy, Verdict};
+
+/// Refinement factors where neither the study nor the case names several.
+const REFINE: [usize; 4] = [1, 2, 4, 8];
+
+/// Quantities of interest that are followed under refinement where there is no closed form.
+const FOLLOWED: [&str; 5] = [
+    "reaction",
+    "strain_energy",
+    "dissipation",
+    "max_slip",
+    "max_gap",
+];
+
+/// What to run. `None`: what the case says, see [`Study::meshes`], [`Study::spaces`], [`Study::tips`].
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// Refinement factors, increasing.
+    pub refine: Option<Vec<usize>>,
+    /// Contact spaces of all cracks.
+    pub spaces: Option<Vec<ContactSpace>>,
+    /// Enrichments of all tips.
+    pub tips: Option<Vec<Tip>>,
+    /// Method.
+    pub choice: Choice,
+}
+
+impl Study {
+    /// Refinement factors: those asked for, or those of the case if it has several, or 1, 2, 4, 8.
+    pub fn meshes(&self, case: &Case) -> Vec<usize> {
+        match &self.refine {
+            Some(given) => given.clone(),
+            None if case.sweep.refine.len() > 1 => {
+                let mut own = case.sweep.refine.clone();
+                own.sort_unstable();
+                own
+            }
+            None => REFINE.to_vec(),
+        }
+    }
+
+    /// Contact spaces: those asked for, or `star` and those of the case, where `None` leaves every crack its own.
+    pub fn spaces(&self, case: &Case) -> Vec<Option<ContactSpace>> {
+        match &self.spaces {
+            Some(given) => given.iter().copied().map(Some).collect(),
+            None if case.cracks.iter().all(|c| c.contact == ContactSpace::Star) => vec![None],
+            None => vec![Some(ContactSpace::Star), None],
+        }
+    }
+
+    /// Tip enrichments: those asked for, or those of the case, where `None` leaves every crack its own.
+    pub fn tips(&self, case: &Case) -> Vec<Option<Tip>> {
+        match &self.tips {
+            // Where nothing ends inside the body there is nothing to enrich.
+            Some(given) if regularity(case) != Regularity::Smooth => {
+                given.iter().copied().map(Some).collect()
+            }
+            _ => vec![None],
+        }
+    }
+}
+
+/// Measures the end of a path. `None`: no closed form.
+pub type ClosedForm<'a> =
+    dyn Fn(&Loading<'_>, &Snapshot) -> Result<Option<Vec<Deviation>>, RunError> + Sync + 'a;
+
+/// Errors against the closed form that the case names; `None`: it names none.
+///
+/// # Errors
+/// Cells that cannot be integrated.
+pub fn closed_form(
+    loading: &Loading<'_>,
+    now: &Snapshot,
+) -> Result<Option<Vec<Deviation>>, RunError> {
+    let body = loading.body();
+    let Some(field) = loading.exact(loading.increments()) else {
+        return Ok(None);
+    };
+    let found = errors(body, &body.surface.quadrature, field, now).map_err(BodyError::from)?;
+    Ok(Some(found))
+}
+
+/// Runs the study on one case: samples by contact space, tip enrichment, mesh and friction. One after the other, so that
+/// times mean something.
+///
+/// # Errors
+/// Of the case or its discretisation; what the method does wrong is a verdict.
+pub fn run(
+    case: &Case,
+    study: &Study,
+    closed_form: &ClosedForm<'_>,
+    progress: &dyn Progress,
+) -> Result<Vec<Sample>, RunError> {
+    let (meshes, tips) = (study.meshes(case), study.tips(case));
+    let frictions = friction_values(case);
+    let spaces = study.spaces(case);
+    let combinations = spaces
+        .iter()
+        .flat_map(|&space| tips.iter().map(move |&tip| (space, tip)));
+    let variants: Vec<Case> = combinations
+        .map(|(space, tip)| variant(case, space, tip))
+        .collect();
+    let needs = Needs {
+        frictionless: frictions.iter().flatten().all(|&mu| mu == 0.0),
+        traction: study.choice.needs_traction(),
+    };
+    progress.plan(variants.len() * meshes.len() * frictions.len());
+    // The first run of a program starts threads and fills caches: it is done twice, and timed once.
+    if let (Some(first), Some(&refine), Some(per_crack)) =
+        (variants.first(), meshes.first(), frictions.first())
+    {
+        let body = Body::new(first, refine, needs)?;
+        run_one(first, &body, refine, per_crack, &study.choice, closed_form)?;
+    }
+    let mut samples = Vec::new();
+    // A crack along cell facets has the same pairs in every space.
+    let mut seen = BTreeSet::new();
+    for variant in &variants {
+        let tip = tips::label(variant);
+        for &refine in &meshes {
+            let body = Body::new(variant, refine, needs)?;
+            let new = seen.insert((body.space.clone(), tip.clone(), refine));
+            for per_crack in &frictions {
+                if new {
+                    let sample = run_one(
+                        variant,
+                        &body,
+                        refine,
+                        per_crack,
+                        &study.choice,
+                        closed_form,
+                    )?;
+                    samples.push(sample);
+                }
+                let mu = per_crack.first().copied().unwrap_or(0.0);
+                let Body { label, space, .. } = &body;
+                progress.done(&format!("{} {label} {space} {tip} mu={mu}", case.name));
+            }
+        }
+    }
+    Ok(samples)
+}
+
+/// The case with another contact space and tip enrichment.
+fn variant(case: &Case, space: Option<ContactSpace>, tip: Option<Tip>) -> Case {
+    let mut variant = case.clone();
+    for crack in &mut variant.cracks {
+        crack.contact = space.unwrap_or(crack.contact);
+        crack.tip = tip.unwrap_or(crack.tip);
+    }
+    variant
+}
+
+/// One mesh and friction coefficient.
+fn run_one(
+    case: &Case,
+    body: &Body,
+    refine: usize,
+    per_crack: &[f64],
+    choice: &Choice,
+    closed_form: &ClosedForm<'_>,
+) -> Result<Sample, RunError> {
+    let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
+    let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
+    let mut key = RunKey {
+        case: case.name.clone(),
+        mesh: body.label.clone(),
+        space: body.space.clone(),
+        method: choice.label.clone(),
+        friction: per_crack.first().copied().unwrap_or(0.0),
+        increment: 1,
+    };
+    let mu = per_crack.first().copied().unwrap_or(0.0);
+    let loading = Loading::new(body, case, mu)?;
+    let path = Path {
+        case,
+        loading: &loading,
+        system: &system,
+        choice,
+        accuracy: Accuracy::of(case, case.tier),
+    };
+    let mut rows = Vec::new();
+    let mut last: Option<(Verdict, Option<Snapshot>)> = None;
+    path.follow(&mut key, &mut |_, ended| {
+        rows.push(ended.run);
+        last = Some((ended.verdict, ended.now.cloned()));
+    });
+    let (verdict, now) = last.ok_or_else(|| {
+        let message = "a load path without increments";
+        case.error(&case.mesh.span, case.path.increments, ">= 1", message)
+    })?;
+    let measured = match &now {
+        None => Measured::Nothing,
+        Some(now) => match closed_form(&loading, now)? {
+            Some(deviations) => Measured::Exact(deviations),
+            None => Measured::Values(followed(case, body, &key, now)),
+        },
+    };
+    Ok(Sample {
+        variant: Variant {
+            case: key.case,
+            space: key.space,
+            tip: tips::label(case),
+            method: key.method,
+            friction: key.friction,
+        },
+        regularity: regularity(case),
+        mesh: key.mesh,
+        refine,
+        h: cell_size(&case.mesh.grid.refined(refine)),
+        dim: body.mesh.dim(),
+        dofs: body.elastic.unknowns(),
+        points: body.points.len(),
+        seconds: if now.is_some() {
+            Seconds::of(&rows)
+        } else {
+            Seconds::NONE
+        },
+        verdict,
+        measured,
+    })
+}
+
+/// The quantities of interest that are followed under refinement.
+pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value> {
+    let rows = quantity_rows(case, body, key, now);
+    let largest =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
+    let displacement = largest(&mut now.u.iter().copied());
+    let reactions = || rows.iter().filter(|row| row.quantity == "reaction");
+    let force = largest(&mut reactions().map(|row| row.value));
+    let followed = rows
+        .iter()
+        .filter(|row| FOLLOWED.contains(&row.quantity.as_str()))
+        // With one crack its own maximum is the maximum of all.
+        .filter(|row| case.cracks.len() > 1 || !row.at.starts_with("crack-"));
+    followed
+        .map(|row| {
+            let (norm, scale) = match row.quantity.as_str() {
+                "reaction" => {
+                    let own = reactions().filter(|other| other.at == row.at);
+                    (own.map(|r| r.value.powi(2)).sum::<f64>().sqrt(), force)
+                }
+                "max_slip" | "max_gap" => (row.value.abs(), displacement),
+                _ => (row.value.abs(), now.strain_energy),
+            };
+            Value {
+                at: format!("{} {}", row.at, row.component).trim().to_owned(),
+                quantity: row.quantity.clone(),
+                value: row.value,
+                norm,
+                scale,
+            }
+        })
+        .collect()
+}
+
+/// Largest distance of neighbouring grid lines [m].
+pub(crate) fn cell_size(mesh: &GridSpec) -> f64 {
+    let lines = mesh.lines.iter().flat_map(|line| line.windows(2));
+    lines.map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+}

@@ -1,0 +1,90 @@
+//! Which tips a case has inside its body, how they are enriched, and what that means for the order.
+
+use std::collections::BTreeSet;
+
+use crate::case::{Case, CrackShape, Tip};
+
+/// How regular the exact solution is beside what the discretisation knows of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regularity {
+    /// No crack ends inside the body.
+    Smooth,
+    /// A tip without enrichment, or with enrichment that shrinks with the cells: the √r terms outside limit the order.
+    Tip,
+    /// Tips enriched within a fixed radius.
+    FixedRadius,
+}
+
+/// Name of the tip enrichments of a case in tables: that of each tip, `no-tips` where no crack ends inside the body.
+pub fn label(case: &Case) -> String {
+    let names: BTreeSet<String> = case
+        .cracks
+        .iter()
+        .filter(|crack| ends_inside(case, &crack.geometry))
+        .map(|crack| name(crack.tip))
+        .collect();
+    match names.len() {
+        0 => "no-tips".into(),
+        _ => names.into_iter().collect::<Vec<_>>().join("+"),
+    }
+}
+
+/// Name of an enrichment in tables, and on the command line: `none`, `branch` or the radius in m.
+fn name(tip: Tip) -> String {
+    match tip {
+        Tip::None => "none".into(),
+        Tip::Branch => "branch".into(),
+        Tip::Radius(radius) => radius.to_string(),
+    }
+}
+
+/// What limits the order: the worst enriched tip.
+pub fn regularity(case: &Case) -> Regularity {
+    let mut inside = case
+        .cracks
+        .iter()
+        .filter(|crack| ends_inside(case, &crack.geometry))
+        .peekable();
+    if inside.peek().is_none() {
+        Regularity::Smooth
+    } else if inside.all(|crack| matches!(crack.tip, Tip::Radius(_))) {
+        Regularity::FixedRadius
+    } else {
+        Regularity::Tip
+    }
+}
+
+/// Whether a crack has a tip or front inside the body.
+fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
+    let inside = |x: [f64; 2]| {
+        case.mesh.grid.lines.iter().zip(x).all(|(line, x)| {
+            let [low, high] = [line.first(), line.last()].map(|end| end.copied().unwrap_or(0.0));
+            // An end on the border is none, whatever the rounding.
+            let border = 1e-9 * (high - low);
+            low + border < x && x < high - border
+        })
+    };
+    match shape {
+        CrackShape::Polyline(points) => [points.first(), points.last()]
+            .into_iter()
+            .flatten()
+            .any(|&end| inside(end)),
+        CrackShape::Arc {
+            centre,
+            radius,
+            from,
+            to,
+        } => {
+            let closed = (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-12);
+            let end = |angle: &f64| {
+                [
+                    centre[0] + radius * angle.cos(),
+                    centre[1] + radius * angle.sin(),
+                ]
+            };
+            !closed && [from, to].into_iter().any(|angle| inside(end(angle)))
+        }
+        CrackShape::Ellipse { .. } => true,
+        CrackShape::Plane { .. } => false,
+    }
+}

@@ -1,0 +1,190 @@
+//! Between an increment and the problems of interchange files.
+
+pub mod export;
+pub mod problem_file;
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+use nalgebra::{DMatrix, DVector};
+use stickslip_methods::{
+    ContactState, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError, SymmetricMatrix,
+};
+
+use crate::files::{GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix};
+
+/// What a file gives a method.
+pub struct System {
+    /// The body.
+    pub elastic: Arc<Elastic>,
+    /// Friction coefficient per point.
+    pub friction: Vec<f64>,
+    /// The load on it; the increment starts from rest.
+    pub load: Load,
+}
+
+/// Local velocity (g, d) of a state: gaps, and slips since the start of the increment.
+pub fn local_velocity(increment: &Increment<'_>, state: &ContactState) -> Vec<f64> {
+    let dim = increment.system.dim();
+    let mut v = increment.jump(&state.u);
+    for (row, start) in increment.start_jump().into_iter().enumerate() {
+        if row % dim != 0 {
+            v[row] -= start;
+        }
+    }
+    v
+}
+
+/// An increment with its solution as local problem.
+pub fn local_problem(
+    increment: &Increment<'_>,
+    form: &LocalForm,
+    solution: &ContactState,
+    info: Info,
+) -> LocalProblem {
+    let rows = form.q.len();
+    let u = local_velocity(increment, solution);
+    // V is orthonormal: α = Vᵀ (u − q − W r).
+    let mut rest = vec![0.0; rows];
+    form.w.mul(&solution.p, &mut rest);
+    for ((rest, u), q) in rest.iter_mut().zip(&u).zip(&form.q) {
+        *rest = u - q - *rest;
+    }
+    let amplitude = |mode: &Vec<f64>| mode.iter().zip(&rest).map(|(v, x)| v * x).sum();
+    let count = form.modes.len();
+    LocalProblem {
+        dim: increment.system.dim(),
+        w: SparseMatrix::from_symmetric(&form.w),
+        q: form.q.clone(),
+        mu: increment.system.friction().to_vec(),
+        equality: (count > 0).then(|| LocalEquality {
+            v: SparseMatrix::from_dense_columns(rows, &form.modes),
+            r: SparseMatrix::from_dense(count, count, |_, _| 0.0),
+            s: form.balance.iter().map(|c| -c).collect(),
+        }),
+        info,
+        solution: Some(Solution {
+            v: Vec::new(),
+            u,
+            r: solution.p.clone(),
+            l: form.modes.iter().map(amplitude).collect(),
+        }),
+        guesses: Vec::new(),
+    }
+}
+
+/// An increment with its solution as global problem; `None` if only the Delassus operator is known.
+pub fn global_problem(
+    increment: &Increment<'_>,
+    solution: &ContactState,
+    info: Info,
+) -> Option<GlobalProblem> {
+    let elastic = increment.system.elastic();
+    let none = ContactState::zero(increment.system);
+    Some(GlobalProblem {
+        dim: increment.system.dim(),
+        m: SparseMatrix::from_symmetric(elastic.stiffness()?),
+        h: SparseMatrix::from_rows(elastic.jump()).transposed(),
+        f: increment.load.force.clone(),
+        w: local_velocity(increment, &none),
+        mu: increment.system.friction().to_vec(),
+        equality: None,
+        info,
+        solution: Some(Solution {
+            v: solution.u.clone(),
+            u: local_velocity(increment, solution),
+            r: solution.p.clone(),
+            l: Vec::new(),
+        }),
+        guesses: Vec::new(),
+    })
+}
+
+/// The body and load of a local problem.
+///
+/// V and s become rigid motions and a load f on the contact points with Vᵀ f = s, whose free jump W f is taken off q.
+///
+/// # Errors
+/// What [`Elastic::from_delassus`] refuses; R ≠ 0 is the caller's to refuse.
+pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
+    let rows = problem.q.len();
+    let w = problem.w.symmetric_part()?;
+    let (mut modes, mut force) = (Vec::new(), vec![0.0; rows]);
+    if let Some(equality) = &problem.equality {
+        modes = (0..equality.v.cols())
+            .map(|j| equality.v.column(j))
+            .collect();
+    }
+    let mut offset = problem.q.clone();
+    let elastic = Elastic::from_delassus(problem.dim, w, modes.clone())?;
+    if let Some(equality) = &problem.equality {
+        // Independent columns, which the body has just checked: Vᵀ V is regular.
+        let v = DMatrix::from_fn(rows, modes.len(), |i, j| modes[j][i]);
+        let y = (v.transpose() * &v)
+            .lu()
+            .solve(&DVector::from_column_slice(&equality.s));
+        let y = y.ok_or(MethodError::FreeRigidMotion { modes: modes.len() })?;
+        force.copy_from_slice((v * y).as_slice());
+        let mut free = force.clone();
+        elastic.solve(&mut free)?;
+        offset
+            .iter_mut()
+            .zip(&free)
+            .for_each(|(q, free)| *q -= free);
+    }
+    Ok(System {
+        elastic,
+        friction: problem.mu.clone(),
+        load: Load {
+            force,
+            offset,
+            traction: Vec::new(),
+        },
+    })
+}
+
+/// The body and load of a global problem. Tributary areas are not in the file and taken as 1.
+///
+/// # Errors
+/// What [`Elastic::new`] refuses; equality constraints are the caller's to refuse.
+pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
+    let stiffness = problem.m.symmetric_part()?;
+    let elastic = Elastic::new(ElasticParts {
+        dim: problem.dim,
+        jump: problem.h.transposed().as_rows()?,
+        weight: vec![1.0; problem.points()],
+        order: minimum_degree(&stiffness)?,
+        stiffness,
+        floating: Vec::new(),
+        frictionless: false,
+        traction: None,
+    })?;
+    Ok(System {
+        elastic,
+        friction: problem.mu.clone(),
+        load: Load {
+            force: problem.f.clone(),
+            offset: problem.w.clone(),
+            traction: Vec::new(),
+        },
+    })
+}
+
+/// Approximate minimum degree order: a file has no mesh to dissect (Amestoy, Davis, Duff 1996).
+fn minimum_degree(k: &SymmetricMatrix) -> Result<Vec<usize>, MethodError> {
+    let n = k.size();
+    let failed = |reason: String| MethodError::Kernel {
+        what: "elimination order",
+        reason,
+    };
+    let pattern = SymbolicSparseColMatRef::new_checked(n, n, k.col_ptr(), None, k.row_idx());
+    let request = amd::order_scratch::<usize>(n, k.row_idx().len());
+    let mut memory = MemBuffer::try_new(request).map_err(|_| failed("out of memory".to_owned()))?;
+    let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
+    let stack = MemStack::new(&mut memory);
+    amd::order(&mut order, &mut inverse, pattern, Default::default(), stack)
+        .map_err(|e| failed(format!("{e:?}")))?;
+    Ok(order)
+}

@@ -1,0 +1,230 @@
+//! One increment of a case as interchange files.
+
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
+};
+
+use crate::case::Case;
+use crate::files::{Info, InterchangeError, matrix_market};
+use crate::model::body::{Body, BodyError, Needs};
+use crate::model::loading::Loading;
+use crate::report::standard::problem_name;
+use crate::report::{Bundle, ReportError};
+use crate::run::attempt::Judged;
+use crate::run::record::RunKey;
+use crate::run::run_case::{Choice, RunError, friction_values};
+use crate::run::step::Solver;
+use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::exchange::{global_problem, local_problem};
+
+/// Which increment.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// Increment from 1; the last by default.
+    pub increment: Option<usize>,
+    /// Friction of all cracks; the case's by default.
+    pub friction: Option<f64>,
+    /// Refinement; the first of the case by default.
+    pub refine: Option<usize>,
+    /// Method that solves the increments up to this one.
+    pub choice: Choice,
+}
+
+/// Why there is nothing to export.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The case or its discretisation.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Writing.
+    #[error(transparent)]
+    Interchange(#[from] InterchangeError),
+    /// Names of files.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// No such increment.
+    #[error("--increment {asked}: `{case}` has the increments 1 to {last}")]
+    Increment {
+        /// Case.
+        case: String,
+        /// As given.
+        asked: usize,
+        /// Last one.
+        last: usize,
+    },
+    /// A case with several friction values.
+    #[error("`{case}` runs with μ = {values}: choose one with --friction")]
+    Friction {
+        /// Case.
+        case: String,
+        /// The values.
+        values: String,
+    },
+    /// The state the increment starts from, or its solution, is not to be had.
+    #[error("increment {increment} was not solved by {method} ({verdict}): try another --method")]
+    Unsolved {
+        /// Increment.
+        increment: usize,
+        /// Method.
+        method: String,
+        /// What became of it.
+        verdict: Verdict,
+    },
+}
+
+impl From<BodyError> for ExportError {
+    fn from(error: BodyError) -> Self {
+        ExportError::Run(error.into())
+    }
+}
+
+impl From<MethodError> for ExportError {
+    fn from(error: MethodError) -> Self {
+        BodyError::from(error).into()
+    }
+}
+
+/// Solves the increments up to the one asked for and puts that one into files; says their common name.
+///
+/// # Errors
+/// [`ExportError`]. Only solved increments are exported.
+pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), ExportError> {
+    let last = case.path.increments;
+    let wanted = request.increment.unwrap_or(last);
+    if !(1..=last).contains(&wanted) {
+        return Err(ExportError::Increment {
+            case: case.name.clone(),
+            asked: wanted,
+            last,
+        });
+    }
+    let per_crack = friction(case, request.friction)?;
+    let refine = request.refine.or(case.sweep.refine.first().copied());
+    // The files hold all rows, also where nothing rubs.
+    let needs = Needs {
+        frictionless: false,
+        traction: request.choice.needs_traction(),
+    };
+    let body = Body::new(case, refine.unwrap_or(1), needs)?;
+    let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
+    let system = ContactSystem::new(body.elastic.clone(), friction)?;
+    let mu = per_crack.first().copied().unwrap_or(0.0);
+    let loading = Loading::new(&body, case, mu)?;
+    let mut key = RunKey {
+        case: case.name.clone(),
+        mesh: body.label.clone(),
+        space: body.space.clone(),
+        method: request.choice.label.clone(),
+        friction: mu,
+        increment: 1,
+    };
+    let unsolved = |increment, verdict| ExportError::Unsolved {
+        increment,
+        method: request.choice.label.clone(),
+        verdict,
+    };
+    let accuracy = Accuracy::of(case, Tier::High);
+    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), accuracy, &key)
+        .map_err(|step| unsolved(1, step.verdict))?;
+    let mut state = ContactState::zero(&system);
+    let mut start_load = Load::zero(&body.elastic);
+    loop {
+        let load = loading.at(key.increment);
+        let increment = Increment {
+            system: &system,
+            load: &load,
+            start_load: &start_load,
+            start: &state,
+            index: key.increment - 1,
+            tolerance: accuracy.asked,
+        };
+        let step = solver.solve(&key, &increment);
+        let solved = step.answer.filter(|_| step.verdict == Verdict::Solved);
+        let Some(Judged { outcome, .. }) = solved else {
+            return Err(unsolved(key.increment, step.verdict));
+        };
+        if key.increment == wanted {
+            let name = format!("{}.increment-{wanted}", problem_name(&key));
+            let info = info(case, &key, &increment);
+            let bundle = files(&name, &increment, &outcome.state, info)?;
+            return Ok((name, bundle));
+        }
+        state = outcome.state;
+        start_load = load;
+        key.increment += 1;
+    }
+}
+
+/// Friction per crack.
+fn friction(case: &Case, given: Option<f64>) -> Result<Vec<f64>, ExportError> {
+    if let Some(mu) = given {
+        return Ok(vec![mu; case.cracks.len()]);
+    }
+    let mut all = friction_values(case);
+    if all.len() > 1 {
+        let values: Vec<String> = case.sweep.friction.iter().map(f64::to_string).collect();
+        return Err(ExportError::Friction {
+            case: case.name.clone(),
+            values: values.join(", "),
+        });
+    }
+    Ok(all.pop().unwrap_or_default())
+}
+
+fn info(case: &Case, key: &RunKey, increment: &Increment<'_>) -> Info {
+    let RunKey { mesh, space, .. } = key;
+    let force = if increment.system.dim() == 2 {
+        "N per metre of thickness"
+    } else {
+        "N"
+    };
+    let floating = increment.system.elastic().floating().len();
+    let kernel = match floating {
+        0 => "M is positive definite, W positive semi-definite".to_owned(),
+        n => format!(
+            "rigid motions: {n}; M is singular, W belongs to a pinned body, V spans their jumps"
+        ),
+    };
+    Info {
+        title: Some(case.title.clone()),
+        description: Some(format!(
+            "stickslip {}: {}, mesh {mesh}, {space}, friction {}, increment {}; quasi-static, u is gap and slip \
+             increment in m, r the force on the side the normal points to in {force}, compression positive, \
+             components normal first",
+            env!("CARGO_PKG_VERSION"),
+            key.case,
+            key.friction,
+            key.increment,
+        )),
+        math_info: Some(kernel),
+    }
+}
+
+/// Everything as files.
+fn files(
+    name: &str,
+    increment: &Increment<'_>,
+    solution: &ContactState,
+    info: Info,
+) -> Result<Bundle, ExportError> {
+    let form: LocalForm = increment.local_form()?;
+    let local = local_problem(increment, &form, solution, info.clone());
+    let mut bundle = Bundle::new();
+    bundle.add(format!("{name}.local.hdf5"), local.to_bytes()?)?;
+    let mut text = |part: &str, text: String| bundle.add(format!("{name}.{part}.mtx"), text);
+    text("W", matrix_market::symmetric(&local.w))?;
+    text("q", matrix_market::vector(&local.q))?;
+    text("mu", matrix_market::vector(&local.mu))?;
+    if let Some(equality) = &local.equality {
+        text("V", matrix_market::general(&equality.v))?;
+        text("s", matrix_market::vector(&equality.s))?;
+    }
+    if let Some(global) = global_problem(increment, solution, info) {
+        text("K", matrix_market::symmetric(&global.m))?;
+        text("B", matrix_market::general(&global.h.transposed()))?;
+        text("f", matrix_market::vector(&global.f))?;
+        text("offset", matrix_market::vector(&global.w))?;
+        bundle.add(format!("{name}.global.hdf5"), global.to_bytes()?)?;
+    }
+    Ok(bundle)
+}

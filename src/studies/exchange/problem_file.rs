@@ -1,0 +1,290 @@
+//! Runs of methods on problems from interchange files.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use stickslip_methods::{
+    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
+};
+
+use crate::files::{InterchangeError, Problem, fclib, matrix_market};
+use crate::report::{Bundle, ReportError, standard};
+use crate::run::record::{Results, RunKey};
+use crate::run::run_case::{Choice, Progress};
+use crate::run::step::{Setup, Solver};
+use crate::run::verdict::Accuracy;
+use crate::studies::exchange::{System, global_system, local_system, local_velocity};
+
+/// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
+/// bound an empty V would take memory that grows with the square of the file.
+const MOST_MOTIONS: usize = 60;
+
+/// A problem read and turned into a system.
+pub struct ProblemFile {
+    /// File name without `.hdf5`: the case of its runs.
+    pub name: String,
+    kind: &'static str,
+    path: PathBuf,
+    system: ContactSystem,
+    load: Load,
+    rest: Load,
+    start: ContactState,
+    setup: Setup,
+}
+
+/// Why a file cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum ProblemFileError {
+    /// Reading.
+    #[error(transparent)]
+    Interchange(#[from] InterchangeError),
+    /// A singular M: its kernel is not in the file.
+    #[error(
+        "`{}`: M is singular at unknown {unknown} of {size}: a global file cannot tell rigid motions, solve the \
+         local problem instead",
+        path.display()
+    )]
+    Singular {
+        /// Which file.
+        path: PathBuf,
+        /// Unknown whose pivot is not positive.
+        unknown: usize,
+        /// Number of unknowns.
+        size: usize,
+    },
+    /// The numbers make no system.
+    #[error("`{}`: {source}", path.display())]
+    System {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong.
+        source: MethodError,
+    },
+}
+
+impl ProblemFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ProblemFileError`], naming the file.
+    pub fn read(path: &Path) -> Result<Self, ProblemFileError> {
+        let clock = Instant::now();
+        let problem = fclib::read(path)?;
+        refuse_unsupported(path, &problem)?;
+        let failed = |source| match source {
+            MethodError::NotPositiveDefinite { unknown, size } => ProblemFileError::Singular {
+                path: path.into(),
+                unknown,
+                size,
+            },
+            source => ProblemFileError::System {
+                path: path.into(),
+                source,
+            },
+        };
+        let (kind, system) = match &problem {
+            Problem::Local(problem) => ("local", local_system(problem)),
+            Problem::Global(problem) => ("global", global_system(problem)),
+        };
+        let System {
+            elastic,
+            friction,
+            load,
+        } = system.map_err(failed)?;
+        // A singular M is bad input for every method; what the factor costs is counted as such all the same.
+        elastic.factorise().map_err(failed)?;
+        let system = ContactSystem::new(elastic, friction).map_err(failed)?;
+        let shared = system.elastic().timings();
+        let factor_s = shared.analysis_s + shared.factorisation_s;
+        Ok(Self {
+            name: name(path),
+            path: path.into(),
+            kind,
+            rest: Load::zero(system.elastic()),
+            start: ContactState::zero(&system),
+            system,
+            load,
+            setup: Setup {
+                setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
+                assembly_s: 0.0,
+            },
+        })
+    }
+
+    /// The problem as an increment from rest.
+    fn increment(&self, tolerance: f64) -> Increment<'_> {
+        Increment {
+            system: &self.system,
+            load: &self.load,
+            start_load: &self.rest,
+            start: &self.start,
+            index: 0,
+            tolerance,
+        }
+    }
+
+    /// Judges a reaction that another program found, from a MatrixMarket file with `dim` entries per point.
+    ///
+    /// # Errors
+    /// A file that is no such vector; a floating body, whose rigid motion no reaction tells.
+    pub fn judge(&self, reaction: &Path) -> Result<Residuals, ProblemFileError> {
+        let text = std::fs::read_to_string(reaction).map_err(|source| InterchangeError::Io {
+            path: reaction.into(),
+            source,
+        })?;
+        let vector = matrix_market::parse(reaction, &text)?;
+        let rows = self.load.offset.len();
+        if (vector.rows(), vector.cols()) != (rows, 1) {
+            return Err(InterchangeError::Shape {
+                path: reaction.into(),
+                rows: vector.rows(),
+                cols: vector.cols(),
+                allowed: format!("{rows} × 1"),
+            }
+            .into());
+        }
+        let elastic = self.system.elastic();
+        if !elastic.floating().is_empty() {
+            return Err(InterchangeError::Unsupported {
+                path: self.path.clone(),
+                what: "the body floats: a reaction alone does not tell its rigid motion".into(),
+            }
+            .into());
+        }
+        let p = vector.column(0);
+        let mut u = self.load.force.clone();
+        elastic.jump().mul_transpose_add(&p, &mut u);
+        let increment = self.increment(Tier::High.tolerance());
+        let judged =
+            (elastic.solve(&mut u)).and_then(|()| residuals(&increment, &ContactState { u, p }));
+        judged.map_err(|source| ProblemFileError::System {
+            path: self.path.clone(),
+            source,
+        })
+    }
+
+    /// Runs methods on the problem, from rest; solved ones leave their reaction r and local velocity u in `solutions/`.
+    ///
+    /// # Errors
+    /// Two methods of one name.
+    pub fn run(
+        &self,
+        choices: &[Choice],
+        tier: Tier,
+        progress: &dyn Progress,
+        solutions: &mut Bundle,
+    ) -> Result<Results, ReportError> {
+        let mut results = Results::default();
+        let accuracy = Accuracy::exactly(tier.tolerance());
+        let increment = self.increment(accuracy.asked);
+        for choice in choices {
+            let key = RunKey {
+                case: self.name.clone(),
+                mesh: self.kind.into(),
+                space: "fclib".into(),
+                method: choice.label.clone(),
+                friction: self.system.friction().first().copied().unwrap_or(0.0),
+                increment: 1,
+            };
+            let prepared = Solver::prepare(choice, &self.system, self.setup, accuracy, &key);
+            let step = match prepared {
+                Ok(mut solver) => solver.solve(&key, &increment),
+                Err(refused) => *refused,
+            };
+            progress.done(&format!("{} {}", self.name, choice.label));
+            results.runs.push(step.run);
+            results.history.extend(step.history);
+            if let Some(judged) = step.answer.filter(|_| step.verdict.is_honest()) {
+                let stem = standard::stem(&key);
+                let velocity = local_velocity(&increment, &judged.outcome.state);
+                for (part, values) in [("r", &judged.outcome.state.p), ("u", &velocity)] {
+                    let text = matrix_market::vector(values);
+                    solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
+                }
+            }
+        }
+        Ok(results)
+    }
+}
+
+/// File name without the extensions HDF5 files have.
+fn name(path: &Path) -> String {
+    let name = path
+        .file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy();
+    let stem = [".hdf5", ".h5"]
+        .iter()
+        .find_map(|end| name.strip_suffix(end));
+    stem.unwrap_or(&name).to_owned()
+}
+
+fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeError> {
+    let unsupported = |what: &str| InterchangeError::Unsupported {
+        path: path.into(),
+        what: what.into(),
+    };
+    match problem {
+        Problem::Local(problem) => {
+            let Some(equality) = &problem.equality else {
+                return Ok(());
+            };
+            let (motions, rows) = (equality.v.cols(), problem.q.len());
+            if motions > MOST_MOTIONS.min(rows) {
+                return Err(unsupported(&format!(
+                    "V has {motions} columns: with {rows} rows at most {} rigid motions are solved",
+                    MOST_MOTIONS.min(rows)
+                )));
+            }
+            if equality.r.entries().any(|e| e.2 != 0.0) {
+                return Err(unsupported(
+                    "R is not zero: only rigid motions (Vᵀ r + s = 0) are solved, not other unknowns",
+                ));
+            }
+            Ok(())
+        }
+        Problem::Global(problem) if problem.equality.is_some() => Err(unsupported(
+            "G is present: eliminate the equality constraints Gᵀ v + b = 0 first",
+        )),
+        Problem::Global(_) => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::{Info, LocalEquality, LocalProblem, SparseMatrix};
+
+    #[test]
+    fn more_rigid_motions_than_bodies_have_are_refused_before_they_are_expanded() {
+        for (points, motions, refusal) in [
+            (2000, 6000, Some("6000 columns: with 6000 rows at most 60 ")),
+            (1, 4, Some("4 columns: with 3 rows at most 3 ")),
+            (20, 60, None),
+        ] {
+            let rows = 3 * points;
+            let empty = |rows| SparseMatrix::from_triplets(rows, motions, []).unwrap();
+            let problem = Problem::Local(LocalProblem {
+                dim: 3,
+                w: SparseMatrix::from_triplets(rows, rows, []).unwrap(),
+                q: vec![0.0; rows],
+                mu: vec![0.3; points],
+                equality: Some(LocalEquality {
+                    v: empty(rows),
+                    r: empty(motions),
+                    s: vec![0.0; motions],
+                }),
+                info: Info::default(),
+                solution: None,
+                guesses: Vec::new(),
+            });
+            // Through the file, so that reading takes what it is said to take.
+            let path = Path::new("many.hdf5");
+            let read = fclib::from_bytes(path, problem.to_bytes().unwrap()).unwrap();
+            match (refuse_unsupported(path, &read), refusal) {
+                (Err(error), Some(part)) => assert!(error.to_string().contains(part), "{error}"),
+                (found, expected) => assert_eq!(found.is_ok(), expected.is_none(), "{found:?}"),
+            }
+        }
+    }
+}

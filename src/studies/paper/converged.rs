@@ -1,0 +1,107 @@
+//! Converged reactions of the paper's plate: stable multipliers, tips enriched within a fixed radius, on three meshes.
+//!
+//! Body, crack and supports are those of Table 1. Star multipliers hold the faces between the crossed edges too, and branch
+//! functions within 1.5 m of the tips take the √r field at any cell width: more than the coarsest cell, 0.91 m, so that
+//! every mesh enriches several rings of nodes, and far from the other tip, 13.5 m, and the sides, 5.2 m. What is left are the
+//! corners of the plate, where a held side meets a free one, with stresses like r^(λ−1) and reactions that converge like
+//! h^2λ:
+//!
+//! ```text
+//!   sin²(λ π/2) = (4 (1 − ν)² − λ²) / (3 − 4ν)      plane strain, ν = 0.3: λ = 0.711, order 1.42
+//! ```
+//!
+//! Williams, J. Appl. Mech. 19 (1952) 526. The third mesh is Mesh I turned by 20 degrees at its centre: the crack crosses its
+//! cells in every way.
+
+use stickslip_xfem::mesh::grid_motion::Twist;
+
+use super::{PaperError, case, choice};
+use crate::case::{Case, ContactSpace, Tip};
+use crate::report::converged::{ConvergedRow, SequenceRow};
+use crate::report::paper::Table1Row;
+use crate::run::run_case::Progress;
+use crate::studies::convergence::orders::{self, Kind};
+use crate::studies::convergence::{self, Study};
+
+/// Radius of the tip enrichment [m].
+const RADIUS: f64 = 1.5;
+/// Turn of the third mesh at its centre [degrees].
+const TURN: f64 = 20.0;
+/// Method.
+const METHOD: &str = "hybrid";
+/// Case, mesh in tables, whether it is turned, refinement factors: even ones would put the crack of Mesh II on a grid line.
+const MESHES: [(&str, &str, bool, &[usize]); 3] = [
+    ("plate_mesh1", "I", false, &[1, 2, 4, 8, 16]),
+    ("plate_mesh2", "II", false, &[1, 3, 7, 15]),
+    ("plate_mesh1", "I turned", true, &[1, 2, 4, 8, 16]),
+];
+
+/// Reactions on every mesh, and their limits beside the printed numbers of Table 1.
+pub fn rows(
+    printed: &[Table1Row],
+    progress: &dyn Progress,
+) -> Result<(Vec<SequenceRow>, Vec<ConvergedRow>), PaperError> {
+    let mut sequences = Vec::new();
+    let mut limits = Vec::new();
+    for (name, mesh, turned, factors) in MESHES {
+        let plate = plate(name, turned)?;
+        let study = Study {
+            refine: Some(factors.to_vec()),
+            spaces: Some(vec![ContactSpace::Star]),
+            tips: Some(vec![Tip::Radius(RADIUS)]),
+            choice: choice(METHOD, &[])?,
+        };
+        let samples = convergence::run(&plate, &study, &convergence::closed_form, progress)?;
+        let (errors, orders) = orders::rows(&samples);
+        // A mesh that is not solved has a row without quantity.
+        let wanted = |quantity: &str, at: &str| (quantity, at) == ("reaction", "top y");
+        let own = errors
+            .iter()
+            .filter(|row| wanted(&row.quantity, &row.at) || row.kind.is_none());
+        sequences.extend(own.map(|row| SequenceRow {
+            mesh: mesh.into(),
+            cells: row.mesh.clone(),
+            h_m: row.h,
+            friction: row.variant.friction,
+            dofs: row.dofs,
+            points: row.points,
+            // The support pushes down on the body; the paper prints the magnitude.
+            reaction_mn_per_m: -row.found / 1e6,
+            order: row.order,
+            verdict: row.verdict.clone(),
+        }));
+        for &friction in &plate.sweep.friction {
+            let found = orders.iter().find(|row| {
+                row.variant.friction == friction
+                    && wanted(&row.quantity, &row.at)
+                    && row.kind == Kind::Richardson
+            });
+            let printed = printed
+                .iter()
+                .find(|row| !turned && row.mesh == mesh && row.friction == friction)
+                .and_then(|row| row.printed_mn_per_m);
+            limits.push(ConvergedRow {
+                friction,
+                mesh: mesh.into(),
+                finest_h_m: found.map_or(f64::NAN, |row| row.finest_h),
+                order: found.map_or(f64::NAN, |row| row.order),
+                limit_mn_per_m: found.map_or(f64::NAN, |row| -row.reference / 1e6),
+                error_bar_mn_per_m: found.map_or(f64::NAN, |row| row.error_bar / 1e6),
+                printed_mn_per_m: printed,
+            });
+        }
+    }
+    Ok((sequences, limits))
+}
+
+/// The plate on one of the meshes.
+fn plate(name: &str, turned: bool) -> Result<Case, PaperError> {
+    let mut plate = case(name)?;
+    plate.expects.clear();
+    if turned {
+        plate.mesh.grid.twist = Some(Twist {
+            angle: TURN.to_radians(),
+        });
+    }
+    Ok(plate)
+}

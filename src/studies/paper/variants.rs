@@ -1,0 +1,139 @@
+//! The paper's plate and beam by every method and its variants: one table.
+
+use stickslip_methods::METHODS;
+
+use super::{PaperError, REFERENCE_METHOD, case, choice, value};
+use crate::report::comparison::VariantRow;
+use crate::run::record::{Results, RunKey, RunRow};
+use crate::run::run_case::{Choice, Progress, Settings, run_case};
+
+/// Case, friction coefficients, and what is compared: (quantity, at, component).
+const PROBLEMS: [(&str, &[f64], [&str; 3]); 2] = [
+    ("plate_mesh1", &[0.1, 0.8, 1.2], ["reaction", "top", "y"]),
+    ("beam_model1", &[0.1], ["displacement", "P4", "z"]),
+];
+
+/// Variants beside the defaults and the monolithic ones: one option changed.
+const VARIANTS: [(&str, &str, f64); 5] = [
+    ("socp", "polish", 0.0),
+    ("tresca", "polish", 0.0),
+    ("projection", "variant", 1.0),
+    ("nitsche", "theta", 0.0),
+    ("nitsche", "theta", -1.0),
+];
+
+/// The option of methods that can work on the matrix over all unknowns.
+const MONOLITHIC: &str = "monolithic";
+
+/// All rows; the defaults come from the runs of all cases, the variants are run here.
+pub fn rows(
+    results: &Results,
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Vec<VariantRow>, PaperError> {
+    let choices = variants()?;
+    let mut rows = Vec::new();
+    for (name, frictions, quantity) in PROBLEMS {
+        let mut problem = case(name)?;
+        problem.sweep.friction = frictions.to_vec();
+        problem.expects.clear();
+        let swept = run_case(&problem, &choices, settings, progress)?;
+        for &friction in frictions {
+            let reference = value_of(results, name, friction, REFERENCE_METHOD, quantity);
+            let row = |of, method| row(of, name, friction, method, quantity, reference);
+            rows.extend(METHODS.iter().map(|m| row(results, m.name)));
+            rows.extend(choices.iter().map(|c| row(&swept, &c.label)));
+        }
+    }
+    Ok(rows)
+}
+
+/// Every method that has a monolithic variant by it, then `VARIANTS`.
+fn variants() -> Result<Vec<Choice>, PaperError> {
+    let whole = METHODS
+        .iter()
+        .filter(|m| m.options.iter().any(|o| o.name == MONOLITHIC))
+        .map(|m| (m.name, MONOLITHIC, 1.0));
+    whole
+        .chain(VARIANTS)
+        .map(|(method, option, value)| choice(method, &[(option.into(), value)]))
+        .collect()
+}
+
+/// One row. A run that is missing must show.
+fn row(
+    of: &Results,
+    case: &str,
+    friction: f64,
+    method: &str,
+    quantity: [&str; 3],
+    reference: f64,
+) -> VariantRow {
+    let run = run_of(of, case, friction, method);
+    let found = value_of(of, case, friction, method, quantity);
+    VariantRow {
+        case: case.into(),
+        friction,
+        method: method.into(),
+        verdict: run.map_or_else(|| "not run".into(), |r| r.verdict.clone()),
+        quantity: quantity.join(" "),
+        value: found,
+        deviation: ((found - reference) / reference).abs(),
+        natural_map: run.map_or(f64::NAN, |r| r.natural_map),
+        iterations: run.map_or(0, |r| r.iterations),
+        tangent_factorisations: run.map_or(0, |r| r.tangent_factorisations),
+        global_factorisations: run.map_or(0, |r| r.global_factorisations),
+        solve_s: run.map_or(f64::NAN, |r| r.solve_s),
+    }
+}
+
+fn value_of(
+    results: &Results,
+    case: &str,
+    friction: f64,
+    method: &str,
+    [quantity, at, component]: [&str; 3],
+) -> f64 {
+    let key = |k: &RunKey| k.case == case && k.friction == friction && k.method == method;
+    value(results, key, quantity, at, component).unwrap_or(f64::NAN)
+}
+
+fn run_of<'a>(results: &'a Results, case: &str, friction: f64, method: &str) -> Option<&'a RunRow> {
+    let own =
+        |r: &&RunRow| r.key.case == case && r.key.friction == friction && r.key.method == method;
+    results.runs.iter().rfind(own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_with_a_monolithic_variant_is_run_by_it() {
+        let labels: Vec<String> = (variants().unwrap().into_iter()).map(|c| c.label).collect();
+        for method in METHODS {
+            let has = method.options.iter().any(|o| o.name == "monolithic");
+            let label = format!("{}[monolithic=1e0]", method.name);
+            assert_eq!(labels.contains(&label), has, "{label}: {labels:?}");
+        }
+    }
+
+    #[test]
+    fn a_missing_run_has_a_row_that_says_so() {
+        let quantity = PROBLEMS[0].2;
+        let row = row(
+            &Results::default(),
+            "plate_mesh1",
+            0.1,
+            "latin",
+            quantity,
+            1.0,
+        );
+        assert_eq!(
+            (row.verdict.as_str(), row.method.as_str()),
+            ("not run", "latin")
+        );
+        let numbers = [row.value, row.deviation, row.natural_map, row.solve_s];
+        assert!(numbers.iter().all(|x| x.is_nan()), "{row:?}");
+    }
+}

@@ -1,0 +1,240 @@
+//! Patch tests: bodies in uniform stress, whose contact tractions a sound contact space finds to rounding.
+//!
+//! ```text
+//!   traction error       max over the contact points |P/w − t|, t = −σ n in the frame of the point, over max |σ_ab|
+//!   displacement error   max |u_h − u| over the nodes and max |[[u_h]] − [[u]]| over the crack, over max |u|
+//! ```
+//!
+//! Taylor, Simo, Zienkiewicz & Chan, Int. J. Numer. Meth. Engng 22 (1986) 39, asked it of elements; of cut cells it asks
+//! more: the answer may not depend on how close the crack comes to a node. [`catalogue`] lists bodies and cracks, [`run`]
+//! runs them through the normal path of a case.
+
+mod catalogue;
+mod text;
+
+pub use catalogue::{DISTANCES, Loaded, Patch, State, catalogue, flat, solid};
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+use stickslip_methods::{ContactSystem, Tier};
+use stickslip_xfem::exact::{Field, Setting, solution};
+use stickslip_xfem::geometry::{dot, norm, sub};
+
+use crate::case::{Case, ContactSpace};
+use crate::model::body::{Body, BodyError, Needs};
+use crate::model::loading::Loading;
+use crate::model::quantities::Snapshot;
+use crate::model::sides::Sides;
+use crate::run::path::Path;
+use crate::run::record::RunKey;
+use crate::run::run_case::{Choice, Progress, RunError};
+use crate::run::verdict::Accuracy;
+
+/// Largest errors of a patch test that counts as passed.
+pub const PASSED: f64 = 1e-10;
+
+/// One patch test in one contact space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PatchRow {
+    /// What the crack does.
+    pub state: State,
+    /// What the boundary is given.
+    pub loaded: Loaded,
+    /// Space dimension.
+    pub dimension: usize,
+    /// Shape and direction of the crack.
+    pub crack: String,
+    /// Mesh.
+    pub mesh: String,
+    /// Distance of the crack from a node in cell sizes; positive with the node on side 2.
+    pub distance: f64,
+    /// Contact space; `node-pairs` where the crack runs along cell edges.
+    pub space: String,
+    /// Contact points; 0 if the body was refused.
+    pub points: usize,
+    /// Verdict on the run, or why there is no body to run.
+    pub verdict: String,
+    /// Traction error; NaN without an honest verdict.
+    pub traction: f64,
+    /// Displacement error; NaN without an honest verdict.
+    pub displacement: f64,
+}
+
+impl PatchRow {
+    /// Whether both errors are below [`PASSED`].
+    pub fn passed(&self) -> bool {
+        self.traction <= PASSED && self.displacement <= PASSED
+    }
+}
+
+/// Runs patch tests in some contact spaces, in the order given. A crack along cell edges has one row for all spaces.
+///
+/// # Errors
+/// A patch that is no case, or that its closed form does not hold for; what the discretisation refuses is a row.
+pub fn run(
+    patches: &[Patch],
+    spaces: &[ContactSpace],
+    choice: &Choice,
+    progress: &dyn Progress,
+) -> Result<Vec<PatchRow>, RunError> {
+    progress.plan(patches.len());
+    let of_patch = |patch: &Patch| -> Result<Vec<PatchRow>, RunError> {
+        let mut rows: Vec<PatchRow> = Vec::new();
+        let mut seen = BTreeSet::new();
+        let mut case = patch.case()?;
+        for &space in spaces {
+            case.cracks.iter_mut().for_each(|c| c.contact = space);
+            let row = run_one(patch, &case, space, choice)?;
+            if seen.insert(row.space.clone()) {
+                rows.push(row);
+            }
+        }
+        progress.done(&patch.to_string());
+        Ok(rows)
+    };
+    let rows: Vec<Vec<PatchRow>> = patches.par_iter().map(of_patch).collect::<Result<_, _>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// One patch test in the contact space of its case.
+fn run_one(
+    patch: &Patch,
+    case: &Case,
+    space: ContactSpace,
+    choice: &Choice,
+) -> Result<PatchRow, RunError> {
+    let mut row = PatchRow {
+        state: patch.state,
+        loaded: patch.loaded,
+        dimension: case.model.dim(),
+        crack: patch.crack.clone(),
+        mesh: patch.mesh.clone(),
+        distance: patch.distance,
+        space: space.name().to_owned(),
+        points: 0,
+        verdict: String::new(),
+        traction: f64::NAN,
+        displacement: f64::NAN,
+    };
+    let friction = case.cracks.first().map_or(0.0, |c| c.friction);
+    let needs = Needs {
+        frictionless: friction == 0.0,
+        traction: choice.needs_traction(),
+    };
+    let body = match Body::new(case, 1, needs) {
+        Ok(body) => body,
+        Err(refused) => {
+            row.verdict = format!("refused: {refused}");
+            return Ok(row);
+        }
+    };
+    row.space.clone_from(&body.space);
+    row.points = body.points.len();
+    let own = vec![friction; body.points.len()];
+    let system = ContactSystem::new(body.elastic.clone(), own).map_err(BodyError::from)?;
+    let loading = Loading::new(&body, case, friction)?;
+    let mut key = RunKey {
+        case: case.name.clone(),
+        mesh: body.label.clone(),
+        space: body.space.clone(),
+        method: choice.label.clone(),
+        friction,
+        increment: 1,
+    };
+    let path = Path {
+        case,
+        loading: &loading,
+        system: &system,
+        choice,
+        accuracy: Accuracy::of(case, Tier::High),
+    };
+    let mut last = None;
+    path.follow(&mut key, &mut |_, ended| {
+        row.verdict = ended.verdict.to_string();
+        last = ended.now.cloned();
+    });
+    let Some(now) = last else { return Ok(row) };
+    let hydrostatic;
+    let field = match loading.exact(loading.increments()) {
+        Some(field) => field,
+        None => {
+            hydrostatic = pressed(case)?;
+            hydrostatic.as_ref()
+        }
+    };
+    row.traction = traction_error(&body, field, &now);
+    row.displacement = displacement_error(case, &body, field, &now);
+    Ok(row)
+}
+
+/// Hydrostatic pressure about the middle of the first crack: the closed form of several cracks.
+fn pressed(case: &Case) -> Result<Box<dyn Field>, RunError> {
+    let refuse = |message: String| {
+        let allowed = "a body in hydrostatic pressure";
+        RunError::from(case.error(&case.mesh.span, &case.title, allowed, message))
+    };
+    let (Some(spec), Some(crack)) = (solution("uniform-stress"), case.cracks.first()) else {
+        return Err(refuse("no crack, or no closed form".into()));
+    };
+    let setting = Setting {
+        material: case.material,
+        model: case.model,
+        friction: 0.0,
+        crack: &crack.geometry,
+        body: [[0.0; 3]; 2],
+    };
+    let value = |name: &str, default: Option<f64>| match name {
+        "stress_xx_pa" | "stress_yy_pa" => -text::PRESSURE,
+        _ => default.unwrap_or_default(),
+    };
+    let parameters = spec.parameters.iter();
+    let stress: Vec<f64> = parameters.map(|p| value(p.name, p.default)).collect();
+    let solution = (spec.build)(&setting, &stress).map_err(refuse)?;
+    solution.at(&[1.0]).map_err(refuse)
+}
+
+/// The larger of two numbers; NaN if one is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}
+
+fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
+    let dim = body.mesh.dim();
+    let (mut worst, mut size) = (0.0, 0.0);
+    for (point, p) in body.points.iter().zip(now.p.chunks_exact(dim)) {
+        let stress = field.stress(&point.x, 1.0);
+        let on_normal = stress.map(|row| dot(&row, &point.frame[0]));
+        let difference: Vec<f64> = (0..dim)
+            .map(|k| p[k] / point.weight + dot(&point.frame[k], &on_normal))
+            .collect();
+        worst = larger(worst, difference.iter().map(|d| d * d).sum::<f64>().sqrt());
+        let components = stress.as_flattened().iter();
+        size = components.fold(size, |m: f64, s| m.max(s.abs()));
+    }
+    worst / size
+}
+
+fn displacement_error(case: &Case, body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
+    let dim = body.mesh.dim();
+    let integrator = body.integrator();
+    let sides = Sides::new(case, &integrator);
+    let (mut worst, mut size) = (0.0, 0.0);
+    for (node, x) in body.mesh.nodes.iter().enumerate() {
+        let side = sides.as_ref().map_or(1.0, |s| s.of_node(node));
+        let exact = field.displacement(x, side);
+        let mut found = [0.0; 3];
+        found[..dim].copy_from_slice(&now.u[node * dim..(node + 1) * dim]);
+        worst = larger(worst, norm(&sub(&found, &exact)));
+        size = larger(size, norm(&exact));
+    }
+    for q in &body.surface.quadrature {
+        let found = q.local(&q.jump(&integrator, &now.u));
+        worst = larger(worst, norm(&sub(&found, &field.jump(&q.x))));
+    }
+    worst / size
+}

@@ -1,0 +1,248 @@
+//! Random cracked bodies: plates with one straight crack, blocks parted by one plane, pushed, pulled and sheared.
+//!
+//! A body is a case file like any other, so that whatever fails on one can be looked at with `stickslip run`. The unit
+//! square or cube has E = 1 Pa and a random Poisson's ratio; its bottom is held, its top is moved and one side carries a
+//! traction. Every load is independent of the others: increment k of the path is load k.
+
+use std::fmt::Write;
+use std::ops::RangeInclusive;
+
+pub use stickslip_xfem::mesh::stream::Stream;
+
+/// What kind of bodies to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kind {
+    /// 2 or 3.
+    pub dim: usize,
+    /// Fewest and most cells per axis.
+    pub cells: RangeInclusive<usize>,
+    /// Steepest slope of the plane of a block along each of x and y. The steeper, the more cell edges are crossed that
+    /// share nodes, and the closer the Delassus operator is to singular.
+    pub slope: f64,
+}
+
+/// A random body with its random loads, before discretisation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// 2 or 3.
+    pub dim: usize,
+    poisson: f64,
+    cells: Vec<usize>,
+    /// The `[[crack]]` table without friction.
+    crack: String,
+    /// Region of the traction, as keys of `[[load]]`.
+    side: String,
+    loads: Vec<Load>,
+}
+
+/// One load, `dim` components each.
+#[derive(Debug, Clone, PartialEq)]
+struct Load {
+    /// Displacement of the top [m].
+    top: Vec<f64>,
+    /// Traction on the side [Pa].
+    traction: Vec<f64>,
+}
+
+impl Specimen {
+    /// A plate (2D) or block (3D) with a number of loads.
+    pub fn draw(kind: &Kind, loads: usize, stream: &mut Stream) -> Self {
+        let dim = kind.dim;
+        let poisson = stream.between(0.0, 0.45);
+        let cells: Vec<usize> = (0..dim)
+            .map(|_| stream.whole(*kind.cells.start(), *kind.cells.end()))
+            .collect();
+        let (crack, side) = if dim == 2 {
+            plate(&cells, stream)
+        } else {
+            block(&cells, kind.slope, stream)
+        };
+        let loads = (0..loads).map(|_| Load::draw(dim, stream)).collect();
+        Self {
+            dim,
+            poisson,
+            cells,
+            crack,
+            side,
+            loads,
+        }
+    }
+
+    /// The case file whose increment k is load `loads[k − 1]`, run for each of the friction coefficients.
+    pub fn case(&self, loads: &[usize], friction: &[f64]) -> String {
+        let dim = self.dim;
+        let (model, zeros, ones) = match dim {
+            2 => ("plane-strain", "[0, 0]", "[1, 1]"),
+            _ => ("solid", "[0, 0, 0]", "[1, 1, 1]"),
+        };
+        let mut text = format!(
+            "title = \"Random body\"\nmodel = \"{model}\"\n\n[material]\nyoung_pa = 1\npoisson = {}\n\n\
+             [mesh.box]\nmin_m = {zeros}\nmax_m = {ones}\ncells = {:?}\n\n\
+             [[crack]]\n{}friction = {:?}\n\n[[support]]\non = \"bottom\"\ndisplacement_m = {zeros}\n",
+            self.poisson,
+            self.cells,
+            self.crack,
+            friction.first().copied().unwrap_or(0.0),
+        );
+        // One table per component: their histories are independent.
+        for a in 0..dim {
+            let unit = |other: &str| {
+                let entry = |b: usize| if a == b { "1" } else { other };
+                (0..dim).map(entry).collect::<Vec<_>>().join(", ")
+            };
+            let history = |value: &dyn Fn(&Load) -> f64| {
+                let point = |(k, &load): (usize, &usize)| {
+                    format!("[{}, {:?}]", k + 1, value(&self.loads[load]))
+                };
+                let points: Vec<String> = loads.iter().enumerate().map(point).collect();
+                points.join(", ")
+            };
+            // Writing to a string cannot fail.
+            let _ = write!(
+                text,
+                "\n[[support]]\non = \"top\"\ndisplacement_m = [{}]\nhistory = [{}]\n\
+                 \n[[load]]\n{}traction_pa = [{}]\nhistory = [{}]\n",
+                unit("\"free\""),
+                history(&|load| load.top[a]),
+                self.side,
+                unit("0"),
+                history(&|load| load.traction[a]),
+            );
+        }
+        text + &format!(
+            "\n[path]\nincrements = {0}\nend = {0}\n\n[sweep]\nfriction = {friction:?}\n",
+            loads.len()
+        )
+    }
+}
+
+impl Load {
+    fn draw(dim: usize, stream: &mut Stream) -> Self {
+        let last = dim - 1;
+        let top = (0..dim).map(|a| {
+            if a == last {
+                stream.between(-2e-3, 5e-4)
+            } else {
+                stream.between(-1.5e-3, 1.5e-3)
+            }
+        });
+        let top = top.collect();
+        let traction = (0..dim).map(|_| stream.between(-1e-3, 1e-3)).collect();
+        Self { top, traction }
+    }
+}
+
+/// Contact space of all bodies: stated, so that a study does not move with the default.
+const SPACE: &str = "contact = \"edge-pairs\"\n";
+
+/// Crack and loaded region of a plate: the crack lies inside, ends at a side, runs through, or joins grid points.
+fn plate(cells: &[usize], stream: &mut Stream) -> (String, String) {
+    let (p, q) = match stream.whole(0, 3) {
+        0 => {
+            let (angle, half) = (
+                stream.between(0.0, std::f64::consts::PI),
+                stream.between(0.25, 0.45),
+            );
+            let (x, y) = (stream.between(0.4, 0.6), stream.between(0.4, 0.6));
+            let (c, s) = (half * angle.cos(), half * angle.sin());
+            ([x - c, y - s], [x + c, y + s])
+        }
+        1 => (
+            [-0.1, stream.between(0.1, 0.9)],
+            [stream.between(0.4, 0.9), stream.between(0.1, 0.9)],
+        ),
+        2 => (
+            [-0.1, stream.between(0.1, 0.9)],
+            [1.1, stream.between(0.1, 0.9)],
+        ),
+        _ => {
+            let mut node = |a: usize, low: f64, high: f64| {
+                (stream.between(low, high) * cells[a] as f64).round() / cells[a] as f64
+            };
+            (
+                [node(0, 0.0, 0.3), node(1, 0.1, 0.9)],
+                [node(0, 0.7, 1.0), node(1, 0.1, 0.9)],
+            )
+        }
+    };
+    let tip = if stream.chance(0.6) { "branch" } else { "none" };
+    let crack = format!("points_m = [{p:?}, {q:?}]\ntip = \"{tip}\"\n{SPACE}");
+    let side = if stream.chance(0.5) { "left" } else { "right" };
+    (crack, region(side, "y", stream))
+}
+
+/// The same for a block, every fifth plane along grid lines.
+fn block(cells: &[usize], steepest: f64, stream: &mut Stream) -> (String, String) {
+    let (normal, height) = if stream.chance(0.2) {
+        let row = stream.whole(1, cells[2] - 1);
+        ([0.0, 0.0, 1.0], row as f64 / cells[2] as f64)
+    } else {
+        let mut slope = || stream.between(-steepest, steepest);
+        ([slope(), slope(), 1.0], stream.between(0.35, 0.65))
+    };
+    let crack =
+        format!("plane = {{ point_m = [0.5, 0.5, {height:?}], normal = {normal:?} }}\n{SPACE}");
+    let side = ["left", "right", "front", "back"][stream.whole(0, 3)];
+    (crack, region(side, "z", stream))
+}
+
+/// A side, or its part above a height, as keys of `[[load]]`.
+fn region(side: &str, up: &str, stream: &mut Stream) -> String {
+    if stream.chance(0.5) {
+        format!("on = \"{side}\"\n")
+    } else {
+        let height = stream.between(0.3, 0.7);
+        format!("on = \"{side}\"\nwhere = \"{up} >= {height:?}\"\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case;
+
+    fn kind(dim: usize) -> Kind {
+        Kind {
+            dim,
+            cells: 2..=9,
+            slope: 0.8,
+        }
+    }
+
+    #[test]
+    fn streams_of_one_seed_differ_and_can_be_made_alone() {
+        let draw = |seed, number| {
+            let mut stream = Stream::numbered(seed, number);
+            Specimen::draw(&kind(2), 3, &mut stream)
+        };
+        assert_eq!(draw(1, 5), draw(1, 5));
+        assert_ne!(draw(1, 5), draw(1, 6));
+        assert_ne!(draw(1, 5), draw(2, 5));
+    }
+
+    #[test]
+    fn specimens_are_valid_cases_and_a_load_taken_alone_keeps_its_bits() {
+        for dim in [2, 3] {
+            let mut stream = Stream::new(3);
+            for _ in 0..50 {
+                let specimen = Specimen::draw(&kind(dim), 3, &mut stream);
+                let parse = |loads: &[usize]| {
+                    let text = specimen.case(loads, &[0.0, 0.3]);
+                    case::parse("random.toml", text).unwrap_or_else(|e| panic!("{e}"))
+                };
+                let (all, alone) = (parse(&[0, 1, 2]), parse(&[1]));
+                assert_eq!(all.path.increments, 3);
+                for (a, b) in all.supports.iter().zip(&alone.supports) {
+                    assert_eq!(a.displacement, b.displacement);
+                    // The bottom is held at zero by the default history.
+                    let mut amounts = a.displacement.iter().flatten();
+                    let held = amounts.all(|&u| u == case::Amount::Number(0.0));
+                    assert!(held || a.history.factor(2.0, 3.0) == b.history.factor(1.0, 1.0));
+                }
+                for (a, b) in all.loads.iter().zip(&alone.loads) {
+                    assert_eq!(a.history.factor(2.0, 3.0), b.history.factor(1.0, 1.0));
+                }
+            }
+        }
+    }
+}

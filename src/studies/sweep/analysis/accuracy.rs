@@ -1,0 +1,241 @@
+//! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
+//!
+//! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy,
+//! or the first quantity that is followed, against its limit, see [`orders`]. Methods that
+//! solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
+//! modelling error of the others would hide that of the mesh.
+
+use super::{
+    body_times, common_tolerance, compare_methods, compare_problems, has_defaults, is_honest,
+    problems, published_times,
+};
+use crate::model::errors::Deviation;
+use crate::run::verdict::Verdict;
+use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
+use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Value, Variant};
+use crate::studies::sweep::cell::Problem;
+use crate::studies::sweep::record::{DeviationFound, ProblemSize, Record};
+
+/// Quantity of the closed form that is followed.
+const NORM: &str = "energy";
+/// Quantity that is followed without one, where there is a choice.
+const FUNCTIONAL: &str = "strain_energy";
+
+/// One case, contact space and friction on several meshes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// The problem on its coarsest mesh.
+    pub coarsest: Problem,
+    /// Dimension of the body.
+    pub dim: usize,
+    /// By method and mesh, with the times that may be shown.
+    pub errors: Vec<ErrorRow>,
+    /// By method.
+    pub orders: Vec<OrderRow>,
+}
+
+/// All sequences of at least two meshes with something to measure.
+pub fn refinements(records: &[Record]) -> Vec<Refinement> {
+    let meshes = sequences(records);
+    meshes
+        .iter()
+        .filter_map(|meshes| refinement(records, meshes))
+        .collect()
+}
+
+/// Problems that differ in their mesh alone, from coarse to fine; at least two each.
+pub fn sequences(records: &[Record]) -> Vec<Vec<Problem>> {
+    let mut all = problems(records);
+    all.sort_by(|a, b| {
+        compare_problems(&a.without_mesh(), &b.without_mesh()).then(a.refine.cmp(&b.refine))
+    });
+    let sequences = all.chunk_by(|a, b| a.without_mesh() == b.without_mesh());
+    let several = sequences.filter(|meshes| meshes.len() > 1);
+    several.map(<[Problem]>::to_vec).collect()
+}
+
+fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
+    let exact = |r: &&Record| r.found.exact && has_defaults(&r.cell);
+    let own: Vec<&Record> = records.iter().filter(exact).collect();
+    let on = |mesh: &Problem| -> Vec<f64> {
+        let own = own.iter().filter(|r| r.cell.problem() == *mesh);
+        own.map(|r| r.cell.tolerance).collect()
+    };
+    let tolerance = common_tolerance(&meshes.iter().map(on).collect::<Vec<_>>())?;
+    let mut finest = own;
+    finest.retain(|r| {
+        r.cell.tolerance == tolerance && is_honest(r) && meshes.contains(&r.cell.problem())
+    });
+    finest.sort_by(|a, b| {
+        compare_methods(&a.cell.method, &b.cell.method).then(a.cell.refine.cmp(&b.cell.refine))
+    });
+    let samples = finest.iter().filter_map(|record| sample(record, records));
+    let samples: Vec<Sample> = samples.collect();
+    let (errors, orders) = orders::rows(&samples);
+    Some(Refinement {
+        coarsest: meshes.first()?.clone(),
+        dim: samples.first()?.dim,
+        errors,
+        orders,
+    })
+}
+
+fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
+    let found = &record.found;
+    let ProblemSize {
+        mesh,
+        space,
+        h_m,
+        dim,
+        dofs,
+        points,
+        ..
+    } = found.problem.clone()?;
+    Some(Sample {
+        variant: Variant {
+            case: record.cell.case.clone(),
+            space,
+            tip: String::new(),
+            method: found.method.clone(),
+            friction: record.cell.mu(),
+        },
+        // Only theory asks for it, and records do not know it.
+        regularity: Regularity::Tip,
+        mesh,
+        refine: record.cell.refine,
+        h: h_m,
+        dim,
+        dofs,
+        points,
+        verdict: Verdict::Solved,
+        seconds: seconds(record, records),
+        measured: measured(record)?,
+    })
+}
+
+fn measured(record: &Record) -> Option<Measured> {
+    let found = &record.found;
+    let norm = |d: &&DeviationFound| d.quantity == NORM && d.at.is_empty();
+    if let Some(deviation) = found.deviations.iter().find(norm) {
+        return Some(Measured::Exact(vec![Deviation {
+            quantity: NORM,
+            at: String::new(),
+            found: deviation.found.unwrap_or(f64::NAN),
+            exact: deviation.exact,
+            error: deviation.error.unwrap_or(f64::NAN),
+        }]));
+    }
+    let chosen = found.values.iter().find(|v| v.quantity == FUNCTIONAL);
+    let value = chosen.or_else(|| found.values.first())?;
+    Some(Measured::Values(vec![Value {
+        quantity: value.quantity.clone(),
+        at: value.at.clone(),
+        value: value.value,
+        norm: value.norm,
+        scale: value.scale,
+    }]))
+}
+
+/// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
+fn seconds(record: &Record, records: &[Record]) -> Seconds {
+    let times = body_times(record, records).zip(published_times(record));
+    times.map_or(
+        Seconds::NONE,
+        |([setup, assembly, factorisation], spent)| Seconds {
+            setup,
+            assembly,
+            factorisation,
+            condensation: spent.condensation_s,
+            prepare: spent.prepare.median_s,
+            solve: spent.solve.median_s,
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::support::{record, timed};
+    use super::*;
+    use crate::studies::convergence::orders::Kind;
+    use crate::studies::sweep::record::ValueFound;
+
+    fn mesh(refine: usize, method: &str, tolerance: f64) -> Record {
+        let mut record = timed(record("a", method, tolerance), 1.0);
+        record.cell.refine = refine;
+        let size = record.found.problem.as_mut().unwrap();
+        size.h_m = 0.4 / refine as f64;
+        record
+    }
+
+    fn with_error(mut record: Record, error: f64) -> Record {
+        record.found.deviations.push(DeviationFound {
+            quantity: "energy".into(),
+            at: String::new(),
+            found: Some(1.0),
+            exact: 1.0,
+            error: Some(error),
+        });
+        record
+    }
+
+    /// Source: the numbers of `timed`: 0.13 s of stages, 1 s of the method; errors ~ h.
+    #[test]
+    fn errors_of_the_closed_form_stand_beside_total_times() {
+        let records: Vec<Record> = [1, 2, 4]
+            .map(|refine| with_error(mesh(refine, "latin", 1e-9), 0.1 / refine as f64))
+            .into();
+        let found = refinements(&records);
+        let [one] = &found[..] else {
+            panic!("{found:?}")
+        };
+        let errors: Vec<f64> = one.errors.iter().map(|row| row.error).collect();
+        assert_eq!(errors, [0.1, 0.05, 0.025]);
+        for row in &one.errors {
+            assert!((row.seconds.total() - 1.13).abs() < 1e-12);
+            assert_eq!(row.kind, Some(Kind::Exact));
+        }
+        assert!((one.orders[0].order - 1.0).abs() < 1e-12);
+    }
+
+    /// Source: a power law, E(h) = 3 + h²: errors h²/E of the finest mesh.
+    #[test]
+    fn without_closed_form_the_limit_is_the_reference() {
+        let records: Vec<Record> = [1, 2, 4]
+            .map(|refine| {
+                let mut record = mesh(refine, "latin", 1e-9);
+                let h = record.found.problem.as_ref().unwrap().h_m;
+                record.found.values.push(ValueFound {
+                    quantity: "strain_energy".into(),
+                    at: String::new(),
+                    value: 3.0 + h * h,
+                    norm: 3.0,
+                    scale: 3.0,
+                });
+                record
+            })
+            .into();
+        let found = refinements(&records);
+        for (row, h) in found[0].errors.iter().zip([0.4f64, 0.2, 0.1]) {
+            assert_eq!(row.kind, Some(Kind::Richardson));
+            assert!((row.error - h * h / 3.0).abs() < 1e-9, "{row:?}");
+        }
+    }
+
+    #[test]
+    fn coarse_tolerances_and_approximate_methods_are_left_out() {
+        let mut records = Vec::new();
+        for refine in [1, 2] {
+            records.push(with_error(mesh(refine, "latin", 1e-3), 0.5));
+            records.push(with_error(mesh(refine, "latin", 1e-9), 0.1));
+            records.push(with_error(mesh(refine, "penalty", 1e-9), 0.2));
+            records.push(with_error(mesh(refine, "latin:k=2", 1e-9), 0.3));
+        }
+        let errors: Vec<f64> = refinements(&records)[0]
+            .errors
+            .iter()
+            .map(|r| r.error)
+            .collect();
+        assert_eq!(errors, [0.1, 0.1]);
+        assert!(refinements(&records[..4]).is_empty(), "one mesh");
+    }
+}

@@ -1,0 +1,254 @@
+//! What a right answer costs, by problem and method.
+
+use super::test_set::TestSet;
+use super::{is_correct, method_time, published_times};
+use crate::studies::sweep::record::Record;
+
+/// What is counted as cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Measure {
+    /// Time of the method, preparation and all increments [s].
+    Time,
+    /// Iterations of the method, which are not alike: a sweep, a Newton step, a cone program.
+    Iterations,
+    /// Evaluations of the contact law at one point.
+    LocalSolves,
+    /// Dense factorisations of condensed matrices.
+    DenseFactorisations,
+}
+
+impl Measure {
+    /// Those that every machine finds alike.
+    pub const COUNTERS: [Measure; 3] = [
+        Measure::Iterations,
+        Measure::LocalSolves,
+        Measure::DenseFactorisations,
+    ];
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Measure::Time => "time",
+            Measure::Iterations => "iterations",
+            Measure::LocalSolves => "local_solves",
+            Measure::DenseFactorisations => "tangent_factorisations",
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Measure::Time => "time of the method",
+            Measure::Iterations => "iterations",
+            Measure::LocalSolves => "evaluations of the contact law",
+            Measure::DenseFactorisations => "dense factorisations",
+        }
+    }
+
+    /// Cost of a cell whatever its answer is worth; none of a time that may not be shown. Counters begin at 1: a ratio to
+    /// nothing at all would say nothing.
+    fn of(self, record: &Record) -> Option<Cost> {
+        let found = &record.found;
+        let count = match self {
+            Measure::Time => {
+                let time = method_time(published_times(record)?);
+                return Some(Cost {
+                    value: time.median_s,
+                    low: time.low_s,
+                    high: time.high_s,
+                });
+            }
+            Measure::Iterations => found.sum(|i| i.iterations),
+            Measure::LocalSolves => found.sum(|i| i.local_solves),
+            Measure::DenseFactorisations => found.sum(|i| i.tangent_factorisations),
+        };
+        Some(Cost::exactly(1.0 + count as f64))
+    }
+}
+
+/// A cost and the interval it is known to lie in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// Median of a time.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Cost {
+    /// A cost without uncertainty.
+    pub fn exactly(value: f64) -> Self {
+        Self {
+            value,
+            low: value,
+            high: value,
+        }
+    }
+
+    /// Whether the intervals have a point in common: then neither is cheaper.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        !self.is_below(other) && !other.is_below(self)
+    }
+
+    /// Whether it is cheaper beyond the intervals.
+    pub fn is_below(&self, other: &Self) -> bool {
+        self.high < other.low
+    }
+
+    /// Width of the interval relative to the value.
+    pub fn relative_width(&self) -> f64 {
+        (self.high - self.low) / self.value
+    }
+}
+
+/// Costs of the right answers of a test set.
+#[derive(Debug, Clone)]
+pub struct Costs<'a> {
+    /// What is counted.
+    pub measure: Measure,
+    /// Methods, as in the test set.
+    pub methods: Vec<&'a str>,
+    /// By problem and method; none where the answer is not right to the tier.
+    pub costs: Vec<Vec<Option<Cost>>>,
+    /// The records, like `costs`.
+    pub records: Vec<Vec<&'a Record>>,
+    /// Problems left out: a right answer has no time, or the times come from different machines.
+    pub untimed: usize,
+}
+
+impl<'a> Costs<'a> {
+    /// Costs of a test set.
+    pub fn new(set: &TestSet<'a>, measure: Measure) -> Self {
+        let mut all = Self {
+            measure,
+            methods: set.methods.clone(),
+            costs: Vec::new(),
+            records: Vec::new(),
+            untimed: 0,
+        };
+        for row in &set.records {
+            let correct = |r: &&&Record| is_correct(r, set.tier);
+            let right: Vec<&&Record> = row.iter().filter(correct).collect();
+            let known = right.iter().all(|r| measure.of(r).is_some());
+            let on = |r: &Record| (r.origin.machine.clone(), r.origin.profile.clone());
+            let comparable =
+                measure != Measure::Time || right.windows(2).all(|r| on(r[0]) == on(r[1]));
+            if !known || !comparable {
+                all.untimed += 1;
+                continue;
+            }
+            let cost = |r: &&Record| is_correct(r, set.tier).then(|| measure.of(r)).flatten();
+            all.costs.push(row.iter().map(cost).collect());
+            all.records.push(row.clone());
+        }
+        all
+    }
+
+    /// The costs of some methods alone, given by their places.
+    pub fn of_methods(&self, methods: &[usize]) -> Self {
+        fn chosen<T: Copy>(methods: &[usize], row: &[T]) -> Vec<T> {
+            methods.iter().map(|m| row[*m]).collect()
+        }
+        let costs = self.costs.iter().map(|row| chosen(methods, row));
+        let records = self.records.iter().map(|row| chosen(methods, row));
+        Self {
+            measure: self.measure,
+            methods: chosen(methods, &self.methods),
+            costs: costs.collect(),
+            records: records.collect(),
+            untimed: self.untimed,
+        }
+    }
+
+    /// How many problems.
+    pub fn problems(&self) -> usize {
+        self.costs.len()
+    }
+
+    /// How many problems no method solved.
+    pub fn unsolved(&self) -> usize {
+        let unsolved = |row: &&Vec<Option<Cost>>| row.iter().all(Option::is_none);
+        self.costs.iter().filter(unsolved).count()
+    }
+
+    /// Median of the relative widths of all intervals; NaN without any.
+    pub fn median_width(&self) -> f64 {
+        let costs = self.costs.iter().flatten().flatten();
+        let mut widths: Vec<f64> = costs.map(Cost::relative_width).collect();
+        widths.sort_by(f64::total_cmp);
+        crate::studies::sweep::statistics::median(&widths)
+    }
+
+    /// Those among the right answers to a problem that none is cheaper than beyond the intervals.
+    pub fn cheapest(&self, problem: usize) -> Vec<usize> {
+        let row = &self.costs[problem];
+        let right = || row.iter().enumerate().filter_map(|(m, c)| Some((m, (*c)?)));
+        right()
+            .filter(|(_, own)| !right().any(|(_, other)| other.is_below(own)))
+            .map(|(method, _)| method)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip_methods::Tier;
+
+    use super::super::support::{lying, record, timed};
+    use super::*;
+
+    fn set(records: &[Record]) -> TestSet<'_> {
+        TestSet::new(records, Tier::Mid)
+    }
+
+    #[test]
+    fn wrong_answers_have_no_cost() {
+        let records = vec![
+            timed(record("plate", "b-newton", 1e-6), 1.0),
+            lying("false-claim"),
+        ];
+        let set = set(&records);
+        for measure in [Measure::Time, Measure::Iterations] {
+            let costs = Costs::new(&set, measure);
+            assert!(costs.costs[0][0].is_some());
+            assert_eq!(costs.costs[0][1], None);
+        }
+    }
+
+    #[test]
+    fn a_right_answer_without_a_time_is_no_failure() {
+        let mut records = vec![
+            timed(record("plate", "b-newton", 1e-6), 1.0),
+            record("plate", "latin", 1e-6),
+        ];
+        let costs = |records: &[Record]| {
+            let set = set(records);
+            let [time, counter] = [Measure::Time, Measure::Iterations].map(|m| {
+                let costs = Costs::new(&set, m);
+                (costs.problems(), costs.untimed)
+            });
+            (time, counter)
+        };
+        assert_eq!(costs(&records), ((0, 1), (1, 0)));
+        records[1] = timed(records[1].clone(), 2.0);
+        assert_eq!(costs(&records), ((1, 0), (1, 0)));
+        // Nor are two machines compared.
+        records[1].origin.machine = "linux, two".into();
+        assert_eq!(costs(&records), ((0, 1), (1, 0)));
+    }
+
+    #[test]
+    fn what_overlaps_the_cheapest_is_as_cheap() {
+        // Intervals of ±10 %: 1.0 and 1.2 overlap, 1.0 and 1.3 do not.
+        let records: Vec<Record> = [("b-newton", 1.0), ("pdas", 1.2), ("latin", 1.3)]
+            .map(|(method, t)| timed(record("plate", method, 1e-6), t))
+            .into();
+        let set = set(&records);
+        let costs = Costs::new(&set, Measure::Time);
+        assert_eq!(costs.methods, ["b-newton", "pdas", "latin"]);
+        assert_eq!(costs.cheapest(0), [0, 1]);
+        assert!((costs.median_width() - 0.2).abs() < 1e-12);
+    }
+}

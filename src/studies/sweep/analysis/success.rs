@@ -1,0 +1,193 @@
+//! How often methods claim success, and how often they are right: two rates, kept apart.
+
+use std::collections::BTreeMap;
+
+use stickslip_methods::{Status, Tier};
+
+use super::proportion::wilson;
+use super::{claims, compare_methods, has_defaults, is_correct};
+use crate::studies::sweep::record::Record;
+
+/// How a cell missed the tier: in the order of [`FAILURES`].
+pub const FAILURES: [&str; 12] = [
+    "inaccurate",
+    "false_claim",
+    "max_iterations",
+    "stalled",
+    "singular_tangent",
+    "mechanism",
+    "diverged",
+    "stopped",
+    "refused",
+    "crashed",
+    "timed_out",
+    "out_of_memory",
+];
+
+/// One method at one tier.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuccessRow {
+    /// Method, options other than the default in brackets.
+    pub method: String,
+    /// Whether its limit are the contact laws.
+    pub exact: bool,
+    /// Whether all options have their default.
+    pub defaults: bool,
+    /// Accuracy asked for.
+    pub tier: Tier,
+    /// Cells, each on a problem of its own.
+    pub cells: usize,
+    /// Cells that end with a claim, right or wrong.
+    pub claimed: usize,
+    /// Cells that are right to the tier.
+    pub correct: usize,
+    /// Cells that are not, by [`FAILURES`].
+    pub failures: [usize; FAILURES.len()],
+}
+
+impl SuccessRow {
+    /// Rate of claims with Wilson's 95 % interval.
+    pub fn success(&self) -> [f64; 3] {
+        wilson(self.claimed, self.cells)
+    }
+
+    /// Rate of right answers with Wilson's 95 % interval.
+    pub fn correctness(&self) -> [f64; 3] {
+        wilson(self.correct, self.cells)
+    }
+}
+
+/// Rates of all methods at the three tiers, those with options too; in the order of methods, then tiers.
+pub fn success(records: &[Record]) -> Vec<SuccessRow> {
+    let mut groups: BTreeMap<(usize, &str), Vec<&Record>> = BTreeMap::new();
+    for record in records {
+        let tiers = Tier::ALL.iter();
+        let tier = tiers
+            .enumerate()
+            .find(|(_, t)| t.tolerance() == record.cell.tolerance);
+        if let Some((index, _)) = tier {
+            let key = (index, record.found.method.as_str());
+            groups.entry(key).or_default().push(record);
+        }
+    }
+    let mut rows: Vec<SuccessRow> = groups
+        .iter()
+        .filter_map(|((tier, _), own)| row(own, Tier::ALL[*tier]))
+        .collect();
+    rows.sort_by(|a, b| {
+        compare_methods(&a.method, &b.method)
+            .then(a.tier.tolerance().total_cmp(&b.tier.tolerance()).reverse())
+    });
+    rows
+}
+
+fn row(own: &[&Record], tier: Tier) -> Option<SuccessRow> {
+    let first = own.first()?;
+    let mut row = SuccessRow {
+        method: first.found.method.clone(),
+        exact: first.found.exact,
+        defaults: has_defaults(&first.cell),
+        tier,
+        cells: own.len(),
+        claimed: own.iter().filter(|r| claims(r)).count(),
+        correct: 0,
+        failures: [0; FAILURES.len()],
+    };
+    for record in own {
+        if is_correct(record, tier) {
+            row.correct += 1;
+        } else {
+            row.failures[failure(&record.found.verdict)] += 1;
+        }
+    }
+    Some(row)
+}
+
+/// Place in [`FAILURES`] of a verdict that is not right to the tier.
+fn failure(verdict: &str) -> usize {
+    let status = |s: Status| s.as_str().replace('-', "_");
+    let name = match verdict.split_once(": ").unwrap_or((verdict, "")) {
+        ("gave-up", why) => why.replace('-', "_"),
+        ("refused", _) => "refused".into(),
+        ("crashed", _) => "crashed".into(),
+        ("false-claim", _) => "false_claim".into(),
+        ("timed-out", _) => "timed_out".into(),
+        ("out-of-memory", _) => "out_of_memory".into(),
+        _ => "inaccurate".into(),
+    };
+    let found = FAILURES.iter().position(|f| *f == name);
+    // A status that is not known here ended without a claim, like one that was stopped.
+    let other = FAILURES.iter().position(|f| *f == status(Status::Stopped));
+    found.or(other).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::support::{lying, of_case, record};
+    use super::*;
+
+    #[test]
+    fn claims_and_right_answers_are_counted_apart() {
+        let mut records: Vec<Record> = [
+            "false-claim",
+            "gave-up: max-iterations",
+            "gave-up: singular-tangent",
+            "refused: needs friction",
+            "timed-out",
+            "out-of-memory",
+            "crashed: no memory",
+        ]
+        .iter()
+        .enumerate()
+        .map(|(i, verdict)| of_case(lying(verdict), &format!("case-{i}")))
+        .collect();
+        records.push(record("plate", "latin", 1e-6));
+        let rows = success(&records);
+        let [row] = &rows[..] else {
+            panic!("one method at one tier: {rows:?}");
+        };
+        assert_eq!((row.cells, row.claimed, row.correct), (8, 2, 1));
+        let expected = [0, 1, 1, 0, 1, 0, 0, 0, 1, 1, 1, 1];
+        assert_eq!(row.failures, expected);
+        assert_eq!(row.failures.iter().sum::<usize>() + row.correct, row.cells);
+    }
+
+    #[test]
+    fn an_approximate_answer_succeeds_and_is_right_only_to_its_tier() {
+        let mut records = Vec::new();
+        for tier in Tier::ALL {
+            let mut record = record("plate", "penalty", tier.tolerance());
+            record.found.increments[0].natural_map = Some(1e-5);
+            let verdict = if tier == Tier::Low {
+                "solved"
+            } else {
+                "approximate: low"
+            };
+            record.found.increments[0].verdict = verdict.into();
+            record.found.verdict = verdict.into();
+            records.push(record);
+        }
+        let rows = success(&records);
+        let tiers: Vec<Tier> = rows.iter().map(|r| r.tier).collect();
+        assert_eq!(tiers, Tier::ALL);
+        let correct: Vec<usize> = rows.iter().map(|r| r.correct).collect();
+        assert_eq!(correct, [1, 0, 0]);
+        assert!(rows.iter().all(|r| r.claimed == 1));
+        assert_eq!(rows[2].failures[0], 1, "inaccurate");
+    }
+
+    #[test]
+    fn every_way_to_give_up_has_a_column() {
+        for status in [
+            Status::MaxIterations,
+            Status::Stalled,
+            Status::SingularTangent,
+            Status::Mechanism,
+            Status::Diverged,
+            Status::Stopped,
+        ] {
+            let place = failure(&format!("gave-up: {status}"));
+            assert_eq!(FAILURES[place], status.as_str().replace('-', "_"));
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Records made by hand, for tests.
+
+use crate::studies::sweep::cell::Cell;
+use crate::studies::sweep::record::{
+    Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, SolverError, Spent,
+};
+use crate::studies::sweep::statistics::Timing;
+
+/// A timing with an interval of ±10 % about its median.
+pub fn timing(median_s: f64) -> Timing {
+    Timing {
+        median_s,
+        min_s: 0.85 * median_s,
+        low_s: 0.9 * median_s,
+        high_s: 1.1 * median_s,
+        samples: 9,
+    }
+}
+
+/// A solved cell of one increment without times: refinement 1, μ = 0.3, 10 iterations and 110 local solves on 11 points,
+/// natural map half the tolerance, solver error the tolerance.
+pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
+    let cell = Cell {
+        case: case.into(),
+        digest: "0123456789abcdef".into(),
+        refine: 1,
+        space: None,
+        friction: vec![0.3],
+        method: method.into(),
+        tolerance,
+    };
+    let label = match method.split_once(':') {
+        Some((name, options)) => format!("{name}[{options}]"),
+        None => method.to_owned(),
+    };
+    let name = method.split(':').next().unwrap_or(method);
+    let exact = !["penalty", "barrier", "nitsche"].contains(&name);
+    Record {
+        schema: SCHEMA,
+        id: cell.id(),
+        cell,
+        origin: Origin {
+            version: "0.1.0".into(),
+            commit: "abc".into(),
+            dirty: "false".into(),
+            sources: "0123456789abcdef".into(),
+            rustc: "1.89".into(),
+            profile: "release".into(),
+            machine: "linux, one".into(),
+        },
+        found: Found {
+            verdict: "solved".into(),
+            method: label,
+            exact,
+            problem: Some(ProblemSize {
+                mesh: "22x22".into(),
+                space: "star".into(),
+                h_m: 0.1,
+                dim: 2,
+                dofs: 1000,
+                points: 11,
+                unknowns: 22,
+            }),
+            increments: vec![IncrementFound {
+                verdict: "solved".into(),
+                natural_map: Some(0.5 * tolerance),
+                iterations: 10,
+                solves: 1,
+                tangent_factorisations: 3,
+                global_factorisations: 0,
+                local_solves: 110,
+                state_changes: 4,
+                final_changes: 2,
+            }],
+            solver_error: Some(SolverError {
+                reference: "b-newton".into(),
+                reference_natural_map: 1e-15,
+                energy: tolerance,
+                force: tolerance,
+                jump: tolerance,
+            }),
+            deviations: Vec::new(),
+            values: Vec::new(),
+        },
+        limits: None,
+        spent: None,
+    }
+}
+
+/// The record with times: preparation 10 % and solution 90 % of `seconds`, each with an interval of ±10 %; factorisation of
+/// K 0.1 s, the other stages 0.01 s.
+pub fn timed(mut record: Record, seconds: f64) -> Record {
+    record.spent = Some(Spent {
+        setup_s: 0.01,
+        assembly_s: 0.01,
+        factorisation_s: 0.1,
+        condensation_s: 0.01,
+        prepare: timing(0.1 * seconds),
+        solve: timing(0.9 * seconds),
+        output_s: 0.01,
+        peak_mb: Some(40.0),
+    });
+    record
+}
+
+/// A record with this verdict that carries times all the same.
+pub fn lying(verdict: &str) -> Record {
+    let mut record = timed(record("plate", "latin", 1e-6), 123.4567);
+    record.found.verdict = verdict.into();
+    record.found.increments[0].verdict = verdict.into();
+    record
+}
+
+/// Another problem: the record with another case, and the id that belongs to it.
+pub fn of_case(mut record: Record, case: &str) -> Record {
+    record.cell.case = case.into();
+    record.id = record.cell.id();
+    record
+}

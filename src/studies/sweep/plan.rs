@@ -1,0 +1,316 @@
+//! The sweep file: which cells there are.
+//!
+//! ```toml
+//! title = "Methods on two cases"
+//! repeats = { least = 7, most = 200, seconds = 0.05, patience_s = 2.0 }   # the default
+//!
+//! [[cells]]                                    # every combination of what follows; blocks are joined
+//! cases = ["plate_mesh1", "my_case.toml"]      # shipped cases, or files beside this one
+//! # random = { dimension = 2, seed = 1, problems = 20 }     instead: problems of `stickslip stress`
+//! refine = [1, 2]                              # the case's own by default
+//! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
+//! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
+//! methods = ["hybrid", "penalty:normal=1e2,tangential=1e2"]      # all by default, with their default options
+//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the natural map; the default
+//! ```
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use stickslip_methods::{METHODS, Tier};
+
+use super::cell::{Cell, digest};
+use super::measure::Repeats;
+use super::record::SCHEMA;
+use super::store::Contents;
+use crate::case::error::CaseError;
+use crate::case::parse::{document, read_text};
+use crate::case::reader::{Table, Value};
+use crate::case::shipped;
+use crate::case::{self, Case, ContactSpace};
+use crate::model::body::Needs;
+use crate::run::run_case::{Choice, friction_values};
+use crate::studies::stress::{StressError, case_numbered};
+
+/// A sweep: its cells, sorted by id.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Title.
+    pub title: String,
+    /// How often cells are repeated for their times.
+    pub repeats: Repeats,
+    /// The cells.
+    pub tasks: Vec<Task>,
+}
+
+/// A cell with what it takes to measure it anywhere.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// [`Cell::id`].
+    pub id: String,
+    /// The cell.
+    pub cell: Cell,
+    /// Its case file.
+    pub text: Arc<str>,
+}
+
+/// Why a sweep file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The file, or a case it names.
+    #[error(transparent)]
+    File(#[from] CaseError),
+    /// Random problems.
+    #[error(transparent)]
+    Random(#[from] StressError),
+}
+
+impl Plan {
+    /// Reads a sweep file.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn read(path: &Path) -> Result<Self, PlanError> {
+        Self::parse(path, &read_text(path)?)
+    }
+
+    /// The text of a sweep file; cases are looked for beside `file`.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn parse(file: &Path, text: &str) -> Result<Self, PlanError> {
+        let keys = ["title", "repeats", "cells"];
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let (title, repeats, blocks) = document(file, text, &keys, |root| {
+            let title = root.required("title")?.line()?;
+            let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
+            let blocks = root.tables("cells")?;
+            if blocks.is_empty() {
+                return Err(root.missing("`[[cells]]`"));
+            }
+            let blocks = blocks.into_iter().map(|value| block(value, folder));
+            Ok((title, repeats, blocks.collect::<Result<Vec<_>, _>>()?))
+        })?;
+        let mut tasks = Vec::new();
+        for block in blocks {
+            block.add_to(&mut tasks)?;
+        }
+        tasks.sort_by(|a: &Task, b: &Task| a.id.cmp(&b.id));
+        // Blocks may overlap.
+        tasks.dedup_by(|a, b| a.id == b.id);
+        Ok(Self {
+            title,
+            repeats,
+            tasks,
+        })
+    }
+
+    /// What a folder with the records of the sweep holds.
+    pub fn contents(&self) -> Contents {
+        Contents {
+            schema: SCHEMA,
+            title: self.title.clone(),
+            repeats: self.repeats,
+            cells: self.tasks.iter().map(|task| task.id.clone()).collect(),
+        }
+    }
+}
+
+/// One `[[cells]]`.
+struct Block {
+    origin: Cases,
+    refine: Option<Vec<usize>>,
+    contact: Vec<Option<ContactSpace>>,
+    friction: Option<Vec<f64>>,
+    methods: Vec<String>,
+    tolerances: Vec<f64>,
+}
+
+enum Cases {
+    Files(Vec<Case>),
+    Random {
+        dim: usize,
+        seed: u64,
+        problems: usize,
+    },
+}
+
+/// Friction coefficients of random problems where none are given.
+const RANDOM_FRICTION: f64 = 0.3;
+
+impl Block {
+    fn add_to(self, tasks: &mut Vec<Task>) -> Result<(), PlanError> {
+        match self.origin {
+            Cases::Files(ref cases) => {
+                for case in cases {
+                    self.of_case(case, &case.name, &case.source, tasks);
+                }
+            }
+            Cases::Random {
+                dim,
+                seed,
+                problems,
+            } => {
+                let friction = self.friction.clone().unwrap_or(vec![RANDOM_FRICTION]);
+                // The same bodies for all methods, also those that need the stress at the crack.
+                let needs = Needs {
+                    frictionless: false,
+                    traction: true,
+                };
+                for problem in 0..problems {
+                    let text = case_numbered(seed, dim, problem, &friction, needs)?;
+                    let name = format!("random-{dim}d-seed-{seed}-{problem:03}");
+                    let case = case::parse(PathBuf::from(format!("{name}.toml")), text.as_str())?;
+                    self.of_case(&case, &name, &text, tasks);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn of_case(&self, case: &Case, name: &str, source: &str, tasks: &mut Vec<Task>) {
+        let text: Arc<str> = Arc::from(source);
+        let digest = digest(source);
+        let refine = self.refine.as_ref().unwrap_or(&case.sweep.refine);
+        let friction = match &self.friction {
+            Some(given) => given
+                .iter()
+                .map(|&mu| vec![mu; case.cracks.len()])
+                .collect(),
+            None => friction_values(case),
+        };
+        for &refine in refine {
+            for contact in &self.contact {
+                for per_crack in &friction {
+                    for method in &self.methods {
+                        for &tolerance in &self.tolerances {
+                            let cell = Cell {
+                                case: name.to_owned(),
+                                digest: digest.clone(),
+                                refine,
+                                space: contact.map(|space| space.name().to_owned()),
+                                friction: per_crack.clone(),
+                                method: method.clone(),
+                                tolerance,
+                            };
+                            tasks.push(Task {
+                                id: cell.id(),
+                                cell,
+                                text: text.clone(),
+                            });
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn block(value: Value<'_>, folder: &Path) -> Result<Block, CaseError> {
+    let keys = [
+        "cases",
+        "random",
+        "refine",
+        "contact",
+        "friction",
+        "methods",
+        "tolerances",
+    ];
+    let table = value.table(&keys)?;
+    let origin = match table.exactly_one(&["cases", "random"])? {
+        ("cases", list) => {
+            let cases = entries(list, |v| find_case(v, folder))?;
+            Cases::Files(cases)
+        }
+        (_, random) => {
+            let table = random.table(&["dimension", "seed", "problems"])?;
+            Cases::Random {
+                dim: table.required("dimension")?.integer(2..=3)?,
+                seed: table
+                    .get("seed")
+                    .map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64,
+                problems: table.required("problems")?.integer(1..=1_000_000)?,
+            }
+        }
+    };
+    let named = ContactSpace::ALL.map(|space| (space.name(), space));
+    let optional = |key: &str| table.get(key);
+    Ok(Block {
+        origin,
+        refine: optional("refine")
+            .map(|v| entries(v, |v| v.integer(1..=1024)))
+            .transpose()?,
+        contact: match optional("contact") {
+            Some(list) => entries(list, |v| v.one_of(&named).map(Some))?,
+            None => vec![None],
+        },
+        friction: optional("friction")
+            .map(|list| entries(list, |v| v.number_if("numbers >= 0", |mu| mu >= 0.0)))
+            .transpose()?,
+        methods: match optional("methods") {
+            Some(list) => entries(list, method)?,
+            None => METHODS.iter().map(|m| m.name.to_owned()).collect(),
+        },
+        tolerances: match optional("tolerances") {
+            Some(list) => entries(list, |v| {
+                v.number_if("1e-14 <= tolerance < 1", |t| (1e-14..1.0).contains(&t))
+            })?,
+            None => Tier::ALL.map(Tier::tolerance).to_vec(),
+        },
+    })
+}
+
+/// A list with at least one entry.
+fn entries<T>(
+    list: Value<'_>,
+    mut read: impl FnMut(Value<'_>) -> Result<T, CaseError>,
+) -> Result<Vec<T>, CaseError> {
+    let values = list.list()?;
+    if values.is_empty() {
+        return Err(list.refuse("at least one entry", "empty list"));
+    }
+    values.into_iter().map(&mut read).collect()
+}
+
+fn find_case(value: Value<'_>, folder: &Path) -> Result<Case, CaseError> {
+    let name = value.string()?;
+    if let Some(case) = shipped::find(name) {
+        return case;
+    }
+    if !name.ends_with(".toml") {
+        let known: Vec<&str> = shipped::CASES.iter().map(|c| c.0).collect();
+        let allowed = format!("a file.toml, or one of {}", known.join(", "));
+        return Err(value.refuse(allowed, "unknown case"));
+    }
+    case::read(folder.join(name))
+}
+
+fn method(value: Value<'_>) -> Result<String, CaseError> {
+    let text = value.string()?;
+    let allowed =
+        "name or name:option=value,option=value, as `stickslip list` and `show` name them";
+    let choice = Choice::parse(text).map_err(|e| value.refuse(allowed, e))?;
+    Ok(choice.argument())
+}
+
+fn repeats(value: Value<'_>) -> Result<Repeats, CaseError> {
+    let table: Table<'_> = value.table(&["least", "most", "seconds", "patience_s"])?;
+    let count = |key: &str, default: usize, least: usize| {
+        table
+            .get(key)
+            .map_or(Ok(default), |v| v.integer(least..=1_000_000))
+    };
+    let seconds = |key: &str, default: f64| {
+        table
+            .get(key)
+            .map_or(Ok(default), |v| v.number_if("numbers >= 0", |s| s >= 0.0))
+    };
+    let default = Repeats::DEFAULT;
+    let least = count("least", default.least, 1)?;
+    Ok(Repeats {
+        least,
+        most: count("most", default.most.max(least), least)?,
+        seconds: seconds("seconds", default.seconds)?,
+        patience_s: seconds("patience_s", default.patience_s)?,
+    })
+}

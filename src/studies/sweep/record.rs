@@ -1,0 +1,311 @@
+//! What a cell leaves behind: one record, one file.
+//!
+//! What was found is a function of the cell and the program alone; what was spent belongs to the machine and the moment.
+//! The two are kept apart, so that a rerun can be compared bit by bit.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+
+use super::cell::Cell;
+use super::statistics::Timing;
+use super::worker::Limits;
+use crate::model::errors::Deviation;
+use crate::report::Provenance;
+use crate::studies::convergence::Value;
+
+/// Version of the record files and of the tables made from them.
+pub const SCHEMA: u32 = 1;
+
+/// One cell, measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Version of the format, [`SCHEMA`].
+    pub schema: u32,
+    /// [`Cell::id`].
+    pub id: String,
+    /// What was measured.
+    pub cell: Cell,
+    /// By which program on which machine.
+    pub origin: Origin,
+    /// Limits that ended it, where the verdict is `timed-out` or `out-of-memory`: it says something about them alone.
+    pub limits: Option<Limits>,
+    /// What came out; the same on every run of the same program, but for limits.
+    pub found: Found,
+    /// Times and memory; present beside an honest verdict on a machine that had nothing else to do.
+    pub spent: Option<Spent>,
+}
+
+/// Program and machine.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Origin {
+    /// Version of this crate.
+    pub version: String,
+    /// Git commit of the sources, or `unknown`.
+    pub commit: String,
+    /// Whether the sources differed from it: `true`, `false` or `unknown`.
+    pub dirty: String,
+    /// Digest of the sources, which a commit with further changes does not tell.
+    pub sources: String,
+    /// Compiler.
+    pub rustc: String,
+    /// `debug` or `release`.
+    pub profile: String,
+    /// Operating system and processor model.
+    pub machine: String,
+}
+
+impl Origin {
+    /// This program on this machine; found out once.
+    pub fn here() -> Self {
+        static HERE: OnceLock<Origin> = OnceLock::new();
+        HERE.get_or_init(Self::collect).clone()
+    }
+
+    fn collect() -> Self {
+        let Provenance {
+            version,
+            commit,
+            dirty,
+            rustc,
+            profile,
+            os,
+            cpu,
+            ..
+        } = Provenance::collect(1);
+        Self {
+            version,
+            commit,
+            dirty,
+            sources: env!("STICKSLIP_BUILD_SOURCES").into(),
+            rustc,
+            profile,
+            machine: format!("{os}, {cpu}"),
+        }
+    }
+
+    /// Names and values of all parts.
+    fn parts(&self) -> [(&'static str, &str); 7] {
+        let Self {
+            version,
+            commit,
+            dirty,
+            sources,
+            rustc,
+            profile,
+            machine,
+        } = self;
+        [
+            ("version", version),
+            ("commit", commit),
+            ("uncommitted changes", dirty),
+            ("sources", sources),
+            ("compiler", rustc),
+            ("profile", profile),
+            ("machine", machine),
+        ]
+    }
+
+    /// The first difference from another origin: what, here, there.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let mut pairs = self.parts().into_iter().zip(other.parts());
+        let ((what, own), (_, others)) = pairs.find(|((_, own), (_, others))| own != others)?;
+        Some((what, own.to_owned(), others.to_owned()))
+    }
+}
+
+impl fmt::Display for Origin {
+    /// `version 0.1.0, commit …, machine …`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = self.parts().map(|(name, value)| format!("{name} {value}"));
+        f.write_str(&parts.join(", "))
+    }
+}
+
+/// What came out of a cell. Numbers that do not exist are absent, in a file `null`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Found {
+    /// Claim × check over the whole load path: that of the last increment, which is the first that is not honest.
+    /// As in `runs.csv`, and `timed-out`, `out-of-memory`.
+    pub verdict: String,
+    /// Label of the method in tables.
+    pub method: String,
+    /// Whether the limit of the method are the contact laws.
+    pub exact: bool,
+    /// What was solved; absent where the cell ended before that was known.
+    pub problem: Option<ProblemSize>,
+    /// Increment by increment.
+    pub increments: Vec<IncrementFound>,
+    /// Distance from the converged solution of the same discrete problem; absent without an honest verdict or reference.
+    pub solver_error: Option<SolverError>,
+    /// Distance from the closed form; empty where the case has none, or without an honest verdict.
+    pub deviations: Vec<DeviationFound>,
+    /// Quantities of interest at the end of the path, for cases without closed form; empty without an honest verdict.
+    pub values: Vec<ValueFound>,
+}
+
+/// Size of a discrete problem.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ProblemSize {
+    /// Mesh label, e.g. `22x22`.
+    pub mesh: String,
+    /// Contact space with its marks, as in `runs.csv`.
+    pub space: String,
+    /// Largest distance of neighbouring grid lines [m].
+    pub h_m: f64,
+    /// Dimension of the body.
+    pub dim: usize,
+    /// Free displacement unknowns.
+    pub dofs: usize,
+    /// Contact points.
+    pub points: usize,
+    /// Contact unknowns.
+    pub unknowns: usize,
+}
+
+/// One increment.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct IncrementFound {
+    /// Its verdict.
+    pub verdict: String,
+    /// Natural map found by the judge [-].
+    pub natural_map: Option<f64>,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Solves with the factor of K.
+    pub solves: usize,
+    /// Dense factorisations of condensed matrices.
+    pub tangent_factorisations: usize,
+    /// Sparse factorisations over all unknowns.
+    pub global_factorisations: usize,
+    /// Evaluations of the contact law at one point.
+    pub local_solves: usize,
+    /// Changes of a point between open, stick and slip from iterate to iterate, summed.
+    pub state_changes: usize,
+    /// Contact points that end in another state than the one they began the increment in.
+    pub final_changes: usize,
+}
+
+/// Distance from the converged solution of the same discrete problem: the largest over the increments.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SolverError {
+    /// Method that found the converged solution.
+    pub reference: String,
+    /// Its natural map, the largest over the increments [-].
+    pub reference_natural_map: f64,
+    /// ‖u − u*‖_K / ‖u*‖_K [-].
+    pub energy: f64,
+    /// |P − P*| / |P*| [-].
+    pub force: f64,
+    /// max |[[u]] − [[u]]*| / max |u*| [-].
+    pub jump: f64,
+}
+
+/// One quantity beside the closed form; see [`errors`](crate::model::errors).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DeviationFound {
+    /// Quantity.
+    pub quantity: String,
+    /// Place.
+    pub at: String,
+    /// Discrete value.
+    pub found: Option<f64>,
+    /// Exact value.
+    pub exact: f64,
+    /// Relative error.
+    pub error: Option<f64>,
+}
+
+/// One quantity of interest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ValueFound {
+    /// Quantity, as in `quantities.csv`.
+    pub quantity: String,
+    /// Place and component.
+    pub at: String,
+    /// Value, SI.
+    pub value: f64,
+    /// What errors are relative to.
+    pub norm: f64,
+    /// Largest number of the same kind in the body.
+    pub scale: f64,
+}
+
+/// Times and memory of a cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spent {
+    /// Mesh, cracks, sparsity pattern and elimination order [s]. This and the next three are measured once per body.
+    pub setup_s: f64,
+    /// Assembly of K [s].
+    pub assembly_s: f64,
+    /// Factorisation of K [s].
+    pub factorisation_s: f64,
+    /// Condensation to the contact points [s].
+    pub condensation_s: f64,
+    /// Preparation of the method, repeated.
+    pub prepare: Timing,
+    /// All increments of the path, repeated.
+    pub solve: Timing,
+    /// Tables and fields of the last increment, in memory [s].
+    pub output_s: f64,
+    /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
+    /// not tell.
+    pub peak_mb: Option<f64>,
+}
+
+impl Found {
+    /// A cell of which only the verdict is known.
+    pub fn only(verdict: String, method: String, exact: bool) -> Self {
+        Self {
+            verdict,
+            method,
+            exact,
+            ..Self::default()
+        }
+    }
+
+    /// Largest natural map over the increments; NaN where one has none.
+    pub fn natural_map(&self) -> f64 {
+        let maps = self.increments.iter().map(|i| i.natural_map);
+        maps.fold(0.0, |worst: f64, map| match map {
+            Some(map) if !worst.is_nan() => worst.max(map),
+            _ => f64::NAN,
+        })
+    }
+
+    /// A counter summed over the increments.
+    pub fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
+        self.increments.iter().map(counter).sum()
+    }
+}
+
+impl DeviationFound {
+    /// As it is written: numbers that do not exist are absent.
+    pub fn of(deviation: &Deviation) -> Self {
+        Self {
+            quantity: deviation.quantity.to_owned(),
+            at: deviation.at.clone(),
+            found: finite(deviation.found),
+            exact: deviation.exact,
+            error: finite(deviation.error),
+        }
+    }
+}
+
+impl ValueFound {
+    /// As it is written.
+    pub fn of(value: &Value) -> Self {
+        Self {
+            quantity: value.quantity.clone(),
+            at: value.at.clone(),
+            value: value.value,
+            norm: value.norm,
+            scale: value.scale,
+        }
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|v| v.is_finite())
+}

@@ -1,0 +1,157 @@
+//! Solver error: the distance from the converged solution of the same discrete problem.
+//!
+//! ```text
+//!   energy   ‖u − u*‖_K / max ‖u*‖_K,  ‖v‖²_K = v·K v
+//!   force    |P − P*| / max |P*|
+//!   jump     max_i |[[u]] − [[u]]*|_i / max |u*|_i         relative to the largest displacement: a sticking crack has no jump
+//! ```
+//! the largest over the increments, as are the scales. Since u − u* = K⁻¹Bᵀ(P − P*), the first is the error of the contact forces in the norm
+//! of the Delassus operator: it stays small where forces are not unique but their effect is. It does not see a rigid
+//! motion of a floating piece, the third does.
+//!
+//! No method is measured against itself: the converged solution for `hybrid` is that of the next method.
+
+use super::record::SolverError;
+use super::setup::Scene;
+use crate::model::quantities::Snapshot;
+use crate::run::path::Path;
+use crate::run::record::RunKey;
+use crate::run::run_case::Choice;
+use crate::run::verdict::{Accuracy, Verdict};
+
+/// Natural map of the converged solution, three decades below the highest tier.
+const TOLERANCE: f64 = 1e-12;
+
+/// Exact methods that converge superlinearly, the most robust one first.
+const METHODS: [&str; 5] = ["hybrid", "b-newton", "pdas", "newton-ac", "interior-point"];
+
+/// A converged solution.
+pub struct Reference {
+    /// Method that found it.
+    method: &'static str,
+    /// Its natural map, the largest over the increments.
+    natural_map: f64,
+    /// By increment.
+    snapshots: Vec<Snapshot>,
+}
+
+/// What was tried so far on one problem.
+#[derive(Default)]
+pub struct References {
+    found: Vec<Reference>,
+    failed: Vec<&'static str>,
+}
+
+/// Distance of some increments, found by the method of that name, from the converged solution, which is found when it is
+/// first asked for; none if no other method reaches it, or where the solution is zero and the answer is not.
+pub fn solver_error(scene: &mut Scene<'_>, found: &[Snapshot], own: &str) -> Option<SolverError> {
+    let method = METHODS
+        .into_iter()
+        .find(|name| *name != own && converge(scene, name))?;
+    let mut known = scene.references.found.iter();
+    let Reference {
+        method,
+        natural_map,
+        snapshots,
+    } = known.find(|reference| reference.method == method)?;
+    let largest = |of: &dyn Fn(&Snapshot, &Snapshot) -> f64, size: &dyn Fn(&Snapshot) -> f64| {
+        let pairs = found.iter().zip(snapshots);
+        let difference = pairs.map(|(now, exact)| of(now, exact)).fold(0.0, f64::max);
+        let scale = snapshots.iter().map(size).fold(0.0, f64::max);
+        // Nothing beside nothing is no error.
+        let ratio = if difference == 0.0 {
+            0.0
+        } else {
+            difference / scale
+        };
+        Some(ratio).filter(|ratio| ratio.is_finite())
+    };
+    let stiffness = &scene.body.stiffness;
+    let square = |v: &[f64]| -> f64 {
+        let kv = stiffness.mul(v);
+        v.iter()
+            .zip(&kv)
+            .map(|(v, kv)| v * kv)
+            .sum::<f64>()
+            .max(0.0)
+    };
+    Some(SolverError {
+        reference: (*method).to_owned(),
+        reference_natural_map: *natural_map,
+        energy: largest(
+            &|now, exact| square(&difference(&now.u, &exact.u)).sqrt(),
+            &|exact| square(&exact.u).sqrt(),
+        )?,
+        force: largest(
+            &|now, exact| norm(&difference(&now.p, &exact.p)),
+            &|exact| norm(&exact.p),
+        )?,
+        jump: largest(
+            &|now, exact| most(&difference(&now.jump, &exact.jump)),
+            &|exact| most(&exact.u),
+        )?,
+    })
+}
+
+/// Whether a method is right to the tolerance all along the path; followed once.
+fn converge(scene: &mut Scene<'_>, name: &'static str) -> bool {
+    let References { found, failed } = &scene.references;
+    if found.iter().any(|reference| reference.method == name) {
+        return true;
+    }
+    if failed.contains(&name) {
+        return false;
+    }
+    let reference = follow(scene, name);
+    let References { found, failed } = &mut scene.references;
+    let converged = reference.is_some();
+    match reference {
+        Some(reference) => found.push(reference),
+        None => failed.push(name),
+    }
+    converged
+}
+
+fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
+    let choice = Choice::parse(name).ok()?;
+    let path = Path {
+        case: scene.case,
+        loading: &scene.loading,
+        system: scene.system,
+        choice: &choice,
+        accuracy: Accuracy::exactly(TOLERANCE),
+    };
+    let mut key = RunKey {
+        case: scene.case.name.clone(),
+        mesh: scene.body.label.clone(),
+        space: scene.body.space.clone(),
+        method: choice.label.clone(),
+        friction: 0.0,
+        increment: 1,
+    };
+    let (mut snapshots, mut natural_map) = (Vec::new(), 0.0_f64);
+    path.follow(&mut key, &mut |_, ended| {
+        if ended.verdict == Verdict::Solved {
+            natural_map = natural_map.max(ended.run.natural_map);
+            snapshots.extend(ended.now.cloned());
+        }
+    });
+    let complete = snapshots.len() == scene.case.path.increments;
+    complete.then_some(Reference {
+        method: name,
+        natural_map,
+        snapshots,
+    })
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn most(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |most, x| f64::max(most, x.abs()))
+}

@@ -1,0 +1,147 @@
+//! The discretised body of a cell. Neighbouring cells solve the same problem, so the last body is kept with its factor,
+//! and for the last friction coefficients the converged solution.
+
+use std::sync::Arc;
+
+use stickslip_methods::ContactSystem;
+
+use super::cell::Cell;
+use super::measure::MeasureError;
+use super::memory;
+use super::reference::References;
+use crate::case::{self, Case, ContactSpace};
+use crate::model::body::{Body, BodyError, Needs};
+use crate::model::loading::Loading;
+use crate::run::run_case::RunError;
+
+/// Keeps the last body.
+#[derive(Default)]
+pub struct Bench {
+    kept: Option<Kept>,
+    warm: bool,
+}
+
+struct Kept {
+    digest: String,
+    refine: usize,
+    space: Option<String>,
+    needs: Needs,
+    case: Case,
+    body: Body,
+    /// Peak of memory up to the factor [MB].
+    peak_mb: Option<f64>,
+    friction: Option<PerFriction>,
+}
+
+struct PerFriction {
+    friction: Vec<f64>,
+    system: Arc<ContactSystem>,
+    references: References,
+}
+
+/// What a cell is solved on.
+pub struct Scene<'a> {
+    /// The case, with the contact space of the cell.
+    pub case: &'a Case,
+    /// Refinement factor.
+    pub refine: usize,
+    /// Its discretisation, factored.
+    pub body: &'a Body,
+    /// The contact system with the friction of the cell.
+    pub system: &'a ContactSystem,
+    /// What acts on the body.
+    pub loading: Loading<'a>,
+    /// Peak of memory while the body was discretised and factored [MB].
+    pub peak_mb: Option<f64>,
+    /// Converged solutions, once they were asked for.
+    pub references: &'a mut References,
+}
+
+impl Bench {
+    /// The scene of a cell.
+    ///
+    /// # Errors
+    /// A case that cannot be read, discretised or factored.
+    pub fn scene<'a>(
+        &'a mut self,
+        cell: &Cell,
+        text: &str,
+        traction: bool,
+    ) -> Result<Scene<'a>, MeasureError> {
+        let needs = Needs {
+            frictionless: cell.friction.iter().all(|&mu| mu == 0.0),
+            traction,
+        };
+        let same = |kept: &Kept| {
+            (&kept.digest, kept.refine, &kept.space, kept.needs)
+                == (&cell.digest, cell.refine, &cell.space, needs)
+        };
+        memory::reset_peak();
+        // The old body goes before the new one comes: two would raise the peak of memory.
+        let kept = match self.kept.take().filter(same) {
+            Some(kept) => kept,
+            None => {
+                // The first body of a process starts threads and fills caches: it is made twice, and timed once.
+                if !std::mem::replace(&mut self.warm, true) {
+                    drop(Kept::new(cell, text, needs)?);
+                }
+                Kept::new(cell, text, needs)?
+            }
+        };
+        let kept = self.kept.insert(kept);
+        let known = kept.friction.take().filter(|f| f.friction == cell.friction);
+        let per_friction = match known {
+            Some(known) => known,
+            None => {
+                let of_point = kept.body.points.iter().map(|p| cell.friction[p.crack]);
+                let system = ContactSystem::new(kept.body.elastic.clone(), of_point.collect())
+                    .map_err(BodyError::from)
+                    .map_err(RunError::from)?;
+                PerFriction {
+                    friction: cell.friction.clone(),
+                    system: Arc::new(system),
+                    references: References::default(),
+                }
+            }
+        };
+        let PerFriction {
+            system, references, ..
+        } = kept.friction.insert(per_friction);
+        let loading = Loading::new(&kept.body, &kept.case, cell.mu()).map_err(RunError::from)?;
+        Ok(Scene {
+            case: &kept.case,
+            refine: kept.refine,
+            body: &kept.body,
+            system,
+            loading,
+            peak_mb: kept.peak_mb,
+            references,
+        })
+    }
+}
+
+impl Kept {
+    fn new(cell: &Cell, text: &str, needs: Needs) -> Result<Self, MeasureError> {
+        let mut case = case::parse(format!("{}.toml", cell.case), text).map_err(RunError::from)?;
+        if let Some(name) = &cell.space {
+            let space = ContactSpace::named(name);
+            let space = space.ok_or_else(|| MeasureError::Space(name.clone()))?;
+            case.cracks
+                .iter_mut()
+                .for_each(|crack| crack.contact = space);
+        }
+        let body = Body::new(&case, cell.refine, needs).map_err(RunError::from)?;
+        let factored = body.elastic.factorise().map_err(BodyError::from);
+        factored.map_err(RunError::from)?;
+        Ok(Kept {
+            digest: cell.digest.clone(),
+            refine: cell.refine,
+            space: cell.space.clone(),
+            needs,
+            case,
+            body,
+            peak_mb: memory::peak_mb(),
+            friction: None,
+        })
+    }
+}

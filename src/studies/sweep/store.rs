@@ -1,0 +1,357 @@
+//! A folder of records: one file per cell, and the list of the cells there are to be.
+//!
+//! ```text
+//!   DIR/sweep.json          what is to be measured: title, repeats, ids of all cells in order
+//!   DIR/cells/<id>.json     one record; written under another name and renamed, so that it is whole or absent
+//! ```
+//! Several processes may fill one folder, as long as they measure different cells.
+
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::measure::Repeats;
+use super::record::{Origin, Record, SCHEMA};
+use crate::files::bundle::unique;
+
+/// Ending of a file that is being written.
+const PARTIAL: &str = "partial";
+
+/// What a folder of records is to hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Contents {
+    /// Version of the format, [`SCHEMA`].
+    pub schema: u32,
+    /// Title of the sweep.
+    pub title: String,
+    /// How often cells are repeated for their times.
+    pub repeats: Repeats,
+    /// Ids of all cells, sorted.
+    pub cells: Vec<String>,
+}
+
+/// A folder of records.
+#[derive(Debug)]
+pub struct Store {
+    dir: PathBuf,
+    contents: Contents,
+}
+
+/// Why a folder of records cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The file system refused.
+    #[error("cannot {action} `{}`: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A file that is not what its name says.
+    #[error("`{}`: {source}", path.display())]
+    Broken {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+    /// A file under the name of another cell.
+    #[error("`{}` holds the record of another cell, `{found}`", path.display())]
+    Misnamed {
+        /// Which file.
+        path: PathBuf,
+        /// The id inside.
+        found: String,
+    },
+    /// A folder without `sweep.json`.
+    #[error("`{}` holds no sweep: there is no sweep.json in it", dir.display())]
+    NoSweep {
+        /// The folder.
+        dir: PathBuf,
+    },
+    /// Another sweep has its records there.
+    #[error(
+        "`{}` holds another sweep, `{title}`: {missing} of its {total} cells are not in this one, {new} of this one are not in it; choose another folder",
+        dir.display()
+    )]
+    OtherSweep {
+        /// The folder.
+        dir: PathBuf,
+        /// Title of the sweep in it.
+        title: String,
+        /// Cells only in the folder.
+        missing: usize,
+        /// Cells in the folder.
+        total: usize,
+        /// Cells only in the sweep asked for.
+        new: usize,
+    },
+    /// Records of another version of the format.
+    #[error("`{}` has schema {found}, this program writes {SCHEMA}", path.display())]
+    Schema {
+        /// Which file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+    /// Records of another program or machine.
+    #[error(
+        "`{}` was made by another program or machine ({what}: `{there}`, here `{here}`); {remedy}",
+        path.display()
+    )]
+    Origin {
+        /// Which record.
+        path: PathBuf,
+        /// What differs.
+        what: &'static str,
+        /// There.
+        there: String,
+        /// Here.
+        here: String,
+        /// What can be done.
+        remedy: &'static str,
+    },
+    /// Two records of one cell that differ.
+    #[error(
+        "cell `{id}` has other numbers in `{}` than in `{}`, though both name the same program",
+        first.display(), second.display()
+    )]
+    Contradiction {
+        /// The cell.
+        id: String,
+        /// One folder.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+    },
+}
+
+impl StoreError {
+    fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
+        Self::Io {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+}
+
+impl Store {
+    /// Opens a folder for a sweep, and makes it if need be.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, or that holds another sweep.
+    pub fn create(dir: &Path, contents: Contents) -> Result<Self, StoreError> {
+        let store = Self {
+            dir: dir.to_path_buf(),
+            contents,
+        };
+        let cells = store.cells();
+        fs::create_dir_all(&cells).map_err(|e| StoreError::io("create folder", &cells, e))?;
+        match Self::open(dir) {
+            Ok(found) if found.contents == store.contents => {}
+            Ok(found) => return Err(store.other(&found)),
+            Err(StoreError::NoSweep { .. }) => {
+                let json = to_json(&store.contents, &store.list())?;
+                write_whole(&store.list(), &json)?;
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(store)
+    }
+
+    /// Opens a folder that holds a sweep.
+    ///
+    /// # Errors
+    /// A folder without a sweep, or with one of another schema.
+    pub fn open(dir: &Path) -> Result<Self, StoreError> {
+        let path = dir.join("sweep.json");
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => {
+                return Err(StoreError::NoSweep {
+                    dir: dir.to_path_buf(),
+                });
+            }
+            Err(e) => return Err(StoreError::io("read", &path, e)),
+        };
+        Ok(Self {
+            dir: dir.to_path_buf(),
+            contents: parse(&text, &path)?,
+        })
+    }
+
+    /// What the folder is to hold.
+    pub fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// The record of a cell; none if it was not measured to the end.
+    ///
+    /// # Errors
+    /// A file that is no record, or that of another cell.
+    pub fn get(&self, id: &str) -> Result<Option<Record>, StoreError> {
+        let path = self.path(id);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(e) => return Err(StoreError::io("read", &path, e)),
+        };
+        let record: Record = parse(&text, &path)?;
+        if record.id != id || record.cell.id() != id {
+            return Err(StoreError::Misnamed {
+                path,
+                found: record.id,
+            });
+        }
+        Ok(Some(record))
+    }
+
+    /// Keeps a record, in place of one that was there.
+    ///
+    /// # Errors
+    /// The file system; then no half-written record remains.
+    pub fn put(&self, record: &Record) -> Result<(), StoreError> {
+        let path = self.path(&record.id);
+        write_whole(&path, &to_json(record, &path)?)
+    }
+
+    /// All records there are, in the order of the sweep.
+    ///
+    /// # Errors
+    /// Those of [`Store::get`].
+    pub fn records(&self) -> Result<Vec<Record>, StoreError> {
+        let ids = self.contents.cells.iter();
+        let records = ids.map(|id| self.get(id)).collect::<Result<Vec<_>, _>>()?;
+        Ok(records.into_iter().flatten().collect())
+    }
+
+    /// Whether a record was made by this program on this machine.
+    ///
+    /// # Errors
+    /// [`StoreError::Origin`], with what can be done.
+    pub fn check_origin(
+        &self,
+        record: &Record,
+        origin: &Origin,
+        remedy: &'static str,
+    ) -> Result<(), StoreError> {
+        match record.origin.difference(origin) {
+            None => Ok(()),
+            Some((what, there, here)) => Err(StoreError::Origin {
+                path: self.path(&record.id),
+                what,
+                there,
+                here,
+                remedy,
+            }),
+        }
+    }
+
+    /// Removes what a killed process left of some cells. Only for cells nobody else measures.
+    ///
+    /// # Errors
+    /// The file system.
+    pub fn clear_partial(&self, ids: &[String]) -> Result<(), StoreError> {
+        let cells = self.cells();
+        let entries = fs::read_dir(&cells).map_err(|e| StoreError::io("list", &cells, e))?;
+        for entry in entries {
+            let path = entry.map_err(|e| StoreError::io("list", &cells, e))?.path();
+            let partial = path.extension().is_some_and(|e| e == PARTIAL);
+            let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
+            // Name of a partial file: <id>.json.<unique>.partial.
+            let id = stem.rsplit_once(".json.").map(|(id, _)| id);
+            if partial && id.is_some_and(|id| ids.iter().any(|own| own == id)) {
+                fs::remove_file(&path).map_err(|e| StoreError::io("remove", &path, e))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn list(&self) -> PathBuf {
+        self.dir.join("sweep.json")
+    }
+
+    fn cells(&self) -> PathBuf {
+        self.dir.join("cells")
+    }
+
+    fn path(&self, id: &str) -> PathBuf {
+        self.cells().join(format!("{id}.json"))
+    }
+
+    /// That another folder, or this one before, holds another sweep.
+    pub(super) fn other(&self, found: &Store) -> StoreError {
+        let dir = found.dir.clone();
+        let found = &found.contents;
+        let only = |a: &Contents, b: &Contents| {
+            let missing = a.cells.iter().filter(|id| !b.cells.contains(id));
+            missing.count()
+        };
+        StoreError::OtherSweep {
+            dir,
+            title: found.title.clone(),
+            missing: only(found, &self.contents),
+            total: found.cells.len(),
+            new: only(&self.contents, found),
+        }
+    }
+}
+
+/// A file of this schema; the version is looked at first, so that a newer format is not called broken.
+fn parse<T: for<'a> Deserialize<'a>>(text: &str, path: &Path) -> Result<T, StoreError> {
+    #[derive(Deserialize)]
+    struct Version {
+        schema: u32,
+    }
+    let broken = |source| StoreError::Broken {
+        path: path.to_path_buf(),
+        source,
+    };
+    let Version { schema } = serde_json::from_str(text).map_err(broken)?;
+    if schema != SCHEMA {
+        return Err(StoreError::Schema {
+            path: path.to_path_buf(),
+            found: schema,
+        });
+    }
+    serde_json::from_str(text).map_err(broken)
+}
+
+fn to_json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, StoreError> {
+    let json = serde_json::to_vec_pretty(value);
+    let mut json = json.map_err(|source| StoreError::Broken {
+        path: path.to_path_buf(),
+        source,
+    })?;
+    json.push(b'\n');
+    Ok(json)
+}
+
+/// Writes a file under another name and renames it.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
+    let written = fs::File::create_new(&partial)
+        .and_then(|mut file| {
+            file.write_all(bytes)?;
+            // A full disk may tell only now; the rename must not come before the contents.
+            file.sync_all()
+        })
+        .and_then(|()| fs::rename(&partial, path));
+    written.map_err(|e| {
+        // What the user is told is why it could not be written.
+        let _ = fs::remove_file(&partial);
+        StoreError::io("write", path, e)
+    })
+}

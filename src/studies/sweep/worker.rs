@@ -1,0 +1,250 @@
+//! Cells in a process of their own, so that a time limit can end them and a memory limit costs nothing but them.
+//!
+//! The conductor starts `stickslip work`, writes a [`Request`] per line to its standard input and reads a [`Reply`] per line
+//! from its standard output. A worker that does not answer in time is killed; one that dies is read as the verdict on its
+//! cell. Either way the next cell gets a new worker.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::cell::Cell;
+use super::measure::{Repeats, measure};
+use super::memory;
+use super::record::Record;
+use super::setup::Bench;
+use crate::run::run_case::Choice;
+use crate::run::verdict::Verdict;
+
+/// One cell to measure.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Request {
+    /// The cell.
+    pub cell: Cell,
+    /// Its case file.
+    pub text: String,
+    /// How often to repeat it.
+    pub repeats: Repeats,
+}
+
+/// What a worker answers.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Reply {
+    /// The cell was measured.
+    Measured(Box<Record>),
+    /// The case, its discretisation or its method cannot be used.
+    Failed(String),
+}
+
+/// Limits on one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Wall-clock time with set-up and repeats [s].
+    pub seconds: f64,
+    /// Address space of the process [MB]; none: unlimited.
+    pub memory_mb: Option<u64>,
+}
+
+/// Why a worker could not be used at all.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkerError {
+    /// It did not start.
+    #[error("cannot start `{}`: {source}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// The worker's side: measures what it is asked for until its input ends.
+///
+/// # Errors
+/// Input or output that breaks, a memory limit the system refuses.
+pub fn serve(
+    input: impl BufRead,
+    mut output: impl Write,
+    memory_mb: Option<u64>,
+) -> std::io::Result<()> {
+    if let Some(megabytes) = memory_mb {
+        memory::bound(megabytes)?;
+    }
+    // A record names what went wrong, not where in which build: neither threads nor folders of a machine.
+    std::panic::set_hook(Box::new(|panic| {
+        let payload = panic.payload();
+        let literal = payload.downcast_ref::<&str>().copied();
+        let formatted = payload.downcast_ref::<String>().map(String::as_str);
+        let payload = literal.or(formatted).unwrap_or("of unknown kind");
+        let text: Vec<&str> = payload.lines().collect();
+        let _nobody_listens = writeln!(std::io::stderr(), "panic: {}", text.join(" "));
+    }));
+    let mut bench = Bench::default();
+    for line in input.lines() {
+        let Request {
+            cell,
+            text,
+            repeats,
+        } = serde_json::from_str(&line?)?;
+        let measured = Choice::parse(&cell.method)
+            .map_err(Into::into)
+            .and_then(|choice| measure(&mut bench, &cell, &text, &choice, repeats));
+        let reply = match measured {
+            Ok(record) => Reply::Measured(Box::new(record)),
+            Err(error) => Reply::Failed(error.to_string()),
+        };
+        let mut json = serde_json::to_vec(&reply)?;
+        json.push(b'\n');
+        output.write_all(&json)?;
+        output.flush()?;
+    }
+    Ok(())
+}
+
+/// What became of a request.
+pub enum Answer {
+    /// The cell was measured.
+    Measured(Box<Record>),
+    /// It ended otherwise.
+    Ended(Verdict),
+}
+
+/// The conductor's side: a worker that is started when it is first needed, and again after it was lost.
+pub struct Worker<'a> {
+    program: &'a Path,
+    limits: Limits,
+    running: Option<Running>,
+}
+
+struct Running {
+    child: Child,
+    input: ChildStdin,
+    lines: Receiver<String>,
+    complaints: std::thread::JoinHandle<String>,
+}
+
+impl<'a> Worker<'a> {
+    /// A worker of that program, which has the verb `work`.
+    pub fn new(program: &'a Path, limits: Limits) -> Self {
+        Self {
+            program,
+            limits,
+            running: None,
+        }
+    }
+
+    /// Has one cell measured.
+    ///
+    /// # Errors
+    /// [`WorkerError`]; whatever the cell itself does is an [`Answer`].
+    pub fn ask(&mut self, request: &Request) -> Result<Answer, WorkerError> {
+        let mut running = match self.running.take() {
+            Some(running) => running,
+            None => self.start()?,
+        };
+        let mut line = serde_json::to_vec(request).unwrap_or_default();
+        line.push(b'\n');
+        // A worker that is already gone is found out below.
+        let _gone = running
+            .input
+            .write_all(&line)
+            .and_then(|()| running.input.flush());
+        match running
+            .lines
+            .recv_timeout(Duration::from_secs_f64(self.limits.seconds))
+        {
+            Ok(line) => {
+                let Ok(reply) = serde_json::from_str(&line) else {
+                    running.kill();
+                    let text = "the worker answered what is no record".to_owned();
+                    return Ok(Answer::Ended(Verdict::Crashed(text)));
+                };
+                self.running = Some(running);
+                Ok(match reply {
+                    Reply::Measured(record) => Answer::Measured(record),
+                    Reply::Failed(reason) => Answer::Ended(Verdict::failed(reason)),
+                })
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                running.kill();
+                Ok(Answer::Ended(Verdict::TimedOut))
+            }
+            Err(RecvTimeoutError::Disconnected) => Ok(Answer::Ended(running.post_mortem())),
+        }
+    }
+
+    fn start(&self) -> Result<Running, WorkerError> {
+        let failed = |source| WorkerError::Start {
+            program: self.program.to_path_buf(),
+            source,
+        };
+        let mut command = Command::new(self.program);
+        command.arg("work");
+        if let Some(megabytes) = self.limits.memory_mb {
+            command.arg("--memory-mb").arg(megabytes.to_string());
+        }
+        // One thread: times of methods are compared, not of thread pools.
+        let piped = command
+            .env("RAYON_NUM_THREADS", "1")
+            // The C library reserves address space per arena, as many as threads happen to meet: limits would be luck.
+            .env("MALLOC_ARENA_MAX", "1")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut child = piped.spawn().map_err(failed)?;
+        let missing = || failed(std::io::ErrorKind::BrokenPipe.into());
+        let input = child.stdin.take().ok_or_else(missing)?;
+        let output = child.stdout.take().ok_or_else(missing)?;
+        let mut errors = child.stderr.take().ok_or_else(missing)?;
+        let (send, lines) = channel();
+        std::thread::spawn(move || {
+            let all = BufReader::new(output).lines().map_while(Result::ok);
+            // The conductor has stopped listening when it has killed the worker.
+            all.take_while(|line| send.send(line.clone()).is_ok())
+                .for_each(drop);
+        });
+        let complaints = std::thread::spawn(move || {
+            let mut text = Vec::new();
+            let _unreadable = errors.read_to_end(&mut text);
+            String::from_utf8_lossy(&text).into_owned()
+        });
+        Ok(Running {
+            child,
+            input,
+            lines,
+            complaints,
+        })
+    }
+}
+
+impl Drop for Worker<'_> {
+    fn drop(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.kill();
+        }
+    }
+}
+
+impl Running {
+    fn kill(mut self) {
+        let _ended_before = self.child.kill();
+        let _status = self.child.wait();
+    }
+
+    /// Why the worker died.
+    fn post_mortem(mut self) -> Verdict {
+        drop(self.input);
+        let status = self.child.wait();
+        let complaints = self.complaints.join().unwrap_or_default();
+        let status = status.map_or_else(|e| e.to_string(), |status| status.to_string());
+        let first = complaints.lines().find(|line| !line.is_empty());
+        Verdict::failed(match first {
+            Some(line) => format!("{status}: {line}"),
+            None => status,
+        })
+    }
+}

@@ -1,0 +1,145 @@
+//! Cracks on cell facets: doubled nodes, one contact point per pair.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cut::crack::{Crack, Tip};
+use crate::cut::is_split;
+use crate::cut::partition::crossings;
+use crate::cut::placement::ends_inside;
+use crate::enrichment::EnrichmentError;
+use crate::geometry::{Point, add_scaled, norm, sub};
+use crate::mesh::{Facet, Mesh};
+
+use super::pairs::{ContactPoint, ContactSurface, scalar_terms, vertex_weights};
+
+/// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
+/// through cells. Side 1 gets the new nodes.
+///
+/// The standard function of a node has the node's number, so the points' terms name nodes.
+pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, EnrichmentError> {
+    let facets = crack_facets(mesh, crack);
+    if facets.is_empty() {
+        return Ok(None);
+    }
+    for cell in 0..mesh.cell_count() {
+        if is_split(mesh.kind, &crack.cell_phi(mesh, cell)) && centre_on(mesh, crack, cell) {
+            return Err(EnrichmentError::Mixed {
+                crack: crack.number,
+                at: mesh.centre(cell),
+            });
+        }
+    }
+    if crack.tip != Tip::None && !ends_inside(mesh, crack).is_empty() {
+        return Err(EnrichmentError::ConformingTip {
+            crack: crack.number,
+        });
+    }
+    let mut weight: BTreeMap<usize, f64> = BTreeMap::new();
+    let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+    for &facet in &facets {
+        let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+        let positions: Vec<Point> = nodes.iter().map(|&n| mesh.nodes[n]).collect();
+        for (node, w) in nodes.into_iter().zip(vertex_weights(&positions)) {
+            *weight.entry(node).or_default() += w;
+            *uses.entry(node).or_default() += 1;
+        }
+    }
+    // The crack front keeps its nodes: in 2D a node with one crack edge, unless the crack leaves the body there.
+    let border: BTreeSet<usize> = mesh
+        .sides
+        .keys()
+        .flat_map(|side| mesh.side_nodes(side))
+        .collect();
+    let doubled = |node: usize| mesh.dim() == 3 || uses[&node] > 1 || border.contains(&node);
+    let nodes: Vec<usize> = weight.keys().copied().filter(|&n| doubled(n)).collect();
+    let mut twin = BTreeMap::new();
+    let mut points = Vec::new();
+    for node in nodes {
+        let new = mesh.nodes.len();
+        mesh.nodes.push(mesh.nodes[node]);
+        mesh.grid.push(mesh.grid[node]);
+        twin.insert(node as u32, new as u32);
+        let x = mesh.nodes[node];
+        let frame = crack.frame(&x);
+        let point = ContactPoint {
+            crack: crack.number,
+            x,
+            s: if mesh.dim() == 2 {
+                crack.abscissa(&x)
+            } else {
+                0.0
+            },
+            frame,
+            weight: weight[&node],
+            terms: scalar_terms(&frame, &[(new as u32, 1.0), (node as u32, -1.0)]),
+        };
+        points.push((node, point));
+    }
+    let faces = facets
+        .iter()
+        .map(|&facet| mesh.facet_nodes(facet).collect())
+        .collect();
+    let surface = ContactSurface::new(points, faces);
+    for cell in 0..mesh.cell_count() {
+        if crack.distance(&mesh.centre(cell)) > 0.0 {
+            for node in mesh.cell_mut(cell) {
+                if let Some(&new) = twin.get(node) {
+                    *node = new;
+                }
+            }
+        }
+    }
+    Ok(Some(surface))
+}
+
+/// Facets of side-2 cells on the crack that a side-1 cell shares.
+fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
+    let count = mesh.kind.nodes();
+    let mut upper: BTreeSet<Vec<usize>> = BTreeSet::new();
+    let mut lower: Vec<(Vec<usize>, Facet)> = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let phi = crack.cell_phi(mesh, cell);
+        if phi[..count].iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
+            continue;
+        }
+        for (local, nodes) in mesh.kind.facets().iter().enumerate() {
+            let facet = Facet { cell, local };
+            if nodes.iter().any(|&i| phi[i] != 0.0) || !within(mesh, crack, facet) {
+                continue;
+            }
+            let mut key: Vec<usize> = mesh.facet_nodes(facet).collect();
+            key.sort_unstable();
+            if crack.distance(&mesh.centre(cell)) > 0.0 {
+                upper.insert(key);
+            } else {
+                lower.push((key, facet));
+            }
+        }
+    }
+    lower.retain(|(key, _)| upper.contains(key));
+    lower.into_iter().map(|(_, facet)| facet).collect()
+}
+
+/// True if a facet on the crack's curve or plane lies between its ends.
+fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
+    let corners = mesh.corners(facet.cell);
+    let tolerance = 1e-9 * norm(&sub(&corners[0], &corners[2]));
+    mesh.facet_nodes(facet)
+        .all(|node| crack.jumps_at(&mesh.nodes[node], -tolerance))
+}
+
+/// True if the crack inside a split cell has its middle between the ends of the crack.
+fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
+    let corners = mesh.corners(cell);
+    let corners = &corners[..mesh.kind.nodes()];
+    let facet = crossings(mesh.kind, corners, &crack.cell_phi(mesh, cell), crack);
+    let size = norm(&sub(&corners[0], &corners[2]));
+    let near = facet
+        .iter()
+        .all(|v| crack.distance(&v.0).abs() < 1e-6 * size);
+    let scale = 1.0 / facet.len() as f64;
+    let middle = facet
+        .iter()
+        .fold([0.0; 3], |sum, v| add_scaled(&sum, scale, &v.0));
+    near && crack.jumps_at(&middle, 0.0)
+}

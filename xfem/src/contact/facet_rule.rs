@@ -1,0 +1,288 @@
+//! Quadrature on the facets of a crack, with the linear functions of their corners.
+
+use crate::enrichment::facets::FrontCut;
+use crate::geometry::ellipse::Ellipse;
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::quadrature::front::FrontPiece;
+use crate::quadrature::front_facet::front_facet_points;
+use crate::quadrature::graded::graded_triangles;
+use crate::quadrature::{WeightedPoint, gauss, triangle, triangle_collapsed};
+
+/// A quadrature point of a facet.
+#[derive(Debug, Clone)]
+pub struct FacetPoint {
+    /// Position [m].
+    pub x: Point,
+    /// Length [m] or area [m²].
+    pub weight: f64,
+    /// Values of the corners' functions: linear along a segment; in a polygon linear on each triangle of its centroid and
+    /// an edge, the centroid taking the mean. They sum to one.
+    pub hats: Vec<f64>,
+}
+
+/// How the jump varies on a facet.
+#[derive(Debug, Clone, Copy)]
+pub enum Integrand<'a> {
+    /// Polynomial: the cell is affine and carries no branch function.
+    Polynomial,
+    /// Rational, the cell is distorted: takes so many points.
+    Rational(usize),
+    /// Like √r from one of the tips (2D).
+    Root(&'a [Point]),
+}
+
+/// Points of a segment.
+///
+/// ```text
+///   jump × hat is cubic on an affine cell: 2 points;    with branch functions: x = tip + ρ² e, a polynomial in ρ
+/// ```
+pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
+    /// Points in ρ: exact for √r × quartics, and with slack for the √r of the other tip.
+    const ROOT: usize = 10;
+    let d = sub(&ends[1], &ends[0]);
+    let length = norm(&d);
+    let point = |t: f64, weight: f64| FacetPoint {
+        x: add_scaled(&ends[0], t, &d),
+        weight,
+        hats: vec![1.0 - t, t],
+    };
+    let unit = |n: usize| {
+        gauss(n)
+            .into_iter()
+            .map(|(t, w)| (0.5 * (1.0 + t), 0.5 * w))
+    };
+    let nearest = match integrand {
+        Integrand::Polynomial => return unit(2).map(|(t, w)| point(t, w * length)).collect(),
+        Integrand::Rational(n) => return unit(n).map(|(t, w)| point(t, w * length)).collect(),
+        Integrand::Root(tips) => tips.iter().min_by(|a, b| {
+            let distance = |x: &Point| {
+                (0..2)
+                    .map(|i| norm(&sub(&ends[i], x)))
+                    .fold(f64::INFINITY, f64::min)
+            };
+            distance(a).total_cmp(&distance(b))
+        }),
+    };
+    let Some(tip) = nearest else {
+        return unit(ROOT).map(|(t, w)| point(t, w * length)).collect();
+    };
+    // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
+    let r = [0, 1].map(|i| dot(&sub(&ends[i], tip), &d).abs() / length);
+    let (low, high) = (r[0].min(r[1]).sqrt(), (r[0].min(r[1]) + length).sqrt());
+    unit(ROOT)
+        .map(|(q, w)| {
+            let rho = low + q * (high - low);
+            let along = (rho * rho - low * low) / length;
+            let t = if r[0] <= r[1] { along } else { 1.0 - along };
+            point(t, 2.0 * rho * (high - low) * w)
+        })
+        .collect()
+}
+
+/// Points of a convex polygon in space.
+pub fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
+    let rule = |t: &[Point; 3]| {
+        if affine {
+            triangle(t)
+        } else {
+            triangle_collapsed(t, 6)
+        }
+    };
+    let mut points = Vec::new();
+    for (t, corners) in fans(polygon) {
+        for p in rule(&t) {
+            points.extend(with_hats(p, &t, &corners, polygon.len()));
+        }
+    }
+    points
+}
+
+/// Points of a convex polygon whose jump varies like the root of a distance from a front outside of it.
+pub fn graded_facet(polygon: &[Point], distance: impl Fn(&Point) -> f64) -> Vec<FacetPoint> {
+    /// Points per direction and halvings: relative error of √distance below 1e-6.
+    const POINTS: usize = 5;
+    const DEPTH: usize = 8;
+    let mut points = Vec::new();
+    for (t, corners) in fans(polygon) {
+        for p in graded_triangles(&[t], &distance, POINTS, DEPTH) {
+            points.extend(with_hats(p, &t, &corners, polygon.len()));
+        }
+    }
+    points
+}
+
+/// Points of a convex polygon cut from a face by the front of an elliptic crack, up to the front itself.
+pub fn front_facet(ellipse: &Ellipse, cut: &FrontCut, polygon: &[Point]) -> Vec<FacetPoint> {
+    /// Points along the chord between two corners.
+    const ALONG: usize = 5;
+    let chord = cut.chord;
+    let along = unit(&sub(&chord[1], &chord[0]));
+    let mut centre = [0.0; 3];
+    for x in polygon {
+        centre = add_scaled(&centre, 1.0 / polygon.len() as f64, x);
+    }
+    let ahead = cross(&along, &ellipse.normal);
+    let away = dot(&ahead, &sub(&centre, &chord[0]));
+    let behind = ahead.map(|v| v * away.signum());
+    let piece = FrontPiece {
+        chord,
+        normal: ellipse.normal,
+        at: |x: &Point| ellipse.meet(x, &behind),
+    };
+    let triangles = fans(polygon);
+    front_facet_points(&cut.face, &piece, &behind, ALONG)
+        .into_iter()
+        .filter_map(|p| {
+            // Between chord and front a point lies just outside all triangles: the nearest one speaks for it.
+            let outside = |t: &[Point; 3]| {
+                let parts = barycentric(t, &p.x)?;
+                Some(parts.iter().fold(0.0, |worst: f64, v| worst.max(-v)))
+            };
+            let (t, corners) = triangles
+                .iter()
+                .filter(|(t, _)| outside(t).is_some())
+                .min_by(|a, b| {
+                    outside(&a.0)
+                        .unwrap_or(f64::INFINITY)
+                        .total_cmp(&outside(&b.0).unwrap_or(f64::INFINITY))
+                })?;
+            with_hats(p, t, corners, polygon.len())
+        })
+        .collect()
+}
+
+/// A triangle of a fan with the corners of the polygon it takes, `None` for the centroid.
+type FanTriangle = ([Point; 3], [Option<usize>; 3]);
+
+/// Triangles of the centroid and the edges; a triangle is one itself.
+fn fans(polygon: &[Point]) -> Vec<FanTriangle> {
+    let count = polygon.len();
+    let mut centre = [0.0; 3];
+    for x in polygon {
+        centre = add_scaled(&centre, 1.0 / count as f64, x);
+    }
+    // A triangle needs no centroid: its hats are linear throughout.
+    if count == 3 {
+        return vec![(
+            [polygon[0], polygon[1], polygon[2]],
+            [Some(0), Some(1), Some(2)],
+        )];
+    }
+    (0..count)
+        .map(|i| {
+            let j = (i + 1) % count;
+            ([centre, polygon[i], polygon[j]], [None, Some(i), Some(j)])
+        })
+        .collect()
+}
+
+/// Barycentric coordinates in the plane of a triangle; `None` if it has no area.
+///
+/// By areas, not by scalar products: their determinant is the square of the area, lost in rounding on a sliver.
+fn barycentric(t: &[Point; 3], x: &Point) -> Option<[f64; 3]> {
+    let (e1, e2, d) = (sub(&t[1], &t[0]), sub(&t[2], &t[0]), sub(x, &t[0]));
+    let normal = cross(&e1, &e2);
+    let square = dot(&normal, &normal);
+    let (u, v) = (
+        dot(&cross(&d, &e2), &normal) / square,
+        dot(&cross(&e1, &d), &normal) / square,
+    );
+    (square > 0.0).then_some([1.0 - u - v, u, v])
+}
+
+fn with_hats(
+    p: WeightedPoint,
+    t: &[Point; 3],
+    corners: &[Option<usize>; 3],
+    count: usize,
+) -> Option<FacetPoint> {
+    let mut hats = vec![0.0; count];
+    for (corner, value) in corners.iter().zip(barycentric(t, &p.x)?) {
+        match corner {
+            Some(i) => hats[*i] += value,
+            None => hats.iter_mut().for_each(|h| *h += value / count as f64),
+        }
+    }
+    Some(FacetPoint {
+        x: p.x,
+        weight: p.weight,
+        hats,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum(points: &[FacetPoint], f: impl Fn(&FacetPoint) -> f64) -> f64 {
+        points.iter().map(|p| p.weight * f(p)).sum()
+    }
+
+    #[test]
+    fn a_segment_up_to_the_tip_integrates_roots_exactly() {
+        let tip = [1.0, 2.0, 0.0];
+        for (far, near) in [(2.0, 0.0), (1.5, 0.3), (0.3, 1.5)] {
+            let end = |r: f64| [1.0 - 0.6 * r, 2.0 - 0.8 * r, 0.0];
+            let points = segment_points(&[end(far), end(near)], Integrand::Root(&[tip]));
+            let r = |p: &FacetPoint| norm(&sub(&p.x, &tip));
+            let power =
+                |k: f64| ((far.max(near)).powf(k + 1.0) - far.min(near).powf(k + 1.0)) / (k + 1.0);
+            for k in [0.0, 0.5, 1.0, 1.5, 2.5] {
+                let found = sum(&points, |p| r(p).powf(k));
+                assert!(
+                    (found - power(k)).abs() < 1e-13 * power(k),
+                    "{far} {near} {k}"
+                );
+            }
+            // ∫ hat of the first end × r: linear in r
+            let slope = |p: &FacetPoint| (r(p) - near) / (far - near);
+            assert!(points.iter().all(|p| (p.hats[0] - slope(p)).abs() < 1e-13));
+        }
+    }
+
+    #[test]
+    fn hats_of_a_polygon_sum_to_one_and_reproduce_its_area() {
+        let pentagon: Vec<Point> = (0..5)
+            .map(|i| {
+                let (s, c) = (1.3 * f64::from(i)).sin_cos();
+                [c, s, 0.5 * c - 0.2 * s]
+            })
+            .collect();
+        for polygon in [&pentagon[..3], &pentagon[..4], &pentagon[..]] {
+            let points = polygon_points(polygon, true);
+            assert!(
+                points
+                    .iter()
+                    .all(|p| (p.hats.iter().sum::<f64>() - 1.0).abs() < 1e-13)
+            );
+            let area: f64 = super::super::pairs::vertex_weights(polygon).iter().sum();
+            assert!((sum(&points, |_| 1.0) - area).abs() < 1e-14);
+            let fine = polygon_points(polygon, false);
+            let linear = |p: &FacetPoint| p.hats[1] * (1.0 + p.x[0]);
+            assert!((sum(&points, linear) - sum(&fine, linear)).abs() < 1e-14);
+        }
+    }
+
+    /// Σ hat x = x holds on every triangle of the fan, however thin: rounding of coordinates over the width at most.
+    #[test]
+    fn slivers_keep_their_points_and_hats() {
+        for width in [1e-2, 1e-6, 1e-9, 1e-12] {
+            let polygon = [
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, width, 0.0],
+                [0.4, 0.7, 0.2],
+            ];
+            let points = polygon_points(&polygon, true);
+            assert_eq!(points.len(), 4 * polygon_points(&polygon[..3], true).len());
+            for p in &points {
+                let mut x = [0.0; 3];
+                for (hat, corner) in p.hats.iter().zip(&polygon) {
+                    x = add_scaled(&x, *hat, corner);
+                }
+                let off = p.weight * norm(&sub(&x, &p.x));
+                assert!(off < 1e-15, "{width}: {off:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Multiplier spaces on the crack surface: which contact point speaks for which corner of a facet.
+//!
+//! ```text
+//!   λ_h(x) = Σ_corners hat_c(x) Σ_k share_ck λ_k            Σ_k share_ck = 1
+//!
+//!   facet   every crossed mesh edge has a multiplier of its own
+//!   star    one multiplier per star of crossed edges; a crossed edge (i, j) that belongs to none, cut at the fraction w
+//!           from i, takes (1 − w) λ_star(i) + w λ_star(j)                      (Géniaut, Massin & Moës 2007)
+//!   p0      every facet has a constant multiplier
+//! ```
+//!
+//! Corners whose jump is prescribed, tips, and facets too small to have an equation of their own take the mean of their
+//! neighbours along the crack: a constant continuation that leaves no multiplier without a jump to act on.
+
+use std::collections::BTreeMap;
+
+use crate::enrichment::facets::CrackFacets;
+
+use super::star_forest::star_forest;
+
+/// Contact points and their part in a value, summing to one.
+pub type Shares = Vec<(u32, f64)>;
+
+/// A multiplier space: shares of every corner of every facet.
+#[derive(Debug, Clone)]
+pub struct Multipliers {
+    /// Number of multipliers.
+    pub count: usize,
+    /// Per facet and corner; empty where a crack carries no multiplier at all.
+    pub shares: Vec<Vec<Shares>>,
+}
+
+/// What the displacement does at a crossed mesh edge or node.
+#[derive(Debug, Clone, Copy)]
+pub struct Crossing {
+    /// Ends of the edge, where they carry a free jump; both ends equal at a node, the second then `None`.
+    pub ends: [Option<u32>; 2],
+    /// Fraction w of the edge between its first end and the crack.
+    pub fraction: f64,
+}
+
+/// The given multiplier of every corner.
+pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
+    let own = number.iter().map(|k| k.map(|k| vec![(k, 1.0)])).collect();
+    let count = number.iter().flatten().count();
+    by_corner(facets, own, count)
+}
+
+/// One multiplier per crossing.
+pub fn facet_space(facets: &CrackFacets, crossings: &[Option<Crossing>]) -> Multipliers {
+    let mut count = 0;
+    let own = crossings
+        .iter()
+        .map(|crossing| {
+            crossing.map(|_| {
+                count += 1;
+                vec![(count - 1, 1.0)]
+            })
+        })
+        .collect();
+    by_corner(facets, own, count as usize)
+}
+
+/// One multiplier per star of crossings.
+pub fn star_space(facets: &CrackFacets, crossings: &[Option<Crossing>]) -> Multipliers {
+    let edges: Vec<(usize, Crossing)> = crossings
+        .iter()
+        .enumerate()
+        .filter_map(|(corner, crossing)| crossing.map(|c| (corner, c)))
+        .collect();
+    let ends: Vec<_> = edges.iter().map(|(_, c)| c.ends).collect();
+    let stars = star_forest(&ends);
+    let mut star_of: BTreeMap<u32, u32> = BTreeMap::new();
+    for (pair, star) in ends.iter().zip(&stars) {
+        if let Some(star) = star {
+            star_of.extend(pair.iter().flatten().map(|&node| (node, *star as u32)));
+        }
+    }
+    let mut own = vec![None; crossings.len()];
+    for ((corner, crossing), star) in edges.iter().zip(&stars) {
+        own[*corner] = Some(match (star, crossing.ends) {
+            (Some(star), _) => vec![(*star as u32, 1.0)],
+            (None, ends) => {
+                let parts = ends
+                    .into_iter()
+                    .zip([1.0 - crossing.fraction, crossing.fraction]);
+                parts
+                    .filter_map(|(end, part)| Some((*star_of.get(&end?)?, part)))
+                    .collect()
+            }
+        });
+    }
+    let count = stars.iter().flatten().max().map_or(0, |s| s + 1);
+    by_corner(facets, own, count)
+}
+
+/// One multiplier per facet for which `carries` holds.
+pub fn constant_space(facets: &CrackFacets, carries: impl Fn(usize) -> bool) -> Multipliers {
+    let mut count = 0;
+    let mut own: Vec<Option<Shares>> = (0..facets.facets.len())
+        .map(|facet| {
+            carries(facet).then(|| {
+                count += 1;
+                vec![(count - 1, 1.0)]
+            })
+        })
+        .collect();
+    // Facets are neighbours if they share a corner.
+    let corners: Vec<Vec<usize>> = facets.facets.iter().map(|f| f.corners.clone()).collect();
+    let mut facets_at = vec![Vec::new(); facets.corners.len()];
+    for (facet, list) in corners.iter().enumerate() {
+        list.iter().for_each(|&c| facets_at[c].push(facet));
+    }
+    extend(&mut own, &facets_at);
+    let shares = corners
+        .iter()
+        .zip(own)
+        .map(|(list, share)| vec![share.unwrap_or_default(); list.len()])
+        .collect();
+    Multipliers {
+        count: count as usize,
+        shares,
+    }
+}
+
+/// Extends the shares of some corners to all of them.
+fn by_corner(facets: &CrackFacets, mut own: Vec<Option<Shares>>, count: usize) -> Multipliers {
+    let groups: Vec<Vec<usize>> = facets.facets.iter().map(|f| f.corners.clone()).collect();
+    extend(&mut own, &groups);
+    let shares = groups
+        .iter()
+        .map(|list| {
+            list.iter()
+                .map(|&c| own[c].clone().unwrap_or_default())
+                .collect()
+        })
+        .collect();
+    Multipliers { count, shares }
+}
+
+/// Gives every item without shares the mean of its neighbours, ring by ring; items of one group are neighbours.
+fn extend(own: &mut [Option<Shares>], groups: &[Vec<usize>]) {
+    loop {
+        let mut found: BTreeMap<usize, Vec<&Shares>> = BTreeMap::new();
+        for group in groups {
+            let known: Vec<&Shares> = group.iter().filter_map(|&i| own[i].as_ref()).collect();
+            for &item in group.iter().filter(|&&i| own[i].is_none()) {
+                found.entry(item).or_default().extend(&known);
+            }
+        }
+        let means: Vec<(usize, Shares)> = found
+            .into_iter()
+            .filter(|(_, known)| !known.is_empty())
+            .map(|(item, known)| (item, mean(&known)))
+            .collect();
+        if means.is_empty() {
+            return;
+        }
+        for (item, shares) in means {
+            own[item] = Some(shares);
+        }
+    }
+}
+
+fn mean(list: &[&Shares]) -> Shares {
+    let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
+    for &(k, value) in list.iter().flat_map(|shares| shares.iter()) {
+        *sum.entry(k).or_default() += value / list.len() as f64;
+    }
+    sum.into_iter().collect()
+}

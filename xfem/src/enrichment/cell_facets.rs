@@ -1,0 +1,109 @@
+//! Edges and facets of a cell, divided among its regions.
+
+use crate::cut::crack::Crack;
+use crate::cut::partition::{Part, Partition};
+use crate::geometry::clip::{Side, clip};
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::mesh::Mesh;
+
+use super::Enrichment;
+use super::basis::Region;
+
+/// A piece of an edge (two points) or facet (a polygon), and the region of the cell it bounds.
+pub type Piece = (Vec<Point>, Region);
+
+/// Pieces of the edge or facet between some local nodes of a cell, in their order.
+pub fn pieces(
+    mesh: &Mesh,
+    cracks: &[Crack],
+    enrichment: &Enrichment,
+    cell: usize,
+    local: &[usize],
+) -> Vec<Piece> {
+    let corners = mesh.corners(cell);
+    let vertices: Vec<Point> = local.iter().map(|&i| corners[i]).collect();
+    let Some(partition) = enrichment.partition(cell) else {
+        return vec![(vertices, 0)];
+    };
+    if let &[i, j] = local {
+        return edge_pieces(cracks, partition, &vertices, [i, j]);
+    }
+    let phi = |crack: usize| {
+        let of_cell = cracks[crack].cell_phi(mesh, cell);
+        local.iter().map(|&i| of_cell[i]).collect::<Vec<f64>>()
+    };
+    let size = norm(&sub(&vertices[2], &vertices[0]));
+    let mut found = Vec::new();
+    for (region, part) in partition.parts.iter().enumerate() {
+        let mut polygon = vertices.clone();
+        for &(crack, side) in &part.sides {
+            // The nodes' own values, so that a node on the crack stays on it.
+            let own = phi(crack);
+            let level = |x: &Point| {
+                let node = vertices.iter().position(|v| v == x);
+                let value = node.map_or_else(|| cracks[crack].distance(x), |k| own[k]);
+                if value.abs() <= 1e-14 * size {
+                    0.0
+                } else {
+                    value
+                }
+            };
+            let levels: Vec<(Point, f64)> = polygon.iter().map(|x| (*x, level(x))).collect();
+            polygon = if levels.iter().any(|v| v.1 * side > 0.0) {
+                clip(&levels, side).into_iter().map(|v| v.0).collect()
+            } else {
+                Vec::new()
+            };
+        }
+        if polygon.len() > 2 {
+            found.push((polygon, region));
+        }
+    }
+    found
+}
+
+/// An edge cut where the cracks cross it.
+fn edge_pieces(
+    cracks: &[Crack],
+    partition: &Partition,
+    ends: &[Point],
+    nodes: [usize; 2],
+) -> Vec<Piece> {
+    let d = sub(&ends[1], &ends[0]);
+    let along = |x: &Point| dot(&sub(x, &ends[0]), &d) / dot(&d, &d);
+    let on_edge = |on: &Option<[usize; 2]>| {
+        on.is_some_and(|[i, j]| i != j && (nodes == [i, j] || nodes == [j, i]))
+    };
+    let mut cuts: Vec<Point> = partition
+        .faces
+        .iter()
+        .flat_map(|face| &face.corners)
+        .filter(|(_, on)| on_edge(on))
+        .map(|(x, _)| *x)
+        .collect();
+    cuts.sort_by(|a, b| along(a).total_cmp(&along(b)));
+    cuts.dedup();
+    let mut points = vec![ends[0]];
+    points.extend(cuts);
+    points.push(ends[1]);
+    points
+        .windows(2)
+        .map(|w| {
+            let middle = add_scaled(&w[0], 0.5, &sub(&w[1], &w[0]));
+            (w.to_vec(), region_at(cracks, partition, &middle))
+        })
+        .collect()
+}
+
+/// The region that a point of a cell lies in, or most nearly.
+pub fn region_at(cracks: &[Crack], partition: &Partition, x: &Point) -> Region {
+    let depth = |part: &Part| {
+        let inside = |&(crack, side): &(usize, Side)| side * cracks[crack].distance(x);
+        part.sides.iter().map(inside).fold(f64::INFINITY, f64::min)
+    };
+    let regions = 0..partition.parts.len();
+    regions
+        .rev()
+        .max_by(|&a, &b| depth(&partition.parts[a]).total_cmp(&depth(&partition.parts[b])))
+        .unwrap_or(0)
+}

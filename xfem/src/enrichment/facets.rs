@@ -1,0 +1,255 @@
+//! The crack surface inside the cut cells: polygons (2D: segments) whose corners lie on mesh edges, at nodes or inside cells.
+
+use std::collections::BTreeMap;
+
+use crate::cut::crack::{Crack, Geometry};
+use crate::cut::partition::Face;
+use crate::geometry::curve::turned;
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::mesh::Mesh;
+
+use super::Enrichment;
+use super::basis::Region;
+
+/// Corner of facets.
+#[derive(Debug, Clone, Copy)]
+pub struct Corner {
+    /// Position [m].
+    pub x: Point,
+    /// Ends of the mesh edge it lies on, lower number first; equal at a node; `None` inside a cell.
+    pub nodes: Option<[u32; 2]>,
+}
+
+/// A piece of a crack inside one cell, between two of its regions.
+#[derive(Debug, Clone)]
+pub struct Facet {
+    /// Cell.
+    pub cell: usize,
+    /// Corners: two along the crack (2D) or a convex polygon in cyclic order.
+    pub corners: Vec<usize>,
+    /// Regions of the cell on side 1 and side 2.
+    pub regions: [Region; 2],
+    /// Frame n, a, b of the piece itself: a bent 2D crack is a chain of chords.
+    pub frame: [Point; 3],
+    /// What a 3D front cut the piece from.
+    pub front: Option<FrontCut>,
+}
+
+/// A face cut off by a front.
+#[derive(Debug, Clone)]
+pub struct FrontCut {
+    /// Where the front crosses its border [m].
+    pub chord: [Point; 2],
+    /// The whole face.
+    pub face: Vec<Point>,
+}
+
+/// All facets of one crack.
+#[derive(Debug, Clone, Default)]
+pub struct CrackFacets {
+    /// Corners, those on mesh edges shared between cells.
+    pub corners: Vec<Corner>,
+    /// Facets in the order of their cells.
+    pub facets: Vec<Facet>,
+}
+
+impl CrackFacets {
+    /// Facets of the `index`-th crack, up to its tips or front.
+    pub fn new(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichment) -> Self {
+        let cells = enrichment.cut_cells().map(|(cell, _)| cell);
+        Self::of_cells(mesh, cells, index, crack, enrichment)
+    }
+
+    /// Facets of the `index`-th crack in one cell.
+    pub fn of_cell(
+        mesh: &Mesh,
+        cell: usize,
+        index: usize,
+        crack: &Crack,
+        enrichment: &Enrichment,
+    ) -> Self {
+        Self::of_cells(mesh, std::iter::once(cell), index, crack, enrichment)
+    }
+
+    fn of_cells(
+        mesh: &Mesh,
+        cells: impl Iterator<Item = usize>,
+        index: usize,
+        crack: &Crack,
+        enrichment: &Enrichment,
+    ) -> Self {
+        let mut found = CrackFacets::default();
+        let mut by_edge: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+        for cell in cells {
+            let Some(partition) = enrichment.partition(cell) else {
+                continue;
+            };
+            let nodes = mesh.cell(cell);
+            let corners = mesh.corners(cell);
+            // What is cut off or merged by it is missing from the crack, and so from the forces on it.
+            let tolerance = 1e-12 * norm(&sub(&corners[0], &corners[2]));
+            // Corners inside the cell that its own faces share.
+            let mut inner: Vec<usize> = Vec::new();
+            for face in partition.faces.iter().filter(|f| f.crack == index) {
+                let polygon: Vec<Corner> = face
+                    .corners
+                    .iter()
+                    .map(|&(x, on)| Corner {
+                        x,
+                        nodes: on.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]),
+                    })
+                    .collect();
+                let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
+                    continue;
+                };
+                let frame = piece_frame(crack, face, &polygon);
+                let corners = polygon
+                    .into_iter()
+                    .map(|corner| {
+                        let fresh = found.corners.len();
+                        let known = match corner.nodes {
+                            Some(key) => *by_edge.entry(key).or_insert(fresh),
+                            None => inner
+                                .iter()
+                                .copied()
+                                .find(|&i| norm(&sub(&found.corners[i].x, &corner.x)) <= tolerance)
+                                .unwrap_or(fresh),
+                        };
+                        if known == fresh {
+                            found.corners.push(corner);
+                            if corner.nodes.is_none() {
+                                inner.push(fresh);
+                            }
+                        }
+                        known
+                    })
+                    .collect();
+                found.facets.push(Facet {
+                    cell,
+                    corners,
+                    regions: face.parts,
+                    frame,
+                    front,
+                });
+            }
+        }
+        found
+    }
+
+    /// Positions of the corners of a facet.
+    pub fn polygon(&self, facet: &Facet) -> Vec<Point> {
+        facet.corners.iter().map(|&c| self.corners[c].x).collect()
+    }
+}
+
+/// Frame of a piece: in 2D that of its chord.
+fn piece_frame(crack: &Crack, face: &Face, polygon: &[Corner]) -> [Point; 3] {
+    match &crack.geometry {
+        Geometry::Curve(curve) if !curve.is_straight() => {
+            let a = unit(&sub(&face.corners[1].0, &face.corners[0].0));
+            [turned(&a), a, [0.0, 0.0, 1.0]]
+        }
+        _ => crack.frame(&polygon[0].x),
+    }
+}
+
+/// A facet and the front that cut it.
+type Clipped = (Vec<Corner>, Option<FrontCut>);
+
+/// The part of a face between the free ends of a 2D crack or inside a 3D front; its new corners are tips or front points.
+fn within(crack: &Crack, polygon: &[Corner], tolerance: f64) -> Option<Clipped> {
+    match &crack.geometry {
+        Geometry::Plane { .. } => Some((polygon.to_vec(), None)),
+        Geometry::Ellipse(ellipse) => {
+            let psi = |x: &Point| {
+                let psi = ellipse.nearest(x).psi;
+                if psi.abs() <= tolerance { 0.0 } else { psi }
+            };
+            inside_front(polygon, &psi)
+        }
+        Geometry::Curve(curve) if curve.is_closed() => Some((polygon.to_vec(), None)),
+        Geometry::Curve(curve) => {
+            let d = sub(&polygon[1].x, &polygon[0].x);
+            let s: Vec<f64> = polygon.iter().map(|c| curve.nearest(&c.x).s).collect();
+            let cut_off = |i: usize| {
+                for (k, free) in crack.free.into_iter().enumerate() {
+                    let bound = crack.range[k];
+                    let beyond = if k == 0 { bound - s[i] } else { s[i] - bound };
+                    if free && beyond > tolerance {
+                        // On the face itself, which may be the chord of an arc.
+                        let t = (bound - s[0]) / (s[1] - s[0]);
+                        return Corner {
+                            x: add_scaled(&polygon[0].x, t, &d),
+                            nodes: None,
+                        };
+                    }
+                }
+                polygon[i]
+            };
+            let (a, b) = (cut_off(0), cut_off(1));
+            let along = dot(&sub(&b.x, &a.x), &unit(&d));
+            (along > tolerance).then(|| (vec![a, b], None))
+        }
+    }
+}
+
+/// The convex part ψ <= 0 of a polygon, the front taken as a chord between its two crossings with the border.
+fn inside_front(polygon: &[Corner], psi: &dyn Fn(&Point) -> f64) -> Option<Clipped> {
+    let values: Vec<f64> = polygon.iter().map(|c| psi(&c.x)).collect();
+    if !values.iter().any(|&v| v < 0.0) {
+        return None;
+    }
+    let mut part: Vec<Corner> = Vec::new();
+    let mut front = Vec::new();
+    for i in 0..polygon.len() {
+        let j = (i + 1) % polygon.len();
+        if values[i] <= 0.0 {
+            part.push(polygon[i]);
+            if values[i] == 0.0 {
+                front.push(polygon[i].x);
+            }
+        }
+        if values[i] * values[j] < 0.0 {
+            let x = root(&polygon[i].x, &polygon[j].x, values[i], psi);
+            part.push(Corner { x, nodes: None });
+            front.push(x);
+        }
+    }
+    if part.len() < 3 || area(&part) <= 0.0 {
+        return None;
+    }
+    let chord = <[Point; 2]>::try_from(front)
+        .ok()
+        .filter(|_| values.iter().any(|&v| v > 0.0));
+    let cut = chord.map(|chord| FrontCut {
+        chord,
+        face: polygon.iter().map(|c| c.x).collect(),
+    });
+    Some((part, cut))
+}
+
+fn area(polygon: &[Corner]) -> f64 {
+    let sum = (2..polygon.len()).fold([0.0; 3], |sum, i| {
+        let (p, q) = (
+            sub(&polygon[i - 1].x, &polygon[0].x),
+            sub(&polygon[i].x, &polygon[0].x),
+        );
+        add_scaled(&sum, 0.5, &cross(&p, &q))
+    });
+    norm(&sum)
+}
+
+/// Zero of a function on the segment p q whose value at p is `at_p`, by bisection.
+fn root(p: &Point, q: &Point, at_p: f64, value: &dyn Fn(&Point) -> f64) -> Point {
+    let d = sub(q, p);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if value(&add_scaled(p, middle, &d)) * at_p > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    add_scaled(p, 0.5 * (low + high), &d)
+}

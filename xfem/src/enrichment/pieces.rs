@@ -1,0 +1,280 @@
+//! Connected pieces of the cut body and the rigid motions its supports leave free.
+//!
+//! Every node has one copy per combination of constants that its Heaviside functions take around it: its own side, the
+//! other side of a crack, the sectors around a junction. Regions of cells join the copies they touch; what stays joined is
+//! a piece.
+
+use nalgebra::{DMatrix, SVD, SymmetricEigen};
+
+use crate::geometry::Point;
+use crate::mesh::Mesh;
+
+use super::Enrichment;
+use super::basis::FunctionKind;
+
+/// Rigid motions left free.
+#[derive(Debug, Clone)]
+pub struct FreeMotions {
+    /// Basis of the motions over all unknowns; empty if the supports hold every piece.
+    pub modes: Vec<Vec<f64>>,
+}
+
+/// A body that can move without any contact resisting.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// A piece touches no support.
+    #[error("the piece of the body around {at:?} is cut off and touches no support")]
+    Unsupported {
+        /// Mean position of its nodes [m].
+        at: Point,
+    },
+    /// A rigid motion opens no crack.
+    #[error("the supports leave {count} rigid motion(s) that no contact can resist")]
+    Rigid {
+        /// Number of independent motions.
+        count: usize,
+    },
+}
+
+/// The connected pieces of a body.
+#[derive(Debug, Clone)]
+pub struct Pieces {
+    /// Number of pieces.
+    pub count: usize,
+    /// Copies of every node: constants of its Heaviside functions there (all 0 on the node's own side), and the piece.
+    copies: Vec<Vec<(Vec<f64>, usize)>>,
+}
+
+/// Finds the pieces.
+pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
+    // Copies by node and constants; −2, 0 or 2, or ±1 beyond the end of an arm: exact.
+    let mut number: Vec<Vec<(Vec<f64>, usize)>> = vec![Vec::new(); mesh.nodes.len()];
+    let mut parent: Vec<usize> = Vec::new();
+    fn root(parent: &mut [usize], mut i: usize) -> usize {
+        while parent[i] != i {
+            parent[i] = parent[parent[i]];
+            i = parent[i];
+        }
+        i
+    }
+    let mut copy_at = |parent: &mut Vec<usize>, node: usize, constants: Vec<f64>| {
+        let known = &mut number[node];
+        match known.iter().find(|(c, _)| *c == constants) {
+            Some(&(_, copy)) => copy,
+            None => {
+                parent.push(parent.len());
+                known.push((constants, parent.len() - 1));
+                parent.len() - 1
+            }
+        }
+    };
+    // A node without cells of its own side still has a copy there.
+    for node in 0..mesh.nodes.len() {
+        let none = vec![0.0; heaviside_of(enrichment, node).count()];
+        copy_at(&mut parent, node, none);
+    }
+    for cell in 0..mesh.cell_count() {
+        let functions = enrichment.cell(cell);
+        let steps = enrichment.steps(cell);
+        for region in 0..enrichment.regions(cell) {
+            let mut first = None;
+            for &node in mesh.cell(cell) {
+                let constants = heaviside_of(enrichment, node as usize).map(|f| {
+                    let place = functions.iter().position(|&g| g as usize == f);
+                    place.map_or(0.0, |i| steps[region * functions.len() + i])
+                });
+                let constants = constants.collect();
+                let copy = copy_at(&mut parent, node as usize, constants);
+                let copy = root(&mut parent, copy);
+                match first {
+                    None => first = Some(copy),
+                    Some(other) => parent[copy] = root(&mut parent, other),
+                }
+            }
+        }
+    }
+    let mut piece_of = vec![None; parent.len()];
+    let mut count = 0;
+    let copies = number
+        .into_iter()
+        .map(|list| {
+            let numbered = list.into_iter().map(|(constants, copy)| {
+                let r = root(&mut parent, copy);
+                let piece = *piece_of[r].get_or_insert_with(|| {
+                    count += 1;
+                    count - 1
+                });
+                (constants, piece)
+            });
+            numbered.collect()
+        })
+        .collect();
+    Pieces { count, copies }
+}
+
+/// Heaviside functions of a node.
+fn heaviside_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
+    let own = enrichment.enriched_of(node);
+    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Heaviside { .. }))
+}
+
+impl Pieces {
+    /// Piece of a node on its own side.
+    pub fn of_node(&self, node: usize) -> usize {
+        self.copies[node][0].1
+    }
+
+    /// All unknowns of a field given piece by piece, 0 in the branch functions.
+    ///
+    /// ```text
+    ///   ū + Σ_f c_f b_f = r of the copy's piece at x, for every copy of the node
+    /// ```
+    pub fn field(
+        &self,
+        mesh: &Mesh,
+        enrichment: &Enrichment,
+        r: impl Fn(usize, &Point) -> Point,
+    ) -> Vec<f64> {
+        let dim = mesh.dim();
+        let mut u = vec![0.0; enrichment.functions.len() * dim];
+        for (node, copies) in self.copies.iter().enumerate() {
+            let x = &mesh.nodes[node];
+            let own = r(copies[0].1, x);
+            u[node * dim..(node + 1) * dim].copy_from_slice(&own[..dim]);
+            let functions: Vec<usize> = heaviside_of(enrichment, node).collect();
+            let others = &copies[1..];
+            if functions.is_empty() || others.is_empty() {
+                continue;
+            }
+            let matrix = DMatrix::from_fn(others.len(), functions.len(), |i, j| others[i].0[j]);
+            let right = DMatrix::from_fn(others.len(), dim, |i, a| r(others[i].1, x)[a] - own[a]);
+            // As many independent copies as functions, or fewer: the smallest solution then leaves unused ones at rest.
+            let Ok(found) = SVD::new(matrix, true, true).solve(&right, 1e-12) else {
+                continue;
+            };
+            for (j, f) in functions.into_iter().enumerate() {
+                for a in 0..dim {
+                    u[f * dim + a] = found[(j, a)];
+                }
+            }
+        }
+        u
+    }
+}
+
+/// The rigid motions that the prescribed unknowns leave free, checked against contact.
+///
+/// `numbers`: number of every unknown among the free ones, `None` if prescribed; `jump(mode)`: largest jump of a motion
+/// at the contact points, `mode` over all unknowns.
+pub fn free_motions(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    numbers: &[Option<u32>],
+    jump: impl Fn(&[f64]) -> Vec<f64>,
+) -> Result<FreeMotions, MotionError> {
+    /// Eigenvalues of the normalised support matrix below this are zero: supports act on motions of order one.
+    const ZERO: f64 = 1e-10;
+    let dim = mesh.dim();
+    let pieces = pieces(mesh, enrichment);
+    let count = pieces.count;
+    let mut held = vec![false; count];
+    for node in 0..mesh.nodes.len() {
+        held[pieces.of_node(node)] |= (0..dim).any(|a| numbers[node * dim + a].is_none());
+    }
+    if let Some(loose) = held.iter().position(|h| !h) {
+        if count > 1 {
+            let own: Vec<&Point> = (0..mesh.nodes.len())
+                .filter(|&n| pieces.of_node(n) == loose)
+                .map(|n| &mesh.nodes[n])
+                .collect();
+            let at =
+                [0, 1, 2].map(|a| own.iter().map(|x| x[a]).sum::<f64>() / own.len().max(1) as f64);
+            return Err(MotionError::Unsupported { at });
+        }
+        let count = if dim == 2 { 3 } else { 6 };
+        return Err(MotionError::Rigid { count });
+    }
+    let modes = piece_motions(mesh, enrichment, &pieces);
+    // Support matrix S_kl = Σ over prescribed unknowns of mode_k mode_l: its kernel are the free motions.
+    let m = modes.len();
+    let mut support = DMatrix::<f64>::zeros(m, m);
+    for unknown in (0..numbers.len()).filter(|&i| numbers[i].is_none()) {
+        let values: Vec<f64> = modes.iter().map(|mode| mode[unknown]).collect();
+        for k in 0..m {
+            if values[k] != 0.0 {
+                for l in 0..m {
+                    support[(k, l)] += values[k] * values[l];
+                }
+            }
+        }
+    }
+    let scale = support.diagonal().max().max(f64::MIN_POSITIVE);
+    let eigen = SymmetricEigen::new(support / scale);
+    let free: Vec<Vec<f64>> = (0..m)
+        .filter(|&k| eigen.eigenvalues[k].abs() < ZERO)
+        .map(|k| {
+            let mut mode = vec![0.0; numbers.len()];
+            for (l, part) in modes.iter().enumerate() {
+                let c = eigen.eigenvectors[(l, k)];
+                for (value, p) in mode.iter_mut().zip(part) {
+                    *value += c * p;
+                }
+            }
+            mode
+        })
+        .collect();
+    if !free.is_empty() {
+        // Contact must feel every free motion: the Gram matrix of their jumps must be regular.
+        let jumps: Vec<Vec<f64>> = free.iter().map(|mode| jump(mode)).collect();
+        let gram = DMatrix::<f64>::from_fn(free.len(), free.len(), |k, l| {
+            jumps[k].iter().zip(&jumps[l]).map(|(a, b)| a * b).sum()
+        });
+        let size = gram.diagonal().max().max(f64::MIN_POSITIVE);
+        let values = SymmetricEigen::new(gram / size).eigenvalues;
+        let silent = if size == f64::MIN_POSITIVE {
+            free.len()
+        } else {
+            values.iter().filter(|v| v.abs() < ZERO).count()
+        };
+        if silent > 0 {
+            return Err(MotionError::Rigid { count: silent });
+        }
+    }
+    Ok(FreeMotions { modes: free })
+}
+
+/// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
+fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<Vec<f64>> {
+    let dim = mesh.dim();
+    let (size, centre) = mesh.extent();
+    let rotations: &[[usize; 2]] = if dim == 2 {
+        &[[0, 1]]
+    } else {
+        &[[0, 1], [1, 2], [2, 0]]
+    };
+    let motion = |kind: usize, x: &Point| -> Point {
+        let mut r = [0.0; 3];
+        if kind < dim {
+            r[kind] = 1.0;
+        } else {
+            let [a, b] = rotations[kind - dim];
+            r[a] = -(x[b] - centre[b]) / size;
+            r[b] = (x[a] - centre[a]) / size;
+        }
+        r
+    };
+    let kinds = dim + rotations.len();
+    let mut modes = Vec::with_capacity(pieces.count * kinds);
+    for piece in 0..pieces.count {
+        for kind in 0..kinds {
+            modes.push(pieces.field(mesh, enrichment, |p, x| {
+                if p == piece {
+                    motion(kind, x)
+                } else {
+                    [0.0; 3]
+                }
+            }));
+        }
+    }
+    modes
+}

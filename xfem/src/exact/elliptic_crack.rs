@@ -1,0 +1,450 @@
+//! `elliptic-crack`: flat elliptic crack in an infinite solid under remote uniform stress, closed with Coulomb friction or
+//! open.
+//!
+//! ```text
+//!   remote traction on side 1:   p = −n σ n (pressure),  τ = σ n − (n σ n) n
+//!   jump = D √(1 − x²/a² − y²/b²),  D uniform;  the stress drop is uniform over the crack
+//!   open (p < 0): D = (C_n |p|, C_a τ_a, C_b τ_b);   stick (|τ| <= μ p): D = 0;   slip: [`super::elliptic_slip`]
+//! ```
+//!
+//! The slip has one direction everywhere, so Coulomb's law holds at every point and not only on average. Mode I: Green and
+//! Sneddon (1950); shear: Kassir and Sih (1966); a disc: Segedin (1950). The field off the crack is that of the jump
+//! ([`DiscPotential`]) and the uniform remote field: relative error 1e-15, 1e-16 a/r at a distance r from the front, where
+//! stresses are singular. The uniform part of the displacement vanishes with its rotation at the centre of the crack.
+//!
+//! Load factors scale the remote stress. With friction and slip they may not fall; the slip then keeps its direction.
+
+use std::f64::consts::PI;
+
+use crate::geometry::ellipse::Ellipse;
+use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, sub};
+use crate::material::{Material, Model};
+
+#[cfg(doc)]
+use super::elliptic_disc::DiscPotential;
+use super::elliptic_disc::disc_potential;
+use super::elliptic_slip::{compliance, slip};
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
+    ParameterSpec {
+        name,
+        summary,
+        default: Some(0.0),
+    }
+}
+
+/// The registered solution.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "elliptic-crack",
+    summary: "elliptic or circular crack in an infinite solid under remote stress, slipping, sticking or open",
+    parameters: &[
+        component("stress_xx_pa", "remote stress σ_xx, tension positive"),
+        component("stress_yy_pa", "remote stress σ_yy"),
+        component("stress_zz_pa", "remote stress σ_zz"),
+        component("stress_xy_pa", "remote stress σ_xy"),
+        component("stress_yz_pa", "remote stress σ_yz"),
+        component("stress_xz_pa", "remote stress σ_xz"),
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let CrackShape::Ellipse {
+        centre,
+        normal,
+        axis,
+        half_axes,
+    } = *setting.crack
+    else {
+        return Err("elliptic-crack needs an elliptic crack".into());
+    };
+    if setting.model != Model::Solid {
+        return Err("elliptic-crack is a solution of solids".into());
+    }
+    let &[xx, yy, zz, xy, yz, xz] = values else {
+        return Err("elliptic-crack takes six components of stress".into());
+    };
+    Ok(Box::new(EllipticCrack {
+        ellipse: Ellipse {
+            centre,
+            normal,
+            axis,
+            half_axes,
+        },
+        material: setting.material,
+        friction: setting.friction,
+        stress: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
+    }))
+}
+
+/// The crack under a remote stress for load factor 1.
+#[derive(Debug, Clone)]
+struct EllipticCrack {
+    ellipse: Ellipse,
+    material: Material,
+    friction: f64,
+    stress: [Point; 3],
+}
+
+/// State of the crack at one load factor.
+#[derive(Debug, Clone)]
+struct State {
+    ellipse: Ellipse,
+    /// Directions of the local coordinates x, y, z: axis, normal × axis, normal.
+    frame: [Point; 3],
+    material: Material,
+    /// Remote stress, global [Pa].
+    stress: [Point; 3],
+    /// Jump at the centre along the frame [m].
+    jump: [f64; 3],
+    /// Uniform traction on side 1 along the frame, its last entry the pressure [Pa].
+    traction: [f64; 3],
+    dissipation: f64,
+}
+
+impl EllipticCrack {
+    fn state(&self, factor: f64) -> State {
+        let normal = self.ellipse.normal;
+        let frame = [
+            self.ellipse.axis,
+            cross(&normal, &self.ellipse.axis),
+            normal,
+        ];
+        let stress = self.stress.map(|row| row.map(|value| factor * value));
+        let force = stress.map(|row| dot(&row, &normal));
+        let [tau_a, tau_b, tension] = frame.map(|e| dot(&e, &force));
+        let c = compliance(self.ellipse.half_axes, self.material);
+        let pressure = (-tension).max(0.0);
+        let bound = self.friction * pressure;
+        let [slip_a, slip_b] = slip([tau_a, tau_b], bound, [c[0], c[1]]);
+        State {
+            ellipse: self.ellipse,
+            frame,
+            material: self.material,
+            stress,
+            jump: [slip_a, slip_b, c[2] * tension.max(0.0)],
+            // What the drop D/C leaves of the remote shear; force on side 1 is −σ n.
+            traction: [slip_a / c[0] - tau_a, slip_b / c[1] - tau_b, pressure],
+            dissipation: 0.0,
+        }
+    }
+}
+
+impl Solution for EllipticCrack {
+    /// Dissipation is that of the increments: each slips under the pressure at its end (backward Euler).
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let Some(&last) = factors.last() else {
+            return Err("no load factor".into());
+        };
+        if factors.iter().any(|f| *f < 0.0) {
+            return Err("elliptic-crack holds for load factors >= 0".into());
+        }
+        let mut state = self.state(last);
+        let unit = self.state(1.0);
+        let slips = unit.jump[0] != 0.0 || unit.jump[1] != 0.0;
+        if slips && unit.traction[2] > 0.0 && self.friction > 0.0 {
+            // ∫ √(1 − x²/a² − y²/b²) dA = 2π a b / 3
+            let [a, b] = self.ellipse.half_axes;
+            let work = -(unit.traction[0] * unit.jump[0] + unit.traction[1] * unit.jump[1]);
+            let mut before = 0.0;
+            for &factor in factors {
+                if factor < before {
+                    return Err(format!(
+                        "the load factor falls from {before} to {factor}: slip would reverse"
+                    ));
+                }
+                // Traction and slip are both proportional to the factor.
+                state.dissipation += 2.0 * PI * a * b / 3.0 * work * factor * (factor - before);
+                before = factor;
+            }
+        }
+        Ok(Box::new(state))
+    }
+}
+
+impl State {
+    /// Local coordinates; z = 0 exactly on the crack plane, so that `side` decides there and not rounding.
+    fn local(&self, x: &Point) -> [f64; 3] {
+        let d = sub(x, &self.ellipse.centre);
+        let mut y = self.frame.map(|e| dot(&e, &d));
+        let size = self.ellipse.half_axes[0].max(self.ellipse.half_axes[1]);
+        if y[2].abs() <= 1e-12 * size {
+            y[2] = 0.0;
+        }
+        y
+    }
+
+    fn global(&self, v: [f64; 3]) -> Point {
+        let mut x = [0.0; 3];
+        for (value, e) in v.iter().zip(&self.frame) {
+            x = add_scaled(&x, *value, e);
+        }
+        x
+    }
+
+    /// √(1 − x²/a² − y²/b²), 0 outside the crack.
+    fn profile(&self, x: &Point) -> f64 {
+        let [x, y, _] = self.local(x);
+        let [a, b] = self.ellipse.half_axes;
+        (1.0 - (x / a).powi(2) - (y / b).powi(2)).max(0.0).sqrt()
+    }
+}
+
+impl Field for State {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let Material { young, poisson } = self.material;
+        let potential = disc_potential(self.ellipse.half_axes, self.local(x), side);
+        let layer = potential.displacement(self.jump, poisson);
+        // Uniform strain ((1+ν) σ − ν tr σ I)/E.
+        let from_centre = sub(x, &self.ellipse.centre);
+        let trace = (0..3).map(|k| self.stress[k][k]).sum::<f64>();
+        let uniform = [0, 1, 2].map(|k| {
+            ((1.0 + poisson) * dot(&self.stress[k], &from_centre)
+                - poisson * trace * from_centre[k])
+                / young
+        });
+        add_scaled(&self.global(layer), 1.0, &uniform)
+    }
+
+    fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
+        let Material { young, poisson } = self.material;
+        let shear = young / (2.0 * (1.0 + poisson));
+        let potential = disc_potential(self.ellipse.half_axes, self.local(x), side);
+        let g = potential.gradient(self.jump, poisson);
+        let pressure =
+            2.0 * shear * poisson / (1.0 - 2.0 * poisson) * (g[0][0] + g[1][1] + g[2][2]);
+        let mut local = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for k in 0..3 {
+                local[i][k] = shear * (g[i][k] + g[k][i]);
+            }
+            local[i][i] += pressure;
+        }
+        let mut stress = self.stress;
+        for i in 0..3 {
+            for k in 0..3 {
+                for r in 0..3 {
+                    for s in 0..3 {
+                        stress[r][s] += self.frame[i][r] * local[i][k] * self.frame[k][s];
+                    }
+                }
+            }
+        }
+        stress
+    }
+
+    fn traction(&self, _x: &Point) -> [f64; 3] {
+        let [a, b, n] = self.traction;
+        [n, a, b]
+    }
+
+    fn jump(&self, x: &Point) -> [f64; 3] {
+        let profile = self.profile(x);
+        let [a, b, n] = self.jump;
+        [n * profile, a * profile, b * profile]
+    }
+
+    /// Behind the front at a distance r the profile is √(2 r γ), γ = √(cos² t/a² + sin² t/b²), and by Irwin's relations
+    /// K_I = G D_n √(πγ) / (2 (1−ν)), K_II likewise with D · ahead, K_III = G D · tangent √(πγ) / 2.
+    fn intensity(&self, front: &Point) -> Option<[f64; 3]> {
+        let Material { young, poisson } = self.material;
+        let shear = young / (2.0 * (1.0 + poisson));
+        let nearest = self.ellipse.nearest(front);
+        let [ahead, _, tangent] = self.ellipse.front_frame(&nearest);
+        let [a, b] = self.ellipse.half_axes;
+        let (sin, cos) = nearest.parameter.sin_cos();
+        let scale = 0.5 * shear * (PI * (cos / a).hypot(sin / b)).sqrt();
+        let slip = self.global([self.jump[0], self.jump[1], 0.0]);
+        Some([
+            scale * self.jump[2] / (1.0 - poisson),
+            scale * dot(&slip, &ahead) / (1.0 - poisson),
+            scale * dot(&slip, &tangent),
+        ])
+    }
+
+    fn dissipation(&self) -> Option<f64> {
+        Some(self.dissipation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::geometry::unit;
+
+    const MATERIAL: Material = Material {
+        young: 2.6,
+        poisson: 0.3,
+    };
+
+    /// Crack with a normal off the axes, and a remote stress with given traction components (σ_nn, σ_na, σ_nb).
+    fn crack(half_axes: [f64; 2], [nn, na, nb]: [f64; 3], friction: f64) -> EllipticCrack {
+        let normal = unit(&[1.0, -2.0, 3.0]);
+        let axis = unit(&cross(&normal, &[0.2, 1.0, 0.4]));
+        let ellipse = Ellipse {
+            centre: [0.3, -0.1, 0.2],
+            normal,
+            axis,
+            half_axes,
+        };
+        let frame = [axis, cross(&normal, &axis), normal];
+        // Stresses along the crack plane must not matter to it.
+        let local = [[0.3, -0.2, na], [-0.2, -0.6, nb], [na, nb, nn]];
+        let mut stress = [[0.0; 3]; 3];
+        for (i, e) in frame.iter().enumerate() {
+            for (k, f) in frame.iter().enumerate() {
+                for r in 0..3 {
+                    for s in 0..3 {
+                        stress[r][s] += e[r] * local[i][k] * f[s];
+                    }
+                }
+            }
+        }
+        EllipticCrack {
+            ellipse,
+            material: MATERIAL,
+            friction,
+            stress,
+        }
+    }
+
+    /// Slipping, open, sticking; discs and ellipses either way round.
+    fn states() -> Vec<State> {
+        vec![
+            crack([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4).state(1.0),
+            crack([0.4, 0.9], [-1.0, 0.7, -0.2], 0.3).state(1.0),
+            crack([0.8, 0.8], [-1.0, 0.3, -0.6], 0.2).state(1.0),
+            crack([1.0, 0.6], [0.5, 0.3, -0.6], 0.2).state(1.0),
+            crack([1.0, 0.6], [-1.0, 0.3, -0.1], 0.6).state(1.0),
+        ]
+    }
+
+    #[test]
+    fn oblique_slip_has_the_known_size_and_direction() {
+        let state = crack([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4).state(1.0);
+        let [a, b, _] = state.jump;
+        assert!(
+            (a.hypot(b) - 0.209_816_176_7).abs() < 1e-10,
+            "{}",
+            a.hypot(b)
+        );
+        assert!((b.atan2(a).to_degrees() - 42.889_538_6).abs() < 1e-7);
+    }
+
+    #[test]
+    fn penny_intensities_are_segedins() {
+        let (a, nu, tau, mu) = (0.8f64, 0.3, 0.67f64, 0.2);
+        let state = crack([a, a], [-1.0, tau, 0.0], mu).state(1.0);
+        for t in [0.0, 0.7, 2.0, -1.3f64] {
+            let [k1, k2, k3] = state.intensity(&state.ellipse.point(t)).unwrap();
+            let scale = 4.0 / (2.0 - nu) * (tau - mu) * (a / PI).sqrt();
+            assert!(k1 == 0.0 && (k2 - scale * t.cos()).abs() < 1e-14, "{k2}");
+            // Tangent = ahead × n = (sin t, −cos t).
+            assert!((k3 - scale * (1.0 - nu) * t.sin()).abs() < 1e-14, "{k3}");
+        }
+        let open = crack([a, a], [0.5, 0.0, 0.0], mu).state(1.0);
+        let k1 = open.intensity(&open.ellipse.point(0.4)).unwrap()[0];
+        assert!((k1 - 2.0 * 0.5 * (a / PI).sqrt()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn intensities_are_those_of_the_jump_near_the_front() {
+        let (g, nu) = (1.0, 0.3);
+        for state in states() {
+            for t in [0.3, 1.4, -2.0] {
+                let front = state.ellipse.point(t);
+                let nearest = state.ellipse.nearest(&front);
+                let [ahead, n, tangent] = state.ellipse.front_frame(&nearest);
+                let r = 1e-8;
+                let x = add_scaled(&front, -r, &ahead);
+                let jump = sub(&state.displacement(&x, 1.0), &state.displacement(&x, -1.0));
+                let root = (2.0 * PI / r).sqrt();
+                let plane = 2.0 * g / (1.0 - nu) / 8.0 * root;
+                let exact = [
+                    plane * dot(&jump, &n),
+                    plane * dot(&jump, &ahead),
+                    g / 4.0 * root * dot(&jump, &tangent),
+                ];
+                let found = state.intensity(&front).unwrap();
+                for i in 0..3 {
+                    assert!((found[i] - exact[i]).abs() < 1e-6, "{found:?} {exact:?}");
+                }
+                // And of the stress ahead of it: σ_n √(2πr) → (K_I, K_II, K_III), the next term being O(√r).
+                let r = 1e-10;
+                let stress = state.stress(&add_scaled(&front, r, &ahead), 1.0);
+                let force = stress.map(|row| dot(&row, &n) * (2.0 * PI * r).sqrt());
+                for (k, e) in found.iter().zip([n, ahead, tangent]) {
+                    assert!((k - dot(&force, &e)).abs() < 1e-4, "{found:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_field_equations_and_the_contact_laws_hold() {
+        let cases = [
+            ([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4),
+            ([0.4, 0.9], [-1.0, 0.7, -0.2], 0.3),
+            ([0.8, 0.8], [-1.0, 0.3, -0.6], 0.2),
+            ([1.0, 0.6], [0.5, 0.3, -0.6], 0.2),
+            ([1.0, 0.6], [-1.0, 0.3, -0.1], 0.6),
+        ];
+        for (half_axes, traction, friction) in cases {
+            let crack = crack(half_axes, traction, friction);
+            let state = crack.state(1.0);
+            let Ellipse {
+                centre,
+                normal,
+                axis,
+                half_axes,
+            } = crack.ellipse;
+            let shape = CrackShape::Ellipse {
+                centre,
+                normal,
+                axis,
+                half_axes,
+            };
+            let mut of = setting(&shape);
+            (of.model, of.material, of.friction) = (Model::Solid, MATERIAL, friction);
+            let [x, y, z] = crack.stress;
+            let solution = build(&of, &[x[0], y[1], z[2], x[1], y[2], x[2]]).unwrap();
+            let at = |local: [f64; 3]| add_scaled(&centre, 1.0, &state.global(local));
+            let [a, b] = half_axes;
+            let on = [[0.0, 0.0], [0.5, 0.4], [-0.7, 0.7], [0.9, -0.43]]
+                .map(|[p, q]| at([a * p, b * q, 0.0]));
+            // Off the crack, close to it, close to its front, in its plane.
+            let off = [
+                [0.3, 0.2, 0.3],
+                [0.2, -0.1, 0.02],
+                [0.9, 0.5, 0.1],
+                [1.4, 0.3, 0.0],
+            ]
+            .map(at);
+            let mut before: Option<Box<dyn Field>> = None;
+            for path in [&[0.4][..], &[0.4, 1.0]] {
+                let now = solution.at(path).unwrap();
+                check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-11, 1e-13]);
+                check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-7);
+                before = Some(now);
+            }
+        }
+        // Sticking and open, as meant.
+        let jumps: Vec<[f64; 3]> = states().iter().map(|s| s.jump).collect();
+        assert!(jumps[4] == [0.0; 3] && jumps[3][2] > 0.0 && jumps[2][2] == 0.0);
+    }
+
+    #[test]
+    fn dissipation_is_friction_times_slip_and_paths_are_checked() {
+        let crack = crack([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4);
+        let one = crack.at(&[1.0]).unwrap().dissipation().unwrap();
+        let slip = 0.209_816_176_7;
+        assert!((one - 0.4 * slip * 2.0 * PI / 3.0 * 0.5).abs() < 1e-10);
+        // Many increments: the pressure grows with the slip, ∫ f df = ½.
+        let path: Vec<f64> = (1..=1000).map(|k| f64::from(k) / 1000.0).collect();
+        let many = crack.at(&path).unwrap().dissipation().unwrap();
+        assert!((many - 0.5005 * one).abs() < 1e-12, "{many}");
+        assert!(crack.at(&[1.0, 0.0]).is_err() && crack.at(&[-1.0]).is_err());
+    }
+}

@@ -1,0 +1,217 @@
+//! Frames of a crack: the straight 2D crack with its own coordinates, and the local axes at a point of any crack.
+//!
+//! ```text
+//!   s = t · (x − centre)    along the crack, −a <= s <= a
+//!   m = n · (x − centre)    from side 2 to side 1; n = t turned by +90°
+//! ```
+
+use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, norm, sub, unit};
+
+use super::Setting;
+
+/// A point closer to the crack line than this, in half lengths, lies on it: its side is the one asked for.
+const ON_LINE: f64 = 1e-10;
+
+/// A straight crack in 2D.
+#[derive(Debug, Clone, Copy)]
+pub struct LineCrack {
+    /// Midpoint [m].
+    pub centre: Point,
+    /// Unit tangent t.
+    pub tangent: Point,
+    /// Unit normal n, t turned by +90°.
+    pub normal: Point,
+    /// Half of the length, a [m].
+    pub half_length: f64,
+    /// +1, or −1 if this is the crack seen from its other end: t, n and the sides are those of the case turned by 180°.
+    pub sense: f64,
+}
+
+impl LineCrack {
+    /// The crack of a setting; an error unless it is one straight segment in 2D.
+    pub fn new(setting: &Setting<'_>) -> Result<Self, String> {
+        let CrackShape::Polyline(points) = setting.crack else {
+            return Err("the crack must be straight: `points_m` with two points".into());
+        };
+        let [p, q] = points[..] else {
+            return Err("the crack must be straight: exactly two points".into());
+        };
+        let (p, q) = ([p[0], p[1], 0.0], [q[0], q[1], 0.0]);
+        let length = norm(&sub(&q, &p));
+        if length <= 0.0 {
+            return Err("the crack has no length".into());
+        }
+        let tangent = unit(&sub(&q, &p));
+        Ok(LineCrack {
+            centre: [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.0],
+            tangent,
+            normal: [-tangent[1], tangent[0], 0.0],
+            half_length: 0.5 * length,
+            sense: 1.0,
+        })
+    }
+
+    /// The same crack seen from its other end: s, m and the sides change sign, local components of traction and jump do
+    /// not (both axes and the order of the sides turn).
+    pub fn reversed(&self) -> Self {
+        LineCrack {
+            tangent: self.tangent.map(|t| -t),
+            normal: self.normal.map(|n| -n),
+            sense: -self.sense,
+            ..*self
+        }
+    }
+
+    /// s(x) [m].
+    pub fn abscissa(&self, x: &Point) -> f64 {
+        dot(&self.tangent, &sub(x, &self.centre))
+    }
+
+    /// (s, m) of a point; on the crack line m is a zero with the sign of the side asked for [m].
+    pub fn place(&self, x: &Point, side: f64) -> (f64, f64) {
+        let m = dot(&self.normal, &sub(x, &self.centre));
+        let m = if m.abs() <= ON_LINE * self.half_length {
+            0.0_f64.copysign(side * self.sense)
+        } else {
+            m
+        };
+        (self.abscissa(x), m)
+    }
+
+    /// Point of the body at (s, m).
+    pub fn point(&self, s: f64, m: f64) -> Point {
+        add_scaled(&add_scaled(&self.centre, s, &self.tangent), m, &self.normal)
+    }
+
+    /// Vector with components (t, n).
+    pub fn vector(&self, [t, n]: [f64; 2]) -> Point {
+        let zero = [0.0; 3];
+        add_scaled(&add_scaled(&zero, t, &self.tangent), n, &self.normal)
+    }
+
+    /// Symmetric tensor with components (tt, nn, tn).
+    pub fn tensor(&self, [tt, nn, tn]: [f64; 3]) -> [Point; 3] {
+        let (t, n) = (&self.tangent, &self.normal);
+        let mut sigma = [[0.0; 3]; 3];
+        for a in 0..2 {
+            for b in 0..2 {
+                sigma[a][b] =
+                    tt * t[a] * t[b] + nn * n[a] * n[b] + tn * (t[a] * n[b] + n[a] * t[b]);
+            }
+        }
+        sigma
+    }
+
+    /// Components (tt, nn, tn) of a symmetric tensor given by xx, yy, xy.
+    pub fn components(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+        let sigma = [[xx, xy, 0.0], [xy, yy, 0.0], [0.0; 3]];
+        let (t, n) = (&self.tangent, &self.normal);
+        let on_n = apply(&sigma, n);
+        [dot(t, &apply(&sigma, t)), dot(n, &on_n), dot(t, &on_n)]
+    }
+
+    /// +1 at the end s = a, −1 at s = −a, nothing elsewhere.
+    pub fn end(&self, x: &Point) -> Option<f64> {
+        [1.0, -1.0].into_iter().find(|end| {
+            let tip = self.point(end * self.half_length, 0.0);
+            norm(&sub(x, &tip)) <= 1e-6 * self.half_length
+        })
+    }
+}
+
+/// σ v
+pub fn apply(sigma: &[Point; 3], v: &Point) -> Point {
+    [dot(&sigma[0], v), dot(&sigma[1], v), dot(&sigma[2], v)]
+}
+
+/// Local axes (n, a, b) of a crack at one of its points; in 2D b = e_z, n and a as for the case's segments and arcs.
+pub fn axes(shape: &CrackShape, x: &Point) -> [Point; 3] {
+    let e_z = [0.0, 0.0, 1.0];
+    match shape {
+        CrackShape::Polyline(points) => {
+            // The segment nearest to the point.
+            let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+            for ends in points.windows(2) {
+                let p = [ends[0][0], ends[0][1], 0.0];
+                let along = sub(&[ends[1][0], ends[1][1], 0.0], &p);
+                let from = sub(x, &p);
+                let share = (dot(&from, &along) / dot(&along, &along)).clamp(0.0, 1.0);
+                let distance = norm(&add_scaled(&from, -share, &along));
+                if distance < best.0 {
+                    best = (distance, unit(&along));
+                }
+            }
+            let a = best.1;
+            [[-a[1], a[0], 0.0], a, e_z]
+        }
+        CrackShape::Arc {
+            centre, from, to, ..
+        } => {
+            let outward = unit(&sub(x, &[centre[0], centre[1], 0.0]));
+            let turn = (to - from).signum();
+            let n = outward.map(|v| -turn * v);
+            [n, [n[1], -n[0], 0.0], e_z]
+        }
+        CrackShape::Ellipse { normal, axis, .. } => [*normal, *axis, cross(normal, axis)],
+        CrackShape::Plane { normal, .. } => {
+            // The axis least along n; the first of equals, so that n = e_z gives a = e_x, b = e_y.
+            let n = unit(normal);
+            let mut least = 0;
+            for k in 1..3 {
+                if n[k].abs() < n[least].abs() - 1e-12 {
+                    least = k;
+                }
+            }
+            let mut e = [0.0; 3];
+            e[least] = 1.0;
+            let a = unit(&add_scaled(&e, -n[least], &n));
+            [n, a, cross(&n, &a)]
+        }
+    }
+}
+
+/// Components of a vector along local axes.
+pub fn resolve(axes: &[Point; 3], v: &Point) -> [f64; 3] {
+    axes.map(|axis| dot(&axis, v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::setting;
+
+    #[test]
+    fn a_tensor_survives_the_way_into_the_crack_frame_and_back() {
+        let shape = CrackShape::Polyline(vec![[0.1, -0.2], [0.7, 0.3]]);
+        let crack = LineCrack::new(&setting(&shape)).unwrap();
+        for crack in [crack, crack.reversed()] {
+            let sigma = crack.tensor(crack.components([1.0, -2.0, 0.5]));
+            assert!((sigma[0][0] - 1.0).abs() < 1e-14);
+            assert!((sigma[1][1] + 2.0).abs() < 1e-14);
+            assert!((sigma[0][1] - 0.5).abs() < 1e-14 && (sigma[1][0] - 0.5).abs() < 1e-14);
+        }
+        // The side asked for counts on the crack only, and belongs to the case's normal.
+        let on = crack.point(0.1, 0.0);
+        assert!(crack.place(&on, 1.0).1.is_sign_positive());
+        assert!(crack.reversed().place(&on, 1.0).1.is_sign_negative());
+        assert!(crack.place(&crack.point(0.1, 0.2), -1.0).1 > 0.0);
+    }
+
+    #[test]
+    fn the_normal_is_the_tangent_turned_to_the_left() {
+        let line = CrackShape::Polyline(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]);
+        assert_eq!(axes(&line, &[0.3, 0.1, 0.0])[0], [0.0, 1.0, 0.0]);
+        assert_eq!(axes(&line, &[1.1, 1.5, 0.0])[0], [-1.0, 0.0, 0.0]);
+        for (from, to, sign) in [(0.0, 1.0, -1.0), (1.0, 0.0, 1.0)] {
+            let arc = CrackShape::Arc {
+                centre: [1.0, 1.0],
+                radius: 2.0,
+                from,
+                to,
+            };
+            let [n, a, _] = axes(&arc, &[3.0, 1.0, 0.0]);
+            assert_eq!(n, [sign, 0.0, 0.0]);
+            assert_eq!(a[1], -sign);
+        }
+    }
+}

@@ -1,0 +1,480 @@
+//! Manufactured solution in a solid: plane through the whole body, pressure, friction and slip that vary over it.
+//!
+//! In the frame of the crack (x₁ along a, x₂ along b from the point of the plane, y across it, + for side 1) with the unit
+//! direction e of slip in the plane, D = e·∇, Δ = ∂₁² + ∂₂², k = 2π/L, H(θ) = max(0, sin θ)³, M = λ + 2G:
+//!
+//! ```text
+//!   p = p₀ + p₁ cos kx₁ cos kx₂      pressure, |p₁| < p₀
+//!   s = s₀ H(kx₁) (1 + m cos kx₂)    slip along e on every other half wave, |m| < 1
+//!   h = 1 − c H(kx₁ + π), 0 < c < 2   used share of friction, 1 where the faces slip, |h| < 1 where they stick
+//!   g = μ p h,   w = ± s/2 + y g/G,   l = p ± λ Ds/2
+//!
+//!   u_α = e_α w                       u_y = −y l/M
+//!   σ_αβ = λ (Dw − l/M) δ_αβ + G (e_α ∂_β w + e_β ∂_α w)
+//!   σ_yα = g e_α − G y ∂_α l/M        σ_yy = λ y Dg/G − p
+//!   f_α = −(λ+G) ∂_α Dw − G e_α Δw + (λ+G) ∂_α l/M
+//!   f_y = −(1 + λ/G) Dg + G y Δl/M
+//! ```
+//!
+//! On both faces σ_yy = −p, σ_yα = μ p h e_α, the jump is s e: Coulomb's law holds for an increment from zero slip. With
+//! everything constant along x₂ and e = a it is `manufactured-slip`. The body force jumps across the crack, and leaps where
+//! slip ends. The load factor scales the whole field; it may grow from increment to increment but not fall. Dissipation:
+//! Σ f_k (f_k − f_{k−1}) ∫ μ p s over the part of the plane inside the body, as in backward Euler.
+//! Manufactured for this project after P. J. Roache (2002).
+
+use std::f64::consts::{PI, TAU};
+
+use crate::geometry::clip::{clip, crossing};
+use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub};
+use crate::material::{Lame, Model};
+use crate::quadrature::gauss;
+
+use super::jet::{Jet, Separable, cosine, hump, product, times};
+use super::line_crack::axes;
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+/// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
+const ON_PLANE: f64 = 1e-10;
+
+const fn parameter(
+    name: &'static str,
+    summary: &'static str,
+    default: Option<f64>,
+) -> ParameterSpec {
+    ParameterSpec {
+        name,
+        summary,
+        default,
+    }
+}
+
+/// Registry entry.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "manufactured-slip-3d",
+    summary: "solid cut by a plane: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
+    parameters: &[
+        parameter("pressure_pa", "mean pressure p₀ > 0", None),
+        parameter(
+            "pressure_wave_pa",
+            "amplitude p₁ of its variation, |p₁| < p₀",
+            None,
+        ),
+        parameter("slip_m", "slip s₀ >= 0 of a half wave's middle", None),
+        parameter(
+            "wave_length_m",
+            "length L of a slipping and a sticking half wave, which meet at the point of the plane",
+            None,
+        ),
+        parameter(
+            "slip_wave",
+            "m, |m| < 1: variation of the slip along the half waves",
+            Some(0.5),
+        ),
+        parameter(
+            "slip_angle_deg",
+            "direction of slip, from the local axis a towards b",
+            Some(30.0),
+        ),
+        parameter(
+            "stick_dip",
+            "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
+            Some(1.0),
+        ),
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let &[pressure, wave, slip, length, slip_wave, angle, dip] = values else {
+        return Err(
+            "pressure, its wave, slip, wave length, wave of slip, angle and dip are needed".into(),
+        );
+    };
+    for (holds, message) in [
+        (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
+        (slip >= 0.0, "slip_m >= 0"),
+        (length > 0.0, "wave_length_m > 0"),
+        (slip_wave.abs() < 1.0, "|slip_wave| < 1"),
+        (0.0 < dip && dip < 2.0, "0 < stick_dip < 2"),
+    ] {
+        if !holds {
+            return Err(format!("needed: {message}"));
+        }
+    }
+    let CrackShape::Plane { point, .. } = *setting.crack else {
+        return Err("the crack must be a plane".into());
+    };
+    if setting.model != Model::Solid {
+        return Err("manufactured-slip-3d is a solution of solids".into());
+    }
+    let [n, a, b] = axes(setting.crack, &point);
+    let angle = angle.to_radians();
+    let mut solution = ManufacturedSlip {
+        origin: point,
+        frame: [a, b, n],
+        size: norm(&sub(&setting.body[1], &setting.body[0])),
+        lame: Lame::new(setting.material, setting.model),
+        friction: setting.friction,
+        pressure,
+        wave,
+        slip,
+        slip_wave,
+        wave_number: TAU / length,
+        direction: [angle.cos(), angle.sin()],
+        dip,
+        work: 0.0,
+        scale: 1.0,
+        dissipation: 0.0,
+    };
+    solution.work = solution.work_inside(&setting.body)?;
+    Ok(Box::new(solution))
+}
+
+#[derive(Debug, Clone)]
+struct ManufacturedSlip {
+    /// Point of the plane [m].
+    origin: Point,
+    /// a, b, n.
+    frame: [Point; 3],
+    /// Diagonal of the body [m].
+    size: f64,
+    lame: Lame,
+    friction: f64,
+    /// p₀, p₁ [Pa].
+    pressure: f64,
+    wave: f64,
+    /// s₀ [m] and m.
+    slip: f64,
+    slip_wave: f64,
+    /// k [1/m].
+    wave_number: f64,
+    /// e.
+    direction: [f64; 2],
+    /// c.
+    dip: f64,
+    /// ∫ μ p s over the plane inside the body, at factor 1 [J].
+    work: f64,
+    /// Present load factor.
+    scale: f64,
+    dissipation: f64,
+}
+
+const ONE: Jet = [1.0, 0.0, 0.0, 0.0];
+const NONE: (Jet, Jet) = ([0.0; 4], [0.0; 4]);
+
+/// The functions at a point, and its place across the plane.
+struct Place {
+    p: Separable,
+    s: Separable,
+    /// μ p h
+    g: Separable,
+    y: f64,
+    sign: f64,
+}
+
+impl ManufacturedSlip {
+    fn place(&self, x: &Point, side: f64) -> Place {
+        let d = sub(x, &self.origin);
+        let [x1, x2, y] = self.frame.map(|e| dot(&e, &d));
+        let y = if y.abs() <= ON_PLANE * self.size {
+            0.0_f64.copysign(side)
+        } else {
+            y
+        };
+        let k = self.wave_number;
+        let (c1, c2) = (cosine(k, x1), cosine(k, x2));
+        let stuck = hump(k, x1, PI);
+        let mut h = times(-self.dip, stuck);
+        h[0] += 1.0;
+        let mut across = times(self.slip_wave, c2);
+        across[0] += 1.0;
+        let f = self.scale;
+        Place {
+            p: Separable([
+                (times(f * self.pressure, ONE), ONE),
+                (times(f * self.wave, c1), c2),
+            ]),
+            s: Separable([(times(f * self.slip, hump(k, x1, 0.0)), across), NONE]),
+            g: Separable([
+                (times(f * self.friction * self.pressure, h), ONE),
+                (times(f * self.friction * self.wave, product(c1, h)), c2),
+            ]),
+            y,
+            sign: 1.0_f64.copysign(y),
+        }
+    }
+
+    /// Vector with components along a, b, n.
+    fn vector(&self, v: [f64; 3]) -> Point {
+        let mut x = [0.0; 3];
+        for (value, e) in v.iter().zip(&self.frame) {
+            x = add_scaled(&x, *value, e);
+        }
+        x
+    }
+
+    /// ∫ μ p s dA over the plane inside a box: exact along x₂, Gauss along x₁ between vertices and ends of half waves.
+    fn work_inside(&self, body: &[Point; 2]) -> Result<f64, String> {
+        /// Points per interval, at most half a wave.
+        const POINTS: usize = 20;
+        let [a, b, _] = self.frame;
+        let centre = [0, 1, 2].map(|k| 0.5 * (body[0][k] + body[1][k]));
+        let d = sub(&centre, &self.origin);
+        let middle = add_scaled(&centre, -dot(&d, &self.frame[2]), &self.frame[2]);
+        // A square of the plane that holds its part inside the body, cut by the faces.
+        let mut polygon: Vec<Point> = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .iter()
+            .map(|[p, q]| add_scaled(&add_scaled(&middle, p * self.size, &a), q * self.size, &b))
+            .collect();
+        for k in 0..3 {
+            for (sign, wall) in [(1.0, body[0][k]), (-1.0, body[1][k])] {
+                let with: Vec<(Point, f64)> =
+                    polygon.iter().map(|x| (*x, sign * (x[k] - wall))).collect();
+                polygon = clip(&with, 1.0).into_iter().map(|(x, _)| x).collect();
+            }
+        }
+        if polygon.len() < 3 {
+            return Err("the plane does not meet the body".into());
+        }
+        let flat: Vec<Point> = polygon
+            .iter()
+            .map(|x| sub(x, &self.origin))
+            .map(|d| [dot(&d, &a), dot(&d, &b), 0.0])
+            .collect();
+        let mut breaks: Vec<f64> = flat.iter().map(|x| x[0]).collect();
+        breaks.sort_by(f64::total_cmp);
+        let (low, high) = (breaks[0], breaks[breaks.len() - 1]);
+        let half = PI / self.wave_number;
+        let mut at = (low / half).ceil();
+        while at * half < high {
+            breaks.push(at * half);
+            at += 1.0;
+        }
+        breaks.sort_by(f64::total_cmp);
+        let k = self.wave_number;
+        let mut work = 0.0;
+        for pair in breaks.windows(2) {
+            let width = 0.5 * (pair[1] - pair[0]);
+            for (t, weight) in gauss(POINTS) {
+                let x1 = pair[0] + width * (1.0 + t);
+                let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+                for (i, p) in flat.iter().enumerate() {
+                    let q = &flat[(i + 1) % flat.len()];
+                    if (p[0] - x1) * (q[0] - x1) < 0.0 {
+                        let x2 = crossing(p, p[0] - x1, q, q[0] - x1)[1];
+                        from = from.min(x2);
+                        to = to.max(x2);
+                    }
+                }
+                if from >= to {
+                    continue;
+                }
+                // ∫ (1 + m cos)(p₀ + p₁ c₁ cos) dx₂
+                let wave = self.wave * (k * x1).cos();
+                let integral = |x2: f64| {
+                    self.pressure * x2
+                        + (self.slip_wave * self.pressure + wave) * (k * x2).sin() / k
+                        + self.slip_wave * wave * (0.5 * x2 + (2.0 * k * x2).sin() / (4.0 * k))
+                };
+                work += width * weight * hump(k, x1, 0.0)[0] * (integral(to) - integral(from));
+            }
+        }
+        Ok(self.friction * self.slip * work)
+    }
+}
+
+impl Solution for ManufacturedSlip {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let mut now = ManufacturedSlip {
+            scale: 0.0,
+            ..self.clone()
+        };
+        for &factor in factors {
+            if factor < now.scale {
+                return Err(format!(
+                    "the load factor falls from {} to {factor}: slip would reverse",
+                    now.scale
+                ));
+            }
+            now.dissipation += factor * (factor - now.scale) * self.work;
+            now.scale = factor;
+        }
+        Ok(Box::new(now))
+    }
+}
+
+impl Field for ManufacturedSlip {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let Place { p, s, g, y, sign } = self.place(x, side);
+        let Lame { lambda, mu, .. } = self.lame;
+        let e = self.direction;
+        let w = 0.5 * sign * s.d(0, 0) + y * g.d(0, 0) / mu;
+        let l = p.d(0, 0) + 0.5 * sign * lambda * s.along(e, 0, 0);
+        self.vector([e[0] * w, e[1] * w, -y * l / (lambda + 2.0 * mu)])
+    }
+
+    fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
+        let Place { p, s, g, y, sign } = self.place(x, side);
+        let Lame { lambda, mu, .. } = self.lame;
+        let m = lambda + 2.0 * mu;
+        let e = self.direction;
+        let w = [(1, 0), (0, 1)].map(|(i, j)| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu);
+        let l = [(0, 0), (1, 0), (0, 1)]
+            .map(|(i, j)| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j));
+        let spherical = lambda * (e[0] * w[0] + e[1] * w[1] - l[0] / m);
+        let plane = |i: usize, j: usize| mu * (e[i] * w[j] + e[j] * w[i]);
+        let across = [0, 1].map(|i| g.d(0, 0) * e[i] - mu * y * l[i + 1] / m);
+        let normal = lambda * y * g.along(e, 0, 0) / mu - p.d(0, 0);
+        let local = [
+            [spherical + plane(0, 0), plane(0, 1), across[0]],
+            [plane(1, 0), spherical + plane(1, 1), across[1]],
+            [across[0], across[1], normal],
+        ];
+        let mut sigma = [[0.0; 3]; 3];
+        for (row, e) in local.iter().zip(&self.frame) {
+            let on = self.vector(*row);
+            for r in 0..3 {
+                for t in 0..3 {
+                    sigma[r][t] += e[r] * on[t];
+                }
+            }
+        }
+        sigma
+    }
+
+    fn body_force(&self, x: &Point, side: f64) -> Point {
+        let Place { p, s, g, y, sign } = self.place(x, side);
+        let Lame { lambda, mu, .. } = self.lame;
+        let m = lambda + 2.0 * mu;
+        let e = self.direction;
+        let w = |i: usize, j: usize| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu;
+        let along = |i: usize, j: usize| 0.5 * sign * s.along(e, i, j) + y * g.along(e, i, j) / mu;
+        let l = |i: usize, j: usize| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j);
+        let laplace = w(2, 0) + w(0, 2);
+        let in_plane = |a: usize, i: usize, j: usize| {
+            (lambda + mu) * (l(i, j) / m - along(i, j)) - mu * e[a] * laplace
+        };
+        self.vector([
+            in_plane(0, 1, 0),
+            in_plane(1, 0, 1),
+            -(1.0 + lambda / mu) * g.along(e, 0, 0) + mu * y * (l(2, 0) + l(0, 2)) / m,
+        ])
+    }
+
+    fn traction(&self, x: &Point) -> [f64; 3] {
+        let Place { p, g, .. } = self.place(x, 1.0);
+        let [e0, e1] = self.direction;
+        [p.d(0, 0), -g.d(0, 0) * e0, -g.d(0, 0) * e1]
+    }
+
+    fn jump(&self, x: &Point) -> [f64; 3] {
+        let s = self.place(x, 1.0).s.d(0, 0);
+        [0.0, s * self.direction[0], s * self.direction[1]]
+    }
+
+    fn dissipation(&self) -> Option<f64> {
+        Some(self.dissipation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::geometry::unit;
+
+    const VALUES: [f64; 7] = [1.0, 0.4, 0.03, 0.9, 0.6, 35.0, 1.3];
+
+    fn shapes() -> [CrackShape; 3] {
+        [[0.0, 0.0, 1.0], [1.0, -2.0, 3.0], [1.0, 1.0, 0.0]].map(|normal| CrackShape::Plane {
+            point: [0.1, -0.05, 0.2],
+            normal: unit(&normal),
+        })
+    }
+
+    fn solid(shape: &CrackShape) -> Setting<'_> {
+        let mut of = setting(shape);
+        of.model = Model::Solid;
+        of.body = [[-1.0; 3], [1.0, 0.9, 0.8]];
+        of
+    }
+
+    /// Point of the crack's coordinates.
+    fn at(shape: &CrackShape, x1: f64, x2: f64, y: f64) -> Point {
+        let point = [0.1, -0.05, 0.2];
+        let [n, a, b] = axes(shape, &point);
+        add_scaled(&add_scaled(&add_scaled(&point, x1, &a), x2, &b), y, &n)
+    }
+
+    #[test]
+    fn the_field_equations_and_the_contact_laws_hold() {
+        for shape in &shapes() {
+            let of = solid(shape);
+            let solution = build(&of, &VALUES).unwrap();
+            let path = [0.3, 0.3, 1.0];
+            let mut before: Option<Box<dyn Field>> = None;
+            for k in 1..=path.len() {
+                let now = solution.at(&path[..k]).unwrap();
+                let places: Vec<[f64; 2]> = (-8..=8)
+                    .flat_map(|i| (-3..=3).map(move |j| [0.11 * f64::from(i), 0.27 * f64::from(j)]))
+                    .collect();
+                let on: Vec<Point> = places.iter().map(|[p, q]| at(shape, *p, *q, 0.0)).collect();
+                check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-14, 1e-14]);
+                // Off the crack, and off the lines where s''' leaps.
+                let off: Vec<Point> = places
+                    .iter()
+                    .filter(|[p, _]| (p * TAU / 0.9).sin().abs() > 0.02)
+                    .flat_map(|[p, q]| [-0.6, -0.1, 0.2].map(|y| at(shape, *p, *q, y)))
+                    .collect();
+                assert!(off.len() > 300);
+                check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-9);
+                before = Some(now);
+            }
+        }
+    }
+
+    #[test]
+    fn dissipation_is_the_integral_over_the_plane_inside_the_body() {
+        for shape in &shapes() {
+            let of = solid(shape);
+            let field = build(&of, &VALUES).unwrap().at(&[1.0]).unwrap();
+            let n = 1200;
+            let step = 4.0 / f64::from(n);
+            let mut sum = 0.0;
+            for i in 0..n {
+                for j in 0..n {
+                    let (x1, x2) = (
+                        (f64::from(i) + 0.5) * step - 2.0,
+                        (f64::from(j) + 0.5) * step - 2.0,
+                    );
+                    let x = at(shape, x1, x2, 0.0);
+                    if (0..3).all(|k| x[k] >= of.body[0][k] && x[k] <= of.body[1][k]) {
+                        sum -= dot(&field.traction(&x), &field.jump(&x)) * step * step;
+                    }
+                }
+            }
+            let stated = field.dissipation().unwrap();
+            assert!(
+                stated > 1e-3 && (stated - sum).abs() < 2e-3 * stated,
+                "{stated} {sum}"
+            );
+        }
+    }
+
+    #[test]
+    fn values_and_paths_out_of_range_are_refused() {
+        let [shape, ..] = shapes();
+        let of = solid(&shape);
+        for (k, value) in [(0, 0.3), (2, -0.1), (3, 0.0), (4, 1.0), (6, 2.0)] {
+            let mut values = VALUES;
+            values[k] = value;
+            assert!(build(&of, &values).is_err());
+        }
+        assert!(build(&of, &VALUES).unwrap().at(&[1.0, 0.9]).is_err());
+        let far = CrackShape::Plane {
+            point: [5.0, 0.0, 0.0],
+            normal: [1.0, 0.0, 0.0],
+        };
+        assert!(build(&solid(&far), &VALUES).is_err());
+    }
+}

@@ -1,0 +1,157 @@
+//! Straight crack under remote stress that grows linearly along it: partly open, partly closed.
+//!
+//! Without the crack its line would carry the pressure p(s) = p₀ + p₁ s/a. Where the faces would be pulled apart they open,
+//! from the end of lower pressure ([`released`] with F = −p₀, c = |p₁|), and the opening ends smoothly (K_I = 0) in front of
+//! the closed part:
+//!
+//! ```text
+//!   open on [−a, 2b − a],  b = 2 (x₀ + a)/3,  x₀ = −a p₀/p₁,  −a < x₀ < a/2
+//!   opening (2p₁/(aE'))(b − ξ)^{3/2} (b + ξ)^{1/2}            K_I(−a) = √(πb) p₁ b/a
+//!   pressure beyond (p₁/a)(ξ + b/2) √((ξ − b)/(ξ + b))
+//! ```
+//!
+//! Otherwise the crack is closed or open over its whole length. There is no shear, so friction does not matter, and the
+//! state follows from the present load factor alone. Example: half length 1, stress s (p₀ = 0, p₁ = −1) gives
+//! K_I = √(2π/3) 2/3 = 0.9648 at the pulled end; with faces free to overlap it would be √π/2 = 0.8862.
+//!
+//! Rigid motion: the crack line keeps its direction, its midpoint does not move in the uncracked field.
+
+use super::contact_zone::released;
+use super::crack_field::{Background, CrackField};
+use super::face_load::Mode;
+use super::line_crack::LineCrack;
+use super::plane_elasticity::PlaneElasticity;
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+/// Registry entry.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "partial-opening",
+    summary: "straight 2D crack in an infinite plate under stress growing linearly along it: partly open, partly closed",
+    parameters: &[
+        ParameterSpec {
+            name: "pressure_pa",
+            summary: "pressure p₀ of the uncracked body at the midpoint of the crack, negative: tension",
+            default: None,
+        },
+        ParameterSpec {
+            name: "pressure_rise_pa",
+            summary: "p₁: that pressure at the second end of the crack less that at the midpoint",
+            default: None,
+        },
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let &[pressure, rise] = values else {
+        return Err("a pressure and its rise are needed".into());
+    };
+    Ok(Box::new(PartialOpening {
+        crack: LineCrack::new(setting)?,
+        elastic: PlaneElasticity::new(setting)?,
+        pressure,
+        rise,
+    }))
+}
+
+struct PartialOpening {
+    crack: LineCrack,
+    elastic: PlaneElasticity,
+    /// p₀ at factor 1 [Pa].
+    pressure: f64,
+    /// p₁ at factor 1 [Pa].
+    rise: f64,
+}
+
+impl Solution for PartialOpening {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let now = factors.last().copied().unwrap_or(0.0);
+        let (pressure, rise) = (now * self.pressure, now * self.rise);
+        // The crack opens from the end of lower pressure: make it s = −a.
+        let crack = if rise < 0.0 {
+            self.crack.reversed()
+        } else {
+            self.crack
+        };
+        let a = crack.half_length;
+        Ok(Box::new(CrackField {
+            crack,
+            elastic: self.elastic,
+            background: Background {
+                uniform: [0.0, -pressure, 0.0],
+                bending: -rise.abs() / a,
+            },
+            zones: released(Mode::Opening, a, -pressure, rise.abs())
+                .map(|zone| (1.0, zone))
+                .into_iter()
+                .collect(),
+            dissipation: 0.0,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, check_intensity, setting};
+    use crate::exact::face_load::FaceLoad;
+    use crate::geometry::{CrackShape, Point};
+    use std::f64::consts::PI;
+
+    #[test]
+    fn contact_raises_the_intensity_of_linear_loading() {
+        let overlapping = FaceLoad::new(Mode::Opening, 0.0, 1.0, 0.0, 1.0).intensity(1.0);
+        assert!((overlapping - 0.8862269).abs() < 1e-7);
+        assert!((overlapping - 0.5 * PI.sqrt()).abs() < 1e-15);
+        let shape = CrackShape::Polyline(vec![[-1.0, 0.0], [1.0, 0.0]]);
+        let of = setting(&shape);
+        let field = build(&of, &[0.0, -1.0]).unwrap().at(&[1.0]).unwrap();
+        let k = field.intensity(&[1.0, 0.0, 0.0]).unwrap();
+        assert!((k[0] - 0.9648017).abs() < 1e-7 && k[1] == 0.0, "{k:?}");
+        assert_eq!(field.intensity(&[-1.0, 0.0, 0.0]), Some([0.0; 3]));
+        // Open where s > −1/3.
+        assert!(
+            field.jump(&[-0.33, 0.0, 0.0])[0] > 0.0 && field.jump(&[-0.34, 0.0, 0.0])[0] == 0.0
+        );
+    }
+
+    #[test]
+    fn the_contact_laws_hold_in_every_state() {
+        let shape = CrackShape::Polyline(vec![[-0.5, -0.3], [0.4, 0.2]]);
+        let of = setting(&shape);
+        let crack = LineCrack::new(&of).unwrap();
+        let along: Vec<Point> = (0..200)
+            .map(|k| crack.point((k as f64 / 100.0 - 0.995) * crack.half_length, 0.0))
+            .collect();
+        let off = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
+        let mut open_points = Vec::new();
+        for (pressure, rise) in [
+            (1.0, 0.5),
+            (0.2, 0.5),
+            (0.2, -0.5),
+            (0.0, 1.0),
+            (-0.1, -0.5),
+            (-0.3, 0.5),
+            (-1.0, 0.0),
+            (1.0, 0.0),
+        ] {
+            let solution = build(&of, &[pressure, rise]).unwrap();
+            for factor in [1.0, -1.0] {
+                let field = solution.at(&[0.3, factor]).unwrap();
+                check_contact(field.as_ref(), None, &of, &along, [1e-13, 1e-14]);
+                check_elasticity(field.as_ref(), &of, &off, 3e-4, 1e-9);
+                check_intensity(field.as_ref(), &of);
+                open_points.push(along.iter().filter(|x| field.jump(x)[0] > 0.0).count());
+            }
+        }
+        // Closed, partly open and open states were all met.
+        assert!(open_points.contains(&0) && open_points.contains(&200));
+        assert!(
+            open_points
+                .iter()
+                .filter(|n| (20..180).contains(*n))
+                .count()
+                >= 6
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! Constants of plane elasticity in the form closed forms use.
+//!
+//! ```text
+//!                    plane strain        plane stress
+//!   κ                3 − 4ν              (3 − ν)/(1 + ν)
+//!   E'               E/(1 − ν²)          E                  (κ + 1)/(2G) = 4/E'
+//!   ν'               ν/(1 − ν)           ν                  ε_xx = (σ_xx − ν' σ_yy)/E'
+//! ```
+
+use crate::material::{Lame, Model};
+
+use super::Setting;
+
+/// Elastic constants of a plane problem.
+#[derive(Debug, Clone, Copy)]
+pub struct PlaneElasticity {
+    /// Shear modulus G [Pa].
+    pub shear: f64,
+    /// Kolosov's constant κ.
+    pub kappa: f64,
+    /// E' [Pa].
+    pub modulus: f64,
+    /// ν'.
+    pub ratio: f64,
+}
+
+impl PlaneElasticity {
+    /// Of a plane setting; an error for a solid.
+    pub fn new(setting: &Setting<'_>) -> Result<Self, String> {
+        if setting.model == Model::Solid {
+            return Err("the model must be plane-strain or plane-stress".into());
+        }
+        let Lame { lambda, mu, .. } = Lame::new(setting.material, setting.model);
+        Ok(PlaneElasticity {
+            shear: mu,
+            kappa: (lambda + 3.0 * mu) / (lambda + mu),
+            modulus: 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu),
+            ratio: lambda / (lambda + 2.0 * mu),
+        })
+    }
+
+    /// Strain (xx, yy, xy) of a stress (xx, yy, xy) [Pa].
+    pub fn strain(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+        [
+            (xx - self.ratio * yy) / self.modulus,
+            (yy - self.ratio * xx) / self.modulus,
+            0.5 * xy / self.shear,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::setting;
+    use crate::geometry::CrackShape;
+    use crate::material::Material;
+
+    #[test]
+    fn the_constants_are_those_of_the_table() {
+        let shape = CrackShape::Polyline(Vec::new());
+        let (e, nu) = (2.0, 0.3);
+        let mut plane = setting(&shape);
+        plane.material = Material {
+            young: e,
+            poisson: nu,
+        };
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
+        for (model, kappa, modulus, ratio) in [
+            (
+                Model::PlaneStrain,
+                3.0 - 4.0 * nu,
+                e / (1.0 - nu * nu),
+                nu / (1.0 - nu),
+            ),
+            (Model::PlaneStress, (3.0 - nu) / (1.0 + nu), e, nu),
+        ] {
+            plane.model = model;
+            let c = PlaneElasticity::new(&plane).unwrap();
+            close(c.kappa, kappa);
+            close(c.modulus, modulus);
+            close(c.ratio, ratio);
+            close((c.kappa + 1.0) / (2.0 * c.shear), 4.0 / modulus);
+        }
+        plane.model = Model::Solid;
+        assert!(PlaneElasticity::new(&plane).is_err());
+    }
+}

@@ -1,0 +1,343 @@
+//! Confined block parted by a straight interface: rigid slip under uniform stress, over any path of the top displacement.
+//!
+//! A block w × H is parted by an interface at angle θ that leaves through its lateral sides. Pressure q acts on both lateral
+//! sides, the bottom rolls, the top is pushed down by v times the load factor, the lower left corner is held in x.
+//! φ = atan μ, E' and ν' of the plane model:
+//!
+//! ```text
+//!   elastic             s₁ = ν'q + E' (v − s sin θ)/H        vertical pressure, s slip of the upper part down the slope
+//!   forward slip at     s₁ = s_f = q tan θ / tan(θ − φ)      never if μ >= tan θ
+//!   backward slip at    s₁ = s_r = q tan θ / tan(θ + φ)
+//!   traction            p = s₁ cos²θ + q sin²θ, (s₁ − q) sin θ cos θ up the slope on the upper part
+//!   dissipation         Σ (s₁ − q) w sin θ Δs
+//! ```
+//!
+//! So the block is a friction spring ([`FrictionSpring`]) with force s₁ − q and slip s sin θ. While it slips s₁ and with it the
+//! traction do not change, so the state does not depend on the number of increments. The lateral pressure acts from the
+//! start.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::geometry::{Point, add_scaled};
+
+use super::line_crack::LineCrack;
+use super::one_dof::FrictionSpring;
+use super::plane_elasticity::PlaneElasticity;
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+/// Registry entry.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "sliding-block",
+    summary: "2D block parted from side to side, lateral pressure, top pushed down by the load factor: rigid slip, cycles",
+    parameters: &[
+        ParameterSpec {
+            name: "pressure_pa",
+            summary: "pressure q > 0 on the lateral sides, constant",
+            default: None,
+        },
+        ParameterSpec {
+            name: "displacement_m",
+            summary: "downward displacement v of the top at load factor 1",
+            default: None,
+        },
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let &[pressure, displacement] = values else {
+        return Err("a pressure and a displacement are needed".into());
+    };
+    if pressure <= 0.0 {
+        return Err("pressure_pa must be positive: without it the block is a mechanism".into());
+    }
+    let crack = LineCrack::new(setting)?;
+    // n upwards: side 1 of this frame is the upper part.
+    let crack = if crack.tangent[0] < 0.0 {
+        crack.reversed()
+    } else {
+        crack
+    };
+    let [low, high] = setting.body;
+    for x in [low[0], high[0]] {
+        let s = (x - crack.centre[0]) / crack.tangent[0];
+        let y = crack.point(s, 0.0)[1];
+        // Written so that a vertical interface, where s is not finite, fails too.
+        let leaves = s.abs() <= crack.half_length * (1.0 + 1e-12) && y > low[1] && y < high[1];
+        if !leaves {
+            return Err("the crack must leave the body through both lateral sides".into());
+        }
+    }
+    let slope = crack.tangent[1].abs().atan2(crack.tangent[0]);
+    let friction = setting.friction.atan();
+    let limit = |angle: f64| pressure * slope.tan() / angle.tan();
+    let limits = if slope == 0.0 {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    } else {
+        let forward = if slope > friction {
+            limit(slope - friction)
+        } else {
+            f64::INFINITY
+        };
+        // At θ + φ = 90° the block can be pulled up to s₁ = 0: tan has no value there.
+        let backward = if slope + friction == FRAC_PI_2 {
+            0.0
+        } else {
+            limit(slope + friction)
+        };
+        [backward, forward]
+    };
+    Ok(Box::new(SlidingBlock {
+        crack,
+        elastic: PlaneElasticity::new(setting)?,
+        corner: low,
+        width: high[0] - low[0],
+        height: high[1] - low[1],
+        pressure,
+        displacement,
+        limits,
+    }))
+}
+
+struct SlidingBlock {
+    crack: LineCrack,
+    elastic: PlaneElasticity,
+    /// Lower left corner [m].
+    corner: Point,
+    width: f64,
+    height: f64,
+    /// q [Pa].
+    pressure: f64,
+    /// v at factor 1 [m].
+    displacement: f64,
+    /// s_r, s_f [Pa].
+    limits: [f64; 2],
+}
+
+impl Solution for SlidingBlock {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let PlaneElasticity { modulus, ratio, .. } = self.elastic;
+        let q = self.pressure;
+        let stiffness = modulus / self.height;
+        let mut spring = FrictionSpring {
+            force: (ratio - 1.0) * q,
+            ..FrictionSpring::default()
+        };
+        for factor in factors {
+            let u = factor * self.displacement + (ratio - 1.0) * q / stiffness;
+            spring = spring.step(stiffness, u, self.limits.map(|s| s - q));
+        }
+        let vertical = spring.force + q;
+        let local = self.crack.components([-q, -vertical, 0.0]);
+        if local[1] > 0.0 {
+            return Err(format!("the interface opens: tension of {} Pa", local[1]));
+        }
+        // Down the slope, along t for a falling interface; a level one does not slip.
+        let sine = self.crack.tangent[1];
+        let slip = if sine == 0.0 {
+            0.0
+        } else {
+            -spring.slip / sine
+        };
+        Ok(Box::new(Block {
+            crack: self.crack,
+            corner: self.corner,
+            stress: [-q, -vertical],
+            strain: self.elastic.strain([-q, -vertical, 0.0]),
+            traction: [-local[1], -local[2], 0.0],
+            slip,
+            dissipation: spring.dissipation * self.width,
+        }))
+    }
+}
+
+/// Uniform stress and rigid slip.
+struct Block {
+    crack: LineCrack,
+    corner: Point,
+    /// xx, yy [Pa].
+    stress: [f64; 2],
+    /// xx, yy, xy.
+    strain: [f64; 3],
+    traction: [f64; 3],
+    /// Of the upper part along the tangent of `crack` [m].
+    slip: f64,
+    dissipation: f64,
+}
+
+impl Field for Block {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let u = [
+            self.strain[0] * (x[0] - self.corner[0]),
+            self.strain[1] * (x[1] - self.corner[1]),
+            0.0,
+        ];
+        let (_, m) = self.crack.place(x, side);
+        let upper = if m.is_sign_positive() { 1.0 } else { 0.0 };
+        add_scaled(&u, upper * self.slip, &self.crack.tangent)
+    }
+
+    fn stress(&self, _x: &Point, _side: f64) -> [Point; 3] {
+        let [xx, yy] = self.stress;
+        [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0; 3]]
+    }
+
+    fn traction(&self, _x: &Point) -> [f64; 3] {
+        self.traction
+    }
+
+    fn jump(&self, _x: &Point) -> [f64; 3] {
+        [0.0, self.slip, 0.0]
+    }
+
+    fn dissipation(&self) -> Option<f64> {
+        Some(self.dissipation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::geometry::CrackShape;
+    use crate::material::Material;
+
+    const PATH: [f64; 16] = [
+        1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0,
+    ];
+
+    fn line(degrees: f64) -> CrackShape {
+        let rise = 0.6 * degrees.to_radians().tan();
+        CrackShape::Polyline(vec![[-0.1, 0.5 - rise], [1.1, 0.5 + rise]])
+    }
+
+    /// The unit square of the shipped cases: E = 1, ν = 0.3.
+    fn square(shape: &CrackShape, friction: f64) -> Setting<'_> {
+        Setting {
+            material: Material {
+                young: 1.0,
+                poisson: 0.3,
+            },
+            friction,
+            body: [[0.0; 3], [1.0, 1.0, 0.0]],
+            ..setting(shape)
+        }
+    }
+
+    fn close(a: f64, b: f64) {
+        assert!((a - b).abs() <= 1e-12 * b.abs(), "{a} {b}");
+    }
+
+    /// The numbers of cases/sliding_block_*.toml.
+    #[test]
+    fn one_push_gives_the_numbers_of_the_shipped_cases() {
+        let shape = line(25.0);
+        for (friction, top, corner, dissipation) in [
+            (
+                0.1,
+                0.013323552770329615,
+                -0.11103306169977178,
+                0.00017207882906844214,
+            ),
+            (
+                0.2,
+                0.01914313047163978,
+                -0.09967614826381027,
+                0.00042497043015836064,
+            ),
+            (0.5, 0.07021978021978022, 0.0, 0.0),
+        ] {
+            let of = square(&shape, friction);
+            let field = build(&of, &[0.01, 0.06]).unwrap().at(&[1.0]).unwrap();
+            close(-field.stress(&[0.5; 3], 1.0)[1][1], top);
+            close(field.displacement(&[0.0, 1.0, 0.0], 1.0)[0], corner);
+            close(field.displacement(&[0.3, 1.0, 0.0], 1.0)[1], -0.06);
+            close(field.dissipation().unwrap(), dissipation);
+        }
+    }
+
+    #[test]
+    fn a_cycle_gives_the_numbers_of_the_shipped_case() {
+        let shape = line(25.0);
+        let of = square(&shape, 0.2);
+        let solution = build(&of, &[0.01, 0.01]).unwrap();
+        for (k, top) in [
+            (1, 0.015274725274725275),
+            (6, 0.01914313047163978),
+            (7, 0.008154119482628792),
+            (11, 0.006345703618580372),
+            (12, 0.01733471460759136),
+        ] {
+            let field = solution.at(&PATH[..k]).unwrap();
+            close(-field.stress(&[0.5; 3], 1.0)[1][1], top);
+        }
+        let (six, last) = (
+            solution.at(&PATH[..6]).unwrap(),
+            solution.at(&PATH).unwrap(),
+        );
+        close(last.dissipation().unwrap(), 0.0009158073108172716);
+        assert!(
+            (last.dissipation().unwrap() - six.dissipation().unwrap() - 0.00049083688066).abs()
+                < 1e-14
+        );
+    }
+
+    /// Rising and falling interfaces, drawn from either end, with and without friction.
+    #[test]
+    fn the_contact_laws_hold_along_a_path() {
+        for degrees in [25.0, -25.0, 40.0, 0.0] {
+            let CrackShape::Polyline(points) = line(degrees) else {
+                unreachable!()
+            };
+            let back = points.iter().rev().copied().collect();
+            for shape in [CrackShape::Polyline(points), CrackShape::Polyline(back)] {
+                for friction in [0.0, 0.2, 2.0] {
+                    let of = square(&shape, friction);
+                    let crack = LineCrack::new(&of).unwrap();
+                    let on: Vec<Point> = [-0.4, 0.0, 0.3]
+                        .iter()
+                        .map(|s| crack.point(*s, 0.0))
+                        .collect();
+                    let solution = build(&of, &[0.01, 0.01]).unwrap();
+                    let mut before: Option<Box<dyn Field>> = None;
+                    for k in 1..=PATH.len() {
+                        let now = solution.at(&PATH[..k]).unwrap();
+                        check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-15, 1e-15]);
+                        check_elasticity(
+                            now.as_ref(),
+                            &of,
+                            &[[0.1, 0.05, 0.0], [0.8, 0.95, 0.0]],
+                            1e-3,
+                            1e-12,
+                        );
+                        let top = now.displacement(&[0.6, 1.0, 0.0], 1.0)[1];
+                        assert!((top + 0.01 * PATH[k - 1]).abs() < 1e-15);
+                        assert_eq!(now.displacement(&[0.0; 3], 1.0), [0.0; 3]);
+                        before = Some(now);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn interfaces_that_do_not_part_the_block_from_side_to_side_are_refused() {
+        for points in [
+            vec![[0.2, 0.4], [0.8, 0.6]],
+            vec![[0.5, -0.1], [0.5, 1.1]],
+            vec![[-0.1, 0.1], [1.1, 1.2]],
+        ] {
+            let shape = CrackShape::Polyline(points);
+            assert!(build(&square(&shape, 0.2), &[0.01, 0.06]).is_err());
+        }
+        let shape = line(25.0);
+        assert!(build(&square(&shape, 0.2), &[0.0, 0.06]).is_err());
+        let level = line(0.0);
+        assert!(
+            build(&square(&level, 0.2), &[0.01, -0.06])
+                .unwrap()
+                .at(&[1.0])
+                .is_err()
+        );
+    }
+}

@@ -1,0 +1,213 @@
+//! Straight crack in an infinite plate under uniform remote stress: stick, slip over its whole length, or open.
+//!
+//! With p = −n·σ·n and τ = t·σ·n of the remote stress, A the face load of [`FaceLoad`] and half length a:
+//!
+//! ```text
+//!   open   p < 0          faces free: opening A = −p, shear A = τ
+//!   stick  |τ − A| <= μp  A as before
+//!   slip   otherwise      A = τ ∓ μp: uniform shear traction μp against the slip (4/E') A √(a² − s²)
+//!
+//!   K_I = max(−p, 0) √(πa), |K_II| = |A| √(πa)        dissipation of a slip increment μp |ΔA| 2πa²/E'
+//! ```
+//!
+//! On a straight crack slip does not change the pressure and opening does not change the shear, so all points slip alike
+//! and the crack is a friction spring ([`FrictionSpring`]). The load factor scales the remote stress. Over a path of
+//! factors the state is the exact solution of the incremental problem (backward Euler): for one increment
+//! D = μp |A| 2πa²/E'. Source: F. A. McClintock and J. B. Walsh (1962), sliding crack
+//! under compression.
+//!
+//! Rigid motion: the midpoint of the crack does not move on average, the crack line does not turn.
+
+use std::f64::consts::PI;
+
+use super::crack_field::{Background, CrackField};
+use super::face_load::{FaceLoad, Mode};
+use super::line_crack::LineCrack;
+use super::one_dof::FrictionSpring;
+use super::plane_elasticity::PlaneElasticity;
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+/// Registry entry.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "uniform-slip",
+    summary: "straight 2D crack in an infinite plate under uniform remote stress: stick, full slip or open",
+    parameters: &[
+        ParameterSpec {
+            name: "stress_xx_pa",
+            summary: "remote stress σ_xx, tension positive",
+            default: Some(0.0),
+        },
+        ParameterSpec {
+            name: "stress_yy_pa",
+            summary: "remote stress σ_yy",
+            default: Some(0.0),
+        },
+        ParameterSpec {
+            name: "stress_xy_pa",
+            summary: "remote stress σ_xy",
+            default: Some(0.0),
+        },
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let crack = LineCrack::new(setting)?;
+    let &[xx, yy, xy] = values else {
+        return Err("three stress components are needed".into());
+    };
+    Ok(Box::new(UniformSlip {
+        crack,
+        elastic: PlaneElasticity::new(setting)?,
+        friction: setting.friction,
+        remote: crack.components([xx, yy, xy]),
+    }))
+}
+
+struct UniformSlip {
+    crack: LineCrack,
+    elastic: PlaneElasticity,
+    friction: f64,
+    /// (tt, nn, tn) at factor 1 [Pa].
+    remote: [f64; 3],
+}
+
+impl Solution for UniformSlip {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let [_, nn, tn] = self.remote;
+        // The spring's displacement is the remote shear, its slip the face load A, its force the traction.
+        let mut spring = FrictionSpring::default();
+        for factor in factors {
+            let bound = self.friction * (-factor * nn).max(0.0);
+            spring = spring.step(1.0, factor * tn, [-bound, bound]);
+        }
+        let now = factors.last().copied().unwrap_or(0.0);
+        let a = self.crack.half_length;
+        let mut zones = Vec::new();
+        for (mode, load) in [
+            (Mode::Opening, (now * nn).max(0.0)),
+            (Mode::Shear, spring.slip),
+        ] {
+            if load != 0.0 {
+                zones.push((1.0, FaceLoad::new(mode, 0.0, a, load, 0.0)));
+            }
+        }
+        Ok(Box::new(CrackField {
+            crack: self.crack,
+            elastic: self.elastic,
+            background: Background {
+                uniform: self.remote.map(|s| now * s),
+                bending: 0.0,
+            },
+            zones,
+            dissipation: spring.dissipation * 2.0 * PI * a * a / self.elastic.modulus,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, check_intensity, setting};
+    use crate::geometry::{CrackShape, Point};
+
+    fn along(crack: &LineCrack) -> Vec<Point> {
+        (0..=20)
+            .map(|k| crack.point((k as f64 / 10.0 - 1.0) * 0.999 * crack.half_length, 0.0))
+            .collect()
+    }
+
+    /// Uniaxial compression of an inclined crack: slip iff μ < tan θ, |K_II| = σ cos θ (sin θ − μ cos θ) √(πa), the upper
+    /// face moves down the slope.
+    #[test]
+    fn an_inclined_crack_slips_when_it_is_steeper_than_the_friction_angle() {
+        let a = 0.45;
+        for (degrees, friction) in [
+            (27.0_f64, 0.3),
+            (27.0, 0.6),
+            (27.0, 0.0),
+            (153.0, 0.3),
+            (-60.0, 1.0),
+        ] {
+            let theta = degrees.to_radians();
+            let (c, s) = (theta.cos(), theta.sin());
+            let centre = [0.1, -0.07];
+            let shape = CrackShape::Polyline(vec![
+                [centre[0] - a * c, centre[1] - a * s],
+                [centre[0] + a * c, centre[1] + a * s],
+            ]);
+            let mut of = setting(&shape);
+            of.friction = friction;
+            let crack = LineCrack::new(&of).unwrap();
+            let solution = build(&of, &[0.0, -1.0, 0.0]).unwrap();
+            let field = solution.at(&[1.0]).unwrap();
+            let points = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
+            check_elasticity(field.as_ref(), &of, &points, 3e-4, 1e-9);
+            check_contact(field.as_ref(), None, &of, &along(&crack), [1e-13, 1e-14]);
+            check_intensity(field.as_ref(), &of);
+            let drop = (s.abs() - friction * c.abs()).max(0.0) * c.abs();
+            let tip = crack.point(a, 0.0);
+            let k = field.intensity(&tip).unwrap();
+            assert_eq!(k[0], 0.0);
+            assert!((k[1].abs() - drop * (PI * a).sqrt()).abs() < 1e-14);
+            let modulus = 2.0 / (1.0 - 0.09);
+            let expected = friction * c * c * drop * 2.0 * PI * a * a / modulus;
+            assert!((field.dissipation().unwrap() - expected).abs() < 1e-14);
+            // Upper face relative to the lower one.
+            let middle = crack.point(0.0, 0.0);
+            let upper = crack.normal[1].signum();
+            let up = field.displacement(&middle, upper)[1] - field.displacement(&middle, -upper)[1];
+            assert!(if drop > 0.0 { up < -1e-3 } else { up == 0.0 });
+        }
+    }
+
+    #[test]
+    fn tension_opens_with_free_faces() {
+        let shape = CrackShape::Polyline(vec![[-0.3, -0.3], [0.3, 0.3]]);
+        let of = setting(&shape);
+        let crack = LineCrack::new(&of).unwrap();
+        let field = build(&of, &[0.2, 1.0, -0.3]).unwrap().at(&[1.0]).unwrap();
+        check_contact(field.as_ref(), None, &of, &along(&crack), [1e-13, 1e-14]);
+        check_elasticity(
+            field.as_ref(),
+            &of,
+            &[[0.7, -0.4, 0.0], [-0.2, 0.6, 0.0]],
+            1e-3,
+            1e-8,
+        );
+        check_intensity(field.as_ref(), &of);
+        // n = (−1, 1)/√2: σ_nn = 0.6 + 0.3, σ_tn = 0.4.
+        let root = (PI * 0.18_f64.sqrt()).sqrt();
+        let k = field.intensity(&[0.3, 0.3, 0.0]).unwrap();
+        assert!((k[0] - 0.9 * root).abs() < 1e-14 && (k[1] - 0.4 * root).abs() < 1e-14);
+        assert!((field.dissipation().unwrap()).abs() < 1e-15);
+    }
+
+    /// Loading, unloading (the slip stays until the shear reverses), opening and closing again.
+    #[test]
+    fn the_contact_laws_hold_along_a_path() {
+        let shape = CrackShape::Polyline(vec![[-0.4, -0.1], [0.4, 0.1]]);
+        for stress in [[0.0, -1.0, 0.9], [-0.2, -1.0, 0.1]] {
+            let of = setting(&shape);
+            let crack = LineCrack::new(&of).unwrap();
+            let solution = build(&of, &stress).unwrap();
+            let path = [0.4, 1.0, 0.9, 0.5, 0.2, 0.05, -0.3, 0.2, 1.2];
+            let mut before: Option<Box<dyn Field>> = None;
+            let mut dissipated = 0.0;
+            for k in 1..=path.len() {
+                let now = solution.at(&path[..k]).unwrap();
+                check_contact(
+                    now.as_ref(),
+                    before.as_deref(),
+                    &of,
+                    &along(&crack),
+                    [1e-13, 1e-14],
+                );
+                let total = now.dissipation().unwrap();
+                assert!(total >= dissipated);
+                dissipated = total;
+                before = Some(now);
+            }
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! Body in uniform stress whose crack holds: patch tests of stick, of hydrostatic pressure and of free faces.
+//!
+//! ```text
+//!   u = ε (x − x_c),  ε = Hooke⁻¹(σ),  jump 0,  contact traction −σ n
+//! ```
+//!
+//! is a solution as long as the traction is admissible on the whole crack: p = −n·σ·n >= 0 and |σn + p n| <= μp. With
+//! σ = −p I that is so for a crack of any shape and without friction; with σ n = 0 the faces are free and about to open. Where
+//! it is not so the solution is refused. The load factor scales the stress.
+//!
+//! A straight crack or a plane that is free of traction may also stand open: side 1 moved by δ along n, jump (δ, 0, 0).
+//! The load factor scales δ too.
+//!
+//! In 2D the stress is that of the plane; in plane strain σ_zz follows. Rigid motion: none at x_c, the middle between the
+//! ends of a chain of segments, the centre of an arc or ellipse, the stated point of a plane.
+
+use std::f64::consts::PI;
+
+use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub};
+use crate::material::Model;
+
+use super::line_crack::{apply, axes, resolve};
+use super::plane_elasticity::PlaneElasticity;
+use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+
+/// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
+const ROUNDING: f64 = 1e-12;
+
+/// A point closer to an open crack than this, in units of the body's diagonal, lies on it: its side is asked for.
+const ON_CRACK: f64 = 1e-10;
+
+const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
+    ParameterSpec {
+        name,
+        summary,
+        default: Some(0.0),
+    }
+}
+
+/// Registry entry.
+pub const SPEC: SolutionSpec = SolutionSpec {
+    name: "uniform-stress",
+    summary: "uniform stress, the crack of any shape closed and sticking (or free of traction); 2D and 3D",
+    parameters: &[
+        component("stress_xx_pa", "stress σ_xx, tension positive"),
+        component("stress_yy_pa", "stress σ_yy"),
+        component("stress_zz_pa", "stress σ_zz, solids only"),
+        component("stress_xy_pa", "stress σ_xy"),
+        component("stress_yz_pa", "stress σ_yz, solids only"),
+        component("stress_xz_pa", "stress σ_xz, solids only"),
+        component(
+            "opening_m",
+            "opening δ >= 0 of a straight crack or plane without traction",
+        ),
+    ],
+    build,
+};
+
+fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let &[xx, yy, zz, xy, yz, xz, opening] = values else {
+        return Err("six stress components and an opening are needed".into());
+    };
+    let flat = match setting.crack {
+        CrackShape::Plane { .. } => true,
+        CrackShape::Polyline(points) => points.len() == 2,
+        _ => false,
+    };
+    if opening < 0.0 || (opening > 0.0 && !flat) {
+        return Err("only a straight crack or a plane can stand open, by opening_m >= 0".into());
+    }
+    let mut strain = [[0.0; 3]; 3];
+    if setting.model == Model::Solid {
+        let trace = xx + yy + zz;
+        let (e, nu) = (setting.material.young, setting.material.poisson);
+        for (a, row) in [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+            .iter()
+            .enumerate()
+        {
+            for b in 0..3 {
+                let isotropic = if a == b { nu * trace } else { 0.0 };
+                strain[a][b] = ((1.0 + nu) * row[b] - isotropic) / e;
+            }
+        }
+    } else {
+        if [zz, yz, xz] != [0.0; 3] {
+            return Err("a plane problem takes the stresses xx, yy and xy only".into());
+        }
+        let [e_xx, e_yy, e_xy] = PlaneElasticity::new(setting)?.strain([xx, yy, xy]);
+        strain = [[e_xx, e_xy, 0.0], [e_xy, e_yy, 0.0], [0.0; 3]];
+    }
+    Ok(Box::new(UniformStress {
+        crack: setting.crack.clone(),
+        friction: setting.friction,
+        centre: centre(setting.crack),
+        stress: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
+        strain,
+        opening,
+        near: ON_CRACK * norm(&sub(&setting.body[1], &setting.body[0])),
+    }))
+}
+
+/// x_c.
+fn centre(crack: &CrackShape) -> Point {
+    match crack {
+        CrackShape::Polyline(points) => match (points.first(), points.last()) {
+            (Some(p), Some(q)) => [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.0],
+            _ => [0.0; 3],
+        },
+        CrackShape::Arc { centre, .. } => [centre[0], centre[1], 0.0],
+        CrackShape::Ellipse { centre, .. } => *centre,
+        CrackShape::Plane { point, .. } => *point,
+    }
+}
+
+#[derive(Clone)]
+struct UniformStress {
+    crack: CrackShape,
+    friction: f64,
+    centre: Point,
+    /// [Pa], at factor 1 or at the present one.
+    stress: [Point; 3],
+    strain: [Point; 3],
+    /// δ [m], at factor 1 or at the present one.
+    opening: f64,
+    /// Distance from the crack below which a point lies on it [m].
+    near: f64,
+}
+
+impl UniformStress {
+    /// Points of the crack at which the contact traction is most critical: one per flat piece, on an arc the ends and the
+    /// places where μp − |τ| is stationary.
+    fn critical_points(&self) -> Vec<Point> {
+        match &self.crack {
+            CrackShape::Polyline(points) => points
+                .windows(2)
+                .map(|p| [0.5 * (p[0][0] + p[1][0]), 0.5 * (p[0][1] + p[1][1]), 0.0])
+                .collect(),
+            CrackShape::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => {
+                // On the Mohr circle p = −m − R cos(2α − β), |τ| = R |sin(2α − β)| for the normal at angle α:
+                // μp ∓ τ is stationary where tan(2α − β) = ±1/μ.
+                let [x, y, _] = self.stress;
+                let beta = x[1].atan2(0.5 * (x[0] - y[1]));
+                let (low, high) = (from.min(*to), from.max(*to));
+                let slope = 1.0_f64.atan2(self.friction);
+                let stationary = [slope, -slope]
+                    .into_iter()
+                    .flat_map(|psi| (0..4).map(move |k| 0.5 * (beta + psi + PI * k as f64)));
+                stationary
+                    // The one turn of the angle that may lie within the arc.
+                    .map(|alpha| low + (alpha - low).rem_euclid(2.0 * PI))
+                    .filter(|alpha| *alpha <= high)
+                    .chain([low, high])
+                    .map(|alpha| {
+                        [
+                            centre[0] + radius * alpha.cos(),
+                            centre[1] + radius * alpha.sin(),
+                            0.0,
+                        ]
+                    })
+                    .collect()
+            }
+            CrackShape::Ellipse { centre, .. } => vec![*centre],
+            CrackShape::Plane { point, .. } => vec![*point],
+        }
+    }
+
+    /// Refuses a state whose contact traction is not admissible.
+    fn admissible(&self) -> Result<(), String> {
+        let largest = self
+            .stress
+            .as_flattened()
+            .iter()
+            .fold(0.0_f64, |m, s| m.max(s.abs()));
+        let rounding = ROUNDING * largest;
+        for x in self.critical_points() {
+            let [p, a, b] = self.traction(&x);
+            if p < -rounding {
+                return Err(format!("the crack is under tension of {} Pa at {x:?}", -p));
+            }
+            if self.opening > 0.0 && p.hypot(a).hypot(b) > rounding {
+                return Err(format!(
+                    "an open crack carries traction ({p}, {a}, {b}) Pa at {x:?}"
+                ));
+            }
+            if self.opening < 0.0 {
+                return Err("the faces overlap".into());
+            }
+            let (shear, bound) = (a.hypot(b), self.friction * p.max(0.0));
+            if shear > bound + rounding {
+                return Err(format!(
+                    "the crack slips at {x:?}: shear {shear} Pa, friction bound {bound} Pa"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Solution for UniformStress {
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        let mut state = self.clone();
+        // Every state on the way must hold: slip would stay.
+        for factor in factors {
+            let scaled = |t: &[Point; 3]| t.map(|row| row.map(|v| factor * v));
+            state.stress = scaled(&self.stress);
+            state.strain = scaled(&self.strain);
+            state.opening = factor * self.opening;
+            state.admissible()?;
+        }
+        Ok(Box::new(state))
+    }
+}
+
+impl Field for UniformStress {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let u = apply(&self.strain, &sub(x, &self.centre));
+        if self.opening == 0.0 {
+            return u;
+        }
+        // The centre of a straight crack or plane lies on it.
+        let normal = axes(&self.crack, x)[0];
+        let distance = dot(&normal, &sub(x, &self.centre));
+        let side = if distance.abs() <= self.near {
+            side
+        } else {
+            distance
+        };
+        let moved = if side > 0.0 { self.opening } else { 0.0 };
+        add_scaled(&u, moved, &normal)
+    }
+
+    fn stress(&self, _x: &Point, _side: f64) -> [Point; 3] {
+        self.stress
+    }
+
+    fn traction(&self, x: &Point) -> [f64; 3] {
+        let axes = axes(&self.crack, x);
+        resolve(&axes, &apply(&self.stress, &axes[0])).map(|t| -t)
+    }
+
+    fn jump(&self, _x: &Point) -> [f64; 3] {
+        [self.opening, 0.0, 0.0]
+    }
+
+    fn intensity(&self, _front: &Point) -> Option<[f64; 3]> {
+        Some([0.0; 3])
+    }
+
+    fn dissipation(&self) -> Option<f64> {
+        Some(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::geometry::{norm, unit};
+    use crate::material::Material;
+
+    fn held(of: &Setting<'_>, stress: &[f64; 6]) -> Result<Box<dyn Solution>, String> {
+        build(of, &[stress.as_slice(), &[0.0]].concat())
+    }
+
+    fn plane(normal: Point) -> CrackShape {
+        CrackShape::Plane {
+            point: [0.0, 0.0, 0.1],
+            normal: unit(&normal),
+        }
+    }
+
+    /// Block of 20 m on a plane of slope 1/2, pressed by 1e-6 m at E = 1e8 Pa with free sides: uniaxial stress of 5 Pa,
+    /// P_n/w = 4 Pa, and shear of half the friction bound for μ = 1, for any ν in a solid.
+    #[test]
+    fn a_block_on_a_slope_sticks() {
+        let shape = plane([-1.0, 0.0, 2.0]);
+        for poisson in [0.0, 0.3] {
+            let mut of = setting(&shape);
+            of.model = Model::Solid;
+            of.friction = 1.0;
+            of.material = Material {
+                young: 1e8,
+                poisson,
+            };
+            let solution = held(&of, &[0.0, 0.0, -5.0, 0.0, 0.0, 0.0]).unwrap();
+            let field = solution.at(&[0.5, 1.0]).unwrap();
+            let [p, a, b] = field.traction(&[0.0, 0.0, 0.1]);
+            assert!((p - 4.0).abs() < 1e-14 && (a.hypot(b) - 2.0).abs() < 1e-14);
+            let (top, bottom) = ([1.0, 2.0, 20.0], [1.0, 2.0, 0.0]);
+            let pressed = field.displacement(&top, 1.0)[2] - field.displacement(&bottom, -1.0)[2];
+            assert!((pressed + 1e-6).abs() < 1e-20);
+            check_elasticity(field.as_ref(), &of, &[[0.3, 0.2, 0.9]], 1e-2, 1e-10);
+            check_contact(
+                field.as_ref(),
+                None,
+                &of,
+                &[[0.2, 0.7, 0.2]],
+                [1e-13, 1e-20],
+            );
+        }
+        // In the plane: any ν in plane stress.
+        let shape = CrackShape::Polyline(vec![[-1.0, -0.5], [1.0, 0.5]]);
+        let mut of = setting(&shape);
+        of.model = Model::PlaneStress;
+        of.friction = 0.5;
+        let solution = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+        let field = solution.at(&[1.0]).unwrap();
+        let [p, a, _] = field.traction(&[0.0; 3]);
+        assert!((p - 4.0).abs() < 1e-14 && (a.abs() - 2.0).abs() < 1e-14);
+        // The bound itself is admissible, less friction is not.
+        of.friction = 0.4999;
+        let steep = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+        assert!(steep.at(&[1.0]).is_err());
+    }
+
+    #[test]
+    fn hydrostatic_pressure_needs_no_friction_on_any_crack() {
+        let arc = CrackShape::Arc {
+            centre: [0.1, 0.2],
+            radius: 0.6,
+            from: 0.3,
+            to: 0.3 + 2.0 * PI,
+        };
+        let chain = CrackShape::Polyline(vec![[-1.0, 0.0], [0.1, 0.3], [1.0, -0.4]]);
+        for (shape, x) in [(&arc, [0.1, 0.8, 0.0]), (&chain, [0.55, -0.05, 0.0])] {
+            let mut of = setting(shape);
+            of.friction = 0.0;
+            let solution = held(&of, &[-3.0, -3.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+            let field = solution.at(&[1.0]).unwrap();
+            check_contact(field.as_ref(), None, &of, &[x], [1e-14, 1e-15]);
+            assert!((field.traction(&x)[0] - 3.0).abs() < 1e-14);
+            // u = −p (1 + ν)(1 − 2ν)/E x in plane strain.
+            let moved = field.displacement(&[0.7, 0.0, 0.0], 1.0)[0]
+                - field.displacement(&[0.2, 0.0, 0.0], 1.0)[0];
+            assert!((moved + 3.0 * 1.3 * 0.4 / 2.0 * 0.5).abs() < 1e-14);
+            assert!(solution.at(&[1.0, -0.1]).is_err());
+            check_elasticity(field.as_ref(), &of, &[[0.5, 0.4, 0.0]], 1e-2, 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_elliptic_crack_holds_under_six_components() {
+        let normal = unit(&[1.0, 1.0, 1.0]);
+        let shape = CrackShape::Ellipse {
+            centre: [0.1, 0.0, -0.2],
+            normal,
+            axis: unit(&[1.0, -1.0, 0.0]),
+            half_axes: [0.5, 0.3],
+        };
+        let mut of = setting(&shape);
+        of.model = Model::Solid;
+        let stress = [-1.0, -1.2, -0.9, 0.1, -0.15, 0.05];
+        let field = held(&of, &stress).unwrap().at(&[1.0]).unwrap();
+        check_contact(
+            field.as_ref(),
+            None,
+            &of,
+            &[[0.1, 0.0, -0.2]],
+            [1e-14, 1e-15],
+        );
+        check_elasticity(field.as_ref(), &of, &[[0.4, 0.3, 0.2]], 1e-2, 1e-12);
+        of.friction = 0.05;
+        assert!(held(&of, &stress).unwrap().at(&[1.0]).is_err());
+    }
+
+    #[test]
+    fn free_faces_are_admitted_and_tension_is_not() {
+        let shape = CrackShape::Polyline(vec![[-1.0, 0.0], [1.0, 0.0]]);
+        let mut of = setting(&shape);
+        of.friction = 0.0;
+        assert!(
+            held(&of, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+                .unwrap()
+                .at(&[1.0])
+                .is_ok()
+        );
+        assert!(
+            held(&of, &[1.0, 1e-9, 0.0, 0.0, 0.0, 0.0])
+                .unwrap()
+                .at(&[1.0])
+                .is_err()
+        );
+        assert!(held(&of, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).is_err());
+    }
+
+    /// The verdict on an arc agrees with a fine sampling of it.
+    #[test]
+    fn an_arc_is_judged_at_its_worst_point() {
+        let mut verdicts = [0, 0];
+        for k in 0..200 {
+            let r = |m: usize| ((k * m) % 97) as f64 / 97.0;
+            let from = 6.0 * r(13) - 3.0;
+            let arc = CrackShape::Arc {
+                centre: [0.0, 0.0],
+                radius: 1.0,
+                from,
+                to: from + 4.0 * r(31) - 2.0,
+            };
+            let mut of = setting(&arc);
+            of.friction = r(7);
+            let stress = [-1.0 - r(3), -1.0 - r(5), 0.0, r(11) - 0.5, 0.0, 0.0];
+            let accepted = held(&of, &stress).unwrap().at(&[1.0]).is_ok();
+            let CrackShape::Arc { to, .. } = arc else {
+                unreachable!()
+            };
+            let least = (0..=20000)
+                .map(|j| {
+                    let t = from + (to - from) * j as f64 / 20000.0;
+                    let n = [t.cos(), t.sin()];
+                    let s = [
+                        stress[0] * n[0] + stress[3] * n[1],
+                        stress[3] * n[0] + stress[1] * n[1],
+                    ];
+                    let p = -(s[0] * n[0] + s[1] * n[1]);
+                    of.friction * p - (s[1] * n[0] - s[0] * n[1]).abs()
+                })
+                .fold(f64::INFINITY, f64::min);
+            if least.abs() > 1e-6 {
+                assert_eq!(accepted, least > 0.0, "{k}: {least}");
+                verdicts[usize::from(accepted)] += 1;
+            }
+        }
+        assert!(verdicts[0] > 20 && verdicts[1] > 20, "{verdicts:?}");
+    }
+
+    #[test]
+    fn traction_is_the_force_on_side_one() {
+        let shape = plane([1.0, 0.3, 2.0]);
+        let mut of = setting(&shape);
+        of.model = Model::Solid;
+        let field = held(&of, &[-1.0, -1.1, -0.9, 0.1, 0.0, 0.1])
+            .unwrap()
+            .at(&[2.0])
+            .unwrap();
+        let axes = axes(&shape, &[0.0; 3]);
+        let t = field.traction(&[0.0; 3]);
+        let mut sum = apply(&field.stress(&[0.0; 3], 1.0), &axes[0]);
+        for (component, axis) in t.iter().zip(&axes) {
+            for k in 0..3 {
+                sum[k] += component * axis[k];
+            }
+        }
+        assert!(norm(&sum) < 1e-14);
+    }
+
+    #[test]
+    fn a_crack_free_of_traction_may_stand_open_and_no_other() {
+        let line = CrackShape::Polyline(vec![[-1.0, 0.5], [3.0, 0.5]]);
+        let arc = CrackShape::Arc {
+            centre: [0.0, 0.0],
+            radius: 1.0,
+            from: 0.0,
+            to: 1.0,
+        };
+        let mut of = setting(&line);
+        of.body = [[0.0; 3], [1.0, 1.0, 0.0]];
+        let open = |of: &Setting<'_>, yy: f64, opening: f64| {
+            build(of, &[2.0, yy, 0.0, 0.0, 0.0, 0.0, opening])
+        };
+        let field = open(&of, 0.0, 0.1).unwrap().at(&[0.5]).unwrap();
+        let closed = open(&of, 0.0, 0.0).unwrap().at(&[0.5]).unwrap();
+        for (x, side, moved) in [
+            ([0.3, 0.7, 0.0], -1.0, 0.05),
+            ([0.3, 0.3, 0.0], 1.0, 0.0),
+            ([0.3, 0.5, 0.0], 1.0, 0.05),
+            ([0.3, 0.5, 0.0], -1.0, 0.0),
+        ] {
+            let d = sub(
+                &field.displacement(&x, side),
+                &closed.displacement(&x, side),
+            );
+            assert!(norm(&sub(&d, &[0.0, moved, 0.0])) < 1e-16);
+        }
+        check_contact(
+            field.as_ref(),
+            None,
+            &of,
+            &[[0.2, 0.5, 0.0]],
+            [1e-15, 1e-15],
+        );
+        assert!(open(&of, -1.0, 0.1).unwrap().at(&[1.0]).is_err());
+        assert!(open(&of, 0.0, 0.1).unwrap().at(&[-1.0]).is_err());
+        assert!(open(&of, 0.0, -0.1).is_err());
+        assert!(open(&setting(&arc), 0.0, 0.1).is_err());
+    }
+}

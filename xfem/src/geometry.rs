@@ -1,0 +1,48 @@
+//! Points, curves, convex parts, crack shapes and the coordinates of their tips. Knows nothing of meshes.
+
+pub mod clip;
+pub mod crack_shape;
+pub mod curve;
+pub mod ellipse;
+pub mod polygon;
+pub mod tip_frame;
+
+pub use crack_shape::CrackShape;
+
+/// A point or vector in space; the third entry is 0 in 2D.
+pub type Point = [f64; 3];
+
+/// a · b
+pub fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a − b
+pub fn sub(a: &Point, b: &Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a + s b
+pub fn add_scaled(a: &Point, s: f64, b: &Point) -> Point {
+    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
+}
+
+/// a × b
+pub fn cross(a: &Point, b: &Point) -> Point {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// |a|
+pub fn norm(a: &Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// a / |a|; the argument must not vanish.
+pub fn unit(a: &Point) -> Point {
+    let length = norm(a);
+    [a[0] / length, a[1] / length, a[2] / length]
+}

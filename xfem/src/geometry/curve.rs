@@ -1,0 +1,278 @@
+//! Plane curves that cracks follow: chains of straight segments and circular arcs, both continued beyond their ends.
+//!
+//! ```text
+//!   s(x)   abscissa of the nearest point, 0 at the first end, L at the last, beyond them on the continuation
+//!   φ(x)   signed distance, positive on the side of n = tangent turned by +90°
+//! ```
+//!
+//! A chain is continued by its end segments, an arc by its circle.
+
+use std::f64::consts::PI;
+
+use super::{Point, add_scaled, dot, norm, sub, unit};
+
+/// A plane curve.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Curve {
+    /// Straight segments through these points, at least two [m].
+    Chain(Vec<Point>),
+    /// Part of a circle from angle `from` to `to` [rad]; counter-clockwise if `to` is larger.
+    Arc {
+        /// Centre [m].
+        centre: Point,
+        /// Radius [m].
+        radius: f64,
+        /// First end [rad].
+        from: f64,
+        /// Last end [rad].
+        to: f64,
+    },
+}
+
+/// Where a point lies with respect to a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Abscissa s [m].
+    pub s: f64,
+    /// Signed distance φ [m].
+    pub phi: f64,
+    /// Unit tangent at the nearest point.
+    pub tangent: Point,
+}
+
+/// A vector turned by +90°.
+pub fn turned(a: &Point) -> Point {
+    [-a[1], a[0], 0.0]
+}
+
+impl Curve {
+    /// Length L [m].
+    pub fn length(&self) -> f64 {
+        match self {
+            Curve::Chain(points) => points.windows(2).map(|w| norm(&sub(&w[1], &w[0]))).sum(),
+            Curve::Arc {
+                radius, from, to, ..
+            } => radius * (to - from).abs(),
+        }
+    }
+
+    /// True if the curve ends where it begins.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Curve::Chain(points) => points.first() == points.last(),
+            Curve::Arc { from, to, .. } => (to - from).abs() >= 2.0 * PI * (1.0 - 1e-12),
+        }
+    }
+
+    /// The nearest point of the curve or its continuation.
+    pub fn nearest(&self, x: &Point) -> Nearest {
+        match self {
+            Curve::Chain(points) => nearest_of_chain(points, x),
+            Curve::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => {
+                let d = sub(x, centre);
+                let (rho, turn) = (norm(&d), (to - from).signum());
+                // Angle from the first end in the direction of travel, cut opposite to the middle of the arc.
+                let half = 0.5 * (to - from).abs();
+                let middle = from + turn * half;
+                let e = if rho > 0.0 { d[1].atan2(d[0]) } else { middle };
+                let mut offset = (turn * (e - middle)).rem_euclid(2.0 * PI);
+                if offset > PI {
+                    offset -= 2.0 * PI;
+                }
+                let angle = middle + turn * offset;
+                Nearest {
+                    s: radius * (half + offset),
+                    phi: turn * (radius - rho),
+                    tangent: [-turn * angle.sin(), turn * angle.cos(), 0.0],
+                }
+            }
+        }
+    }
+
+    /// Point and unit tangent at an abscissa, also on the continuation; at a kink the tangent of the segment that ends.
+    pub fn at(&self, s: f64) -> (Point, Point) {
+        match self {
+            Curve::Chain(points) => {
+                let mut start = 0.0;
+                let last = points.len() - 2;
+                for (i, w) in points.windows(2).enumerate() {
+                    let d = sub(&w[1], &w[0]);
+                    let length = norm(&d);
+                    if s <= start + length || i == last {
+                        return (add_scaled(&w[0], (s - start) / length, &d), unit(&d));
+                    }
+                    start += length;
+                }
+                (points[0], [1.0, 0.0, 0.0])
+            }
+            Curve::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => {
+                let turn = (to - from).signum();
+                let (sin, cos) = (from + turn * s / radius).sin_cos();
+                (
+                    [centre[0] + radius * cos, centre[1] + radius * sin, 0.0],
+                    [-turn * sin, turn * cos, 0.0],
+                )
+            }
+        }
+    }
+
+    /// Points strictly between two abscissas a < b that a chord would miss: kinks, or three points of an arc.
+    pub fn between(&self, a: f64, b: f64) -> Vec<Point> {
+        match self {
+            Curve::Chain(points) => {
+                // The ends are no kinks: the chain goes on straight.
+                let slack = 1e-9 * (b - a);
+                let inside = |s: f64| s > a + slack && s < b - slack;
+                let kinks = self.kinks().into_iter().zip(&points[1..]);
+                kinks.filter(|(s, _)| inside(*s)).map(|(_, x)| *x).collect()
+            }
+            Curve::Arc { .. } => (1..4)
+                .map(|k| self.at(a + (b - a) * f64::from(k) / 4.0).0)
+                .collect(),
+        }
+    }
+
+    /// Abscissas of the kinks.
+    pub fn kinks(&self) -> Vec<f64> {
+        let Curve::Chain(points) = self else {
+            return Vec::new();
+        };
+        let mut s = 0.0;
+        let lengths = points.windows(2).map(|w| norm(&sub(&w[1], &w[0])));
+        let mut found: Vec<f64> = lengths
+            .map(|length| {
+                s += length;
+                s
+            })
+            .collect();
+        found.pop();
+        found
+    }
+
+    /// True for a single straight segment: φ is linear.
+    pub fn is_straight(&self) -> bool {
+        matches!(self, Curve::Chain(points) if points.len() == 2)
+    }
+}
+
+fn nearest_of_chain(points: &[Point], x: &Point) -> Nearest {
+    let last = points.len() - 2;
+    let mut best: Option<(f64, Nearest)> = None;
+    let mut start = 0.0;
+    for (i, w) in points.windows(2).enumerate() {
+        let d = sub(&w[1], &w[0]);
+        let length = norm(&d);
+        let tangent = unit(&d);
+        let from = sub(x, &w[0]);
+        let along = dot(&from, &tangent);
+        let low = if i == 0 { f64::NEG_INFINITY } else { 0.0 };
+        let high = if i == last { f64::INFINITY } else { length };
+        let foot = along.clamp(low, high);
+        let phi = dot(&from, &turned(&tangent));
+        let (distance, signed) = if foot == along {
+            (phi.abs(), phi)
+        } else {
+            // Nearest to a kink: the side of the mean normal there.
+            let (kink, other) = if foot == high {
+                (w[1], i + 1)
+            } else {
+                (w[0], i - 1)
+            };
+            let neighbour = unit(&sub(&points[other + 1], &points[other]));
+            let mean = turned(&add_scaled(&tangent, 1.0, &neighbour));
+            let gap = sub(x, &kink);
+            (norm(&gap), norm(&gap).copysign(dot(&gap, &mean)))
+        };
+        if best.is_none_or(|(least, _)| distance < least) {
+            let nearest = Nearest {
+                s: start + foot,
+                phi: signed,
+                tangent,
+            };
+            best = Some((distance, nearest));
+        }
+        start += length;
+    }
+    // A chain has at least one segment.
+    best.map_or(
+        Nearest {
+            s: f64::NAN,
+            phi: f64::NAN,
+            tangent: [1.0, 0.0, 0.0],
+        },
+        |(_, nearest)| nearest,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arc(from: f64, to: f64) -> Curve {
+        Curve::Arc {
+            centre: [0.3, -0.2, 0.0],
+            radius: 1.7,
+            from,
+            to,
+        }
+    }
+
+    #[test]
+    fn points_beside_a_curve_are_found_again() {
+        let chain = Curve::Chain(vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.5, 0.8, 0.0],
+            [3.0, 0.9, 0.0],
+        ]);
+        for curve in [chain, arc(-0.4, 2.0), arc(2.0, -0.4), arc(3.0, 9.0)] {
+            let length = curve.length();
+            for k in -5..=25 {
+                let s = length * (f64::from(k) + 0.37) / 20.0;
+                // An arc's continuation ends opposite to its middle.
+                let limit = match curve {
+                    Curve::Arc { radius, .. } => PI * radius,
+                    Curve::Chain(_) => f64::INFINITY,
+                };
+                if (s - 0.5 * length).abs() > 0.99 * limit {
+                    continue;
+                }
+                let (x, tangent) = curve.at(s);
+                for phi in [0.02, -0.02, 1e-9] {
+                    let found = curve.nearest(&add_scaled(&x, phi, &turned(&tangent)));
+                    assert!(
+                        (found.phi - phi).abs() < 1e-13,
+                        "{curve:?} {s} {phi}: {found:?}"
+                    );
+                    assert!((found.s - s).abs() < 1e-12, "{curve:?} {s}: {found:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_kink_is_convex_on_one_side_and_the_sign_follows_the_mean_normal() {
+        let chain = Curve::Chain(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -1.0, 0.0]]);
+        let outside = chain.nearest(&[1.3, 0.4, 0.0]);
+        assert!((outside.phi - 0.5).abs() < 1e-14 && (outside.s - 1.0).abs() < 1e-14);
+        let inside = chain.nearest(&[0.8, -0.3, 0.0]);
+        assert!((inside.phi + 0.2).abs() < 1e-14 && (inside.s - 1.3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn arcs_measure_their_length_and_close() {
+        assert!((arc(0.0, 1.0).length() - 1.7).abs() < 1e-14);
+        assert!(arc(0.5, 0.5 + 2.0 * PI).is_closed() && !arc(0.0, 6.0).is_closed());
+        assert_eq!(arc(0.0, 1.0).between(0.0, 1.0).len(), 3);
+    }
+}

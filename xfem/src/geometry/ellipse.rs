@@ -1,0 +1,293 @@
+//! Distance from the front of a flat elliptic crack, and the frame of the front.
+//!
+//! ```text
+//!   front: c + a₀ cos t e₀ + a₁ sin t e₁,   e₁ = n × e₀
+//!   nearest point y of x, both in the plane's coordinates, a₀ >= a₁ after exchange, x >= 0 by symmetry:
+//!     y_i = a_i² x_i / (a_i² + s),   F(s) = Σ (a_i x_i / (a_i² + s))² = 1,   s > −a₁²
+//!   1/√F is concave and increasing: Newton's method on 1/√F = 1 from the left converges monotonically
+//! ```
+//!
+//! The bracket and the special cases are those of Eberly (2013), "Distance from a point to an ellipse"; the iteration is
+//! that of the trust-region problem (Reinsch 1971; Moré and Sorensen 1983), which has the same secular equation.
+
+use super::{Point, add_scaled, cross, dot, sub};
+
+/// A flat ellipse in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipse {
+    /// Centre [m].
+    pub centre: Point,
+    /// Unit normal n, from side 2 to side 1.
+    pub normal: Point,
+    /// Unit direction e₀ of the first half axis, perpendicular to the normal.
+    pub axis: Point,
+    /// Half axes along e₀ and e₁ = n × e₀ [m]; either may be the longer one.
+    pub half_axes: [f64; 2],
+}
+
+/// The point of the front nearest to a point's projection on the crack plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Signed distance in the crack plane, negative inside the crack [m].
+    pub psi: f64,
+    /// Nearest point of the front [m].
+    pub point: Point,
+    /// Unit normal of the front in the crack plane there, pointing out of the crack; the gradient of ψ.
+    pub ahead: Point,
+    /// Parameter t of the point, in (−π, π].
+    pub parameter: f64,
+}
+
+impl Ellipse {
+    /// Nearest point of the front. Where several are equally near (evolute, centre) one is chosen by a fixed rule.
+    pub fn nearest(&self, x: &Point) -> Nearest {
+        let second = cross(&self.normal, &self.axis);
+        let from_centre = sub(x, &self.centre);
+        let x = [dot(&from_centre, &self.axis), dot(&from_centre, &second)];
+        let y = nearest_in_plane(self.half_axes, x);
+        let [a, b] = self.half_axes;
+        // (y₀/a₀², y₁/a₁²) times a₁.
+        let outward = [y[0] / a * (b / a), y[1] / b];
+        let length = outward[0].hypot(outward[1]);
+        let outward = [outward[0] / length, outward[1] / length];
+        let in_space = |v: [f64; 2]| {
+            let along = [
+                v[0] * self.axis[0],
+                v[0] * self.axis[1],
+                v[0] * self.axis[2],
+            ];
+            add_scaled(&along, v[1], &second)
+        };
+        Nearest {
+            psi: (x[0] - y[0]) * outward[0] + (x[1] - y[1]) * outward[1],
+            point: add_scaled(&self.centre, 1.0, &in_space(y)),
+            ahead: in_space(outward),
+            parameter: (y[1] / b).atan2(y[0] / a),
+        }
+    }
+
+    /// Point of the front at a parameter t.
+    pub fn point(&self, parameter: f64) -> Point {
+        let [a, b] = self.half_axes;
+        let along = add_scaled(&self.centre, a * parameter.cos(), &self.axis);
+        add_scaled(
+            &along,
+            b * parameter.sin(),
+            &cross(&self.normal, &self.axis),
+        )
+    }
+
+    /// Frame of the front at a nearest point: ahead, crack normal n, tangent = ahead × n.
+    pub fn front_frame(&self, nearest: &Nearest) -> [Point; 3] {
+        [
+            nearest.ahead,
+            self.normal,
+            cross(&nearest.ahead, &self.normal),
+        ]
+    }
+
+    /// The point x + t d of the front with the smallest |t|, for x and the direction d in the crack plane; `None` if
+    /// the line misses the front.
+    pub fn meet(&self, x: &Point, direction: &Point) -> Option<Point> {
+        let second = cross(&self.normal, &self.axis);
+        let from_centre = sub(x, &self.centre);
+        let scaled = |v: &Point| {
+            [
+                dot(v, &self.axis) / self.half_axes[0],
+                dot(v, &second) / self.half_axes[1],
+            ]
+        };
+        // |p + t q|² = 1 in coordinates that make the front the unit circle.
+        let (p, q) = (scaled(&from_centre), scaled(direction));
+        let (qq, pq) = (q[0] * q[0] + q[1] * q[1], p[0] * q[0] + p[1] * q[1]);
+        let c = (p[0].hypot(p[1]) - 1.0) * (p[0].hypot(p[1]) + 1.0);
+        let discriminant = pq * pq - qq * c;
+        if discriminant < 0.0 || qq == 0.0 {
+            return None;
+        }
+        // The root of smaller size, without cancellation: c over the sum of equal signs.
+        let sum = pq + discriminant.sqrt().copysign(pq);
+        let t = if sum == 0.0 { 0.0 } else { -c / sum };
+        Some(add_scaled(x, t, direction))
+    }
+}
+
+/// Nearest point of the ellipse (a₀ cos t, a₁ sin t).
+fn nearest_in_plane(half_axes: [f64; 2], x: [f64; 2]) -> [f64; 2] {
+    let swap = half_axes[0] < half_axes[1];
+    let order = |v: [f64; 2]| if swap { [v[1], v[0]] } else { v };
+    let signs = x.map(|v| if v < 0.0 { -1.0 } else { 1.0 });
+    let y = nearest_in_quadrant(order(half_axes), order(x.map(f64::abs)));
+    let y = order(y);
+    [y[0] * signs[0], y[1] * signs[1]]
+}
+
+/// The same for a₀ >= a₁ and a point of the first quadrant.
+fn nearest_in_quadrant([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+    /// Distance from the long axis, in half axes, that counts as none: ψ is Lipschitz, so it changes by as little.
+    const ON_AXIS: f64 = 1e-16;
+    /// Newton steps; 3 to 8 are needed.
+    const STEPS: usize = 60;
+    let ratio = (a / b) * (a / b);
+    let (u, v) = (x / a, y / b);
+    if v <= ON_AXIS {
+        // On the long axis: the foot leaves the vertex inside of the centre of curvature there.
+        let c = if ratio > 1.0 {
+            ratio * u / (ratio - 1.0)
+        } else {
+            f64::INFINITY
+        };
+        return if c < 1.0 {
+            [a * c, b * ((1.0 - c) * (1.0 + c)).sqrt()]
+        } else {
+            [a, 0.0]
+        };
+    }
+    // With σ = 1 + s/a₁² > 0 and ϱ = a₀²/a₁²:  F = (ϱ u/(σ + ϱ − 1))² + (v/σ)².
+    let terms = |sigma: f64| (ratio * u / (sigma + (ratio - 1.0)), v / sigma);
+    // F >= 1 here, so the root lies to the right.
+    let mut sigma = v.max(ratio * u - (ratio - 1.0));
+    for _ in 0..STEPS {
+        let (p, q) = terms(sigma);
+        let f = p * p + q * q;
+        let slope = p * p / (sigma + (ratio - 1.0)) + q * q / sigma; // −F'/2
+        let step = f * (f.sqrt() - 1.0) / slope;
+        // Monotone in exact arithmetic: the first step that does not go right is rounding.
+        if step <= 1e-16 * sigma {
+            break;
+        }
+        sigma += step;
+    }
+    let (p, q) = terms(sigma);
+    // Back onto the ellipse against rounding of σ.
+    let length = p.hypot(q);
+    [a * p / length, b * q / length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{norm, unit};
+    use proptest::prelude::*;
+
+    fn ellipse(a: f64, b: f64) -> Ellipse {
+        let normal = unit(&[1.0, -2.0, 3.0]);
+        Ellipse {
+            centre: [0.3, -0.1, 0.2],
+            normal,
+            axis: unit(&cross(&normal, &[0.2, 1.0, 0.4])),
+            half_axes: [a, b],
+        }
+    }
+
+    /// Point of the crack plane with coordinates (p, q), `height` above it.
+    fn at(e: &Ellipse, p: f64, q: f64, height: f64) -> Point {
+        let x = add_scaled(&e.centre, p, &e.axis);
+        let x = add_scaled(&x, q, &cross(&e.normal, &e.axis));
+        add_scaled(&x, height, &e.normal)
+    }
+
+    #[test]
+    fn a_circle_has_psi_r_minus_a() {
+        let e = ellipse(0.7, 0.7);
+        for (p, q) in [
+            (0.1, 0.2),
+            (-0.5, 0.4),
+            (1e-9, 0.0),
+            (0.0, -3.0),
+            (0.7, 0.0),
+        ] {
+            let found = e.nearest(&at(&e, p, q, 0.9));
+            let r = f64::hypot(p, q);
+            assert!(
+                (found.psi - (r - 0.7)).abs() < 1e-15,
+                "{p} {q}: {}",
+                found.psi
+            );
+            let radial = sub(&at(&e, p / r, q / r, 0.0), &e.centre);
+            assert!(norm(&sub(&found.ahead, &radial)) < 1e-14);
+        }
+        assert!((e.nearest(&e.centre).psi + 0.7).abs() < 1e-15);
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_a_search_along_the_front(
+            b in 0.01f64..1.5, p in -2.0f64..2.0, q in -2.0f64..2.0, scale in 0.0f64..1.0
+        ) {
+            let e = ellipse(1.0, b);
+            let x = at(&e, p * scale, q * scale * scale, 0.0);
+            let found = e.nearest(&x);
+            let distance = |t: f64| norm(&sub(&e.point(t), &x));
+            let step = std::f64::consts::TAU / 4000.0;
+            let start = (0..4000).map(|k| k as f64 * step).min_by(|s, t| distance(*s).total_cmp(&distance(*t)));
+            let (mut low, mut high) = (start.unwrap() - step, start.unwrap() + step);
+            for _ in 0..200 {
+                // Golden section.
+                let d = 0.381_966 * (high - low);
+                if distance(low + d) < distance(high - d) { high -= d } else { low += d }
+            }
+            prop_assert!((found.psi.abs() - distance(low)).abs() < 1e-12, "{} {}", found.psi, distance(low));
+            prop_assert!((norm(&sub(&found.point, &x)) - found.psi.abs()).abs() < 1e-12);
+            prop_assert!(norm(&sub(&e.point(found.parameter), &found.point)) < 1e-13);
+            let inside = (p * scale).powi(2) + (q * scale * scale / b).powi(2) < 1.0;
+            prop_assert_eq!(found.psi < 0.0, inside);
+        }
+
+        #[test]
+        fn psi_has_the_gradient_ahead(b in 0.2f64..1.5, p in -2.0f64..2.0, q in -2.0f64..2.0, height in -1.0f64..1.0) {
+            // Away from the axes, where ψ has its ridge.
+            prop_assume!(p.abs() > 0.05 && q.abs() > 0.05);
+            let e = ellipse(1.0, b);
+            let x = at(&e, p, q, height);
+            let found = e.nearest(&x);
+            for k in 0..3 {
+                let mut d = [0.0; 3];
+                d[k] = 1e-6;
+                let slope = (e.nearest(&add_scaled(&x, 1.0, &d)).psi - e.nearest(&add_scaled(&x, -1.0, &d)).psi) / 2e-6;
+                prop_assert!((slope - found.ahead[k]).abs() < 1e-7, "{slope} {}", found.ahead[k]);
+            }
+            let [ahead, n, tangent] = e.front_frame(&found);
+            prop_assert!(dot(&ahead, &n).abs() < 1e-14 && (norm(&tangent) - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn degenerate_points_have_finite_and_exact_answers() {
+        let e = ellipse(1.0, 0.5);
+        // (point, ψ): centre, foot of the evolute's cusp, vertices, on both axes.
+        for (p, q, psi) in [
+            (0.0, 0.0, -0.5),
+            (0.75, 0.0, -0.25),
+            (-0.9, 0.0, -0.1),
+            (1.0, 0.0, 0.0),
+            (0.0, 0.5, 0.0),
+            (0.0, -0.2, -0.3),
+            (0.0, 4.0, 3.5),
+            (5.0, 0.0, 4.0),
+            (0.75, 1e-14, -0.25),
+            (1e-300, 1e-300, -0.5),
+        ] {
+            let found = e.nearest(&at(&e, p, q, 0.0));
+            assert!(
+                (found.psi - psi).abs() < 1e-14,
+                "({p}, {q}): {} {psi}",
+                found.psi
+            );
+            assert!((norm(&found.ahead) - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_line_in_the_plane_meets_the_front_at_the_nearer_point() {
+        let e = ellipse(1.0, 0.5);
+        let x = at(&e, 0.9, 0.1, 0.0);
+        let found = e.meet(&x, &cross(&e.normal, &e.axis)).unwrap();
+        let expected = at(&e, 0.9, 0.5 * (1.0f64 - 0.81).sqrt(), 0.0);
+        assert!(norm(&sub(&found, &expected)) < 1e-15);
+        assert!(
+            e.meet(&at(&e, 2.0, 0.0, 0.0), &cross(&e.normal, &e.axis))
+                .is_none()
+        );
+    }
+}

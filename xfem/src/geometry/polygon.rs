@@ -1,0 +1,219 @@
+//! Simple polygons in the plane: cut along chains, filled with triangles.
+
+use super::{Point, add_scaled, cross, dot, norm, sub};
+
+/// Corners in counter-clockwise order.
+pub type Polygon = Vec<Point>;
+
+/// Twice the signed area of a triangle.
+fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
+    cross(&sub(b, a), &sub(c, a))[2]
+}
+
+/// Area [m²].
+pub fn area(polygon: &[Point]) -> f64 {
+    (2..polygon.len())
+        .map(|i| 0.5 * doubled_area(&polygon[0], &polygon[i - 1], &polygon[i]))
+        .sum()
+}
+
+/// Distance of a point from the segment p q [m].
+pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
+    let d = sub(q, p);
+    let squared = dot(&d, &d);
+    let t = if squared > 0.0 {
+        (dot(&sub(x, p), &d) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    norm(&sub(x, &add_scaled(p, t, &d)))
+}
+
+/// Distance of a point from the outline [m].
+pub fn border_distance(polygon: &[Point], x: &Point) -> f64 {
+    edges(polygon)
+        .map(|(p, q)| segment_distance(x, &p, &q))
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    let count = polygon.len();
+    (0..count).map(move |i| (polygon[i], polygon[(i + 1) % count]))
+}
+
+/// True inside (crossing number); on the outline either.
+pub fn contains(polygon: &[Point], x: &Point) -> bool {
+    let mut inside = false;
+    for (p, q) in edges(polygon) {
+        if (p[1] > x[1]) != (q[1] > x[1])
+            && x[0] < p[0] + (x[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
+        {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+/// Cuts a polygon along a chain whose ends lie on its outline: the parts to the left and to the right of the chain.
+///
+/// An end that coincides with a corner is that corner, otherwise it becomes one on the nearest edge. `None` if a part
+/// would have fewer than three corners.
+pub fn split(polygon: &[Point], chain: &[Point]) -> Option<[Polygon; 2]> {
+    let mut outline = polygon.to_vec();
+    let (first, last) = (chain.first()?, chain.last()?);
+    place(&mut outline, first);
+    place(&mut outline, last);
+    let position = |x: &Point| outline.iter().position(|c| c == x);
+    let (from, to) = (position(first)?, position(last)?);
+    if from == to {
+        return None;
+    }
+    let walk = |start: usize, end: usize| {
+        let count = outline.len();
+        let steps = (end + count - start) % count;
+        (1..steps)
+            .map(move |k| (start + k) % count)
+            .map(|i| outline[i])
+            .collect::<Vec<_>>()
+    };
+    // Corners off the chain first: collapsed rules crowd at the first corner, where nothing should be singular.
+    let mut left = walk(to, from);
+    left.extend(chain);
+    let mut right = walk(from, to);
+    right.extend(chain.iter().rev());
+    (left.len() > 2 && right.len() > 2).then_some([left, right])
+}
+
+/// Makes a point of the outline a corner.
+fn place(outline: &mut Polygon, x: &Point) {
+    if outline.contains(x) {
+        return;
+    }
+    let nearest = (0..outline.len()).min_by(|&i, &j| {
+        let distance =
+            |k: usize| segment_distance(x, &outline[k], &outline[(k + 1) % outline.len()]);
+        distance(i).total_cmp(&distance(j))
+    });
+    if let Some(i) = nearest {
+        outline.insert(i + 1, *x);
+    }
+}
+
+/// True if no corner turns right.
+pub fn is_convex(polygon: &[Point]) -> bool {
+    let count = polygon.len();
+    let size = polygon
+        .iter()
+        .map(|x| norm(&sub(x, &polygon[0])))
+        .fold(0.0, f64::max);
+    (0..count).all(|i| {
+        let (a, b) = (&polygon[(i + count - 1) % count], &polygon[(i + 1) % count]);
+        // Corners in line turn by rounding only.
+        doubled_area(a, &polygon[i], b) >= -1e-14 * size * norm(&sub(b, a))
+    })
+}
+
+/// Triangles that fill a polygon: a fan of a convex one, ears of another.
+pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
+    let count = polygon.len();
+    if is_convex(polygon) {
+        return (2..count)
+            .map(|i| [polygon[0], polygon[i - 1], polygon[i]])
+            .collect();
+    }
+    let mut rest = polygon.to_vec();
+    let mut found = Vec::with_capacity(count.saturating_sub(2));
+    while rest.len() > 3 {
+        let n = rest.len();
+        let ear = |i: usize| {
+            let (a, b, c) = (rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]);
+            let size = doubled_area(&a, &b, &c);
+            let free = (0..n)
+                .filter(|&k| rest[k] != a && rest[k] != b && rest[k] != c)
+                .all(|k| {
+                    let x = &rest[k];
+                    doubled_area(&a, &b, x) < 0.0
+                        || doubled_area(&b, &c, x) < 0.0
+                        || doubled_area(&c, &a, x) < 0.0
+                });
+            (size > 0.0 && free).then(|| {
+                // The ear with the best shape: area over squared perimeter.
+                let perimeter = norm(&sub(&b, &a)) + norm(&sub(&c, &b)) + norm(&sub(&a, &c));
+                size / (perimeter * perimeter)
+            })
+        };
+        let best = (0..n)
+            .filter_map(|i| Some((i, ear(i)?)))
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let i = match best {
+            Some((i, _)) => i,
+            // Only corners in line are left: they enclose nothing.
+            None => break,
+        };
+        found.push([rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]]);
+        rest.remove(i);
+    }
+    if let &[a, b, c] = rest.as_slice() {
+        found.push([a, b, c]);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Polygon {
+        vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+        ]
+    }
+
+    fn filled(polygon: &[Point]) -> f64 {
+        triangles(polygon)
+            .iter()
+            .map(|t| 0.5 * doubled_area(&t[0], &t[1], &t[2]))
+            .sum()
+    }
+
+    #[test]
+    fn a_kinked_chain_leaves_two_parts_that_triangles_fill() {
+        let chain = [
+            [0.3, 0.0, 0.0],
+            [0.8, 0.5, 0.0],
+            [0.2, 0.6, 0.0],
+            [0.3, 1.0, 0.0],
+        ];
+        let [left, right] = split(&square(), &chain).unwrap();
+        assert!((area(&left) + area(&right) - 1.0).abs() < 1e-15);
+        assert!(contains(&left, &[0.1, 0.5, 0.0]) && contains(&right, &[0.9, 0.5, 0.0]));
+        for part in [left, right] {
+            assert!((filled(&part) - area(&part)).abs() < 1e-15);
+            assert!(
+                triangles(&part)
+                    .iter()
+                    .all(|t| doubled_area(&t[0], &t[1], &t[2]) > 0.0)
+            );
+        }
+    }
+
+    #[test]
+    fn chains_from_corner_to_corner_and_slivers_keep_their_area() {
+        let [upper, lower] = split(&square(), &[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]).unwrap();
+        assert_eq!((upper.len(), lower.len()), (3, 3));
+        let eps = 1e-12;
+        let [left, right] = split(&square(), &[[eps, 0.0, 0.0], [0.0, eps, 0.0]]).unwrap();
+        let sliver = left.len().min(right.len());
+        assert_eq!(sliver, 3);
+        let small = if left.len() == 3 { left } else { right };
+        assert!((area(&small) / (0.5 * eps * eps) - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_chain_that_touches_nothing_new_is_refused() {
+        assert!(split(&square(), &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]).is_none());
+    }
+}

@@ -1,0 +1,196 @@
+//! Stress intensity factors by the domain interaction integral, 2D.
+//!
+//! With q = 1 around the tip and 0 outside, u^aux the [unit fields](super::williams) and x₁ ahead:
+//!
+//! ```text
+//!   I = ∫_A (σ_ij u^aux_i,1 + σ^aux_ij u_i,1 − σ_ik ε^aux_ik δ_1j) q_,j dA       domain, both sides of the crack
+//!     − ∫_A f_i u^aux_i,1 q dA                                                  body force f
+//!     − ∫_Γ λ_i [[u^aux_i,1]] q dΓ                                              contact traction λ on side 1, −λ on side 2
+//!
+//!   K = ½ E' I        for the mode of the auxiliary field
+//! ```
+//!
+//! Yau, Wang & Corten, J. Appl. Mech. 47 (1980) 335; as a domain integral of an extended finite element solution: Moës,
+//! Dolbow & Belytschko, Int. J. Numer. Meth. Engng 46 (1999) 131; contact tractions: Dolbow, Moës & Belytschko, Comput. Meth.
+//! Appl. Mech. Engng 190 (2001) 6825. The auxiliary faces are free, so λ enters through σ_ij n_j u^aux_i,1 only. One
+//! homogeneous material without initial stress; the crack is straight within the domain. On a curved crack the terms of the
+//! curvature are left out: an error of the order of the domain's radius over that of the crack.
+
+use rayon::prelude::*;
+
+use crate::contact::surface_point::SurfacePoint;
+use crate::cut::placement::{cells_at, reference_position};
+use crate::fields::sampling::{ComparisonPoint, comparison_points};
+use crate::geometry::clip::Side;
+use crate::geometry::tip_frame::TipFrame;
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::material::{double_dot, stress};
+use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
+
+use super::williams::{Mode, Williams, plane_modulus};
+
+/// Displacement gradients ∂u_a/∂x_b at points of a cell.
+pub type Gradients<'a> = dyn Fn(usize, &[ComparisonPoint]) -> Vec<[Point; 3]> + Sync + 'a;
+
+/// What the integral is taken of.
+pub struct Fields<'a> {
+    /// The displacement, through its gradients.
+    pub gradients: &'a Gradients<'a>,
+    /// Points of the crack surface with the contact traction on side 1, in space [Pa].
+    pub faces: &'a [(&'a SurfacePoint, Point)],
+    /// Force per volume at a point and side [N/m³].
+    pub body_force: &'a (dyn Fn(&Point, Option<Side>) -> Point + Sync),
+}
+
+/// The domain: all cells with a node within a radius of the tip; q is 1 at those nodes and bilinear in the cells.
+#[derive(Debug, Clone, Copy)]
+pub struct Domain<'a> {
+    /// Radius [m]; 3 cells, or fixed: the smaller, the more the error of the cells at the tip enters.
+    pub radius: f64,
+    /// Tips of all cracks, this one among them.
+    pub fronts: &'a [TipFrame],
+    /// Points per direction of the rule, see [`comparison_points`].
+    pub rule: usize,
+}
+
+/// K_I and K_II [Pa √m] at a tip in its frame.
+///
+/// `None` if the domain does not stand alone around the tip: it is too small to hold the cells at the tip, or it reaches the
+/// outline, another tip or another crack.
+pub fn interaction(
+    integrator: &CellIntegrator<'_>,
+    tip: &TipFrame,
+    domain: Domain<'_>,
+    fields: &Fields<'_>,
+) -> Result<Option<[f64; 2]>, CellError> {
+    let CellIntegrator { mesh, lame, .. } = *integrator;
+    let inside: Vec<bool> = mesh
+        .nodes
+        .iter()
+        .map(|x| norm(&sub(x, &tip.position)) <= domain.radius)
+        .collect();
+    let count = |cell: usize| {
+        let nodes = mesh.cell(cell).iter();
+        nodes.filter(|&&node| inside[node as usize]).count()
+    };
+    let cells: Vec<usize> = (0..mesh.cell_count()).filter(|&c| count(c) > 0).collect();
+    if !stands_alone(integrator, tip, domain.fronts, &inside, &cells)
+        || cells_at(mesh, &tip.position)
+            .iter()
+            .any(|&cell| count(cell) < mesh.kind.nodes())
+    {
+        return Ok(None);
+    }
+    let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
+    let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
+        let corners = mesh.corners(cell);
+        let corners = &corners[..mesh.kind.nodes()];
+        let ring = count(cell) < mesh.kind.nodes();
+        let points = comparison_points(integrator, cell, domain.fronts, domain.rule)?;
+        let gradients = if ring {
+            (fields.gradients)(cell, &points)
+        } else {
+            vec![[[0.0; 3]; 3]; points.len()] // ∇q = 0
+        };
+        let mut sums = [0.0; 2];
+        for (at, h) in points.iter().zip(&gradients) {
+            let p = &at.point;
+            let (q, dq) = weight(integrator, cell, &inside, corners, &p.xi);
+            let force = (fields.body_force)(&p.x, at.side);
+            if !ring && force == [0.0; 3] {
+                continue;
+            }
+            let sigma = stress(lame, 2, h);
+            let slope = ahead(h, tip);
+            for (sum, mode) in sums.iter_mut().zip(&modes) {
+                let h_aux = mode.at(&p.x, None).1;
+                let sigma_aux = stress(lame, 2, &h_aux);
+                let slope_aux = ahead(&h_aux, tip);
+                // σ : ε^aux, σ being symmetric.
+                let energy = double_dot(&sigma, &h_aux);
+                let flux = bilinear(&slope_aux, &sigma, &dq) + bilinear(&slope, &sigma_aux, &dq)
+                    - energy * dot(&tip.ahead, &dq);
+                *sum += p.weight * (flux - q * dot(&force, &slope_aux));
+            }
+        }
+        Ok(sums)
+    };
+    // In the order of the cells, whatever thread a part comes from.
+    let parts: Vec<[f64; 2]> = cells.par_iter().map(of_cell).collect::<Result<_, _>>()?;
+    let mut total = [0.0; 2];
+    for part in parts {
+        total = [0, 1].map(|k| total[k] + part[k]);
+    }
+    for (point, traction) in fields.faces {
+        if count(point.cell) == 0 {
+            continue;
+        }
+        let corners = mesh.corners(point.cell);
+        let corners = &corners[..mesh.kind.nodes()];
+        let (q, _) = weight(integrator, point.cell, &inside, corners, &point.xi);
+        for (sum, mode) in total.iter_mut().zip(&modes) {
+            let [one, two] = [1.0, -1.0].map(|side| ahead(&mode.at(&point.x, Some(side)).1, tip));
+            *sum -= point.weight * q * dot(traction, &sub(&one, &two));
+        }
+    }
+    Ok(Some(total.map(|i| 0.5 * plane_modulus(lame) * i)))
+}
+
+/// Whether nothing but the crack of the tip disturbs the domain.
+fn stands_alone(
+    integrator: &CellIntegrator<'_>,
+    tip: &TipFrame,
+    fronts: &[TipFrame],
+    inside: &[bool],
+    cells: &[usize],
+) -> bool {
+    let mesh = integrator.mesh;
+    let outline = mesh.sides.keys().flat_map(|side| mesh.side_nodes(side));
+    if outline.into_iter().any(|node| inside[node]) {
+        return false;
+    }
+    cells.iter().all(|&cell| {
+        let corners = mesh.corners(cell);
+        let size = norm(&sub(&corners[0], &corners[2]));
+        let other_crack = integrator.enrichment.partition(cell).is_some_and(|p| {
+            let sides = p.parts.iter().flat_map(|part| &part.sides);
+            sides.into_iter().any(|s| s.0 != tip.crack)
+        });
+        let other_tip = fronts.iter().any(|front| {
+            norm(&sub(&front.position, &tip.position)) > 1e-9 * size
+                && reference_position(mesh, cell, &front.position, 1e-9).is_some()
+        });
+        !other_crack && !other_tip
+    })
+}
+
+/// q and ∇q [1/m].
+fn weight(
+    integrator: &CellIntegrator<'_>,
+    cell: usize,
+    inside: &[bool],
+    corners: &[Point],
+    xi: &Point,
+) -> (f64, Point) {
+    let kind = integrator.mesh.kind;
+    let n = kind.shape(xi);
+    let (dn, _) = kind.gradients(corners, xi);
+    let (mut q, mut dq) = (0.0, [0.0; 3]);
+    for (i, &node) in integrator.mesh.cell(cell).iter().enumerate() {
+        if inside[node as usize] {
+            q += n[i];
+            dq = add_scaled(&dq, 1.0, &dn[i]);
+        }
+    }
+    (q, dq)
+}
+
+/// ∂u/∂x₁.
+fn ahead(h: &[Point; 3], tip: &TipFrame) -> Point {
+    [0, 1, 2].map(|a| dot(&h[a], &tip.ahead))
+}
+
+/// v · σ w
+fn bilinear(v: &Point, sigma: &[Point; 3], w: &Point) -> f64 {
+    (0..3).map(|a| v[a] * dot(&sigma[a], w)).sum()
+}

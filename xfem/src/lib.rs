@@ -1,0 +1,30 @@
+//! Extended finite elements for bodies with cracks in contact: two- and three-dimensional linear elasticity, enrichment
+//! around cracks, contact spaces on their faces, stress intensity, closed forms.
+//!
+//! The modules stand in this order; none uses one that comes later.
+//!
+//! ```text
+//!   geometry    points, curves, convex parts, crack shapes, coordinates of crack tips
+//!   material    Young's modulus and Poisson's ratio, plane strain, plane stress or solid
+//!   mesh        cells, meshes of boxes, elimination order
+//!   quadrature  Gauss rules, rules for parts of cells, rules around tips and fronts
+//!   cut         cracks in a mesh: level sets, parts of cut cells, where cracks end
+//!   enrichment  functions of nodes and cells, pieces of the body, facets of cracks
+//!   stiffness   elasticity of enriched cells, block matrices, assembly
+//!   fields      displacement, stress and strain of a solution, mass
+//!   contact     contact spaces and points, traction, samples of the faces
+//!   intensity   stress intensity factors: Williams' fields, fit of the jump, interaction integral
+//!   exact       closed forms
+//! ```
+
+pub mod contact;
+pub mod cut;
+pub mod enrichment;
+pub mod exact;
+pub mod fields;
+pub mod geometry;
+pub mod intensity;
+pub mod material;
+pub mod mesh;
+pub mod quadrature;
+pub mod stiffness;

@@ -1,0 +1,169 @@
+//! Meshes: nodes, cells, boundary facets with the names of their sides.
+
+pub mod box_mesh;
+pub mod cell;
+pub mod grid_motion;
+pub mod ordering;
+pub mod stream;
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{Point, norm, sub};
+use crate::mesh::cell::CellKind;
+
+/// A facet (edge in 2D, face in 3D) of one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Facet {
+    /// Cell number.
+    pub cell: usize,
+    /// Position in [`CellKind::facets`].
+    pub local: usize,
+}
+
+/// A mesh of one kind of cell.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Kind of every cell.
+    pub kind: CellKind,
+    /// Node positions [m].
+    pub nodes: Vec<Point>,
+    /// Grid position of every node: equal for the two nodes of a pair on a crack. Orders the elimination.
+    pub grid: Vec<[u32; 3]>,
+    /// Cells, `kind.nodes()` node numbers each.
+    cells: Vec<u32>,
+    /// Boundary facets by the name of their side.
+    pub sides: BTreeMap<String, Vec<Facet>>,
+}
+
+impl Mesh {
+    /// A mesh from its parts; `cells` is flat, `kind.nodes()` entries per cell.
+    pub fn new(
+        kind: CellKind,
+        nodes: Vec<Point>,
+        grid: Vec<[u32; 3]>,
+        cells: Vec<u32>,
+        sides: BTreeMap<String, Vec<Facet>>,
+    ) -> Self {
+        Mesh {
+            kind,
+            nodes,
+            grid,
+            cells,
+            sides,
+        }
+    }
+
+    /// Space dimension.
+    pub fn dim(&self) -> usize {
+        self.kind.dim()
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.cells.len() / self.kind.nodes()
+    }
+
+    /// Node numbers of a cell.
+    pub fn cell(&self, cell: usize) -> &[u32] {
+        let n = self.kind.nodes();
+        &self.cells[n * cell..n * (cell + 1)]
+    }
+
+    /// Node numbers of a cell, to be renumbered when a crack doubles nodes.
+    pub fn cell_mut(&mut self, cell: usize) -> &mut [u32] {
+        let n = self.kind.nodes();
+        &mut self.cells[n * cell..n * (cell + 1)]
+    }
+
+    /// Node positions of a cell; quad4 uses the first four entries.
+    pub fn corners(&self, cell: usize) -> [Point; 8] {
+        let mut x = [[0.0; 3]; 8];
+        for (corner, &node) in x.iter_mut().zip(self.cell(cell)) {
+            *corner = self.nodes[node as usize];
+        }
+        x
+    }
+
+    /// Mean of the node positions of a cell.
+    pub fn centre(&self, cell: usize) -> Point {
+        let n = self.kind.nodes();
+        let mut c = [0.0; 3];
+        for x in &self.corners(cell)[..n] {
+            for a in 0..3 {
+                c[a] += x[a] / n as f64;
+            }
+        }
+        c
+    }
+
+    /// Node numbers of a facet.
+    pub fn facet_nodes(&self, facet: Facet) -> impl Iterator<Item = usize> + '_ {
+        let cell = self.cell(facet.cell);
+        self.kind.facets()[facet.local]
+            .iter()
+            .map(move |&i| cell[i] as usize)
+    }
+
+    /// Sorted numbers of the nodes on a side; includes both nodes of a pair where a crack leaves through the side.
+    pub fn side_nodes(&self, side: &str) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self
+            .sides
+            .get(side)
+            .into_iter()
+            .flatten()
+            .flat_map(|&facet| self.facet_nodes(facet))
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Sorted nodes common to several sides (an edge or corner of the box).
+    pub fn meeting_nodes(&self, sides: &[String]) -> Vec<usize> {
+        let mut lists = sides.iter().map(|side| self.side_nodes(side));
+        let Some(mut common) = lists.next() else {
+            return Vec::new();
+        };
+        for list in lists {
+            common.retain(|node| list.binary_search(node).is_ok());
+        }
+        common
+    }
+
+    /// The node at a point, within 1e-9 of the body's size; of a pair on a crack the one on side 2.
+    pub fn node_at(&self, x: &Point) -> Option<usize> {
+        let (size, _) = self.extent();
+        self.nodes
+            .iter()
+            .position(|node| (0..3).all(|a| (node[a] - x[a]).abs() <= 1e-9 * size))
+    }
+
+    /// Shortest cell edge at every node [m]: the local length to which distances are compared.
+    pub fn node_sizes(&self) -> Vec<f64> {
+        let mut size = vec![f64::INFINITY; self.nodes.len()];
+        for cell in 0..self.cell_count() {
+            let nodes = self.cell(cell);
+            for &[i, j] in self.kind.edges() {
+                let (a, b) = (nodes[i] as usize, nodes[j] as usize);
+                let length = norm(&sub(&self.nodes[a], &self.nodes[b]));
+                size[a] = size[a].min(length);
+                size[b] = size[b].min(length);
+            }
+        }
+        size
+    }
+
+    /// Half the diagonal of the bounding box [m], and its centre.
+    pub fn extent(&self) -> (f64, Point) {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for x in &self.nodes {
+            for a in 0..3 {
+                low[a] = low[a].min(x[a]);
+                high[a] = high[a].max(x[a]);
+            }
+        }
+        let half = [0, 1, 2].map(|a| 0.5 * (high[a] - low[a]));
+        (norm(&half), [0, 1, 2].map(|a| 0.5 * (high[a] + low[a])))
+    }
+}

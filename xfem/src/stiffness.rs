@@ -1,0 +1,7 @@
+//! Stiffness of enriched cells and of the body: integration, matrices, assembly.
+
+pub mod assembly;
+pub mod block_matrix;
+pub mod cell_matrix;
+pub mod elasticity;
+pub mod near_front;

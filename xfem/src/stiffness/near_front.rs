@@ -1,0 +1,164 @@
+//! Quadrature of 3D cells near a crack front: which rule where.
+//!
+//! ```text
+//!   the front in the cell, or nearer than REACH cells      slices perpendicular to the front      [`super::front`]
+//!   farther away, not cut                                  boxes halved towards the front         [`super::graded`]
+//!   farther away, or cut by several cracks                 tetrahedra halved towards the front    [`super::graded`]
+//! ```
+//!
+//! Halving resolves a front at a distance d of the cell with about 1/d parts, slices with as many at any distance.
+
+use crate::cut::partition::Part;
+use crate::enrichment::basis::Region;
+use crate::geometry::tip_frame::{FrontShape, TipFrame};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
+use crate::mesh::cell::CellKind;
+use crate::quadrature::front::{FrontPiece, FrontRule, front_cell_points};
+use crate::quadrature::graded::{graded_cell, graded_tetrahedra, nearest_in_box};
+use crate::quadrature::{FanRule, WeightedPoint};
+
+/// Distances in edges of the cell within which a front is resolved by slices: in whole cells, in cut ones.
+const REACH: [f64; 2] = [0.15, 1.0];
+
+/// Halvings of what is not sliced: only cells cut by several cracks come nearer to a front than [`REACH`].
+const DEPTH: usize = 6;
+
+/// How finely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// In slices.
+    pub slices: FrontRule,
+    /// What distances are taken to be, in units of their own, where boxes and tetrahedra are halved: at most 1.
+    pub nearer: f64,
+}
+
+impl Effort {
+    /// Entries of a stiffness to 5e-4 of their diagonals at worst: far below the error of any mesh. The worst are those of
+    /// branch functions with little energy of their own, where the front cuts off a corner.
+    pub const WORKING: Effort = Effort {
+        slices: FrontRule {
+            along: 6,
+            fan: FanRule {
+                radial: 6,
+                angular: [10, 14, 20, 36],
+            },
+        },
+        nearer: 0.7,
+    };
+
+    /// To measure the former.
+    pub const REFERENCE: Effort = Effort {
+        slices: FrontRule {
+            along: 10,
+            fan: FanRule::fine(false),
+        },
+        nearer: 0.3,
+    };
+}
+
+/// A cell near fronts.
+pub struct NearFront<'a> {
+    /// Corners [m].
+    pub corners: &'a [Point],
+    /// Parts into which cracks divide it.
+    pub parts: &'a [Part],
+    /// Fronts.
+    pub fronts: &'a [TipFrame],
+    /// Where a front enters the cell and where it leaves it, if it crosses the border of the crack's face in it [m].
+    pub chord: Option<[Point; 2]>,
+}
+
+impl NearFront<'_> {
+    /// Points with the part they lie in; `phi`: signed distances of the corners to a crack [m].
+    pub fn points(
+        &self,
+        phi: impl Fn(usize) -> [f64; 8],
+        effort: Effort,
+    ) -> Vec<(WeightedPoint, Region)> {
+        let distance = |x: &Point| {
+            let own = self.fronts.iter().map(|f| f.distance(x));
+            own.fold(f64::INFINITY, f64::min)
+        };
+        let nearer = |x: &Point| effort.nearer * distance(x);
+        if let Some((front, nearest)) = self.sliced(&distance) {
+            let phi = phi(front.crack);
+            return self.slices(front, &nearest, &phi, effort.slices);
+        }
+        match self.parts {
+            [part] if part.sides.is_empty() => graded_cell(self.corners, nearer, DEPTH)
+                .into_iter()
+                .map(|p| (p, 0))
+                .collect(),
+            parts => parts
+                .iter()
+                .enumerate()
+                .flat_map(|(region, part)| {
+                    let points = graded_tetrahedra(&part.tetrahedra, nearer, DEPTH);
+                    points.into_iter().map(move |p| (p, region))
+                })
+                .collect(),
+        }
+    }
+
+    /// The front to slice around, and a place of the cell next to it.
+    fn sliced(&self, distance: &impl Fn(&Point) -> f64) -> Option<(&TipFrame, Point)> {
+        let edges = CellKind::Hex8.edges().iter();
+        let longest = edges
+            .map(|&[i, j]| norm(&sub(&self.corners[i], &self.corners[j])))
+            .fold(0.0, f64::max);
+        let cut = self.parts.len() > 1;
+        let reach = REACH[usize::from(cut)] * longest;
+        let nearest = nearest_in_box(self.corners, &[0.0; 3], 1.0, distance);
+        if nearest.1 > reach && self.chord.is_none() {
+            return None;
+        }
+        let place = nearest.0;
+        let front = self
+            .fronts
+            .iter()
+            .min_by(|f, g| f.distance(&place).total_cmp(&g.distance(&place)))?;
+        let own = |part: &Part| part.sides.iter().all(|s| s.0 == front.crack);
+        self.parts.iter().all(own).then_some((front, place))
+    }
+
+    /// Slices perpendicular to the chord of the front, or to its tangent next to the cell.
+    fn slices(
+        &self,
+        front: &TipFrame,
+        place: &Point,
+        phi: &[f64; 8],
+        rule: FrontRule,
+    ) -> Vec<(WeightedPoint, Region)> {
+        let chord = self.chord.unwrap_or_else(|| {
+            let [ahead, normal, tangent] = front.frame(place);
+            let at = front.coordinates(place);
+            let foot = add_scaled(place, -at.psi, &ahead);
+            let foot = add_scaled(&foot, -at.phi, &normal);
+            // Ends far outside of the cell.
+            let far = 10.0 * norm(&sub(&self.corners[6], &self.corners[0]));
+            [-far, far].map(|s| add_scaled(&foot, s, &tangent))
+        });
+        let along = sub(&chord[1], &chord[0]);
+        let across = cross(&front.normal, &along);
+        let across = across.map(|v| v / dot(&across, &across).sqrt());
+        let piece = FrontPiece {
+            chord,
+            normal: front.normal,
+            at: |x: &Point| match &front.shape {
+                FrontShape::Ellipse(ellipse) => ellipse.meet(x, &across),
+                _ => Some(*x),
+            },
+        };
+        let mut points = Vec::new();
+        for (region, part) in self.parts.iter().enumerate() {
+            let own = part.side(front.crack);
+            for side in [1.0, -1.0] {
+                if own.is_none_or(|s| s == side) {
+                    let half = front_cell_points(self.corners, phi, side, &piece, rule);
+                    points.extend(half.into_iter().map(|p| (p, region)));
+                }
+            }
+        }
+        points
+    }
+}
