@@ -9,9 +9,9 @@ use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_meth
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
 use stickslip::run::record::Results;
+use stickslip::run::registry::method;
 use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip::studies::paper::as_expected;
-use stickslip_methods::method;
 
 const SETTINGS: Settings = Settings {
     tier: None,

@@ -13,8 +13,9 @@ mod study;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use crate::run::registry::methods;
 use clap::{Parser, Subcommand};
-use stickslip_methods::{METHODS, Tier};
+use stickslip_methods::Tier;
 
 use self::output::say;
 pub use self::output::warn;
@@ -427,7 +428,7 @@ fn find_case(name: &str) -> Result<Case, CliError> {
 /// The methods named, or all of them with their defaults.
 fn methods_or_all(named: &[String]) -> Result<Vec<Choice>, CliError> {
     if named.is_empty() {
-        let all = METHODS.iter().map(|method| Choice::parse(method.name));
+        let all = methods().iter().map(|method| Choice::parse(method.name));
         return Ok(all.collect::<Result<_, _>>()?);
     }
     let chosen = named.iter().map(|argument| Choice::parse(argument));
@@ -438,7 +439,7 @@ fn methods_or_all(named: &[String]) -> Result<Vec<Choice>, CliError> {
 
 fn list_text() -> String {
     let mut text = String::from("Methods\n");
-    for method in METHODS {
+    for method in methods() {
         text += &format!("  {:<22} {}\n", method.name, method.summary);
     }
     text += "\nCases\n";
@@ -475,10 +476,10 @@ fn show_text(name: &str) -> Result<String, CliError> {
     if Path::new(name).exists() {
         return Ok(case::read(name)?.source);
     }
-    let method = stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
+    let method = crate::run::registry::method(name).ok_or_else(|| CliError::Unknown {
         what: "method or case",
         name: name.into(),
-        known: METHODS
+        known: methods()
             .iter()
             .map(|m| m.name)
             .chain(shipped::CASES.iter().map(|c| c.0))

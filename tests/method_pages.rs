@@ -1,11 +1,11 @@
 //! Every method has a complete page, and `docs/methods.md` is what the code says.
 
 use stickslip::cli::method_manual;
-use stickslip_methods::METHODS;
+use stickslip::run::registry::methods;
 
 #[test]
 fn every_page_says_what_a_user_has_to_know() {
-    for method in METHODS {
+    for method in methods() {
         let page = method_manual::page(method);
         for section in [
             "### Options",
@@ -17,12 +17,12 @@ fn every_page_says_what_a_user_has_to_know() {
         }
         assert!(page.contains("```text"), "{}: no equations", method.name);
         for option in method.options {
-            let mentions = page.matches(&format!("`{}`", option.name)).count();
+            let mentions = page.matches(&format!("`{}`", option.name())).count();
             assert!(
                 mentions >= 2,
                 "{}: {} is not explained",
                 method.name,
-                option.name
+                option.name()
             );
         }
     }

@@ -8,7 +8,7 @@ mod variants;
 
 use std::path::Path;
 
-use stickslip_methods::METHODS;
+use crate::run::registry::methods;
 
 use crate::case::shipped;
 use crate::case::{Case, CaseError};
@@ -216,7 +216,7 @@ fn case(name: &str) -> Result<Case, PaperError> {
 
 fn choice(name: &str, options: &[(String, f64)]) -> Result<Choice, PaperError> {
     let missing = || PaperError::Missing(format!("method {name}"));
-    let method = stickslip_methods::method(name).ok_or_else(missing)?;
+    let method = crate::run::registry::method(name).ok_or_else(missing)?;
     Choice::new(method, options).map_err(|e| PaperError::Missing(format!("{name}: {e}")))
 }
 
@@ -303,7 +303,7 @@ fn probe_row(results: &Results, key: impl Fn(&RunKey) -> bool, component: &str) 
 /// Largest difference between the two models of the beam over points, components, friction values and exact methods.
 fn beam_difference(results: &Results) -> f64 {
     let mut largest: f64 = 0.0;
-    for method in METHODS.iter().filter(|m| m.exact) {
+    for method in methods().iter().filter(|m| m.exact) {
         for (_, friction) in VARIANTS {
             for component in ["x", "y", "z"] {
                 let of = |case: &str| {

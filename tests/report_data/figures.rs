@@ -6,7 +6,7 @@ use stickslip::report::plot::{
     self, Axis3, Curve, CurvePlot, ErrorCurve, ErrorFigure, ErrorPanel, Guide, Magnification, Tier,
 };
 use stickslip::run::record::{HistoryRow, PointRow};
-use stickslip_methods::METHODS;
+use stickslip::run::registry::methods;
 
 /// Every kind of figure, with the texts that it must show.
 pub fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
@@ -52,7 +52,7 @@ pub fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
         (
             "residual of all methods",
             plot::residual_history(&all.history, tier.as_ref()).expect("residual"),
-            METHODS.iter().map(|method| method.name).collect(),
+            methods().iter().map(|method| method.name).collect(),
         ),
         (
             "traction of all methods",

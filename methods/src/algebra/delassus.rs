@@ -254,7 +254,7 @@ impl<'a> Half<'a> {
         self.factor.scale.len() - self.factor.ordering.contact_begin
     }
 
-    /// |y_k|² by original column; `each` sees every solved panel with its first sorted column.
+    /// |y_k|² by original column, by the same product as W; `each` sees every solved panel with its first sorted column.
     fn squares(
         &self,
         mut each: impl FnMut(usize, faer::MatRef<'_, f64>),
@@ -270,8 +270,16 @@ impl<'a> Half<'a> {
                     .for_each(|&(row, value)| y[(row, k)] += value);
             }
             forward_solve(self.factor, y.as_mut(), &self.first[columns.clone()])?;
-            for (k, column) in columns.enumerate() {
-                squares[self.sorted[column]] = y.col_as_slice(k).iter().map(|y| y * y).sum();
+            for own in (0..columns.len()).step_by(PANEL) {
+                let width = PANEL.min(columns.len() - own);
+                let top = self.first[begin + own].min(y.nrows());
+                let y = y.as_ref().submatrix(top, own, y.nrows() - top, width);
+                let mut block = Mat::<f64>::zeros(width, width);
+                let product = block.as_mut();
+                matmul(product, Accum::Replace, y.transpose(), y, 1.0, Par::Seq);
+                for k in 0..width {
+                    squares[self.sorted[begin + own + k]] = block[(k, k)];
+                }
             }
             each(begin, y.as_ref());
         }

@@ -145,7 +145,12 @@ impl Registry {
         self.iter().position(|m| m.name == name)
     }
 
-    /// All methods.
+    /// All methods, in the order of the list.
+    pub fn methods(&self) -> &[&'static Method] {
+        &self.methods
+    }
+
+    /// The same one by one.
     pub fn iter(
         &self,
     ) -> impl DoubleEndedIterator<Item = &'static Method> + ExactSizeIterator + '_ {
