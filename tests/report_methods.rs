@@ -37,8 +37,9 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
             .for_each(|row| row.key.method = method.name.into());
         points.extend(own);
     }
+    let exact = methods().iter().filter(|method| method.exact).count();
     let together = plot::contact_traction(&points, &[], 1).expect("a figure");
-    assert!(together.contains("12 exact methods, apart by less than 1e-12"));
+    assert!(together.contains(&format!("{exact} exact methods, apart by less than 1e-12")));
     for method in methods() {
         assert!(together.contains(method.name), "{} is named", method.name);
         assert!(
@@ -55,7 +56,8 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
     }
     let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
     assert!(svg.contains(">latin<"), "one that differs stands alone");
-    assert!(svg.contains("11 exact methods, apart by at most 0.0004"));
+    let fewer = format!("{} exact methods, apart by at most 0.0004", exact - 1);
+    assert!(svg.contains(&fewer));
     // The same laws with another status at a point are another answer, whatever the forces.
     for row in points
         .iter_mut()
@@ -64,5 +66,6 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
         row.status = "stick".into();
     }
     let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
-    assert!(svg.contains("10 exact methods") && svg.contains(">tresca<"));
+    let fewer = format!("{} exact methods", exact - 2);
+    assert!(svg.contains(&fewer) && svg.contains(">tresca<"));
 }

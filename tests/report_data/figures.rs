@@ -58,14 +58,14 @@ pub fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {
             "traction of all methods",
             plot::contact_traction(&all.points, &[], 1).expect("traction"),
             vec![
-                "12 exact methods, apart by at most 0.002",
+                " exact methods, apart by at most 0.002",
                 "penalty, off by at most 0.002",
             ],
         ),
         (
             "slip of all methods",
             plot::contact_slip(&all.points, &[], 1).expect("slip"),
-            vec!["12 exact methods", "barrier, off by less than 1e-12"],
+            vec![" exact methods", "barrier, off by less than 1e-12"],
         ),
         (
             "cost",

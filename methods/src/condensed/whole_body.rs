@@ -24,6 +24,7 @@ use crate::condensed::forces::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::elastic::Elastic;
+use crate::contract::operator::DelassusForm;
 use crate::{ContactSystem, MethodError};
 
 /// Largest |A x − b|/|b| of a solve that counts: a singular matrix leaves more.
@@ -71,7 +72,7 @@ impl WholeBody {
     }
 
     fn new(system: &ContactSystem, explicit: bool) -> Result<Self, MethodError> {
-        let rho = system.scale()?.rho;
+        let rho = system.operator(DelassusForm::Products)?.rho;
         let (elastic, set) = (system.elastic(), system.row_set());
         let K = elastic.stiffness().ok_or(MethodError::NoStiffness)?;
         let (n, m) = (K.size(), set.len());

@@ -9,7 +9,7 @@ use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
-use crate::contract::operator::{ContactOperator, Scale};
+use crate::contract::operator::ContactOperator;
 use crate::contract::tractions::Tractions;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
 
@@ -336,9 +336,8 @@ impl Elastic {
     /// The operator on [`rows`](Self::rows) with W formed, shared by all systems that use them all.
     pub(crate) fn condensed(&self) -> Result<Arc<ContactOperator>, MethodError> {
         let build = || {
-            let w = self.formed()?;
-            let scale = Scale::new(self, &self.rows())?;
-            Ok(Arc::new(ContactOperator::new(w, &scale)))
+            let operator = ContactOperator::new(self, &self.rows(), self.formed()?)?;
+            Ok(Arc::new(operator))
         };
         self.condensed.get_or_init(build).clone()
     }

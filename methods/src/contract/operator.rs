@@ -34,21 +34,17 @@ pub struct ContactOperator {
     pub rho: f64,
 }
 
-/// Q and ρ of a set of rows. However W is held elsewhere, they come out the same to the bit: the diagonal and the product
-/// are those of [`Products`].
-#[derive(Debug, Clone)]
-pub(crate) struct Scale {
-    pub modes: ModeJumps,
-    pub rho: f64,
-}
-
-impl Scale {
-    pub fn new(elastic: &Elastic, rows: &RowSet) -> Result<Self, MethodError> {
+impl ContactOperator {
+    pub(crate) fn new(
+        elastic: &Elastic,
+        rows: &RowSet,
+        w: Arc<dyn Delassus>,
+    ) -> Result<Self, MethodError> {
         let modes = ModeJumps::new(elastic.jump(), &rows.source, elastic.floating());
-        let mut trace: f64 = elastic.diagonal(rows)?.iter().sum();
+        let mut trace = w.trace();
         for q in &modes.q {
             let mut wq = vec![0.0; q.len()];
-            elastic.product_add(rows, q, &mut wq);
+            w.apply_add(q, &mut wq);
             trace -= dot(q, &wq);
         }
         let local = elastic.local_compliance(&rows.source);
@@ -62,17 +58,7 @@ impl Scale {
             local
         };
         let rho = rows.len() as f64 / compliance;
-        Ok(Self { modes, rho })
-    }
-}
-
-impl ContactOperator {
-    pub(crate) fn new(w: Arc<impl Delassus + 'static>, scale: &Scale) -> Self {
-        Self {
-            w,
-            modes: scale.modes.clone(),
-            rho: scale.rho,
-        }
+        Ok(Self { w, modes, rho })
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::algebra::rows::RowSet;
 use crate::contract::judge::slip_from;
 use crate::contract::law::tangential_norm;
+use crate::contract::operator::DelassusForm;
 use crate::contract::state::ContactState;
 use crate::contract::system::Increment;
 use crate::error::MethodError;
@@ -46,7 +47,7 @@ pub fn point_status(i: &Increment<'_>, s: &ContactState) -> Result<Vec<PointStat
     if s.p.iter().all(|&p| p == 0.0) && jump.iter().step_by(dim).all(|&g| g >= 0.0) {
         return Ok(vec![PointStatus::Open; system.points()]);
     }
-    let rho = system.scale()?.rho;
+    let rho = system.operator(DelassusForm::Products)?.rho;
     let all = RowSet::all(dim, system.points());
     let d = slip_from(&all, dim, &jump, &i.start_jump());
     let largest = s.p.iter().fold(0.0f64, |m, p| m.max(p.abs()));

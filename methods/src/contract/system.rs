@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
-use crate::contract::operator::{ContactOperator, DelassusForm, Products, Scale};
+use crate::contract::operator::{ContactOperator, DelassusForm, Products};
 use crate::contract::state::ContactState;
 use crate::error::{MethodError, check_finite, check_len};
 
@@ -14,7 +14,6 @@ pub struct ContactSystem {
     elastic: Arc<Elastic>,
     friction: Vec<f64>,
     rows: RowSet,
-    scale: OnceLock<Result<Scale, MethodError>>,
     formed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
     products: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
 }
@@ -62,7 +61,6 @@ impl ContactSystem {
             elastic,
             friction,
             rows,
-            scale: OnceLock::new(),
             formed: OnceLock::new(),
             products: OnceLock::new(),
         })
@@ -121,12 +119,6 @@ impl ContactSystem {
         self.operator(DelassusForm::Formed).map(|_| ())
     }
 
-    /// Q and ρ on the rows in use; W is not formed for them.
-    pub(crate) fn scale(&self) -> Result<&Scale, MethodError> {
-        let build = || Scale::new(&self.elastic, &self.rows);
-        self.scale.get_or_init(build).as_ref().map_err(Clone::clone)
-    }
-
     /// W, Q and ρ on the rows in use. A formed W is shared with the body where those are all rows, a copy of the block
     /// elsewhere.
     ///
@@ -135,7 +127,7 @@ impl ContactSystem {
     pub fn operator(&self, form: DelassusForm) -> Result<Arc<ContactOperator>, MethodError> {
         let products = || {
             let w = Arc::new(Products::new(self.elastic.clone(), self.rows.clone())?);
-            Ok(Arc::new(ContactOperator::new(w, self.scale()?)))
+            ContactOperator::new(&self.elastic, &self.rows, w).map(Arc::new)
         };
         let formed = || {
             let (whole, from) = (self.elastic.formed()?, self.elastic.rows());
@@ -143,7 +135,7 @@ impl ContactSystem {
                 return self.elastic.condensed();
             }
             let w = Arc::new(whole.select(&self.rows.positions_in(&from)));
-            Ok(Arc::new(ContactOperator::new(w, self.scale()?)))
+            ContactOperator::new(&self.elastic, &self.rows, w).map(Arc::new)
         };
         match form {
             DelassusForm::Formed => self.formed.get_or_init(formed).clone(),
