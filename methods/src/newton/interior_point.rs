@@ -16,7 +16,7 @@
 //! x <- x + t δ                                   t = min(1, fraction · longest step)
 //! ```
 //! δv and δλ are eliminated, which leaves one dense LU of m + |β| rows for both directions (the equations stand in
-//! `problem/central_path.rs`). The directions are those of the Jordan product itself, without a scaling that would make
+//! `newton/central_path.rs`). The directions are those of the Jordan product itself, without a scaling that would make
 //! them symmetric: friction is not, and the matrix stays regular at the solution, so that the last digits are not lost.
 //!
 //! # Options
