@@ -197,8 +197,8 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     let results = run(&case, &[METHOD]);
     assert!(results.runs.iter().all(|r| r.verdict == "solved"));
     let rows = results.quantities.iter();
-    rows.filter(|q| q.quantity == "dissipation")
-        .map(|q| q.value)
+    rows.filter(|q| q.quantity.name == "dissipation")
+        .map(|q| q.quantity.value)
         .collect()
 }
 
@@ -286,11 +286,12 @@ fn a_circular_interface_has_its_pressures_and_orders() {
     case.sweep.refine = vec![4];
     let results = run(&case, &[METHOD]);
     let pressure = |angle: f64| {
-        let away =
-            |p: &&stickslip::run::record::PointRow| (p.y_m.atan2(p.x_m) - angle.to_radians()).abs();
+        let away = |p: &&stickslip::run::record::PointRow| {
+            (p.point.y_m.atan2(p.point.x_m) - angle.to_radians()).abs()
+        };
         let points = results.points.iter();
         let nearest = points.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap();
-        nearest.p_n / nearest.weight / 1e6
+        nearest.point.p_n / nearest.point.weight / 1e6
     };
     let (p0, p90) = (pressure(0.0), pressure(90.0));
     println!("{p0} {p90}");

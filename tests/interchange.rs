@@ -53,8 +53,12 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
     let own = (results.points.iter()).filter(|row| row.key.increment == increment);
     let dim = case.model.dim();
-    own.flat_map(|row| [row.p_n, row.p_a, row.p_b].into_iter().take(dim))
-        .collect()
+    own.flat_map(|row| {
+        [row.point.p_n, row.point.p_a, row.point.p_b]
+            .into_iter()
+            .take(dim)
+    })
+    .collect()
 }
 
 fn vector(path: &Path) -> Vec<f64> {

@@ -99,7 +99,7 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
                 .points
                 .iter()
                 .filter(|p| p.key.increment == increments);
-            let forces: Vec<f64> = last.flat_map(|p| [p.p_n, p.p_a]).collect();
+            let forces: Vec<f64> = last.flat_map(|p| [p.point.p_n, p.point.p_a]).collect();
             assert_eq!(forces, states[increments].p, "{name} {}", method.name);
         }
     }
@@ -165,12 +165,16 @@ fn a_cycle_of_the_sliding_block_dissipates_its_closed_form() {
 /// Per run: values of a quantity by increment.
 fn histories(results: &Results, quantity: &str) -> Vec<(String, Vec<f64>)> {
     let mut found: Vec<(String, Vec<f64>)> = Vec::new();
-    for q in results.quantities.iter().filter(|q| q.quantity == quantity) {
+    for q in results
+        .quantities
+        .iter()
+        .filter(|q| q.quantity.name == quantity)
+    {
         let k = &q.key;
         let run = format!("{} {} {} {}", k.case, k.mesh, k.method, k.friction);
         match found.last_mut() {
-            Some((name, values)) if *name == run => values.push(q.value),
-            _ => found.push((run, vec![q.value])),
+            Some((name, values)) if *name == run => values.push(q.quantity.value),
+            _ => found.push((run, vec![q.quantity.value])),
         }
     }
     found

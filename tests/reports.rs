@@ -199,17 +199,19 @@ fn points_read_back_to_ten_digits() {
     let header = reader.headers().expect("a header").clone();
     let column = |name: &str| header.iter().position(|h| h == name).expect("a column");
     let mut expected = results().points;
-    expected.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then(a.point.cmp(&b.point)));
+    expected.sort_by(|a, b| {
+        csv::compare_keys(&a.key, &b.key).then(a.point.number.cmp(&b.point.number))
+    });
     let rows: Vec<::csv::StringRecord> = reader.records().map(|r| r.expect("a record")).collect();
     assert_eq!(rows.len(), expected.len());
     for (row, point) in rows.iter().zip(&expected) {
         assert_eq!(row[column("method")], point.key.method);
-        assert_eq!(row[column("status")], point.status);
+        assert_eq!(row[column("status")], point.point.status);
         for (name, value) in [
-            ("p_n", point.p_n),
-            ("p_a", point.p_a),
-            ("slip_a_m", point.slip_a_m),
-            ("x_m", point.x_m),
+            ("p_n", point.point.p_n),
+            ("p_a", point.point.p_a),
+            ("slip_a_m", point.point.slip_a_m),
+            ("x_m", point.point.x_m),
         ] {
             let found: f64 = row[column(name)].parse().expect("a number");
             assert!(

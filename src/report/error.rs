@@ -30,7 +30,7 @@ pub enum ReportError {
     },
     /// A picture whose arrays do not fit together.
     #[error("picture `{name}`: {reason}")]
-    Picture {
+    FieldMesh {
         /// Array or picture name.
         name: String,
         /// What does not fit, with sizes.

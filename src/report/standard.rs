@@ -279,7 +279,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     type ByMethod<'a> = BTreeMap<(usize, &'a str), Vec<PointRow>>;
     let mut sweeps: BTreeMap<(String, usize), ByMethod<'_>> = BTreeMap::new();
     for row in &results.points {
-        let plane = row.force_unit == "N/m";
+        let plane = row.point.force_unit == "N/m";
         let wanted = plane && is_last(&last, &row.key);
         if wanted && right.contains(&(run_name(&row.key), row.key.increment)) {
             let RunKey {
@@ -290,11 +290,11 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
                 ..
             } = &row.key;
             problems
-                .entry((problem_name(&row.key), row.crack))
+                .entry((problem_name(&row.key), row.point.crack))
                 .or_default()
                 .push(row.clone());
             let body = file_name(&[case, mesh, space]);
-            let methods = sweeps.entry((body, row.crack)).or_default();
+            let methods = sweeps.entry((body, row.point.crack)).or_default();
             let own = methods.entry((plot::method_rank(method), method));
             own.or_default().push(row.clone());
         }

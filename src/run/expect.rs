@@ -117,12 +117,12 @@ fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
         .iter()
         .find(|row| {
             row.key.increment == key.increment
-                && row.quantity == expect.quantity
-                && row.at == expect.at
-                && row.component == expect.component
-                && row.unit == expect.unit
+                && row.quantity.name == expect.quantity
+                && row.quantity.at == expect.at
+                && row.quantity.component == expect.component
+                && row.quantity.unit == expect.unit
         })
-        .map_or(f64::NAN, |row| row.value);
+        .map_or(f64::NAN, |row| row.quantity.value);
     let allowed = match expect.tolerance {
         Tolerance::Relative(t) => t * expect.value.abs(),
         Tolerance::Absolute(t) => t,

@@ -54,7 +54,7 @@ impl Path<'_> {
         } = *self;
         let body = loading.body();
         key.increment = 1;
-        let mut solver = match Solver::prepare(choice, system, body.setup(), accuracy, key) {
+        let mut solver = match Solver::prepare(choice, system, body.setup, accuracy, key) {
             Ok(solver) => solver,
             Err(refused) => {
                 let ended = Ended {

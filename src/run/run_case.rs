@@ -7,9 +7,9 @@ use stickslip_methods::{ContactSystem, Method, OptionError, Options, Tier};
 
 use crate::case::{Case, CaseError, MethodSpec};
 use crate::model::body::{Body, BodyError, Needs};
+use crate::model::field_mesh::field_step;
 use crate::model::loading::Loading;
-use crate::model::picture::field_step;
-use crate::model::quantities::{point_rows, quantity_rows};
+use crate::model::quantities::{point_states, quantities};
 use crate::run::exact_curve::exact_rows;
 use crate::run::expect::{self, expectation_rows};
 use crate::run::path::Path;
@@ -354,10 +354,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
         results.runs.push(ended.run);
         results.history.extend(ended.history);
         let Some(now) = ended.now else { return };
-        results
-            .quantities
-            .extend(quantity_rows(case, body, key, now));
-        results.points.extend(point_rows(body, key, now));
+        results.add_found(key, quantities(case, body, now), point_states(body, now));
         if cell.fields {
             steps.push(field_step(body, now));
         }

@@ -2,19 +2,11 @@
 
 use stickslip_methods::{ContactSystem, Enforcement, Increment, Iteration};
 
+use crate::model::body::Setup;
 use crate::run::attempt::{Judged, attempt, prepare};
 use crate::run::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
 use crate::run::run_case::Choice;
 use crate::run::verdict::{Accuracy, Verdict};
-
-/// Where the system of a run comes from: times shared by all runs on it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Setup {
-    /// Seconds for mesh, cutting, pattern and ordering; for a file, for reading.
-    pub setup_s: f64,
-    /// Seconds for cell matrices and their sum.
-    pub assembly_s: f64,
-}
 
 /// A method prepared for one system.
 pub struct Solver<'a> {

@@ -22,7 +22,7 @@ use crate::case::{Case, ContactSpace, Tip};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
-use crate::model::quantities::{Snapshot, quantity_rows};
+use crate::model::quantities::{Snapshot, quantities};
 use crate::run::path::Path;
 use crate::run::record::RunKey;
 use crate::run::run_case::{Choice, Progress, RunError, friction_values};
@@ -221,7 +221,7 @@ fn run_one(
         None => Measured::Nothing,
         Some(now) => match closed_form(&loading, now)? {
             Some(deviations) => Measured::Exact(deviations),
-            None => Measured::Values(followed(case, body, &key, now)),
+            None => Measured::Values(followed(case, body, now)),
         },
     };
     Ok(Sample {
@@ -250,21 +250,21 @@ fn run_one(
 }
 
 /// The quantities of interest that are followed under refinement.
-pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value> {
-    let rows = quantity_rows(case, body, key, now);
+pub(crate) fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
+    let rows = quantities(case, body, now);
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     let displacement = largest(&mut now.u.iter().copied());
-    let reactions = || rows.iter().filter(|row| row.quantity == "reaction");
+    let reactions = || rows.iter().filter(|row| row.name == "reaction");
     let force = largest(&mut reactions().map(|row| row.value));
     let followed = rows
         .iter()
-        .filter(|row| FOLLOWED.contains(&row.quantity.as_str()))
+        .filter(|row| FOLLOWED.contains(&row.name.as_str()))
         // With one crack its own maximum is the maximum of all.
         .filter(|row| case.cracks.len() > 1 || !row.at.starts_with("crack-"));
     followed
         .map(|row| {
-            let (norm, scale) = match row.quantity.as_str() {
+            let (norm, scale) = match row.name.as_str() {
                 "reaction" => {
                     let own = reactions().filter(|other| other.at == row.at);
                     (own.map(|r| r.value.powi(2)).sum::<f64>().sqrt(), force)
@@ -274,7 +274,7 @@ pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -
             };
             Value {
                 at: format!("{} {}", row.at, row.component).trim().to_owned(),
-                quantity: row.quantity.clone(),
+                quantity: row.name.clone(),
                 value: row.value,
                 norm,
                 scale,

@@ -231,7 +231,9 @@ fn value(
     results
         .quantities
         .iter()
-        .find(|q| key(&q.key) && q.quantity == quantity && q.at == at && q.component == component)
+        .filter(|row| key(&row.key))
+        .map(|row| &row.quantity)
+        .find(|q| q.name == quantity && q.at == at && q.component == component)
         .map(|q| q.value)
 }
 

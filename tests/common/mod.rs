@@ -192,8 +192,9 @@ pub fn value(
     let found: Vec<f64> = results
         .quantities
         .iter()
-        .filter(|q| q.quantity == quantity && q.at == at && q.component == component)
-        .filter(|q| keep(&q.key))
+        .filter(|row| keep(&row.key))
+        .map(|row| &row.quantity)
+        .filter(|q| q.name == quantity && q.at == at && q.component == component)
         .map(|q| q.value)
         .collect();
     assert_eq!(found.len(), 1, "{quantity} {at} {component}: {found:?}");

@@ -138,9 +138,12 @@ fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() 
         assert_eq!((row.factorisations, row.verdict.as_str()), (1, "solved"));
     }
     for point in &results.points {
-        let ratio = -point.p_a / point.p_n;
+        let ratio = -point.point.p_a / point.point.p_n;
         assert!((ratio / point.key.friction - 1.0).abs() < 1e-7, "{point:?}");
-        assert!((point.slip_a_m / 1e-3 - 1.0).abs() < 1e-7, "{point:?}");
+        assert!(
+            (point.point.slip_a_m / 1e-3 - 1.0).abs() < 1e-7,
+            "{point:?}"
+        );
     }
 }
 

@@ -7,7 +7,7 @@ use super::canvas::{
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::{Marker, Style, draw_mark, draw_marker};
-use super::{marks, route};
+use super::{curve_direction, marks};
 use crate::report::ReportError;
 
 /// Sizes of text [pt].
@@ -71,7 +71,7 @@ pub enum Markers {
     /// At every point, those of later curves on top.
     Every,
     /// At points that are not crowded; the first curve shows in which direction it is run through.
-    Route,
+    Direction,
 }
 
 /// A whole figure.
@@ -197,15 +197,15 @@ pub fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
                 }
             }
         }
-        Markers::Sparse | Markers::Route => {
+        Markers::Sparse | Markers::Direction => {
             for (series, places) in panel.series.iter().zip(&places) {
                 draw_markers(canvas, series, places);
             }
         }
     }
-    if let (Markers::Route, Some(first)) = (panel.markers, places.first()) {
+    if let (Markers::Direction, Some(first)) = (panel.markers, places.first()) {
         let points: Vec<[f64; 2]> = first.iter().flatten().copied().collect();
-        route::draw(canvas, frame, &points);
+        curve_direction::draw(canvas, frame, &points);
     }
 }
 

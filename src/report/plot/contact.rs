@@ -10,12 +10,12 @@ use super::chart::{SMALL_PT, TICK_PT};
 use super::colour::{BLACK, GREY, Rgb};
 use super::contour::{Box2, stroke};
 use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector, unfit};
-use super::parts::{Lookup, Parts, Plane, dot, sum};
+use super::opened_solid::{Lookup, OpenedSolid, Plane, dot, sum};
 use super::solid::{Deformed, Sheet, draw_triad, project};
 use super::style::{draw_marker, status_marker};
+use crate::model::field_mesh::{CellShape, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::significant;
-use crate::run::record::{FieldStep, Picture, PictureShape};
 
 /// Status by its value in the point scalar `status`, and its tint; in grey the tints are 1, 0.5 and 0.8.
 const STATUS: [(&str, Rgb); 3] = [
@@ -38,7 +38,7 @@ const LEGEND_MM: f64 = 5.0;
 /// on side 1 where nothing slips.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the body is not 3D, the crack has no facets, or either lacks a field.
+/// [`ReportError::FieldMesh`] when the body is not 3D, the crack has no facets, or either lacks a field.
 pub fn contact_status(
     step: &FieldStep,
     magnification: Magnification,
@@ -48,7 +48,7 @@ pub fn contact_status(
     let shape = Deformed::new(body, magnification)?;
     let displacement = point_vector(body, DISPLACEMENT)?;
     let plane = Plane::of(crack).ok_or_else(|| unfit("crack", "no facets".into()))?;
-    let parts = Parts::new(body, displacement, &shape, &plane);
+    let parts = OpenedSolid::new(body, displacement, &shape, &plane);
     let face = Face::new(crack, &plane)?;
     let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
         .ok_or_else(|| unfit(DISPLACEMENT, "no finite values".into()))?;
@@ -106,7 +106,7 @@ pub fn contact_status(
 
 /// The crack surface with what is drawn on it.
 struct Face<'a> {
-    crack: &'a Picture,
+    crack: &'a FieldMesh,
     /// Index in [`STATUS`] per point.
     status: Vec<usize>,
     /// Tangential vector per point.
@@ -118,7 +118,7 @@ struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
-    fn new(crack: &'a Picture, plane: &Plane) -> Result<Self, ReportError> {
+    fn new(crack: &'a FieldMesh, plane: &Plane) -> Result<Self, ReportError> {
         let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
         let status = status.map(|(_, values)| values.as_slice()).unwrap_or(&[]);
         if status.len() != crack.points.len() {
@@ -165,7 +165,7 @@ impl<'a> Face<'a> {
             .crack
             .cells
             .iter()
-            .filter(|c| c.shape == PictureShape::Polygon);
+            .filter(|c| c.shape == CellShape::Polygon);
         for facet in facets {
             let corners: Vec<[f64; 2]> = facet.points.iter().map(|p| at(*p)).collect();
             let n = corners.len();

@@ -8,8 +8,8 @@ use super::colour::{BLACK, LIGHT};
 use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
+use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
-use crate::run::record::{Picture, PictureShape};
 use std::collections::BTreeSet;
 
 /// Faces below this size on paper are not refined [pixels].
@@ -23,9 +23,9 @@ const BAR_MM: [f64; 2] = [32.0, 60.0];
 /// the undeformed outline grey. `caption` is small text above the panels.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the picture is not 2D, has no area, or lacks the vector.
+/// [`ReportError::FieldMesh`] when the picture is not 2D, has no area, or lacks the vector.
 pub fn displacement_contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -40,7 +40,7 @@ pub fn displacement_contours(
 /// # Errors
 /// Those of [`displacement_contours`].
 pub fn von_mises_contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -51,7 +51,7 @@ pub fn von_mises_contours(
 
 /// One or two fields as panels.
 fn contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     fields: &[Field],
     magnification: Magnification,
     title: &str,
@@ -105,7 +105,7 @@ fn contours(
 
 /// What is drawn, the same in all panels.
 struct Body<'a> {
-    picture: &'a Picture,
+    picture: &'a FieldMesh,
     /// Deformed positions [m].
     places: Vec<[f64; 2]>,
     faces: Vec<Face>,
@@ -262,7 +262,7 @@ fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
 }
 
 /// All plane cells whose points have a finite place.
-fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
+fn plane_faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
     let sides = cell_scalar(picture, SIDE);
     let mut faces = Vec::new();
     for (cell, side) in picture.cells.iter().zip(sides) {
@@ -273,7 +273,7 @@ fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, Repo
             .points
             .iter()
             .all(|p| places[*p].iter().all(|c| c.is_finite()));
-        if let PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad = cell.shape {
+        if let CellShape::Triangle | CellShape::Polygon | CellShape::Quad = cell.shape {
             faces.extend(drawn.then(|| Face {
                 points: cell.points.clone(),
                 side,

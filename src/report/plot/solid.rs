@@ -12,8 +12,8 @@ use super::contour::{Box2, split, stroke};
 use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
 use super::outline::Weld;
 use super::surface::{self, Patch};
+use crate::model::field_mesh::FieldMesh;
 use crate::report::ReportError;
-use crate::run::record::Picture;
 
 /// Component of a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,9 +46,9 @@ const TRIAD_MM: f64 = 16.0;
 /// One component of `displacement_m` of a 3D picture as filled bands on the deformed boundary.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the picture is not 3D, has no solid cells, or lacks the vector.
+/// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks the vector.
 pub fn solid_displacement(
-    picture: &Picture,
+    picture: &FieldMesh,
     component: Axis3,
     magnification: Magnification,
     caption: &str,
@@ -65,7 +65,7 @@ pub fn solid_displacement(
 /// # Errors
 /// Those of [`solid_displacement`].
 pub fn solid_von_mises(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -76,7 +76,7 @@ pub fn solid_von_mises(
 
 /// A field on the deformed boundary.
 fn solid(
-    picture: &Picture,
+    picture: &FieldMesh,
     field: &Field,
     magnification: Magnification,
     title: &str,
@@ -129,8 +129,8 @@ pub struct Deformed {
 
 impl Deformed {
     /// # Errors
-    /// [`ReportError::Picture`] when the picture is not 3D, has no solid cells, or lacks `displacement_m`.
-    pub fn new(picture: &Picture, magnification: Magnification) -> Result<Self, ReportError> {
+    /// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks `displacement_m`.
+    pub fn new(picture: &FieldMesh, magnification: Magnification) -> Result<Self, ReportError> {
         if picture.dim != 3 {
             let reason = format!("{} dimensions, a solid needs 3", picture.dim);
             return Err(unfit("picture", reason));

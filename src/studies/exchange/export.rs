@@ -124,7 +124,7 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         verdict,
     };
     let accuracy = Accuracy::of(case, Tier::High);
-    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), accuracy, &key)
+    let mut solver = Solver::prepare(&request.choice, &system, body.setup, accuracy, &key)
         .map_err(|step| unsolved(1, step.verdict))?;
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);

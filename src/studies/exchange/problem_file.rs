@@ -8,10 +8,11 @@ use stickslip_methods::{
 };
 
 use crate::files::{InterchangeError, Problem, fclib, matrix_market};
+use crate::model::body::Setup;
 use crate::report::{Bundle, ReportError, standard};
 use crate::run::record::{Results, RunKey};
 use crate::run::run_case::{Choice, Progress};
-use crate::run::step::{Setup, Solver};
+use crate::run::step::Solver;
 use crate::run::verdict::Accuracy;
 use crate::studies::exchange::{System, global_system, local_system, local_velocity};
 

@@ -17,8 +17,8 @@ use super::record::{
 use super::reference::solver_error;
 use super::setup::{Bench, Scene};
 use super::statistics::Timing;
-use crate::model::picture::field_step;
-use crate::model::quantities::{Snapshot, point_rows, quantity_rows};
+use crate::model::field_mesh::field_step;
+use crate::model::quantities::{Snapshot, point_states, quantities};
 use crate::run::attempt::{prepare, solve};
 use crate::run::path::{Ended, Path};
 use crate::run::record::{RunKey, RunRow};
@@ -109,12 +109,12 @@ pub fn measure(
     };
     let mut output_s = f64::NAN;
     if let (true, Some(now)) = (verdict.is_honest(), pass.snapshots.last()) {
-        output_s = output(&scene, &pass.key, now);
+        output_s = output(&scene, now);
         let exact = closed_form(&scene.loading, now)?;
         if let Some(deviations) = &exact {
             found.deviations = deviations.iter().map(DeviationFound::of).collect();
         } else {
-            let values = followed(scene.case, scene.body, &pass.key, now);
+            let values = followed(scene.case, scene.body, now);
             found.values = values.iter().map(ValueFound::of).collect();
         }
     }
@@ -148,7 +148,6 @@ pub fn measure(
 
 /// The load path, followed once.
 struct Pass {
-    key: RunKey,
     /// Of the last increment.
     verdict: Verdict,
     rows: Vec<RunRow>,
@@ -162,14 +161,6 @@ struct Pass {
 fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
     let accuracy = Accuracy::exactly(cell.tolerance);
     let mut pass = Pass {
-        key: RunKey {
-            case: cell.case.clone(),
-            mesh: scene.body.label.clone(),
-            space: scene.body.space.clone(),
-            method: choice.label.clone(),
-            friction: cell.mu(),
-            increment: 1,
-        },
         verdict: Verdict::Crashed("a load path without increments".into()),
         rows: Vec::new(),
         increments: Vec::new(),
@@ -184,7 +175,14 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
         choice,
         accuracy,
     };
-    let mut key = pass.key.clone();
+    let mut key = RunKey {
+        case: cell.case.clone(),
+        mesh: scene.body.label.clone(),
+        space: scene.body.space.clone(),
+        method: choice.label.clone(),
+        friction: cell.mu(),
+        increment: 1,
+    };
     let mut status: Option<Vec<PointStatus>> = None;
     path.follow(&mut key, &mut |_, ended| {
         pass.increments.push(increment(&ended, status.as_deref()));
@@ -196,7 +194,6 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
         pass.verdict = ended.verdict;
         pass.rows.push(ended.run);
     });
-    pass.key = key;
     pass
 }
 
@@ -270,10 +267,10 @@ fn repeat(
 }
 
 /// Seconds to gather the tables and fields of an increment.
-fn output(scene: &Scene<'_>, key: &RunKey, now: &Snapshot) -> f64 {
+fn output(scene: &Scene<'_>, now: &Snapshot) -> f64 {
     let clock = Instant::now();
-    let rows = quantity_rows(scene.case, scene.body, key, now);
-    let points = point_rows(scene.body, key, now);
+    let rows = quantities(scene.case, scene.body, now);
+    let points = point_states(scene.body, now);
     let fields = field_step(scene.body, now);
     std::hint::black_box((rows, points, fields));
     clock.elapsed().as_secs_f64()
