@@ -22,7 +22,7 @@ use common::{
 use stickslip::report::page;
 use stickslip::report::sweep;
 use stickslip::report::timings::{self, BenchmarkName, Expected, Ignored, harvest, last_built};
-use stickslip::report::{Bundle, Provenance, prepare_output};
+use stickslip::report::{Bundle, Provenance, add_provenance, prepare_output};
 use stickslip::run::run_case::{Choice, Progress};
 use stickslip::studies::sweep::conduct::{Conduct, Shard, conduct};
 use stickslip::studies::sweep::plan::Plan;
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut bundle = Bundle::new();
     add_timings(&mut bundle, &home, problems)?;
     let provenance = Provenance::collect(1).with_option("arguments", arguments.join(" "));
-    provenance.add_to(&mut bundle)?;
+    add_provenance(&mut bundle, &provenance)?;
     bundle.commit(&out)?;
     for path in bundle.paths() {
         println!("wrote {}", out.join(path).display());

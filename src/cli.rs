@@ -22,6 +22,7 @@ use stickslip_xfem::exact::SOLUTIONS;
 
 use crate::case::shipped;
 use crate::case::{self, Case};
+use crate::files::bundle::FolderError;
 use crate::model::body::{Body, Needs};
 use crate::model::loading::Loading;
 use crate::report::page::PageError;
@@ -150,6 +151,9 @@ pub enum CliError {
     /// Files.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// A folder that cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A folder that cannot be shown as a page.
     #[error(transparent)]
     Page(#[from] PageError),

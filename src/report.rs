@@ -29,3 +29,11 @@ pub mod vtu;
 pub use crate::files::bundle::{Bundle, prepare_output};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
+
+/// Adds `provenance.toml`.
+///
+/// # Errors
+/// Those of [`Provenance::to_toml`] and [`Bundle::add`].
+pub fn add_provenance(bundle: &mut Bundle, provenance: &Provenance) -> Result<(), ReportError> {
+    Ok(bundle.add("provenance.toml", provenance.to_toml()?)?)
+}

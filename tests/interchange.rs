@@ -9,7 +9,7 @@ use assert_cmd::Command;
 use common::*;
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::files::{Problem, fclib, matrix_market};
+use stickslip::files::interchange::{Problem, fclib, matrix_market};
 use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
 use stickslip_methods::{METHODS, Tier};
 use tempfile::TempDir;

@@ -7,9 +7,11 @@ use stickslip_methods::{Residuals, Tier};
 
 use super::output::say;
 use super::{Bar, CliError, find_case, methods_or_all, provenance, refuse_twins};
+use crate::files::interchange::matrix_market;
 use crate::report::number::residual;
+use crate::report::standard::{self, problem_name};
 use crate::report::tables::{Align, Column, Table};
-use crate::report::{Bundle, prepare_output, standard};
+use crate::report::{Bundle, prepare_output};
 use crate::run::record::Results;
 use crate::run::run_case::Choice;
 use crate::run::run_case::{Fields, Progress, Settings};
@@ -79,7 +81,13 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
         choice: Choice::parse(&args.method)?,
     };
     prepare_output(&args.out)?;
-    let (name, bundle) = export(&case, &request)?;
+    let exported = export(&case, &request)?;
+    let (problem, increment) = (problem_name(&exported.key), exported.key.increment);
+    let name = format!("{problem}.increment-{increment}");
+    let mut bundle = Bundle::new();
+    for (end, contents) in exported.files {
+        bundle.add(format!("{name}.{end}"), contents)?;
+    }
     bundle.commit(&args.out)?;
     say(format_args!("{}", args.out.join(name).display()));
     for path in bundle.paths() {
@@ -108,7 +116,15 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     let mut results = Results::default();
     let mut solutions = Bundle::new();
     for problem in &problems {
-        results.append(problem.run(&chosen, args.tier, &bar, &mut solutions)?);
+        let solved = problem.run(&chosen, args.tier, &bar);
+        results.append(solved.results);
+        for solution in solved.solutions {
+            let stem = standard::stem(&solution.key);
+            for (part, values) in [("r", &solution.reaction), ("u", &solution.velocity)] {
+                let text = matrix_market::vector(values);
+                solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
+            }
+        }
     }
     bar.finish();
     let mut bundle = standard::bundle(&results, &provenance(settings))?;

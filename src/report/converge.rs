@@ -317,6 +317,6 @@ pub fn bundle(
     paper::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
     paper::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
     error_figures::add(&mut bundle, errors, orders)?;
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

@@ -103,17 +103,17 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
     bundle.add(HistoryRow::FILE, file(&results.history)?)?;
     bundle.add(PointRow::FILE, file(&results.points)?)?;
     bundle.add(ExactRow::FILE, file(&results.exact)?)?;
-    bundle.add(ExpectRow::FILE, file(&results.expectations)?)
+    Ok(bundle.add(ExpectRow::FILE, file(&results.expectations)?)?)
 }
 
 /// Writes these six files into `dir`, all or none.
 ///
 /// # Errors
-/// [`ReportError::Io`] naming the path that could not be written.
+/// [`FolderError::Io`](crate::files::bundle::FolderError::Io) naming the path that could not be written.
 pub fn write_all(dir: &Path, results: &Results) -> Result<(), ReportError> {
     let mut bundle = Bundle::new();
     add_to(&mut bundle, results)?;
-    bundle.commit(dir)
+    Ok(bundle.commit(dir)?)
 }
 
 impl Row for RunRow {

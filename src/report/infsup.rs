@@ -242,5 +242,5 @@ fn heading(name: &str) -> Vec<String> {
 pub fn add_to(bundle: &mut Bundle, sequences: &[Sequence]) -> Result<(), ReportError> {
     bundle.add(InfSupRow::FILE, csv::file(&rows(sequences))?)?;
     paper::add_readable(bundle, "infsup", &table(sequences)?)?;
-    bundle.add("figures/infsup.svg", figure(sequences)?)
+    Ok(bundle.add("figures/infsup.svg", figure(sequences)?)?)
 }

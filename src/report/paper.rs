@@ -339,5 +339,5 @@ pub fn add_table2(bundle: &mut Bundle, rows: &[Table2Row]) -> Result<(), ReportE
 /// Those of [`Bundle::add`].
 pub fn add_readable(bundle: &mut Bundle, stem: &str, table: &Table) -> Result<(), ReportError> {
     bundle.add(format!("{stem}.md"), table.markdown())?;
-    bundle.add(format!("{stem}.tex"), table.latex(&format!("tab:{stem}")))
+    Ok(bundle.add(format!("{stem}.tex"), table.latex(&format!("tab:{stem}")))?)
 }

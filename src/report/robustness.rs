@@ -367,7 +367,7 @@ pub fn bundle(
     if rows.iter().any(|row| row.success[0].is_finite()) {
         bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
     }
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 

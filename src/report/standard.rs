@@ -15,7 +15,7 @@ use std::path::Path;
 /// Everything that one command writes, apart from the tables of the paper.
 ///
 /// # Errors
-/// Those of the parts; [`ReportError::Duplicate`] where two runs give the same file name.
+/// Those of the parts; [`FolderError::Duplicate`](crate::files::bundle::FolderError::Duplicate) where two runs give the same file name.
 pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
     let mut bundle = Bundle::new();
     csv::add_to(&mut bundle, results)?;
@@ -30,7 +30,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
     for fields in &results.fields {
         add_fields(&mut bundle, fields, provenance)?;
     }
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 
@@ -39,7 +39,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
 /// # Errors
 /// Those of [`bundle`] and [`Bundle::commit`].
 pub fn write(dir: &Path, results: &Results, provenance: &Provenance) -> Result<(), ReportError> {
-    bundle(results, provenance)?.commit(dir)
+    Ok(bundle(results, provenance)?.commit(dir)?)
 }
 
 /// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
@@ -372,5 +372,5 @@ fn add_fields(
         bundle.add(format!("figures/{stem}.contact.svg"), svg)?;
     }
     bundle.add(format!("figures/{stem}.displacement.svg"), displacement)?;
-    bundle.add(format!("figures/{stem}.von-mises.svg"), stress)
+    Ok(bundle.add(format!("figures/{stem}.von-mises.svg"), stress)?)
 }

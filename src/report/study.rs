@@ -264,7 +264,7 @@ pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), Repor
             |r| [r.parameter, r.relative_error],
         ),
     };
-    bundle.add("figures/penalty.svg", error_plot(&plot, Some(-1.0))?)
+    Ok(bundle.add("figures/penalty.svg", error_plot(&plot, Some(-1.0))?)?)
 }
 
 /// Adds `refinement.*`, `limits.*` and the figure of the distance from the common limit.
@@ -295,7 +295,7 @@ pub fn add_refinement(
             distance,
         ),
     };
-    bundle.add("figures/refinement.svg", error_plot(&plot, Some(1.0))?)
+    Ok(bundle.add("figures/refinement.svg", error_plot(&plot, Some(1.0))?)?)
 }
 
 /// One curve per friction value and prefix, in order of appearance.

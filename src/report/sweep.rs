@@ -49,7 +49,7 @@ pub fn bundle(
     work_precision::add(&mut bundle, &study)?;
     accuracy::add(&mut bundle, &study)?;
     recommendations::add(&mut bundle, &study)?;
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 

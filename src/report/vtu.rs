@@ -137,7 +137,7 @@ pub fn add_fields(
             });
         }
     }
-    bundle.add(format!("{folder}/{stem}.pvd"), pvd(&collection, comment))
+    Ok(bundle.add(format!("{folder}/{stem}.pvd"), pvd(&collection, comment))?)
 }
 
 /// One data set of a `.pvd` collection.

@@ -13,7 +13,9 @@ use stickslip_methods::{
     ContactState, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError, SymmetricMatrix,
 };
 
-use crate::files::{GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix};
+use crate::files::interchange::{
+    GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix,
+};
 
 /// What a file gives a method.
 pub struct System {

@@ -137,7 +137,7 @@ impl Paper {
 
     /// Writes all files, or none.
     pub fn write(&self, dir: &Path, provenance: &Provenance) -> Result<(), ReportError> {
-        self.bundle(provenance)?.commit(dir)
+        Ok(self.bundle(provenance)?.commit(dir)?)
     }
 
     /// What the terminal shows.

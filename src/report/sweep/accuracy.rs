@@ -29,7 +29,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
         }
         rows.extend(one.errors.iter().map(AccuracyRow));
     }
-    bundle.add(AccuracyRow::FILE, csv::file(&rows)?)
+    Ok(bundle.add(AccuracyRow::FILE, csv::file(&rows)?)?)
 }
 
 /// A row of `convergence.csv` without the enrichment of the tips, which the records do not know.

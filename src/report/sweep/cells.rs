@@ -39,7 +39,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
         rows.filter(move |row| several || row.kind == EXACT)
     });
     let deviations: Vec<DeviationRow> = deviations.collect();
-    bundle.add(DeviationRow::FILE, csv::file(&deviations)?)
+    Ok(bundle.add(DeviationRow::FILE, csv::file(&deviations)?)?)
 }
 
 fn optional(number: Option<f64>, text: impl Fn(f64) -> String) -> String {

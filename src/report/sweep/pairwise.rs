@@ -49,7 +49,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
         duel_rows.extend(duels.iter().flat_map(|duel| DuelRow::all(duel, tier)));
     }
     bundle.add(PairRow::FILE, csv::file(&rows)?)?;
-    bundle.add(DuelRow::FILE, csv::file(&duel_rows)?)
+    Ok(bundle.add(DuelRow::FILE, csv::file(&duel_rows)?)?)
 }
 
 struct PairRow<'a> {

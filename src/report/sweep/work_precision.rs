@@ -38,7 +38,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
             }));
         }
     }
-    bundle.add(PointRow::FILE, csv::file(&rows)?)
+    Ok(bundle.add(PointRow::FILE, csv::file(&rows)?)?)
 }
 
 struct PointRow<'a> {

@@ -12,7 +12,7 @@ use super::cell::Cell;
 use super::statistics::Timing;
 use super::worker::Limits;
 use crate::model::errors::Deviation;
-use crate::report::Provenance;
+use crate::run::provenance::Provenance;
 use crate::studies::convergence::Value;
 
 /// Version of the record files and of the tables made from them.
