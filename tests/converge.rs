@@ -99,7 +99,7 @@ fn closed_forms_give_observed_beside_theoretical_orders() {
     let total = |row: &ErrorRow| row.seconds.total();
     assert!(errors.iter().all(|r| total(r) > 0.0 && total(r) < 60.0));
 
-    let bundle = stickslip::report::converge::bundle(&errors, &orders, &Provenance::collect(1));
+    let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let bundle = bundle.unwrap();
     for what in ["energy", "traction-crack-1"] {
         for axis in ["error", "error-time"] {
@@ -154,7 +154,7 @@ fn verdicts_that_are_not_honest_have_no_error() {
         assert_eq!(row.verdict, "gave-up: max-iterations");
         assert!(row.error.is_nan() && row.kind.is_none() && row.seconds.total().is_nan());
     }
-    let bundle = stickslip::report::converge::bundle(&errors, &orders, &Provenance::collect(1));
+    let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let names: Vec<String> = bundle.unwrap().paths().map(str::to_owned).collect();
     assert_eq!(names, FILES);
 }

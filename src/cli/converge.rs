@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use super::arguments::{find_case, refuse_twins};
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, find_case, refuse_twins};
 use crate::case::{ContactSpace, Tip};
 use crate::report::{Provenance, prepare_output};
 use crate::run::run_case::Choice;
@@ -91,9 +92,9 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let (errors, orders) = orders::rows(&samples);
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("method", study.choice.label.clone());
-    let bundle = crate::report::converge::bundle(&errors, &orders, &provenance)?;
+    let bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
     bundle.commit(&arguments.out)?;
-    let table = crate::report::converge::order_table(&orders)?;
+    let table = crate::report::convergence::order_table(&orders)?;
     say(format_args!("{}", table.terminal()));
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());
     say(format_args!(

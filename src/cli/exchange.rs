@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use stickslip_methods::{Residuals, Tier};
 
+use super::arguments::{find_case, methods_or_all, provenance, refuse_twins};
+use super::error::CliError;
 use super::output::say;
-use super::{Bar, CliError, find_case, methods_or_all, provenance, refuse_twins};
+use super::progress::Bar;
 use crate::files::interchange::matrix_market;
 use crate::report::number::residual;
 use crate::report::standard::{self, problem_name};
@@ -18,7 +20,6 @@ use crate::run::run_case::{Fields, Progress, Settings};
 use crate::run::verdict::EQUILIBRIUM;
 use crate::studies::exchange::export::{Request, export};
 use crate::studies::exchange::problem_file::ProblemFile;
-use crate::studies::paper;
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]
@@ -72,7 +73,7 @@ pub struct JudgeArgs {
     tier: Tier,
 }
 
-pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
+pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
     let case = find_case(&args.case)?;
     let request = Request {
         increment: args.increment,
@@ -96,7 +97,7 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
     Ok(true)
 }
 
-pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
+pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     let chosen = methods_or_all(&args.method)?;
     let problems = (args.files.iter())
         .map(|file| ProblemFile::read(file))
@@ -136,13 +137,13 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     ));
     say(format_args!(
         "{}\nResults: {}",
-        paper::summary(&results),
+        standard::summary(&results),
         args.out.display()
     ));
-    Ok(paper::as_expected(&results))
+    Ok(results.as_expected())
 }
 
-pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
+pub fn run_judge(args: JudgeArgs) -> Result<bool, CliError> {
     let problem = ProblemFile::read(&args.problem)?;
     let mut columns = vec![Column::new("reaction", "", Align::Left)];
     let residuals = [

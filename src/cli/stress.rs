@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use stickslip_methods::Tier;
 
+use super::arguments::methods_or_all;
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, methods_or_all};
 use crate::report::{Provenance, prepare_output, robustness};
 use crate::run::verdict::Verdict;
 use crate::studies::stress::{self, Study, Trial};

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use super::csv::{self, Row};
 use super::number::{residual, significant, time, value};
 use super::plot::method_cost;
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper, standard};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, ReportError, standard};
 use crate::run::record::RunRow;
+use crate::studies::paper::variants::VariantRow;
 
 /// One method on one case: all meshes, friction coefficients and increments together.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,35 +171,6 @@ fn shown_time(seconds: f64) -> String {
     }
 }
 
-/// One of the paper's problems by one method or variant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VariantRow {
-    /// Case.
-    pub case: String,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Method, options other than the default in brackets.
-    pub method: String,
-    /// Claim × check.
-    pub verdict: String,
-    /// What is compared: `reaction top y` of the plate [N/m], `displacement P4 z` of the beam [m].
-    pub quantity: String,
-    /// Its value; NaN where the run has no answer.
-    pub value: f64,
-    /// Deviation from the reference method on the same mesh, relative [-].
-    pub deviation: f64,
-    /// Natural map found by the judge [-].
-    pub natural_map: f64,
-    /// Iterations.
-    pub iterations: usize,
-    /// Dense factorisations of condensed matrices.
-    pub tangent_factorisations: usize,
-    /// Sparse factorisations over all unknowns.
-    pub global_factorisations: usize,
-    /// Solve time [s].
-    pub solve_s: f64,
-}
-
 impl Row for VariantRow {
     const FILE: &'static str = "variants.csv";
     const COLUMNS: &'static [&'static str] = &[
@@ -294,13 +266,13 @@ pub fn add(
 ) -> Result<(), ReportError> {
     let rows = comparison(runs);
     bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
-    paper::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
+    tables::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
     // Where nothing did what it claims there is nothing to draw.
     if rows.iter().any(|row| standard::honest(&row.verdict)) {
         bundle.add("figures/cost.svg", method_cost(&rows)?)?;
     }
     bundle.add(VariantRow::FILE, csv::file(variants)?)?;
-    paper::add_readable(bundle, "variants", &variant_table(variants)?)
+    tables::add_readable(bundle, "variants", &variant_table(variants)?)
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{significant, value};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, ReportError};
 use crate::studies::spaces::patch::{Loaded, PASSED, PatchRow, State};
 
 /// Significant digits of errors.
@@ -154,7 +154,7 @@ pub fn table(rows: &[PatchRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`].
 pub fn add_to(bundle: &mut Bundle, rows: &[PatchRow]) -> Result<(), ReportError> {
     bundle.add(PatchRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "patch", &table(rows)?)
+    tables::add_readable(bundle, "patch", &table(rows)?)
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use stickslip_methods::{Status, Tier};
 use super::csv::{self, Row};
 use super::number::{fixed, residual, significant, time, value};
 use super::plot::success_rates;
-use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, Provenance, ReportError};
 use crate::run::verdict::Verdict;
 use crate::studies::stress::{Study, Trial};
 use crate::studies::sweep::analysis::proportion::wilson;
@@ -362,7 +362,7 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
     bundle.add(FailureRow::FILE, csv::file(&failures(study, trials))?)?;
-    paper::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
+    tables::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
     // Where every method declines every problem there is nothing to draw.
     if rows.iter().any(|row| row.success[0].is_finite()) {
         bundle.add("figures/robustness.svg", success_rates(&rows)?)?;

@@ -5,8 +5,8 @@
 
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, csv, loops, vtu};
 use crate::run::expect;
 use crate::run::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,10 +19,10 @@ use std::path::Path;
 pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
     let mut bundle = Bundle::new();
     csv::add_to(&mut bundle, results)?;
-    paper::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
+    tables::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
     if !results.expectations.is_empty() {
         let table = expectations_table(&results.expectations)?;
-        paper::add_readable(&mut bundle, "expectations", &table)?;
+        tables::add_readable(&mut bundle, "expectations", &table)?;
     }
     add_residuals(&mut bundle, results)?;
     add_profiles(&mut bundle, results)?;
@@ -197,6 +197,32 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
         ])?;
     }
     Ok(table)
+}
+
+/// One line on the verdicts and expectations of all runs.
+pub fn summary(results: &Results) -> String {
+    let count = |prefix: &str| {
+        results
+            .runs
+            .iter()
+            .filter(|r| r.verdict.starts_with(prefix))
+            .count()
+    };
+    let stated = results
+        .expectations
+        .iter()
+        .filter(|e| e.as_stated())
+        .count();
+    format!(
+        "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
+        results.runs.len(),
+        count("solved"),
+        count("approximate"),
+        count("refused"),
+        results.failures(),
+        stated,
+        results.expectations.len()
+    )
 }
 
 /// Whether a verdict is that of a run that did what it claims.

@@ -16,8 +16,8 @@ use serde::Deserialize;
 
 use super::csv::{self, Row};
 use super::number::{significant, time};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, ReportError};
 use crate::studies::sweep::statistics::Timing;
 
 /// Significant digits of the readable table: more is noise.
@@ -307,5 +307,5 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`].
 pub fn add_to(bundle: &mut Bundle, rows: &[TimingRow]) -> Result<(), ReportError> {
     bundle.add(TimingRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "timings", &table(rows)?)
+    tables::add_readable(bundle, "timings", &table(rows)?)
 }

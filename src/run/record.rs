@@ -253,6 +253,21 @@ impl Results {
         self.expectations.extend(other.expectations);
         self.fields.extend(other.fields);
     }
+
+    /// Number of runs that did not do what they claimed, gave up or crashed.
+    pub fn failures(&self) -> usize {
+        let bad = |verdict: &str| {
+            ["false-claim", "gave-up", "crashed"]
+                .iter()
+                .any(|p| verdict.starts_with(p))
+        };
+        self.runs.iter().filter(|r| bad(&r.verdict)).count()
+    }
+
+    /// True if no run failed and every expected number came out as stated.
+    pub fn as_expected(&self) -> bool {
+        self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
+    }
 }
 
 impl ExpectRow {

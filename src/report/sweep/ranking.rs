@@ -7,7 +7,7 @@ use stickslip_methods::Tier;
 use super::Study;
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant, time};
-use crate::report::paper::add_readable;
+use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::compare_methods;

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::Study;
 use crate::report::csv::{self, Row};
 use crate::report::number::significant;
-use crate::report::paper::add_readable;
+use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::recommendation::{Recommendation, recommendations};

@@ -2,10 +2,9 @@
 
 use stickslip_methods::METHODS;
 
-use super::{PaperError, REFERENCE_METHOD, case, choice, value};
-use crate::report::comparison::VariantRow;
 use crate::run::record::{Results, RunKey, RunRow};
 use crate::run::run_case::{Choice, Progress, Settings, run_case};
+use crate::studies::paper::lookup::{PaperError, REFERENCE_METHOD, case, choice, value};
 
 /// Case, friction coefficients, and what is compared: (quantity, at, component).
 const PROBLEMS: [(&str, &[f64], [&str; 3]); 2] = [
@@ -25,8 +24,37 @@ const VARIANTS: [(&str, &str, f64); 5] = [
 /// The option of methods that can work on the matrix over all unknowns.
 const MONOLITHIC: &str = "monolithic";
 
+/// One of the paper's problems by one method or variant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VariantRow {
+    /// Case.
+    pub case: String,
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Method, options other than the default in brackets.
+    pub method: String,
+    /// Claim × check.
+    pub verdict: String,
+    /// What is compared: `reaction top y` of the plate [N/m], `displacement P4 z` of the beam [m].
+    pub quantity: String,
+    /// Its value; NaN where the run has no answer.
+    pub value: f64,
+    /// Deviation from the reference method on the same mesh, relative [-].
+    pub deviation: f64,
+    /// Natural map found by the judge [-].
+    pub natural_map: f64,
+    /// Iterations.
+    pub iterations: usize,
+    /// Dense factorisations of condensed matrices.
+    pub tangent_factorisations: usize,
+    /// Sparse factorisations over all unknowns.
+    pub global_factorisations: usize,
+    /// Solve time [s].
+    pub solve_s: f64,
+}
+
 /// All rows; the defaults come from the runs of all cases, the variants are run here.
-pub fn rows(
+pub fn variant_rows(
     results: &Results,
     settings: Settings,
     progress: &dyn Progress,

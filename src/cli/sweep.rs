@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::CliError;
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, page, prepare_output, sweep};

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use super::csv::{self, Row};
 use super::number::{fixed, significant, time, value};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, error_figures, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, error_figures};
 use crate::studies::convergence::Variant;
 use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
@@ -314,8 +314,8 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     bundle.add(ErrorRow::FILE, csv::file(errors)?)?;
     bundle.add(OrderRow::FILE, csv::file(orders)?)?;
-    paper::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
-    paper::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
+    tables::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
+    tables::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
     error_figures::add(&mut bundle, errors, orders)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)

@@ -1,31 +1,13 @@
-//! Tables and figures of the two studies beside the paper's tables: penalty error and mesh refinement.
+//! The plate over one parameter: penalty error against the stiffness, reaction against the cell width.
 
 use std::cmp::Ordering;
 
-use super::csv::{self, Row};
-use super::number::{fixed, residual, significant, value};
-use super::plot::{Curve, CurvePlot, error_plot};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
-
-/// Error of the penalty method for one parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PenaltyRow {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// k_n/ρ = k_t/ρ, stiffness in multiples of the natural scale [-].
-    pub parameter: f64,
-    /// Reaction at the top [MN/m].
-    pub reaction_mn_per_m: f64,
-    /// |reaction − exact| / |exact|, exact by the reference method on the same mesh [-].
-    pub relative_error: f64,
-    /// Largest penetration [m].
-    pub max_penetration_m: f64,
-    /// Natural map found by the judge [-].
-    pub natural_map: f64,
-    /// Claim × check.
-    pub verdict: String,
-}
+use crate::report::csv::{self, Row};
+use crate::report::number::{fixed, residual, significant, value};
+use crate::report::plot::{Curve, CurvePlot, error_plot};
+use crate::report::tables::{self, Align, Column, Table};
+use crate::report::{Bundle, ReportError};
+use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 
 impl Row for PenaltyRow {
     const FILE: &'static str = "penalty.csv";
@@ -58,25 +40,6 @@ impl Row for PenaltyRow {
     }
 }
 
-/// Reaction of the plate on one mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RefinementRow {
-    /// Mesh of the paper: `I` or `II`.
-    pub family: String,
-    /// Mesh label.
-    pub mesh: String,
-    /// Cell width [m].
-    pub h_m: f64,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Free unknowns.
-    pub dofs: usize,
-    /// Reaction at the top [MN/m].
-    pub reaction_mn_per_m: f64,
-    /// Claim × check.
-    pub verdict: String,
-}
-
 impl Row for RefinementRow {
     const FILE: &'static str = "refinement.csv";
     const COLUMNS: &'static [&'static str] = &[
@@ -107,32 +70,6 @@ impl Row for RefinementRow {
         family
             .then(self.friction.total_cmp(&other.friction))
             .then(other.h_m.total_cmp(&self.h_m))
-    }
-}
-
-/// Limits of the reaction for h → 0.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitRow {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Limit of Mesh I [MN/m].
-    pub mesh_1_mn_per_m: f64,
-    /// Limit of Mesh II [MN/m].
-    pub mesh_2_mn_per_m: f64,
-    /// |difference| / mean [-].
-    pub relative_gap: f64,
-}
-
-impl LimitRow {
-    /// A line with its gap computed.
-    pub fn new(friction: f64, mesh_1_mn_per_m: f64, mesh_2_mn_per_m: f64) -> Self {
-        let mean = 0.5 * (mesh_1_mn_per_m + mesh_2_mn_per_m);
-        LimitRow {
-            friction,
-            mesh_1_mn_per_m,
-            mesh_2_mn_per_m,
-            relative_gap: ((mesh_1_mn_per_m - mesh_2_mn_per_m) / mean).abs(),
-        }
     }
 }
 
@@ -253,7 +190,7 @@ pub fn limit_table(rows: &[LimitRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`] and of the figure.
 pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), ReportError> {
     bundle.add(PenaltyRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
+    tables::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
     let plot = CurvePlot {
         caption: "plate, Mesh I, penalty method".into(),
         x_label: "penalty stiffness / natural scale".into(),
@@ -277,9 +214,9 @@ pub fn add_refinement(
     limits: &[LimitRow],
 ) -> Result<(), ReportError> {
     bundle.add(RefinementRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "refinement", &refinement_table(rows)?)?;
+    tables::add_readable(bundle, "refinement", &refinement_table(rows)?)?;
     bundle.add(LimitRow::FILE, csv::file(limits)?)?;
-    paper::add_readable(bundle, "limits", &limit_table(limits)?)?;
+    tables::add_readable(bundle, "limits", &limit_table(limits)?)?;
     let distance = |r: &RefinementRow| {
         let limit = limits.iter().find(|l| l.friction == r.friction);
         let mean = limit.map_or(f64::NAN, |l| 0.5 * (l.mesh_1_mn_per_m + l.mesh_2_mn_per_m));
