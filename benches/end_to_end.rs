@@ -8,8 +8,9 @@ mod common;
 use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_methods, settings};
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
+use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::method;
 
 const SETTINGS: Settings = Settings {

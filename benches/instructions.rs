@@ -27,7 +27,7 @@ use common::{PROBLEMS, Problem};
 use gungraun::{
     Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
 use stickslip_methods::{Enforcement, METHODS, Outcome, method};
 
 /// A method in front of its increment.

@@ -4,6 +4,7 @@ pub mod body;
 pub mod boundary;
 pub mod errors;
 pub mod field_mesh;
+pub mod fixed_loads;
 pub mod loading;
 pub mod nodal_forces;
 

@@ -1,6 +1,7 @@
 //! Runs of methods on a model: increment after increment, judged, and kept as rows.
 
 pub mod attempt;
+pub mod choice;
 pub mod exact_curve;
 pub mod expect;
 pub mod path;

@@ -7,7 +7,8 @@ use stickslip::case::shipped;
 use stickslip::case::{Case, ContactSpace, CrackShape, Tip};
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::errors::Deviation;
-use stickslip::run::run_case::{Choice, Quiet};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Quiet;
 use stickslip::studies::convergence::{self, Measured, Study, slope};
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.

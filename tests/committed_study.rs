@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
 use stickslip::studies::sweep::Bench;
 use stickslip::studies::sweep::measure::{Repeats, measure};
 use stickslip::studies::sweep::plan::Plan;

@@ -10,7 +10,8 @@ use common::*;
 use stickslip::case::{Case, ContactSpace, Tip};
 use stickslip::model::errors::Deviation;
 use stickslip::report::{Provenance, csv as table};
-use stickslip::run::run_case::{Choice, Quiet};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Quiet;
 use stickslip::studies::convergence::orders::{self, ErrorRow, Kind, OrderRow};
 use stickslip::studies::convergence::{self, Measured, Regularity, Sample, Study};
 

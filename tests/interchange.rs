@@ -10,7 +10,8 @@ use common::*;
 use stickslip::case::Case;
 use stickslip::case::shipped;
 use stickslip::files::interchange::{Problem, fclib, matrix_market};
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{METHODS, Tier};
 use tempfile::TempDir;
 

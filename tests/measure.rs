@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip::case::shipped;
 use stickslip::report::{Provenance, sweep};
-use stickslip::run::run_case::{Choice, friction_values};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::friction_values;
 use stickslip::studies::sweep::Bench;
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::measure::{Repeats, measure};

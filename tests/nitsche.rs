@@ -6,8 +6,9 @@ use common::*;
 use stickslip::case::shipped;
 use stickslip::case::{Case, Expect, Tolerance};
 use stickslip::model::body::{Body, Needs};
+use stickslip::run::choice::Choice;
 use stickslip::run::record::{Results, RunKey};
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
     method,

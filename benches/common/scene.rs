@@ -5,7 +5,7 @@ use std::sync::Arc;
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::run::attempt::{attempt, prepare};
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
 use stickslip::run::verdict::Verdict;
 use stickslip_methods::{
     ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier, method,

@@ -7,8 +7,9 @@ use stickslip_methods::METHODS;
 
 use super::error::CliError;
 use crate::case::{self, Case, shipped};
+use crate::run::choice::Choice;
 use crate::run::provenance::Provenance;
-use crate::run::run_case::{Choice, Settings};
+use crate::run::run_case::Settings;
 
 /// A case by file, or by the name of a shipped one.
 pub fn find_case(name: &str) -> Result<Case, CliError> {

@@ -8,7 +8,7 @@ use super::output::{say, warn};
 use super::progress::Bar;
 use crate::case::{ContactSpace, Tip};
 use crate::report::{Provenance, prepare_output};
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 use crate::studies::convergence::{self, Study, orders};
 
 /// Arguments of the verb.

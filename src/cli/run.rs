@@ -12,11 +12,10 @@ use crate::case;
 use crate::model::body::{Body, Needs};
 use crate::model::loading::Loading;
 use crate::report::{page, prepare_output, standard};
+use crate::run::choice::{Choice, choices};
 use crate::run::expect;
 use crate::run::record::Results;
-use crate::run::run_case::{
-    Choice, Fields, RunError, Settings, choices, friction_values, run_case,
-};
+use crate::run::run_case::{Fields, RunError, Settings, friction_values, run_case};
 
 /// Arguments of `stickslip run`.
 #[derive(Debug, clap::Args)]

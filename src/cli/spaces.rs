@@ -7,7 +7,7 @@ use super::output::{say, warn};
 use super::progress::Bar;
 use crate::case::ContactSpace;
 use crate::report::{Bundle, Provenance, add_provenance, prepare_output};
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 use crate::studies::spaces::infsup::{self, SCENES, Scene};
 use crate::studies::spaces::patch::{self, PatchRow};
 

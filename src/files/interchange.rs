@@ -16,12 +16,14 @@ pub mod fclib;
 pub mod fclib_global;
 pub mod fclib_local;
 mod fclib_matrix;
+mod fclib_parts;
 mod hdf5;
 pub mod matrix_market;
 mod sparse;
 
 pub use error::InterchangeError;
-pub use fclib::{Info, Problem, Solution};
+pub use fclib::Problem;
 pub use fclib_global::{GlobalEquality, GlobalProblem};
 pub use fclib_local::{LocalEquality, LocalProblem};
+pub use fclib_parts::{Info, Solution};
 pub use sparse::SparseMatrix;

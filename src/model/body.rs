@@ -28,7 +28,8 @@ use stickslip_xfem::stiffness::elasticity::CellMatrix;
 
 use crate::case::{Case, CaseError, ContactSpace, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};
-use crate::model::loading::{FixedLoad, fixed_loads};
+use crate::model::fixed_loads::{FixedLoad, fixed_loads};
+pub use crate::model::refusals::BodyError;
 use crate::model::refusals::{check_probes, check_supports, crack_error, motion_error};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
@@ -75,20 +76,6 @@ pub struct Body {
     pub traction_rows: Vec<Vec<(usize, f64)>>,
     /// Loads whose nodal forces only change in size.
     pub loads: Vec<FixedLoad>,
-}
-
-/// Why a case cannot be discretised.
-#[derive(Debug, thiserror::Error)]
-pub enum BodyError {
-    /// The case asks for something impossible; carries file, line and column.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A cut cell could not be integrated.
-    #[error(transparent)]
-    Cell(#[from] CellError),
-    /// The algebraic system was refused.
-    #[error(transparent)]
-    Method(#[from] MethodError),
 }
 
 /// Where the system of a run comes from: times shared by all runs on it.

@@ -7,8 +7,9 @@ use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{self, Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, csv, loops, vtu};
-use crate::run::expect;
-use crate::run::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use crate::run::record::{
+    ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, Results, RunFields, RunKey, RunRow,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -185,14 +186,14 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
         let own = || rows.iter().filter(move |row| row.key.case == case);
         let count = |verdict: &str| own().filter(|row| row.verdict == verdict).count();
         let worst = own()
-            .filter(|row| row.verdict == expect::MET)
+            .filter(|row| row.verdict == MET)
             .map(|row| (row.found - row.expected).abs() / row.allowed)
             .fold(0.0, f64::max);
         table.push(vec![
             case.to_owned(),
             own().count().to_string(),
-            count(expect::MET).to_string(),
-            count(expect::MISSED_AS_DOCUMENTED).to_string(),
+            count(MET).to_string(),
+            count(MISSED_AS_DOCUMENTED).to_string(),
             format!("{worst:.1e}"),
         ])?;
     }

@@ -8,7 +8,7 @@ use stickslip_methods::{
 };
 
 use super::verdict::Verdict;
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 
 /// What came of an increment.
 pub struct Attempt {

@@ -2,13 +2,8 @@
 
 use crate::case::{Case, CaseError, Expect, ExpectKind, Tolerance};
 use crate::model::boundary::region_name;
-use crate::run::record::{ExpectRow, QuantityRow, Results, RunKey};
-use crate::run::run_case::Choice;
-
-/// Verdict of a number within its tolerance.
-pub const MET: &str = "met";
-/// Verdict of a documented limitation.
-pub const MISSED_AS_DOCUMENTED: &str = "missed as documented";
+use crate::run::choice::Choice;
+use crate::run::record::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Results, RunKey};
 
 /// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
 ///

@@ -9,7 +9,7 @@ use super::verdict::{Accuracy, Verdict};
 use crate::case::Case;
 use crate::model::loading::Loading;
 use crate::model::quantities::Snapshot;
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 
 /// One run before it starts.
 #[derive(Clone, Copy)]

@@ -4,8 +4,8 @@ use stickslip_methods::{ContactSystem, Enforcement, Increment, Iteration};
 
 use crate::model::body::Setup;
 use crate::run::attempt::{Judged, attempt, prepare};
+use crate::run::choice::Choice;
 use crate::run::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
-use crate::run::run_case::Choice;
 use crate::run::verdict::{Accuracy, Verdict};
 
 /// A method prepared for one system.

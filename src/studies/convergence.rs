@@ -23,9 +23,10 @@ use crate::model::body::{Body, BodyError, Needs};
 use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
 use crate::model::quantities::{Snapshot, quantities};
+use crate::run::choice::Choice;
 use crate::run::path::Path;
 use crate::run::record::RunKey;
-use crate::run::run_case::{Choice, Progress, RunError, friction_values};
+use crate::run::run_case::{Progress, RunError, friction_values};
 use crate::run::verdict::{Accuracy, Verdict};
 
 /// Refinement factors where neither the study nor the case names several.

@@ -19,7 +19,8 @@ use crate::case::{self, Case};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
 use crate::run::attempt::{Attempt, attempt, prepare};
-use crate::run::run_case::{Choice, Progress};
+use crate::run::choice::Choice;
+use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::stress::random::{Kind, Specimen, Stream};
 

@@ -11,8 +11,9 @@ use std::sync::Arc;
 use stickslip::case::{self, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
+use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
 };

@@ -1,4 +1,4 @@
-//! FCLIB files: what the local and the global problem share.
+//! FCLIB files, of the local or the global problem.
 //!
 //! ```text
 //! /fclib_local  or  /fclib_global     spacedim, matrices, vectors, info
@@ -9,12 +9,10 @@
 
 use std::path::Path;
 
-use hdf5_pure::GroupBuilder;
-
 use super::error::InterchangeError;
 use super::fclib_global::GlobalProblem;
 use super::fclib_local::LocalProblem;
-use super::hdf5::{Tree, Writer, put_integers, put_reals, put_text, subgroup};
+use super::hdf5::Tree;
 
 /// A problem file.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,30 +21,6 @@ pub enum Problem {
     Local(LocalProblem),
     /// With all displacement unknowns.
     Global(GlobalProblem),
-}
-
-/// What the author says about a problem.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Info {
-    /// Title.
-    pub title: Option<String>,
-    /// Description.
-    pub description: Option<String>,
-    /// Known mathematical properties.
-    pub math_info: Option<String>,
-}
-
-/// A solution or a guess.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Solution {
-    /// Global unknowns v; empty in local files.
-    pub v: Vec<f64>,
-    /// Local velocity u.
-    pub u: Vec<f64>,
-    /// Reaction r.
-    pub r: Vec<f64>,
-    /// Multiplier λ of the equality constraints; empty where there are none.
-    pub l: Vec<f64>,
 }
 
 /// Reads a file of either kind.
@@ -92,201 +66,5 @@ impl Problem {
             Problem::Local(problem) => problem.to_bytes(),
             Problem::Global(problem) => problem.to_bytes(),
         }
-    }
-}
-
-/// Lengths of v, u = r, and l.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Lengths {
-    pub v: usize,
-    pub r: usize,
-    pub l: usize,
-}
-
-/// `spacedim` of a problem group.
-pub(super) fn read_dim(tree: &Tree, group: &str) -> Result<usize, InterchangeError> {
-    let name = format!("{group}/spacedim");
-    match tree.integer(&name)? {
-        2 => Ok(2),
-        3 => Ok(3),
-        value => Err(InterchangeError::value(
-            tree.path(),
-            name,
-            0,
-            value,
-            "2 or 3",
-        )),
-    }
-}
-
-/// μ of every point.
-pub(super) fn read_friction(
-    tree: &Tree,
-    group: &str,
-    points: usize,
-) -> Result<Vec<f64>, InterchangeError> {
-    let name = format!("{group}/vectors/mu");
-    let mu = tree.reals(&name, points)?;
-    match mu.iter().position(|&mu| mu < 0.0) {
-        None => Ok(mu),
-        Some(index) => Err(InterchangeError::value(
-            tree.path(),
-            name,
-            index,
-            mu[index],
-            "0 and above",
-        )),
-    }
-}
-
-/// Number of contact points behind a vector with `dim` entries for each.
-pub(super) fn points(
-    tree: &Tree,
-    name: &str,
-    rows: usize,
-    dim: usize,
-) -> Result<usize, InterchangeError> {
-    if rows > 0 && rows.is_multiple_of(dim) {
-        return Ok(rows / dim);
-    }
-    Err(InterchangeError::Length {
-        path: tree.path().into(),
-        dataset: name.into(),
-        found: rows as u64,
-        allowed: format!("a positive multiple of spacedim = {dim}"),
-    })
-}
-
-/// Info of a problem group, empty where there is none.
-pub(super) fn read_info(tree: &Tree, group: &str) -> Result<Info, InterchangeError> {
-    let text = |part: &str| tree.text(&format!("{group}/info/{part}"));
-    if !tree.has_group(&format!("{group}/info"))? {
-        return Ok(Info::default());
-    }
-    Ok(Info {
-        title: text("title")?,
-        description: text("description")?,
-        math_info: text("math_info")?,
-    })
-}
-
-fn read_solution(tree: &Tree, group: &str, len: Lengths) -> Result<Solution, InterchangeError> {
-    let part = |name: &str, len: usize| match len {
-        0 => Ok(Vec::new()),
-        _ => tree.reals(&format!("{group}/{name}"), len),
-    };
-    Ok(Solution {
-        v: part("v", len.v)?,
-        u: part("u", len.r)?,
-        r: part("r", len.r)?,
-        l: part("l", len.l)?,
-    })
-}
-
-/// Solution and guesses of a file.
-pub(super) fn read_solutions(
-    tree: &Tree,
-    len: Lengths,
-) -> Result<(Option<Solution>, Vec<Solution>), InterchangeError> {
-    let solution = match tree.has_group("solution")? {
-        true => Some(read_solution(tree, "solution", len)?),
-        false => None,
-    };
-    let mut guesses = Vec::new();
-    if tree.has_group("guesses")? {
-        let name = "guesses/number_of_guesses";
-        let count = tree.integer(name)?;
-        if count < 0 {
-            return Err(InterchangeError::value(
-                tree.path(),
-                name,
-                0,
-                count,
-                "0 and above",
-            ));
-        }
-        for number in 1..=count {
-            guesses.push(read_solution(tree, &format!("guesses/{number}"), len)?);
-        }
-    }
-    Ok((solution, guesses))
-}
-
-pub(super) fn unwritable(what: impl Into<String>) -> InterchangeError {
-    InterchangeError::Unwritable { what: what.into() }
-}
-
-/// Refuses a part whose size does not fit the others.
-pub(super) fn check_size(
-    what: &str,
-    found: usize,
-    expected: usize,
-) -> Result<(), InterchangeError> {
-    if found == expected {
-        return Ok(());
-    }
-    Err(unwritable(format!(
-        "{what}: {found} entries, expected {expected}"
-    )))
-}
-
-pub(super) fn check_solutions<'a>(
-    solutions: impl Iterator<Item = &'a Solution>,
-    len: Lengths,
-) -> Result<(), InterchangeError> {
-    for solution in solutions {
-        check_size("solution v", solution.v.len(), len.v)?;
-        check_size("solution u", solution.u.len(), len.r)?;
-        check_size("solution r", solution.r.len(), len.r)?;
-        check_size("solution l", solution.l.len(), len.l)?;
-    }
-    Ok(())
-}
-
-pub(super) fn put_info(group: &mut GroupBuilder, info: &Info) {
-    if *info == Info::default() {
-        return;
-    }
-    subgroup(group, "info", |group| {
-        let parts = [
-            ("title", &info.title),
-            ("description", &info.description),
-            ("math_info", &info.math_info),
-        ];
-        for (name, text) in parts {
-            if let Some(text) = text {
-                put_text(group, name, text);
-            }
-        }
-    });
-}
-
-fn put_solution(group: &mut GroupBuilder, solution: &Solution) {
-    let parts = [
-        ("v", &solution.v),
-        ("u", &solution.u),
-        ("r", &solution.r),
-        ("l", &solution.l),
-    ];
-    for (name, values) in parts {
-        if !values.is_empty() {
-            put_reals(group, name, values);
-        }
-    }
-}
-
-pub(super) fn put_solutions(file: &mut Writer, solution: Option<&Solution>, guesses: &[Solution]) {
-    if let Some(solution) = solution {
-        file.group("solution", |group| put_solution(group, solution));
-    }
-    if !guesses.is_empty() {
-        file.group("guesses", |group| {
-            put_integers(group, "number_of_guesses", &[guesses.len() as i32]);
-            for (number, guess) in guesses.iter().enumerate() {
-                subgroup(group, &(number + 1).to_string(), |group| {
-                    put_solution(group, guess)
-                });
-            }
-        });
     }
 }

@@ -9,8 +9,9 @@ use stickslip_methods::{
 
 use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::model::body::Setup;
+use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey};
-use crate::run::run_case::{Choice, Progress};
+use crate::run::run_case::Progress;
 use crate::run::step::Solver;
 use crate::run::verdict::Accuracy;
 use crate::studies::exchange::{System, global_system, local_system, local_velocity};

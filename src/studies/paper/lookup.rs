@@ -1,8 +1,9 @@
 //! Cases, methods and values of the main job by name; what is missing is an error.
 
 use crate::case::{Case, CaseError, shipped};
+use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey};
-use crate::run::run_case::{Choice, RunError};
+use crate::run::run_case::RunError;
 
 /// Method that the others are compared with.
 pub const REFERENCE_METHOD: &str = "b-newton";

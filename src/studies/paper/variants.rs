@@ -2,8 +2,9 @@
 
 use stickslip_methods::METHODS;
 
+use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey, RunRow};
-use crate::run::run_case::{Choice, Progress, Settings, run_case};
+use crate::run::run_case::{Progress, Settings, run_case};
 use crate::studies::paper::lookup::{PaperError, REFERENCE_METHOD, case, choice, value};
 
 /// Case, friction coefficients, and what is compared: (quantity, at, component).

@@ -26,9 +26,10 @@ use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
 use crate::model::quantities::Snapshot;
 use crate::model::sides::Sides;
+use crate::run::choice::Choice;
 use crate::run::path::Path;
 use crate::run::record::RunKey;
-use crate::run::run_case::{Choice, Progress, RunError};
+use crate::run::run_case::{Progress, RunError};
 use crate::run::verdict::Accuracy;
 
 /// Largest errors of a patch test that counts as passed.

@@ -10,7 +10,8 @@ use super::plan::Task;
 use super::record::{Found, Origin, Record, SCHEMA};
 use super::store::{Store, StoreError};
 use super::worker::{Answer, Limits, Request, Worker, WorkerError};
-use crate::run::run_case::{Choice, Progress};
+use crate::run::choice::Choice;
+use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 
 /// How the cells are measured.

@@ -20,9 +20,10 @@ use super::statistics::Timing;
 use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
 use crate::run::attempt::{prepare, solve};
+use crate::run::choice::{Choice, ChoiceError};
 use crate::run::path::{Ended, Path};
 use crate::run::record::{RunKey, RunRow};
-use crate::run::run_case::{Choice, ChoiceError, RunError};
+use crate::run::run_case::RunError;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::convergence::{cell_size, closed_form, followed};
 

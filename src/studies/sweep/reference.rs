@@ -14,9 +14,9 @@
 use super::record::SolverError;
 use super::setup::Scene;
 use crate::model::quantities::Snapshot;
+use crate::run::choice::Choice;
 use crate::run::path::Path;
 use crate::run::record::RunKey;
-use crate::run::run_case::Choice;
 use crate::run::verdict::{Accuracy, Verdict};
 
 /// Natural map of the converged solution, three decades below the highest tier.

@@ -17,7 +17,7 @@ use super::measure::{Repeats, measure};
 use super::memory;
 use super::record::Record;
 use super::setup::Bench;
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 use crate::run::verdict::Verdict;
 
 /// One cell to measure.
