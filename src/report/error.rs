@@ -49,6 +49,14 @@ pub enum ReportError {
 }
 
 impl ReportError {
+    /// What a picture lacks for a figure.
+    pub(crate) fn field_mesh(name: &str, reason: String) -> Self {
+        Self::FieldMesh {
+            name: name.to_owned(),
+            reason,
+        }
+    }
+
     pub(crate) fn figure(figure: &'static str, reason: impl Into<String>) -> Self {
         Self::Figure {
             figure,

@@ -2,18 +2,14 @@
 
 use super::axis::Axis;
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitted, fitting_size, text_width, wrapped,
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, fitted,
+    fitting_size, text_width, wrapped,
 };
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::{Marker, Style, draw_mark, draw_marker};
 use super::{curve_direction, marks};
 use crate::report::ReportError;
-
-/// Sizes of text [pt].
-pub const LABEL_PT: f64 = 8.0;
-pub const TICK_PT: f64 = 7.0;
-pub const SMALL_PT: f64 = 6.5;
 
 const FRAME_MM: f64 = 0.2;
 const TICK_MM: f64 = 1.2;
@@ -205,7 +201,8 @@ pub fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
     }
     if let (Markers::Direction, Some(first)) = (panel.markers, places.first()) {
         let points: Vec<[f64; 2]> = first.iter().flatten().copied().collect();
-        curve_direction::draw(canvas, frame, &points);
+        let corners = [[frame.left, frame.top], [frame.right, frame.bottom]];
+        curve_direction::draw(canvas, corners, &points);
     }
 }
 

@@ -5,11 +5,12 @@
 
 use super::axis::prefixed;
 use super::bands::{Pixel, Region};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, pixel, wrapped};
-use super::chart::{SMALL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, SMALL_PT, TICK_PT, Width, caption_height, pixel, wrapped,
+};
 use super::colour::{BLACK, GREY, Rgb};
 use super::contour::{Box2, stroke};
-use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector};
 use super::opened_solid::{Lookup, OpenedSolid, Plane, dot, sum};
 use super::solid::{Deformed, Sheet, draw_triad, project};
 use super::style::{draw_marker, status_marker};
@@ -47,11 +48,12 @@ pub fn contact_status(
     let (body, crack) = (&step.body, &step.crack);
     let shape = Deformed::new(body, magnification)?;
     let displacement = point_vector(body, DISPLACEMENT)?;
-    let plane = Plane::of(crack).ok_or_else(|| unfit("crack", "no facets".into()))?;
+    let plane =
+        Plane::of(crack).ok_or_else(|| ReportError::field_mesh("crack", "no facets".into()))?;
     let parts = OpenedSolid::new(body, displacement, &shape, &plane);
     let face = Face::new(crack, &plane)?;
     let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| unfit(DISPLACEMENT, "no finite values".into()))?;
+        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
 
     let width = Width::Column.mm();
     let scale = ((width - 6.0) / shown.width()).min(75.0 / shown.height());
@@ -123,7 +125,7 @@ impl<'a> Face<'a> {
         let status = status.map(|(_, values)| values.as_slice()).unwrap_or(&[]);
         if status.len() != crack.points.len() {
             let reason = format!("{} values for {} points", status.len(), crack.points.len());
-            return Err(unfit("status", reason));
+            return Err(ReportError::field_mesh("status", reason));
         }
         let tangential = |name: &str| -> Result<Vec<[f64; 3]>, ReportError> {
             let vectors = point_vector(crack, name)?.iter();
@@ -209,7 +211,7 @@ impl<'a> Face<'a> {
             let (from, v) = (sheet.at(places[point]), self.arrows[point]);
             if dot(v, v).sqrt() >= SHORTEST * self.largest && self.largest > 0.0 {
                 let to = sheet.at(sum(places[point], unit, v));
-                draw_arrow(canvas, from, to);
+                canvas.arrow(from, to);
             }
             let (marker, filled) = status_marker(STATUS[self.status[point]].0);
             draw_marker(canvas, from, marker, filled, BLACK);
@@ -243,28 +245,11 @@ impl<'a> Face<'a> {
         }
         if self.legend_rows() > 1 {
             let y = top + LEGEND_MM;
-            draw_arrow(canvas, [left + 0.5, y], [left + 5.5, y]);
+            canvas.arrow([left + 0.5, y], [left + 5.5, y]);
             let at = [left + 7.5, y];
             canvas.text(&self.label, at, SMALL_PT, Anchor::Start, BLACK);
         }
     }
-}
-
-/// A line with a filled head.
-pub fn draw_arrow(canvas: &mut Canvas, from: [f64; 2], to: [f64; 2]) {
-    const HEAD: [f64; 2] = [1.5, 0.5];
-    let d = [to[0] - from[0], to[1] - from[1]];
-    let length = d[0].hypot(d[1]);
-    if length <= 0.0 {
-        return;
-    }
-    let [x, y] = d.map(|c| c / length);
-    // A short arrow is all head.
-    let [long, half] = HEAD.map(|c| c * (length / HEAD[0]).min(1.0));
-    let neck = [to[0] - long * x, to[1] - long * y];
-    let side = |s: f64| [neck[0] - s * half * y, neck[1] + s * half * x];
-    canvas.line(&[from, neck], BLACK, 0.25);
-    canvas.fill(&[to, side(1.0), side(-1.0)], BLACK);
 }
 
 /// Unit normal of a face on its deformed place.

@@ -2,10 +2,11 @@
 
 use super::axis::{Axis, range};
 use super::bands::{self, Pixel, Triangle, chains};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
-use super::chart::{LABEL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, TICK_PT, Width, caption_height, italic, pixel, wrapped,
+};
 use super::colour::{BLACK, LIGHT};
-use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
 use crate::model::field_mesh::{CellShape, FieldMesh};
@@ -59,11 +60,11 @@ fn contours(
 ) -> Result<String, ReportError> {
     if picture.dim != 2 {
         let reason = format!("{} dimensions, contours need 2", picture.dim);
-        return Err(unfit("picture", reason));
+        return Err(ReportError::field_mesh("picture", reason));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
     let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
-        .ok_or_else(|| unfit("points", "no finite points".into()))?;
+        .ok_or_else(|| ReportError::field_mesh("points", "no finite points".into()))?;
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
@@ -77,7 +78,10 @@ fn contours(
         .map(|(x, u)| [x[0] + factor * u[0], x[1] + factor * u[1]])
         .collect();
     let Some(deformed) = Box2::around(places.iter().copied()) else {
-        return Err(unfit(DISPLACEMENT, "no finite values".into()));
+        return Err(ReportError::field_mesh(
+            DISPLACEMENT,
+            "no finite values".into(),
+        ));
     };
     let shown = deformed.joined(&size);
     let faces = plane_faces(picture, &places)?;
@@ -267,7 +271,10 @@ fn plane_faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Face>, Re
     let mut faces = Vec::new();
     for (cell, side) in picture.cells.iter().zip(sides) {
         if let Some(point) = cell.points.iter().find(|p| **p >= places.len()) {
-            return Err(unfit("cells", format!("point {point} of {}", places.len())));
+            return Err(ReportError::field_mesh(
+                "cells",
+                format!("point {point} of {}", places.len()),
+            ));
         }
         let drawn = cell
             .points
@@ -281,7 +288,7 @@ fn plane_faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Face>, Re
         }
     }
     if faces.is_empty() {
-        return Err(unfit(
+        return Err(ReportError::field_mesh(
             "cells",
             "no triangle, polygon or quad to draw".into(),
         ));

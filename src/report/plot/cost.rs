@@ -1,8 +1,9 @@
 //! What the methods cost: iterations and solve time on every case, one lane per case.
 
 use super::axis::{Axis, range};
-use super::canvas::{Anchor, Canvas, Width, caption_height, plain, text_width, wrapped};
-use super::chart::{LABEL_PT, SMALL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, plain, text_width, wrapped,
+};
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::methods;

@@ -79,7 +79,7 @@ impl Field {
         let count = given.map_or(0, |(_, values)| values.len());
         if count != picture.cells.len() {
             let reason = format!("{count} values for {} cells", picture.cells.len());
-            return Err(unfit(VON_MISES, reason));
+            return Err(ReportError::field_mesh(VON_MISES, reason));
         }
         let stress = cell_scalar(picture, VON_MISES);
         let mut sums = vec![(0.0, 0.0); picture.points.len()];
@@ -173,7 +173,10 @@ pub fn full_caption(caption: &str, factor: f64) -> String {
 pub fn point_vector<'a>(picture: &'a FieldMesh, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
     let found = picture.point_vectors.iter().find(|(n, _)| n == name);
     let Some((_, values)) = found else {
-        return Err(unfit(name, "the picture has no such point vector".into()));
+        return Err(ReportError::field_mesh(
+            name,
+            "the picture has no such point vector".into(),
+        ));
     };
     if values.len() != picture.points.len() {
         let reason = format!(
@@ -181,17 +184,9 @@ pub fn point_vector<'a>(picture: &'a FieldMesh, name: &str) -> Result<&'a [[f64;
             values.len(),
             picture.points.len()
         );
-        return Err(unfit(name, reason));
+        return Err(ReportError::field_mesh(name, reason));
     }
     Ok(values)
-}
-
-/// What a picture lacks for a figure.
-pub fn unfit(name: &str, reason: String) -> ReportError {
-    ReportError::FieldMesh {
-        name: name.to_owned(),
-        reason,
-    }
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@
 
 use super::axis::range;
 use super::bands::{self, Triangle};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
-use super::chart::TICK_PT;
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, TICK_PT, Width, caption_height, italic, pixel, wrapped,
+};
 use super::colour::BLACK;
 use super::contour::{Box2, split, stroke};
-use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector};
 use super::outline::Weld;
 use super::surface::{self, Patch};
 use crate::model::field_mesh::FieldMesh;
@@ -84,7 +85,7 @@ fn solid(
 ) -> Result<String, ReportError> {
     let shape = Deformed::new(picture, magnification)?;
     let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| unfit(DISPLACEMENT, "no finite values".into()))?;
+        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
     let width = Width::Column.mm();
     let scale = ((width - 24.0) / shown.width()).min(70.0 / shown.height());
     let height = scale * shown.height();
@@ -133,7 +134,7 @@ impl Deformed {
     pub fn new(picture: &FieldMesh, magnification: Magnification) -> Result<Self, ReportError> {
         if picture.dim != 3 {
             let reason = format!("{} dimensions, a solid needs 3", picture.dim);
-            return Err(unfit("picture", reason));
+            return Err(ReportError::field_mesh("picture", reason));
         }
         let displacement = point_vector(picture, DISPLACEMENT)?;
         let patches = surface::boundary(picture, &Weld::new(picture, displacement))?;

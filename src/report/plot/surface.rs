@@ -3,7 +3,6 @@
 //! A cut cell comes as many tetrahedra; its faces are put together again, so that the picture shows the mesh and not the
 //! tetrahedra. Cells of one mesh cell have the same value of the cell scalar `cell`.
 
-use super::field::unfit;
 use super::outline::{Weld, cell_scalar};
 use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh};
 use crate::report::ReportError;
@@ -89,7 +88,10 @@ fn patches(picture: &FieldMesh, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportErr
         }
     }
     if cells.is_empty() {
-        return Err(unfit("cells", "no hexahedron or tetrahedron".into()));
+        return Err(ReportError::field_mesh(
+            "cells",
+            "no hexahedron or tetrahedron".into(),
+        ));
     }
     let mut patches = Vec::new();
     for members in cells.values() {
@@ -134,7 +136,10 @@ fn check(picture: &FieldMesh, index: usize, cell: &FieldCell) -> Result<bool, Re
     };
     let known = cell.points.iter().all(|p| *p < picture.points.len());
     if cell.points.len() != needed || !known {
-        return Err(unfit("cells", format!("cell {index} has wrong points")));
+        return Err(ReportError::field_mesh(
+            "cells",
+            format!("cell {index} has wrong points"),
+        ));
     }
     Ok(true)
 }
