@@ -10,8 +10,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
 use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
+use stickslip::run::registry::method;
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
-use stickslip_methods::method;
 
 const SETTINGS: Settings = Settings {
     tier: None,

@@ -28,7 +28,8 @@ use gungraun::{
     Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use stickslip::run::choice::Choice;
-use stickslip_methods::{Enforcement, METHODS, Outcome, method};
+use stickslip::run::registry::{method, methods};
+use stickslip_methods::{Enforcement, Outcome};
 
 /// A method in front of its increment.
 type Ready = (Scene, Box<dyn Enforcement>);
@@ -37,11 +38,11 @@ type Ready = (Scene, Box<dyn Enforcement>);
 fn methods() -> impl Iterator<Item = &'static str> {
     static PRINTED: Once = Once::new();
     PRINTED.call_once(|| {
-        for (number, method) in METHODS.iter().enumerate() {
+        for (number, method) in methods().iter().enumerate() {
             println!("plate_{number}, beam_{number}: {}", method.name);
         }
     });
-    METHODS.iter().map(|method| method.name)
+    methods().iter().map(|method| method.name)
 }
 
 /// Instructions only: the model of a cache says little about a machine's, and its counts change with addresses.

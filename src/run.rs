@@ -7,6 +7,7 @@ pub mod expect;
 pub mod path;
 pub mod provenance;
 pub mod record;
+pub mod registry;
 pub mod run_case;
 pub mod step;
 pub mod verdict;

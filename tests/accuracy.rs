@@ -21,7 +21,7 @@ impl Errors {
             refine: Some(refine.to_vec()),
             spaces: Some(vec![ContactSpace::Star]),
             tips: tip.map(|tip| vec![tip]),
-            choice: Choice::new(stickslip_methods::method("hybrid").unwrap(), &[]).unwrap(),
+            choice: Choice::new(stickslip::run::registry::method("hybrid").unwrap(), &[]).unwrap(),
         };
         let samples = convergence::run(case, &study, &convergence::closed_form, &Quiet).unwrap();
         let rows = samples.into_iter().map(|sample| {

@@ -9,7 +9,7 @@ use std::process::Output;
 use assert_cmd::Command;
 use common::*;
 use stickslip::case::shipped;
-use stickslip_methods::METHODS;
+use stickslip::run::registry::methods;
 
 fn stickslip(arguments: &[&str], dir: &Path) -> Output {
     let mut program = Command::cargo_bin("stickslip").unwrap();
@@ -123,7 +123,7 @@ fn list_and_show_name_every_method_and_case() {
     assert_eq!(list.status.code(), Some(0));
     assert!(list.stderr.is_empty());
     let shown = text(&list.stdout);
-    for method in METHODS {
+    for method in methods() {
         assert!(
             shown.contains(method.name) && shown.contains(method.summary),
             "{shown}"
@@ -134,7 +134,7 @@ fn list_and_show_name_every_method_and_case() {
         assert!(one.contains(method.reference), "{one}");
         for option in method.options {
             assert!(
-                one.contains(option.name) && one.contains(option.help),
+                one.contains(option.name()) && one.contains(option.help()),
                 "{one}"
             );
         }
@@ -230,7 +230,7 @@ fn run_writes_its_tables_shows_them_and_is_silent_on_standard_error() {
         );
     }
     assert!(written.keys().any(|k| k.ends_with(".vtu")));
-    for method in METHODS {
+    for method in methods() {
         assert!(shown.contains(method.name), "{shown}");
         assert!(text(&written["runs.csv"]).contains(method.name));
     }

@@ -40,7 +40,7 @@ fn plate(right: f64, tip: &str) -> Case {
 }
 
 fn study(method: &str, tips: Option<Vec<Tip>>) -> Study {
-    let method = stickslip_methods::method(method).unwrap();
+    let method = stickslip::run::registry::method(method).unwrap();
     Study {
         refine: Some(vec![1, 3, 5]),
         spaces: Some(vec![ContactSpace::EdgePairs]),

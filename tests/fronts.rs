@@ -9,8 +9,9 @@ use common::*;
 use stickslip::model::body::Body;
 use stickslip::model::errors::{Deviation, errors};
 use stickslip::model::quantities::Snapshot;
+use stickslip::run::registry::method;
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
+    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status,
 };
 use stickslip_xfem::cut::partition::Partition;
 use stickslip_xfem::geometry::{add_scaled, dot, norm};
@@ -49,7 +50,7 @@ fn measure(text: &str) -> (Body, Snapshot, Vec<Deviation>) {
     let system = Arc::new(system);
     let registered = method(METHOD).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
-    let mut enforcement = (registered.build)(&options).unwrap();
+    let mut enforcement = (registered.build)(&options);
     let (now, rows) = {
         let loading = loading(&body, &case);
         let increment = Increment {

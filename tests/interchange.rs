@@ -11,8 +11,9 @@ use stickslip::case::Case;
 use stickslip::case::shipped;
 use stickslip::files::interchange::{Problem, fclib, matrix_market};
 use stickslip::run::choice::Choice;
+use stickslip::run::registry::methods;
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
-use stickslip_methods::{METHODS, Tier};
+use stickslip_methods::Tier;
 use tempfile::TempDir;
 
 /// Largest difference of contact forces, relative to the largest, where a method takes the same steps.
@@ -45,7 +46,7 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     case.sweep.friction = vec![friction];
     case.sweep.refine.truncate(1);
     case.expects.clear();
-    let choice = Choice::new(stickslip_methods::method(method).unwrap(), &[]).unwrap();
+    let choice = Choice::new(stickslip::run::registry::method(method).unwrap(), &[]).unwrap();
     let settings = Settings {
         tier: Some(Tier::High),
         jobs: 1,
@@ -103,7 +104,7 @@ fn files_give_what_the_case_gives(name: &str, friction: f64, increment: usize) {
         OTHER_STEPS
     };
     let exact = vector_of_solution(&dir.path().join(&files[0]));
-    for method in METHODS {
+    for method in methods() {
         let expected = direct(&case, method.name, friction, increment);
         for kind in kinds {
             let problem = format!("{stem}.{kind}");

@@ -9,9 +9,8 @@ use stickslip::case::Case;
 use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::record::Results;
-use stickslip_methods::{
-    ContactState, ContactSystem, Increment, METHODS, Options, Outcome, Silent, Status,
-};
+use stickslip::run::registry::methods;
+use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
 
 /// One body, one method, increments by hand.
 struct Path {
@@ -39,8 +38,8 @@ impl Path {
     /// Solves increment `index` (from 0) of the path by a new instance of a method.
     fn step(&self, method: &str, index: usize, start: &ContactState) -> Outcome {
         let loading = loading(&self.body, &self.case);
-        let method = stickslip_methods::method(method).unwrap();
-        let mut enforcement = (method.build)(&Options::new(method.options, &[]).unwrap()).unwrap();
+        let method = stickslip::run::registry::method(method).unwrap();
+        let mut enforcement = (method.build)(&Options::new(method.options, &[]).unwrap());
         let before = if index == 0 {
             no_load(&self.body)
         } else {
@@ -81,7 +80,7 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
         }
         let path = Path::new(case);
         let increments = path.case.path.increments;
-        for method in METHODS {
+        for method in methods() {
             let mut states = vec![ContactState::zero(&path.system)];
             for index in 0..increments {
                 states.push(path.step(method.name, index, &states[index]).state);
@@ -143,7 +142,7 @@ fn a_cycle_of_the_sliding_block_dissipates_its_closed_form() {
     for name in ["sliding_block_cycle", "sliding_block_cycle_conforming"] {
         let mut case = shipped::find(name).unwrap().unwrap();
         case.expects.clear();
-        for method in METHODS.iter().filter(|m| m.exact) {
+        for method in methods().iter().filter(|m| m.exact) {
             let results = run(&case, &[method.name]);
             let at = |increment| {
                 value(
@@ -189,7 +188,11 @@ fn histories(results: &Results, quantity: &str) -> Vec<(String, Vec<f64>)> {
 /// and that is what their balance is off by. Dissipation may fall by the slip of sticking points, within tolerance too.
 #[test]
 fn energy_balances_and_friction_only_dissipates_in_every_2d_case() {
-    let exact: Vec<&str> = METHODS.iter().filter(|m| m.exact).map(|m| m.name).collect();
+    let exact: Vec<&str> = methods()
+        .iter()
+        .filter(|m| m.exact)
+        .map(|m| m.name)
+        .collect();
     let (mut increments, mut dissipating) = (0, 0);
     for (name, _) in shipped::CASES {
         let mut case = shipped::find(name).unwrap().unwrap();

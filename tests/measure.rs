@@ -64,15 +64,12 @@ impl Enforcement for Spoiled {
     }
 }
 
-fn hybrid() -> Result<Box<dyn Enforcement>, MethodError> {
-    let method = stickslip_methods::method("hybrid").unwrap();
+fn hybrid() -> Box<dyn Enforcement> {
+    let method = stickslip::run::registry::method("hybrid").unwrap();
     (method.build)(&Options::new(method.options, &[]).unwrap())
 }
 
-const fn spoiled(
-    name: &'static str,
-    build: fn(&Options) -> Result<Box<dyn Enforcement>, MethodError>,
-) -> Method {
+const fn spoiled(name: &'static str, build: fn(&Options) -> Box<dyn Enforcement>) -> Method {
     Method {
         name,
         label: name,
@@ -87,25 +84,25 @@ const fn spoiled(
 
 /// Claims to have converged with a thousandth more contact force than equilibrium asks for.
 static LIAR: Method = spoiled("liar", |_| {
-    Ok(Box::new(Spoiled {
-        inner: hybrid()?,
+    Box::new(Spoiled {
+        inner: hybrid(),
         spoil: |outcome| {
             outcome.status = Status::Converged;
             outcome.state.p.iter_mut().for_each(|p| *p *= 1.001);
         },
-    }))
+    })
 });
 
 /// Answers a little differently from the second time on: within the tolerance, but not the same bits.
 static FORGETFUL: Method = spoiled("forgetful", |_| {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
-    Ok(Box::new(Spoiled {
-        inner: hybrid()?,
+    Box::new(Spoiled {
+        inner: hybrid(),
         spoil: |outcome| {
             let calls = CALLS.fetch_add(1, Ordering::SeqCst);
             outcome.state.p[0] *= 1.0 + 1e-15 * calls as f64;
         },
-    }))
+    })
 });
 
 #[test]

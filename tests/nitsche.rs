@@ -8,10 +8,10 @@ use stickslip::case::{Case, Expect, Tolerance};
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::choice::Choice;
 use stickslip::run::record::{Results, RunKey};
+use stickslip::run::registry::method;
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
-    method,
 };
 
 const SETTINGS: Settings = Settings {
@@ -54,7 +54,7 @@ fn solve_body(
 ) -> Outcome {
     let registered = method(name).unwrap();
     let options = Options::new(registered.options, given).unwrap();
-    let mut enforcement = (registered.build)(&options).unwrap();
+    let mut enforcement = (registered.build)(&options);
     assert_eq!(enforcement.refuses(system), None);
     let increment = Increment {
         system,
@@ -379,7 +379,7 @@ fn too_little_stabilisation_is_refused_with_the_bound() {
     let refusal = |theta: f64, gamma: f64| {
         let registered = method("nitsche").unwrap();
         let options = Options::new(registered.options, &options(theta, gamma)).unwrap();
-        (registered.build)(&options).unwrap().refuses(&system)
+        (registered.build)(&options).refuses(&system)
     };
     for (theta, least) in [(1.0, "1"), (0.0, "0.25")] {
         let bound: f64 = least.parse().unwrap();

@@ -5,10 +5,10 @@ mod common;
 use common::*;
 use stickslip::case::shipped;
 use stickslip::run::record::Results;
-use stickslip_methods::METHODS;
+use stickslip::run::registry::methods;
 
 fn exact() -> Vec<&'static str> {
-    let methods = METHODS.iter().filter(|m| m.exact);
+    let methods = methods().iter().filter(|m| m.exact);
     methods.map(|m| m.name).collect()
 }
 

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use common::*;
 use stickslip::model::body::BodyError;
 use stickslip::run::record::Results;
+use stickslip::run::registry::methods;
 use stickslip::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
 use stickslip::studies::stress::random::{Kind, Specimen, Stream};
-use stickslip_methods::METHODS;
 
 const SETTINGS: Settings = Settings {
     tier: None,
@@ -24,7 +24,7 @@ const FLOOR: usize = 97;
 
 /// Methods whose limit are the contact laws.
 fn exact() -> impl Iterator<Item = &'static str> {
-    METHODS.iter().filter(|m| m.exact).map(|m| m.name)
+    methods().iter().filter(|m| m.exact).map(|m| m.name)
 }
 
 /// Largest difference of reactions of the order 1e-3 between exact methods [N/m], in 3D [N]: a natural map of 1e-9 times
@@ -95,7 +95,7 @@ fn one_solution(found: &[Answer], text: &str) -> bool {
 fn run_random(seed: u64, count: usize, kind: &Kind) -> BTreeMap<String, usize> {
     let mut stream = Stream::new(seed);
     let mut verdicts = BTreeMap::new();
-    let methods: Vec<&str> = METHODS.iter().map(|m| m.name).collect();
+    let methods: Vec<&str> = methods().iter().map(|m| m.name).collect();
     let (mut accepted, mut several) = (0, 0);
     while accepted < count {
         let text = random_case(kind, &mut stream);

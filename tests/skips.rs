@@ -5,10 +5,10 @@ mod common;
 use common::*;
 use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
-use stickslip_methods::METHODS;
+use stickslip::run::registry::methods;
 
 fn names(exact: bool) -> Vec<&'static str> {
-    let methods = METHODS.iter().filter(|m| m.exact || !exact);
+    let methods = methods().iter().filter(|m| m.exact || !exact);
     methods.map(|m| m.name).collect()
 }
 
@@ -20,7 +20,7 @@ fn one_factorisation_serves_every_friction_value_method_and_increment() {
     case.sweep.refine = vec![1, 3];
     case.path.increments = 3;
     let results = run(&case, &names(false));
-    let expected = METHODS.len() * 2 * 2 * 3;
+    let expected = methods().len() * 2 * 2 * 3;
     assert!(results.runs.len() > expected / 2, "{}", results.runs.len());
     for row in &results.runs {
         assert_eq!(row.factorisations, 1, "{:?}", row.key);
@@ -31,7 +31,7 @@ fn one_factorisation_serves_every_friction_value_method_and_increment() {
 #[test]
 fn an_open_crack_costs_one_solve_and_nothing_else() {
     let case = shipped::find("tension_open").unwrap().unwrap();
-    for method in METHODS {
+    for method in methods() {
         let results = run(&case, &[method.name]);
         assert_eq!(results.runs.len(), 1);
         let row = &results.runs[0];

@@ -6,9 +6,10 @@ use stickslip::model::body::{Body, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::run::attempt::{attempt, prepare};
 use stickslip::run::choice::Choice;
+use stickslip::run::registry::method;
 use stickslip::run::verdict::Verdict;
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier, method,
+    ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier,
 };
 
 use super::{EXACT, Problem};
@@ -87,7 +88,7 @@ impl Scene {
 
     /// A new instance of a method that has seen nothing.
     pub fn build(&self, choice: &Choice) -> Box<dyn Enforcement> {
-        (choice.method.build)(&choice.options).expect("defaults are valid")
+        (choice.method.build)(&choice.options)
     }
 
     /// Prepares a method.

@@ -23,7 +23,7 @@
 //! # Use
 //!
 //! Build an [`Elastic`] from [`ElasticParts`], a [`ContactSystem`] from it per set of friction coefficients, and an
-//! [`Increment`] per load. Any entry of [`METHODS`] solves the increment; [`residuals`] judges the answer. One point on
+//! [`Increment`] per load. Any method of a [`Registry`] solves the increment; [`residuals`] judges the answer. One point on
 //! two springs, pressed by 4 N and pulled sideways by 3 N, slips at μ = 0.5 with P_t = −2 N:
 //! ```
 //! use stickslip_methods::*;
@@ -51,8 +51,8 @@
 //!     index: 0,
 //!     tolerance: Tier::High.tolerance(),
 //! };
-//! for method in METHODS.iter().filter(|m| m.exact) {
-//!     let mut solver = (method.build)(&Options::new(method.options, &[])?)?;
+//! for method in Registry::standard().iter().filter(|m| m.exact) {
+//!     let mut solver = (method.build)(&Options::new(method.options, &[])?);
 //!     let outcome = solver.solve(&increment, &mut Silent)?;
 //!     assert_eq!(outcome.status, Status::Converged);
 //!     assert!((outcome.state.p[1] + 2.0).abs() < 1e-8);
@@ -62,116 +62,56 @@
 //! # }
 //! ```
 //!
+//! # Methods
+//!
+//! Each has a page with its equations, options, guarantees and failure modes: [`newton`], [`splitting`], [`conic`],
+//! [`own_laws`].
+//!
 //! # Add a method
 //!
-//! One file beside this one that exports `METHOD`, and two lines here: `mod` and the [`METHODS`] entry.
+//! Here: one file in the folder of its family that exports `METHOD`, and one line, its `mod` in the family's list. Elsewhere:
+//! [`Registry::with`]. A method on the condensed increment implements [`CondensedMethod`]; [`ContactProblem`] says what it is
+//! given. `splitting/nsgs.rs` and `splitting/latin.rs` are short models.
 
-pub mod problem;
+mod algebra;
+mod condensed;
+mod contract;
+mod error;
 
-mod admm;
-mod augmented_lagrangian;
-mod b_newton;
-mod barrier;
-mod hybrid;
-mod interior_point;
-mod latin;
-mod newton_ac;
-mod nitsche;
-mod nsgs;
-mod pdas;
-mod penalty;
-mod projection;
-mod socp;
-mod tresca;
+pub mod conic;
+pub mod newton;
+pub mod own_laws;
+pub mod splitting;
 
-pub use problem::law;
-pub use problem::*;
+pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
+pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
+pub use algebra::rows::RowSet;
+pub use condensed::forces::Forces;
+pub use condensed::local_form::LocalForm;
+pub use condensed::method::{CondensedMethod, End};
+pub use condensed::problem::{Check, ContactProblem, Limits};
+pub use condensed::starts::{Start, Uniqueness, from_all_starts};
+pub use condensed::uniqueness::contact_wise_margin;
+pub use contract::elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use contract::judge::{Residuals, consistency, residuals, residuals_of};
+pub use contract::law;
+pub use contract::operator::{ContactOperator, DelassusForm};
+pub use contract::options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};
+pub use contract::point_status::{PointStatus, point_status};
+pub use contract::registry::{Enforcement, Method, NameTaken, Needs, Registry};
+pub use contract::state::{
+    Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status,
+};
+pub use contract::system::{ContactSystem, Increment, Load};
+pub use contract::tier::{Tier, UnknownTier};
+pub use error::MethodError;
 
-/// A method of enforcing the contact laws.
-///
-/// It may keep factorisations between calls, never history: the same increment twice gives the same bits.
-pub trait Enforcement: Send {
-    /// Why the method cannot treat this system; `None` if it can.
-    fn refuses(&self, _system: &ContactSystem) -> Option<String> {
-        None
-    }
-
-    /// Whether the method works with the stress at the contact points, [`ElasticParts::traction`].
-    fn needs_traction(&self) -> bool {
-        false
-    }
-
-    /// Factors what any load needs: K. `solve` does it if it was not done before. The condensation to the contact
-    /// points waits for the first load that closes the contact, because an open crack does not need it;
-    /// [`ContactSystem::condense`] brings it forward, [`Elastic::timings`] tells its time apart.
-    ///
-    /// # Errors
-    /// Input that no method could treat; see [`MethodError`].
-    fn prepare(&mut self, system: &ContactSystem) -> Result<(), MethodError>;
-
-    /// Solves one increment. Failure to converge is a [`Status`].
-    ///
-    /// # Errors
-    /// Input that no method could treat; see [`MethodError`].
-    fn solve(
-        &mut self,
-        increment: &Increment<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, MethodError>;
-}
-
-/// A registered method.
-#[derive(Debug, Clone, Copy)]
-pub struct Method {
-    /// Name on the command line and in tables.
-    pub name: &'static str,
-    /// Name in plots.
-    pub label: &'static str,
-    /// Where it was published.
-    pub reference: &'static str,
-    /// What it does, in one sentence.
-    pub summary: &'static str,
-    /// Whether its limit is the solution of the contact laws; otherwise a parameter is a modelling error.
-    pub exact: bool,
-    /// Options it takes.
-    pub options: &'static [OptionSpec],
-    /// Its own file, whose head is its page; see [`page`](Method::page).
-    pub source: &'static str,
-    /// Makes an instance.
-    pub build: fn(&Options) -> Result<Box<dyn Enforcement>, MethodError>,
-}
-
-impl Method {
-    /// What there is to know about the method, in Markdown: equations, options, guarantees, failure modes, what it skips.
-    /// It is the documentation at the head of the method's file, so that there is one text.
-    pub fn page(&self) -> String {
-        let head = self.source.lines().map_while(|l| l.strip_prefix("//!"));
-        let lines: Vec<&str> = head.map(|l| l.strip_prefix(' ').unwrap_or(l)).collect();
-        lines.join("\n") + "\n"
+impl Registry {
+    /// The methods of this package: Newton methods, multiplier and splitting methods, sweeps, fixed points, and those that
+    /// solve laws of their own. A file of a family that exports `METHOD` is listed by its `mod` line, see `build.rs`.
+    pub fn standard() -> Self {
+        STANDARD.iter().copied().collect()
     }
 }
 
-/// All methods: Newton methods, the interior point, multiplier and splitting methods, sweeps, fixed points, and those that
-/// solve laws of their own.
-pub static METHODS: &[&Method] = &[
-    &b_newton::METHOD,
-    &newton_ac::METHOD,
-    &pdas::METHOD,
-    &hybrid::METHOD,
-    &interior_point::METHOD,
-    &augmented_lagrangian::METHOD,
-    &latin::METHOD,
-    &admm::METHOD,
-    &nsgs::METHOD,
-    &projection::METHOD,
-    &socp::METHOD,
-    &tresca::METHOD,
-    &penalty::METHOD,
-    &barrier::METHOD,
-    &nitsche::METHOD,
-];
-
-/// The method of that name.
-pub fn method(name: &str) -> Option<&'static Method> {
-    METHODS.iter().copied().find(|m| m.name == name)
-}
+include!(concat!(env!("OUT_DIR"), "/standard.rs"));

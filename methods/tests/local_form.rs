@@ -68,7 +68,7 @@ fn a_body_known_by_it_alone_has_the_same_contact_forces() {
         // Every other point without friction, and a start that has slipped already.
         let s = ContactSystem::new(body, vec![0.4, 0.0, 0.7, 0.0]).unwrap();
         let first = force(&s, &rng.vector(k.len()));
-        let start = run(METHODS[0], &[], &s, &first, 1e-9).state;
+        let start = run(method("b-newton").unwrap(), &[], &s, &first, 1e-9).state;
         let load = force(&s, &rng.vector(k.len()));
         for method in exact() {
             let (_, direct, local) = both(&increment(&s, &load, &first, &start, 1e-10), method);

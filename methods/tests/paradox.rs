@@ -238,9 +238,9 @@ fn without_a_solution_no_start_of_any_method_ends_in_a_claim() {
         let limit = m
             .options
             .iter()
-            .find(|o| o.name.starts_with("max_"))
+            .find(|o| o.name().starts_with("max_"))
             .unwrap();
-        let mut method = build(m, &[(limit.name, limit.default.min(200.0))]);
+        let mut method = build(m, &[(limit.name(), limit.default().number().min(200.0))]);
         let (verdict, _) = from_all_starts(method.as_mut(), &i).unwrap();
         println!("{:<22} {}", m.name, verdict.as_str());
         let Uniqueness::Failed(status) = verdict else {

@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use stickslip_methods::METHODS;
-
 use super::error::CliError;
 use crate::case::{self, Case, shipped};
 use crate::run::choice::Choice;
 use crate::run::provenance::Provenance;
+use crate::run::registry::methods;
 use crate::run::run_case::Settings;
 
 /// A case by file, or by the name of a shipped one.
@@ -35,7 +34,7 @@ pub fn find_case(name: &str) -> Result<Case, CliError> {
 /// The methods named, or all of them with their defaults.
 pub fn methods_or_all(named: &[String]) -> Result<Vec<Choice>, CliError> {
     if named.is_empty() {
-        let all = METHODS.iter().map(|method| Choice::parse(method.name));
+        let all = methods().iter().map(|method| Choice::parse(method.name));
         return Ok(all.collect::<Result<_, _>>()?);
     }
     let chosen = named.iter().map(|argument| Choice::parse(argument));

@@ -3,7 +3,8 @@
 //! The text is the documentation at the head of each method's file, the options are those the method declares: one
 //! source for the code, the command line and the manual.
 
-use stickslip_methods::{METHODS, Method};
+use crate::run::registry::methods;
+use stickslip_methods::Method;
 
 /// The page of one method in Markdown.
 pub fn page(method: &Method) -> String {
@@ -26,16 +27,14 @@ pub fn page(method: &Method) -> String {
         text += line;
         text += "\n";
     }
-    text +=
-        "\n| option | default | allowed | unit | meaning |\n| :--- | :--- | :--- | :--- | :--- |\n";
+    text += "\n| option | default | allowed | meaning |\n| :--- | :--- | :--- | :--- |\n";
     for option in method.options {
         text += &format!(
-            "| `{}` | {} | {} | {} | {} |\n",
-            option.name,
-            option.default,
+            "| `{}` | {} | {} | {} |\n",
+            option.name(),
+            option.default(),
             option.allowed(),
-            option.unit,
-            option.help
+            option.help()
         );
     }
     text
@@ -49,7 +48,7 @@ pub fn all() -> String {
          v = (g, d) = q + W P + Q β,   Qᵀ P = c\n```\n\nwith W the Delassus operator, q the jump without contact forces, and \
          Q the jumps of rigid motions where the body floats.\n\n| method | laws | what it does |\n| :--- | :--- | :--- |\n",
     );
-    for method in METHODS {
+    for method in methods() {
         let laws = if method.exact {
             "contact laws"
         } else {
@@ -60,7 +59,7 @@ pub fn all() -> String {
             method.name, method.summary
         );
     }
-    for method in METHODS {
+    for method in methods() {
         text += &format!("\n<a id=\"{}\"></a>\n\n{}", method.name, page(method));
     }
     text

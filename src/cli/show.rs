@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use stickslip_methods::METHODS;
 use stickslip_xfem::exact::SOLUTIONS;
 
 use super::error::CliError;
 use super::method_manual;
 use super::output::say;
 use crate::case::{self, shipped};
+use crate::run::registry::{method, methods};
 
 /// Arguments of `stickslip show`.
 #[derive(Debug, clap::Args)]
@@ -31,7 +31,7 @@ pub fn run(Arguments { name }: Arguments) -> Result<bool, CliError> {
 
 fn list_text() -> String {
     let mut text = String::from("Methods\n");
-    for method in METHODS {
+    for method in methods() {
         text += &format!("  {:<22} {}\n", method.name, method.summary);
     }
     text += "\nCases\n";
@@ -68,10 +68,10 @@ fn show_text(name: &str) -> Result<String, CliError> {
     if Path::new(name).exists() {
         return Ok(case::read(name)?.source);
     }
-    let method = stickslip_methods::method(name).ok_or_else(|| CliError::Unknown {
+    let method = method(name).ok_or_else(|| CliError::Unknown {
         what: "method or case",
         name: name.into(),
-        known: METHODS
+        known: methods()
             .iter()
             .map(|m| m.name)
             .chain(shipped::CASES.iter().map(|c| c.0))

@@ -52,7 +52,7 @@ pub fn prepare(
     system: &ContactSystem,
 ) -> Result<(Box<dyn Enforcement>, f64), Verdict> {
     let crashed = |e: MethodError| Verdict::failed(e.to_string());
-    let mut method = (choice.method.build)(&choice.options).map_err(crashed)?;
+    let mut method = (choice.method.build)(&choice.options);
     if let Some(reason) = method.refuses(system) {
         return Err(Verdict::Refused(reason));
     }

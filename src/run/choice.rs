@@ -3,6 +3,7 @@
 use stickslip_methods::{Method, OptionError, Options};
 
 use crate::case::{Case, CaseError, MethodSpec};
+use crate::run::registry::{method, methods};
 
 /// A method with its options.
 #[derive(Debug, Clone)]
@@ -36,7 +37,7 @@ impl Choice {
     /// [`ChoiceError`].
     pub fn parse(argument: &str) -> Result<Self, ChoiceError> {
         let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
-        let method = stickslip_methods::method(name).ok_or_else(|| ChoiceError::Unknown {
+        let method = method(name).ok_or_else(|| ChoiceError::Unknown {
             name: name.into(),
             known: method_names(),
         })?;
@@ -67,29 +68,28 @@ impl Choice {
 
     /// Whether the method asks for the traction operator.
     pub fn needs_traction(&self) -> bool {
-        // A method that cannot be built is reported by its run.
-        (self.method.build)(&self.options).is_ok_and(|method| method.needs_traction())
+        (self.method.build)(&self.options).needs().traction
     }
 
     /// Every registered method with its defaults.
     pub fn all() -> Result<Vec<Self>, OptionError> {
-        let all = stickslip_methods::METHODS.iter();
+        let all = methods().iter();
         all.map(|method| Choice::new(method, &[])).collect()
     }
 }
 
 /// The options that differ from their defaults, in the order of the method: the same settings give the same text.
 fn changed(options: &Options) -> String {
-    let changed = options.iter().filter(|(spec, v)| *v != spec.default);
+    let changed = options.iter().filter(|(spec, v)| *v != spec.default());
     let changed: Vec<String> = changed
-        .map(|(spec, value)| format!("{}={value:e}", spec.name))
+        .map(|(spec, value)| format!("{}={value:e}", spec.name()))
         .collect();
     changed.join(",")
 }
 
 /// Names of all methods, separated by commas.
 pub fn method_names() -> String {
-    let names = stickslip_methods::METHODS.iter().map(|m| m.name);
+    let names = methods().iter().map(|m| m.name);
     names.collect::<Vec<_>>().join(", ")
 }
 
@@ -136,7 +136,7 @@ pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> 
     case.methods
         .iter()
         .map(|spec| {
-            let Some(method) = stickslip_methods::method(&spec.name) else {
+            let Some(method) = method(&spec.name) else {
                 return Err(case.error(&spec.span, &spec.name, method_names(), "unknown method"));
             };
             Choice::new(method, &spec.options).map_err(|e| option_error(case, spec, &e))

@@ -70,7 +70,7 @@ impl<'a> Solver<'a> {
         run.factorisations = system.elastic().counters().factorisations;
         run.factorisation_s = shared.analysis_s + shared.factorisation_s;
         run.condensation_s = shared.condensation_s;
-        if self.method.needs_traction() {
+        if self.method.needs().traction {
             run.condensation_s += shared.traction_s;
         }
         run.solve_s = tried.solve_s;

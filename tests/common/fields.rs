@@ -7,8 +7,9 @@ use nalgebra::Complex;
 use stickslip::case::Amount;
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::quantities::Snapshot;
+use stickslip::run::registry::method;
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status, method,
+    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status,
 };
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::cut::crack::Geometry;
@@ -163,7 +164,7 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
         Arc::new(ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap());
     let registered = method(METHOD).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
-    let mut enforcement = (registered.build)(&options).unwrap();
+    let mut enforcement = (registered.build)(&options);
     let held = loading(&body, &case);
     let increment = Increment {
         system: &system,

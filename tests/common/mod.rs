@@ -13,9 +13,10 @@ use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
+use stickslip::run::registry::method;
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, method,
+    ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status,
 };
 
 /// A method whose limit are the contact laws and that ends in round-off: the default where the method does not matter.
@@ -137,7 +138,7 @@ pub fn solve_case(case: &Case, refine: usize, name: &str, tolerance: f64) -> Sol
     let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).unwrap());
     let registered = method(name).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
-    let mut enforcement = (registered.build)(&options).unwrap();
+    let mut enforcement = (registered.build)(&options);
     let loading = loading(&body, case);
     let last = case.path.increments;
     let increment = Increment {

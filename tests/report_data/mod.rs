@@ -31,7 +31,7 @@ pub fn key(method: &str, friction: f64) -> RunKey {
 /// Rows of all methods of the registry for one friction coefficient.
 pub fn results_of_all_methods() -> Results {
     let mut results = Results::default();
-    for method in stickslip_methods::METHODS.iter().rev() {
+    for method in stickslip::run::registry::methods().iter().rev() {
         add_run(&mut results, key(method.name, 0.1));
     }
     results
@@ -136,7 +136,7 @@ fn add_run(results: &mut Results, key: RunKey) {
 pub fn rates() -> Vec<RobustnessRow> {
     let mut rows = Vec::new();
     for dimension in [2, 3] {
-        for (index, method) in stickslip_methods::METHODS.iter().enumerate() {
+        for (index, method) in stickslip::run::registry::methods().iter().enumerate() {
             for (class, friction) in [0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0].into_iter().enumerate() {
                 let rate = match (index + class) % 8 {
                     _ if dimension == 2 && method.name == "latin" => f64::NAN,

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use stickslip_methods::METHODS;
+use crate::run::registry::methods;
 
 use crate::report::sweep::*;
 use crate::studies::sweep::analysis::support::{lying, record, timed};
@@ -25,7 +25,7 @@ pub fn study() -> Vec<Record> {
     for (case, meshes, dim) in problems {
         for refine in meshes {
             for mu in [0.0, 0.3] {
-                for (index, method) in METHODS.iter().enumerate() {
+                for (index, method) in methods().iter().enumerate() {
                     for exponent in [2, 3, 6, 9, 10] {
                         let tolerance = 10f64.powi(-exponent);
                         let cell = cell(case, *refine, dim, mu, method.name, tolerance, index);

@@ -3,6 +3,7 @@
 use crate::case::{Case, CaseError, shipped};
 use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey};
+use crate::run::registry::method;
 use crate::run::run_case::RunError;
 
 /// Method that the others are compared with.
@@ -45,7 +46,7 @@ pub fn case(name: &str) -> Result<Case, PaperError> {
 /// One that this program was built without.
 pub fn choice(name: &str, options: &[(String, f64)]) -> Result<Choice, PaperError> {
     let missing = || PaperError::Missing(format!("method {name}"));
-    let method = stickslip_methods::method(name).ok_or_else(missing)?;
+    let method = method(name).ok_or_else(missing)?;
     Choice::new(method, options).map_err(|e| PaperError::Missing(format!("{name}: {e}")))
 }
 

@@ -3,9 +3,8 @@
 //! Table 1: vertical reaction at the top of the plate. Table 2: displacement of seven points of the beam. Lines with the
 //! method [`PRINTED`] carry the printed numbers.
 
-use stickslip_methods::METHODS;
-
 use crate::run::record::{Results, RunKey};
+use crate::run::registry::methods;
 use crate::studies::paper::lookup::{PaperError, value, verdict};
 
 /// Printed numbers.
@@ -202,7 +201,7 @@ fn probe_row(results: &Results, key: impl Fn(&RunKey) -> bool, component: &str) 
 /// Largest difference between the two models of the beam over points, components, friction values and exact methods.
 pub fn beam_difference(results: &Results) -> f64 {
     let mut largest: f64 = 0.0;
-    for method in METHODS.iter().filter(|m| m.exact) {
+    for method in methods().iter().filter(|m| m.exact) {
         for (_, friction) in VARIANTS {
             for component in ["x", "y", "z"] {
                 let of = |case: &str| {

@@ -1,6 +1,6 @@
 //! The paper's plate and beam by every method and its variants: one table.
 
-use stickslip_methods::METHODS;
+use crate::run::registry::methods;
 
 use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey, RunRow};
@@ -70,7 +70,7 @@ pub fn variant_rows(
         for &friction in frictions {
             let reference = value_of(results, name, friction, REFERENCE_METHOD, quantity);
             let row = |of, method| row(of, name, friction, method, quantity, reference);
-            rows.extend(METHODS.iter().map(|m| row(results, m.name)));
+            rows.extend(methods().iter().map(|m| row(results, m.name)));
             rows.extend(choices.iter().map(|c| row(&swept, &c.label)));
         }
     }
@@ -79,9 +79,9 @@ pub fn variant_rows(
 
 /// Every method that has a monolithic variant by it, then `VARIANTS`.
 fn variants() -> Result<Vec<Choice>, PaperError> {
-    let whole = METHODS
+    let whole = methods()
         .iter()
-        .filter(|m| m.options.iter().any(|o| o.name == MONOLITHIC))
+        .filter(|m| m.options.iter().any(|o| o.name() == MONOLITHIC))
         .map(|m| (m.name, MONOLITHIC, 1.0));
     whole
         .chain(VARIANTS)
@@ -140,8 +140,8 @@ mod tests {
     #[test]
     fn every_method_with_a_monolithic_variant_is_run_by_it() {
         let labels: Vec<String> = (variants().unwrap().into_iter()).map(|c| c.label).collect();
-        for method in METHODS {
-            let has = method.options.iter().any(|o| o.name == "monolithic");
+        for method in methods() {
+            let has = method.options.iter().any(|o| o.name() == "monolithic");
             let label = format!("{}[monolithic=1e0]", method.name);
             assert_eq!(labels.contains(&label), has, "{label}: {labels:?}");
         }

@@ -19,7 +19,8 @@ pub mod test_set;
 
 use std::cmp::Ordering;
 
-use stickslip_methods::{METHODS, Tier};
+use crate::run::registry::methods;
+use stickslip_methods::Tier;
 
 use super::cell::{Cell, Problem};
 use super::record::{Record, Spent};
@@ -126,8 +127,8 @@ pub fn method_name(cell: &Cell) -> &str {
 pub fn compare_methods(a: &str, b: &str) -> Ordering {
     let place = |label: &str| {
         let name = label.split([':', '[']).next().unwrap_or(label);
-        let known = METHODS.iter().position(|method| method.name == name);
-        known.unwrap_or(METHODS.len())
+        let known = methods().iter().position(|method| method.name == name);
+        known.unwrap_or(methods().len())
     };
     place(a).cmp(&place(b)).then_with(|| a.cmp(b))
 }

@@ -17,7 +17,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use stickslip_methods::{METHODS, Tier};
+use crate::run::registry::methods;
+use stickslip_methods::Tier;
 
 use super::cell::{Cell, digest};
 use super::measure::Repeats;
@@ -250,7 +251,7 @@ fn block(value: Value<'_>, folder: &Path) -> Result<Block, CaseError> {
             .transpose()?,
         methods: match optional("methods") {
             Some(list) => entries(list, method)?,
-            None => METHODS.iter().map(|m| m.name.to_owned()).collect(),
+            None => methods().iter().map(|m| m.name.to_owned()).collect(),
         },
         tolerances: match optional("tolerances") {
             Some(list) => entries(list, |v| {

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_methods::METHODS;
+use crate::run::registry::methods;
 
 use super::{compare_methods, has_defaults, is_honest, method_name, method_time, published_times};
 use crate::studies::sweep::cell::Problem;
@@ -175,11 +175,11 @@ fn options(method: &str) -> Vec<(String, f64)> {
     let given: Vec<(&str, f64)> = pairs
         .filter_map(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)))
         .collect();
-    let known = METHODS.iter().find(|m| m.name == name);
+    let known = methods().iter().find(|m| m.name == name);
     let mut all: Vec<(String, f64)> = known
         .map_or(&[][..], |m| m.options)
         .iter()
-        .map(|spec| (spec.name.to_owned(), spec.default))
+        .map(|spec| (spec.name().to_owned(), spec.default().number()))
         .collect();
     for (name, value) in given {
         match all.iter_mut().find(|(option, _)| option == name) {
@@ -191,9 +191,9 @@ fn options(method: &str) -> Vec<(String, f64)> {
 }
 
 fn default(method: &str, option: &str) -> Option<f64> {
-    let method = METHODS.iter().find(|m| m.name == method)?;
-    let spec = method.options.iter().find(|spec| spec.name == option)?;
-    Some(spec.default)
+    let method = methods().iter().find(|m| m.name == method)?;
+    let spec = method.options.iter().find(|spec| spec.name() == option)?;
+    Some(spec.default().number())
 }
 
 #[cfg(test)]

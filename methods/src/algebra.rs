@@ -1,0 +1,11 @@
+//! Linear algebra below the contact problem: matrices, the factored stiffness, the Delassus operator, rigid motions.
+
+pub(crate) mod delassus;
+pub(crate) mod dense;
+pub(crate) mod factor;
+pub(crate) mod floating;
+pub mod matrix;
+pub(crate) mod ordering;
+pub(crate) mod rows;
+pub(crate) mod spectrum;
+pub(crate) mod stiffness;

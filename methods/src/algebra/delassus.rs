@@ -1,0 +1,452 @@
+//! The Delassus operator W = B K⁻¹ Bᵀ: what it can be asked, and how it follows from the factor of K.
+//!
+//! With D K D = L Lᵀ and the contact unknowns C eliminated last,
+//! ```text
+//! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
+//! ```
+//! Row i of B touches few unknowns, so column i of Y is zero above the first of them. Columns are therefore sorted by
+//! their first non-zero and both the triangular solve and the product skip the leading zeros.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, Par};
+
+use crate::MethodError;
+use crate::algebra::dense::mul_add;
+use crate::algebra::factor::Factor;
+use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+
+/// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
+pub const MAX_CONDENSED_ROWS: usize = 12_000;
+/// Columns of W handled together: wide enough for fast products, narrow enough to skip zeros.
+const PANEL: usize = 128;
+/// Columns of Y solved for together: whether W is formed or only its diagonal is wanted, so that both see the same bits.
+const SOLVED_TOGETHER: usize = 512;
+
+/// The Delassus operator on the contact rows in use, symmetric positive semi-definite, in m/N (2D: m²/N). How it is held
+/// is the business of the implementation alone.
+pub trait Delassus: Send + Sync {
+    /// Number of contact rows.
+    fn rows(&self) -> usize;
+
+    /// v += W p.
+    fn apply_add(&self, p: &[f64], v: &mut [f64]);
+
+    /// Diagonal entries, the compliance of every row.
+    fn diagonal(&self) -> &[f64];
+
+    /// Column k, borrowed where it is held, else computed into `work`.
+    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64];
+
+    /// Whether the matrix is held, so that columns cost nothing.
+    fn formed(&self) -> bool;
+
+    /// Sum of the diagonal.
+    fn trace(&self) -> f64 {
+        self.diagonal().iter().sum()
+    }
+
+    /// Entries between the (at most three) rows of one point.
+    fn block(&self, rows: std::ops::Range<usize>) -> [[f64; 3]; 3] {
+        let (mut block, mut work) = ([[0.0; 3]; 3], Vec::new());
+        for (l, column) in rows.clone().enumerate() {
+            let column = self.column(column, &mut work);
+            for (k, row) in rows.clone().enumerate() {
+                block[k][l] = column[row];
+            }
+        }
+        block
+    }
+
+    /// The whole matrix with f applied to every entry (row, column, W_ij).
+    fn map(&self, f: &dyn Fn(usize, usize, f64) -> f64) -> Mat<f64> {
+        let (m, mut work) = (self.rows(), Vec::new());
+        let mut mapped = Mat::zeros(m, m);
+        for j in 0..m {
+            let column = self.column(j, &mut work);
+            for (i, (to, from)) in mapped
+                .col_as_slice_mut(j)
+                .iter_mut()
+                .zip(column)
+                .enumerate()
+            {
+                *to = f(i, j, *from);
+            }
+        }
+        mapped
+    }
+}
+
+/// W held as a full matrix.
+pub(crate) struct Dense {
+    w: Mat<f64>,
+    diagonal: Vec<f64>,
+}
+
+impl Dense {
+    pub fn new(w: Mat<f64>) -> Self {
+        let diagonal = (0..w.nrows()).map(|k| w[(k, k)]).collect();
+        Self { w, diagonal }
+    }
+
+    /// The block of some of the rows.
+    pub fn select(&self, at: &[usize]) -> Self {
+        Self::new(Mat::from_fn(at.len(), at.len(), |i, j| {
+            self.w[(at[i], at[j])]
+        }))
+    }
+
+    /// The lower triangle, every entry stored.
+    pub fn lower(&self) -> Result<SymmetricMatrix, MethodError> {
+        let m = self.w.nrows();
+        let mut col_ptr = vec![0];
+        let (mut row_idx, mut values) = (Vec::new(), Vec::new());
+        for j in 0..m {
+            row_idx.extend(j..m);
+            values.extend(&self.w.col_as_slice(j)[j..]);
+            col_ptr.push(values.len());
+        }
+        SymmetricMatrix::new(m, col_ptr, row_idx, values)
+    }
+}
+
+impl Delassus for Dense {
+    fn rows(&self) -> usize {
+        self.w.nrows()
+    }
+
+    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
+        mul_add(&self.w, p, v);
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn column<'a>(&'a self, k: usize, _: &'a mut Vec<f64>) -> &'a [f64] {
+        self.w.col_as_slice(k)
+    }
+
+    fn formed(&self) -> bool {
+        true
+    }
+}
+
+/// W for the listed rows of B, full (both triangles), exactly symmetric, and the squared columns of Y: the diagonal of W
+/// as [`diagonal`] gives it.
+pub(crate) fn condense(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+    let m = rows.len();
+    check_rows(m)?;
+    let half = Half::new(factor, jump, rows);
+    let c = half.height();
+    let mut y = Mat::<f64>::zeros(c, m);
+    let squares = half.squares(|begin, panel| {
+        let width = panel.ncols();
+        y.as_mut().subcols_mut(begin, width).copy_from(panel);
+    })?;
+
+    // Wₛ = Yᵀ Y in sorted numbering, lower block triangle.
+    let mut w = Mat::<f64>::zeros(m, m);
+    for begin in (0..m).step_by(PANEL) {
+        let end = (begin + PANEL).min(m);
+        let top = half.first[begin].min(c);
+        matmul(
+            w.as_mut().submatrix_mut(begin, 0, end - begin, end),
+            Accum::Replace,
+            y.as_ref()
+                .submatrix(top, begin, c - top, end - begin)
+                .transpose(),
+            y.as_ref().submatrix(top, 0, c - top, end),
+            1.0,
+            Par::Seq,
+        );
+    }
+    // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
+    let mut position = vec![0; m];
+    for (s, &i) in half.sorted.iter().enumerate() {
+        position[i] = s;
+    }
+    let w = Mat::from_fn(m, m, |i, j| {
+        let (a, b) = (position[i], position[j]);
+        w[(a.max(b), a.min(b))]
+    });
+    Ok((w, squares))
+}
+
+/// The diagonal of W for the listed rows of B, a panel of Y in memory at a time.
+pub(crate) fn diagonal(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+) -> Result<Vec<f64>, MethodError> {
+    Half::new(factor, jump, rows).squares(|_, _| {})
+}
+
+/// W given as a sparse matrix, full.
+pub(crate) fn dense(sparse: &SymmetricMatrix) -> Result<Mat<f64>, MethodError> {
+    let m = sparse.size();
+    check_rows(m)?;
+    let mut w = Mat::<f64>::zeros(m, m);
+    for j in 0..m {
+        for k in sparse.col_ptr()[j]..sparse.col_ptr()[j + 1] {
+            let (i, value) = (sparse.row_idx()[k], sparse.values()[k]);
+            w[(i, j)] = value;
+            w[(j, i)] = value;
+        }
+    }
+    Ok(w)
+}
+
+fn check_rows(rows: usize) -> Result<(), MethodError> {
+    if rows > MAX_CONDENSED_ROWS {
+        return Err(MethodError::TooManyRows {
+            rows,
+            limit: MAX_CONDENSED_ROWS,
+        });
+    }
+    Ok(())
+}
+
+/// Y with columns sorted by first non-zero, solved for panel by panel.
+struct Half<'a> {
+    factor: &'a Factor,
+    /// Entries of (D B_c)ᵀ by sorted column: position within the contact unknowns, value.
+    entries: Vec<Vec<(usize, f64)>>,
+    /// First non-zero of each sorted column.
+    first: Vec<usize>,
+    /// Original column of each sorted one.
+    sorted: Vec<usize>,
+}
+
+impl<'a> Half<'a> {
+    fn new(factor: &'a Factor, jump: &JumpOperator, rows: &[usize]) -> Self {
+        let begin = factor.ordering.contact_begin;
+        let c = factor.scale.len() - begin;
+        let mut pinned = vec![false; factor.scale.len()];
+        for &pin in &factor.pins {
+            pinned[pin] = true;
+        }
+        // Pinned unknowns do not move, so they carry no part of the jump.
+        let entries = |i: usize| -> Vec<(usize, f64)> {
+            jump.row(i)
+                .filter(|&(j, b)| b != 0.0 && !pinned[j])
+                .map(|(j, b)| (factor.ordering.inverse[j] - begin, b * factor.scale[j]))
+                .collect()
+        };
+        let unsorted: Vec<Vec<(usize, f64)>> = rows.iter().map(|&i| entries(i)).collect();
+        let first_of = |k: usize| unsorted[k].iter().map(|e| e.0).min().unwrap_or(c);
+        let mut sorted: Vec<usize> = (0..rows.len()).collect();
+        sorted.sort_by_key(|&k| (first_of(k), k));
+        Self {
+            factor,
+            first: sorted.iter().map(|&k| first_of(k)).collect(),
+            entries: sorted.iter().map(|&k| unsorted[k].clone()).collect(),
+            sorted,
+        }
+    }
+
+    /// Number of contact unknowns.
+    fn height(&self) -> usize {
+        self.factor.scale.len() - self.factor.ordering.contact_begin
+    }
+
+    /// |y_k|² by original column, by the same product as W; `each` sees every solved panel with its first sorted column.
+    fn squares(
+        &self,
+        mut each: impl FnMut(usize, faer::MatRef<'_, f64>),
+    ) -> Result<Vec<f64>, MethodError> {
+        let m = self.sorted.len();
+        let mut squares = vec![0.0; m];
+        for begin in (0..m).step_by(SOLVED_TOGETHER) {
+            let columns = begin..(begin + SOLVED_TOGETHER).min(m);
+            let mut y = Mat::<f64>::zeros(self.height(), columns.len());
+            for (k, entries) in self.entries[columns.clone()].iter().enumerate() {
+                entries
+                    .iter()
+                    .for_each(|&(row, value)| y[(row, k)] += value);
+            }
+            forward_solve(self.factor, y.as_mut(), &self.first[columns.clone()])?;
+            for own in (0..columns.len()).step_by(PANEL) {
+                let width = PANEL.min(columns.len() - own);
+                let top = self.first[begin + own].min(y.nrows());
+                let y = y.as_ref().submatrix(top, own, y.nrows() - top, width);
+                let mut block = Mat::<f64>::zeros(width, width);
+                let product = block.as_mut();
+                matmul(product, Accum::Replace, y.transpose(), y, 1.0, Par::Seq);
+                for k in 0..width {
+                    squares[self.sorted[begin + own + k]] = block[(k, k)];
+                }
+            }
+            each(begin, y.as_ref());
+        }
+        Ok(squares)
+    }
+}
+
+/// y <- L_cc⁻¹ y, supernode by supernode, in panels; column j is zero above `first[j]` (increasing in j).
+fn forward_solve(
+    factor: &Factor,
+    mut y: MatMut<'_, f64>,
+    first: &[usize],
+) -> Result<(), MethodError> {
+    let l = factor.supernodes()?;
+    let begin = factor.ordering.contact_begin;
+    for s in 0..factor.supernode_count() {
+        let node = l.supernode(s);
+        let (block, start) = (node.val(), node.start());
+        let own = block.ncols();
+        // A supernode may straddle the boundary: its leading columns belong to eliminated unknowns.
+        let mut a = begin.saturating_sub(start);
+        while a < own {
+            let b = (a + PANEL).min(own);
+            let row = start + a - begin;
+            let columns = first.partition_point(|&f| f < row + (b - a));
+            if columns > 0 {
+                let (top, rest) = y
+                    .as_mut()
+                    .subcols_mut(0, columns)
+                    .split_at_row_mut(row + (b - a));
+                let mut top = top.subrows_mut(row, b - a);
+                solve_lower_triangular_in_place(
+                    block.submatrix(a, a, b - a, b - a),
+                    top.as_mut(),
+                    Par::Seq,
+                );
+                let (mut below, mut far) = rest.split_at_row_mut(own - b);
+                matmul(
+                    below.as_mut(),
+                    Accum::Add,
+                    block.submatrix(b, a, own - b, b - a),
+                    top.as_ref(),
+                    -1.0,
+                    Par::Seq,
+                );
+                let pattern = node.pattern();
+                if !pattern.is_empty() {
+                    let mut update = Mat::<f64>::zeros(pattern.len(), columns);
+                    matmul(
+                        update.as_mut(),
+                        Accum::Replace,
+                        block.submatrix(own, a, pattern.len(), b - a),
+                        top.as_ref(),
+                        1.0,
+                        Par::Seq,
+                    );
+                    for j in 0..columns {
+                        for (k, &i) in pattern.iter().enumerate() {
+                            far[(i - (start + own), j)] -= update[(k, j)];
+                        }
+                    }
+                }
+            }
+            a = b;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Elastic, ElasticParts, SymmetricMatrix};
+
+    /// Two separate strips of `long` × 3 nodes with springs to all neighbours; contact couples unknowns of each strip
+    /// with itself only, so the trailing block has several supernodes.
+    fn strips(long: usize, order: impl Fn(usize) -> usize) -> ElasticParts {
+        let n = 2 * long * 3;
+        let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..n {
+            row_idx.push(j);
+            values.push(4.0 + (j % 7) as f64 / 10.0);
+            for (step, ok) in [(1, j % 3 < 2), (3, j % (3 * long) + 3 < 3 * long)] {
+                if ok {
+                    row_idx.push(j + step);
+                    values.push(-1.0);
+                }
+            }
+            col_ptr.push(row_idx.len());
+        }
+        let rows = n / 3;
+        let col_idx: Vec<usize> = (0..rows).flat_map(|i| [3 * i, (3 * i + 3) % n]).collect();
+        let entries: Vec<f64> = (0..rows)
+            .flat_map(|i| [1.0, -0.5 - (i % 3) as f64])
+            .collect();
+        ElasticParts {
+            dim: 2,
+            stiffness: SymmetricMatrix::new(n, col_ptr, row_idx, values).unwrap(),
+            jump: JumpOperator::new(
+                rows,
+                n,
+                (0..=rows).map(|i| 2 * i).collect(),
+                col_idx,
+                entries,
+            )
+            .unwrap(),
+            weight: vec![1.0; rows / 2],
+            order: (0..n).map(order).collect(),
+            floating: Vec::new(),
+            frictionless: false,
+            traction: None,
+        }
+    }
+
+    #[test]
+    fn condensed_operator_equals_full_solves_in_every_elimination_order() {
+        let long = 90;
+        let n = 6 * long;
+        for stride in [1, 7, 77] {
+            let body = Elastic::new(strips(long, |k| k * stride % n)).unwrap();
+            let rows = body.rows();
+            // Before W is formed, so that neither borrows from the other.
+            let diagonal = body.diagonal(&rows).unwrap();
+            assert_eq!(body.counters().condensations, 0);
+            let (w, mut work) = (body.formed().unwrap(), Vec::new());
+            assert_eq!(body.counters().condensations, 1);
+            for j in (0..rows.len()).step_by(17) {
+                let mut unit = vec![0.0; rows.len()];
+                unit[j] = 1.0;
+                let mut product = vec![0.0; rows.len()];
+                body.product_add(&rows, &unit, &mut product);
+                let column = w.column(j, &mut work);
+                for i in 0..rows.len() {
+                    assert!((column[i] - product[i]).abs() < 1e-13, "{stride}: {i} {j}");
+                    assert_eq!(column[i], w.column(i, &mut Vec::new())[j]);
+                }
+                assert!((diagonal[j] - column[j]).abs() < 1e-15, "{stride}: {j}");
+            }
+            // The same bits from a body whose W was formed first.
+            let other = Elastic::new(strips(long, |k| k * stride % n)).unwrap();
+            other.formed().unwrap();
+            assert_eq!(other.diagonal(&rows).unwrap(), diagonal);
+        }
+    }
+
+    #[test]
+    fn too_many_rows_are_refused_before_memory_is_asked_for() {
+        let n = MAX_CONDENSED_ROWS + 2;
+        let unit = |n: usize| (0..=n).collect::<Vec<_>>();
+        let body = Elastic::new(ElasticParts {
+            dim: 2,
+            stiffness: SymmetricMatrix::new(n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
+            jump: JumpOperator::new(n, n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
+            weight: vec![1.0; n / 2],
+            order: (0..n).collect(),
+            floating: Vec::new(),
+            frictionless: false,
+            traction: None,
+        })
+        .unwrap();
+        let error = body.condensed().err().unwrap();
+        assert_eq!(
+            error,
+            MethodError::TooManyRows {
+                rows: n,
+                limit: MAX_CONDENSED_ROWS
+            }
+        );
+    }
+}

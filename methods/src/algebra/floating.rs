@@ -1,0 +1,170 @@
+//! Rigid motions of a body without enough supports: pins that make K regular, and the jumps the motions cause.
+
+use crate::algebra::dense::{dot, norm};
+use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::error::MethodError;
+
+/// A mode whose pivot falls below this fraction of its size depends on the others.
+const DEPENDENT: f64 = 1e-8;
+/// |K r| allowed, relative to |diag(K) r|: rounding of assembly, not deformation.
+const RIGID: f64 = 1e-9;
+
+/// Checks that the modes are in the kernel of K and chooses one unknown per mode to pin (Gaussian elimination with
+/// complete pivoting, modes scaled to unit size).
+pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, MethodError> {
+    let n = k.size();
+    let mut kr = vec![0.0; n];
+    for (mode, r) in modes.iter().enumerate() {
+        k.mul(r, &mut kr);
+        let diag: Vec<f64> = (0..n).map(|j| k.diagonal(j) * r[j]).collect();
+        let relative = norm(&kr) / norm(&diag);
+        // A zero mode gives NaN.
+        if relative.is_nan() || relative > RIGID {
+            return Err(MethodError::NotRigid { mode, relative });
+        }
+    }
+    let largest = |r: &[f64]| r.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let mut work: Vec<(usize, Vec<f64>)> = modes
+        .iter()
+        .enumerate()
+        .map(|(mode, r)| {
+            let size = largest(r);
+            (mode, r.iter().map(|v| v / size).collect())
+        })
+        .collect();
+    let mut pins = Vec::with_capacity(modes.len());
+    while !work.is_empty() {
+        let (mut best, mut pivot, mut size) = (0, 0, -1.0);
+        for (w, (_, r)) in work.iter().enumerate() {
+            for (j, v) in r.iter().enumerate() {
+                if v.abs() > size {
+                    (best, pivot, size) = (w, j, v.abs());
+                }
+            }
+        }
+        let (mode, r) = work.swap_remove(best);
+        if size < DEPENDENT {
+            return Err(MethodError::DependentModes { mode });
+        }
+        for (_, other) in &mut work {
+            let factor = other[pivot] / r[pivot];
+            for j in 0..n {
+                other[j] -= factor * r[j];
+            }
+            other[pivot] = 0.0;
+        }
+        pins.push(pivot);
+    }
+    Ok(pins)
+}
+
+/// Orthonormal basis of the jumps the rigid motions cause on the listed rows, with the map between the two.
+///
+/// N = B R = Q T with Q orthonormal and T upper triangular (modified Gram-Schmidt, twice).
+#[derive(Debug, Clone)]
+pub(crate) struct ModeJumps {
+    /// Q by column.
+    pub q: Vec<Vec<f64>>,
+    /// T by column: `t[j][i]`, i <= j.
+    t: Vec<Vec<f64>>,
+    /// Number of rigid motions without jump on these rows.
+    pub free: usize,
+}
+
+impl ModeJumps {
+    pub fn new(jump: &JumpOperator, rows: &[usize], modes: &[Vec<f64>]) -> Self {
+        let mut result = Self {
+            q: Vec::new(),
+            t: Vec::new(),
+            free: 0,
+        };
+        let mut all = vec![0.0; jump.rows()];
+        for r in modes {
+            jump.mul(r, &mut all);
+            let mut column: Vec<f64> = rows.iter().map(|&i| all[i]).collect();
+            // Size of the jump if nothing cancelled, to tell a motion without jump from rounding.
+            let size = rows
+                .iter()
+                .map(|&i| jump.row(i).map(|(j, b)| (b * r[j]).powi(2)).sum::<f64>())
+                .sum::<f64>();
+            let mut t = vec![0.0; result.q.len() + 1];
+            for _ in 0..2 {
+                for (i, q) in result.q.iter().enumerate() {
+                    let c = dot(q, &column);
+                    t[i] += c;
+                    for (x, q) in column.iter_mut().zip(q) {
+                        *x -= c * q;
+                    }
+                }
+            }
+            let length = norm(&column);
+            if length <= DEPENDENT * size.sqrt() || length == 0.0 {
+                result.free += 1;
+                continue;
+            }
+            *t.last_mut().unwrap_or(&mut 0.0) = length;
+            column.iter_mut().for_each(|x| *x /= length);
+            result.q.push(column);
+            result.t.push(t);
+        }
+        result
+    }
+
+    /// No rigid motions.
+    pub fn empty() -> Self {
+        Self {
+            q: Vec::new(),
+            t: Vec::new(),
+            free: 0,
+        }
+    }
+
+    /// Number of columns of Q.
+    pub fn len(&self) -> usize {
+        self.q.len()
+    }
+
+    /// α with N α = Q β, for `free == 0`: solves T α = β.
+    pub fn amplitudes(&self, beta: &[f64]) -> Vec<f64> {
+        let mut alpha = beta.to_vec();
+        for j in (0..self.len()).rev() {
+            alpha[j] /= self.t[j][j];
+            for i in 0..j {
+                alpha[i] -= self.t[j][i] * alpha[j];
+            }
+        }
+        alpha
+    }
+
+    /// c with Qᵀ P = c equivalent to Nᵀ P = b, for `free == 0`: solves Tᵀ c = b.
+    pub fn balance(&self, b: &[f64]) -> Vec<f64> {
+        let mut c = b.to_vec();
+        for j in 0..self.len() {
+            for i in 0..j {
+                c[j] -= self.t[j][i] * c[i];
+            }
+            c[j] /= self.t[j][j];
+        }
+        c
+    }
+
+    /// Qᵀ x.
+    pub fn components(&self, x: &[f64]) -> Vec<f64> {
+        self.q.iter().map(|q| dot(q, x)).collect()
+    }
+
+    /// x += Q c.
+    pub fn add(&self, c: &[f64], x: &mut [f64]) {
+        for (q, c) in self.q.iter().zip(c) {
+            for (x, q) in x.iter_mut().zip(q) {
+                *x += c * q;
+            }
+        }
+    }
+
+    /// x <- (I − Q Qᵀ) x.
+    pub fn project_out(&self, x: &mut [f64]) {
+        let c: Vec<f64> = self.components(x).iter().map(|c| -c).collect();
+        self.add(&c, x);
+    }
+}

@@ -1,0 +1,245 @@
+//! What stands behind the contact points of a body: how displacements follow from forces.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use faer::Mat;
+
+use crate::MethodError;
+use crate::algebra::delassus;
+use crate::algebra::dense::{norm, ratio};
+use crate::algebra::factor::Factor;
+use crate::algebra::floating::{ModeJumps, pins};
+use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::ordering;
+
+/// K behind a factor: factorise, solve, Schur complement on the contact rows. Everything above works through this door.
+pub(crate) trait Stiffness: Send + Sync {
+    /// Number of unknowns n.
+    fn unknowns(&self) -> usize;
+
+    /// K itself, where it is known.
+    fn matrix(&self) -> Option<&SymmetricMatrix>;
+
+    /// Factors K unless that is done.
+    fn factorise(&self) -> Result<(), MethodError>;
+
+    /// Factorisations so far, with the seconds of analysis and of numeric work.
+    fn factorisations(&self) -> (usize, f64, f64);
+
+    /// Solves K x = f in place, with iterative refinement.
+    fn solve(&self, x: &mut [f64]) -> Result<(), MethodError>;
+
+    /// Solves K X = F in place for all columns together, without refinement.
+    fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError>;
+
+    /// W = B K⁻¹ Bᵀ on the listed rows of B, and its diagonal as [`delassus_diagonal`](Self::delassus_diagonal) gives it.
+    fn delassus(
+        &self,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<(Mat<f64>, Vec<f64>), MethodError>;
+
+    /// The diagonal of W alone: W is not formed.
+    fn delassus_diagonal(
+        &self,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<Vec<f64>, MethodError>;
+
+    /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
+    fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64;
+
+    /// Backward error of equilibrium between displacements and the sum of some forces.
+    fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64;
+}
+
+/// A sparse K, factored once with the contact unknowns last.
+pub(crate) struct SparseStiffness {
+    k: SymmetricMatrix,
+    /// Preferred elimination order.
+    order: Vec<usize>,
+    in_contact: Vec<bool>,
+    pins: Vec<usize>,
+    factor: OnceLock<Result<Factor, MethodError>>,
+}
+
+impl SparseStiffness {
+    /// `contact` lists the unknowns that move a contact point; `floating` spans the kernel of K.
+    ///
+    /// # Errors
+    /// Motions that are not rigid or depend on each other.
+    pub fn new(
+        k: SymmetricMatrix,
+        order: Vec<usize>,
+        floating: &[Vec<f64>],
+        contact: impl Iterator<Item = usize>,
+    ) -> Result<Self, MethodError> {
+        let pins = pins(&k, floating)?;
+        let mut in_contact = vec![false; k.size()];
+        contact.for_each(|j| in_contact[j] = true);
+        Ok(Self {
+            k,
+            order,
+            in_contact,
+            pins,
+            factor: OnceLock::new(),
+        })
+    }
+
+    /// The factor, computed on first use.
+    pub fn factor(&self) -> Result<&Factor, MethodError> {
+        let build = || {
+            let clock = Instant::now();
+            let ordering = ordering::contact_last(&self.k, &self.order, &self.in_contact);
+            let ordering_s = clock.elapsed().as_secs_f64();
+            let mut factor = Factor::new(&self.k, ordering, self.pins.clone())?;
+            factor.analysis_s += ordering_s;
+            Ok(factor)
+        };
+        self.factor
+            .get_or_init(build)
+            .as_ref()
+            .map_err(Clone::clone)
+    }
+}
+
+impl Stiffness for SparseStiffness {
+    fn unknowns(&self) -> usize {
+        self.k.size()
+    }
+
+    fn matrix(&self) -> Option<&SymmetricMatrix> {
+        Some(&self.k)
+    }
+
+    fn factorise(&self) -> Result<(), MethodError> {
+        self.factor().map(|_| ())
+    }
+
+    fn factorisations(&self) -> (usize, f64, f64) {
+        match self.factor.get() {
+            None => (0, 0.0, 0.0),
+            Some(Err(_)) => (1, 0.0, 0.0),
+            Some(Ok(factor)) => (1, factor.analysis_s, factor.factorisation_s),
+        }
+    }
+
+    fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
+        self.factor()?.solve(&self.k, x)
+    }
+
+    fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
+        self.factor()?.solve_columns(x)
+    }
+
+    fn delassus(
+        &self,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+        delassus::condense(self.factor()?, jump, rows)
+    }
+
+    fn delassus_diagonal(
+        &self,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<Vec<f64>, MethodError> {
+        delassus::diagonal(self.factor()?, jump, rows)
+    }
+
+    fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {
+        (rows.iter())
+            .flat_map(|&i| jump.row(i))
+            .map(|(j, b)| b * b / self.k.diagonal(j))
+            .sum()
+    }
+
+    /// |K u − Σ f| / (Σ |f| + ||K| |u||).
+    fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
+        let mut work = vec![0.0; u.len()];
+        self.k.mul(u, &mut work);
+        let sum = |j: usize| forces.iter().map(|f| f[j]).sum::<f64>();
+        let residual: Vec<f64> = work.iter().enumerate().map(|(j, w)| w - sum(j)).collect();
+        self.k.mul_abs(u, &mut work);
+        let forces: f64 = forces.iter().map(|f| norm(f)).sum();
+        ratio(norm(&residual), forces + norm(&work))
+    }
+}
+
+/// A body known by its Delassus operator alone: its unknowns are the jumps of the contact points, u = W f.
+pub(crate) struct DelassusOnly {
+    w: SymmetricMatrix,
+    modes: ModeJumps,
+}
+
+impl DelassusOnly {
+    /// `floating` are the jumps of the rigid motions.
+    pub fn new(w: SymmetricMatrix, jump: &JumpOperator, floating: &[Vec<f64>]) -> Self {
+        let all: Vec<usize> = (0..jump.rows()).collect();
+        let modes = ModeJumps::new(jump, &all, floating);
+        Self { w, modes }
+    }
+}
+
+impl Stiffness for DelassusOnly {
+    fn unknowns(&self) -> usize {
+        self.w.size()
+    }
+
+    fn matrix(&self) -> Option<&SymmetricMatrix> {
+        None
+    }
+
+    fn factorise(&self) -> Result<(), MethodError> {
+        Ok(())
+    }
+
+    fn factorisations(&self) -> (usize, f64, f64) {
+        (0, 0.0, 0.0)
+    }
+
+    fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
+        let f = x.to_vec();
+        self.w.mul(&f, x);
+        Ok(())
+    }
+
+    fn solve_columns(&self, _: &mut Mat<f64>) -> Result<(), MethodError> {
+        Err(MethodError::NoStiffness)
+    }
+
+    fn delassus(
+        &self,
+        _: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+        let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
+        Ok((delassus::dense(&self.w)?, diagonal))
+    }
+
+    fn delassus_diagonal(&self, _: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
+        Ok(rows.iter().map(|&i| self.w.diagonal(i)).collect())
+    }
+
+    fn local_compliance(&self, _: &JumpOperator, rows: &[usize]) -> f64 {
+        rows.iter().map(|&i| self.w.diagonal(i)).sum()
+    }
+
+    /// |u − W Σ f| / (|u| + ||W| |Σ f||), up to rigid motions, or |Qᵀ Σ f| / Σ |f| if that is larger, Q an orthonormal
+    /// basis of the rigid motions: W knows nothing of them, so that no force is left to drive them is a condition of its own.
+    fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
+        let total: Vec<f64> = (0..u.len())
+            .map(|j| forces.iter().map(|f| f[j]).sum())
+            .collect();
+        let mut work = vec![0.0; u.len()];
+        self.w.mul(&total, &mut work);
+        let mut residual: Vec<f64> = u.iter().zip(&work).map(|(u, w)| u - w).collect();
+        self.modes.project_out(&mut residual);
+        self.w.mul_abs(&total, &mut work);
+        let deformation = ratio(norm(&residual), norm(u) + norm(&work));
+        let size: f64 = forces.iter().map(|f| norm(f)).sum();
+        deformation.max(ratio(norm(&self.modes.components(&total)), size))
+    }
+}

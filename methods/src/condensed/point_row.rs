@@ -1,0 +1,165 @@
+//! Linearised contact laws at the points, and the one dense solve of Newton's methods.
+//! ```text
+//! rows:      A δP + C δv = f,     δv = W δP + Q δβ,   Qᵀ δP = c          A, C by point
+//! columns:   E y + δv = f,        δP = S y,           Qᵀ δP = c          E, S by point
+//! ```
+//! Both are one bordered system (E + L W R) x + L Q β = f, Qᵀ R x = c, on the rows that are active.
+
+#![allow(non_snake_case)]
+
+use std::ops::Range;
+
+use faer::Mat;
+
+use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::DenseLu;
+use crate::condensed::problem::ContactProblem;
+
+/// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointRow {
+    pub a: [f64; 3],
+    pub c: [f64; 3],
+    pub h: f64,
+}
+
+impl PointRow {
+    /// A row with a right-hand side and no coefficients yet.
+    pub fn reading(h: f64) -> Self {
+        Self {
+            a: [0.0; 3],
+            c: [0.0; 3],
+            h,
+        }
+    }
+}
+
+/// A 3 × 3 block by row: entry l of row k couples it with row l of its point.
+pub(crate) type Blocks<'a> = &'a [[f64; 3]];
+
+/// Where the blocks of the law stand beside W.
+pub(crate) enum Law<'a> {
+    /// E = A, L = C, R = I.
+    Rows { a: Blocks<'a>, c: Blocks<'a> },
+    /// L = I, R = S; `series` is a compliance added to W.
+    Columns {
+        e: Blocks<'a>,
+        s: Blocks<'a>,
+        series: Option<&'a Mat<f64>>,
+    },
+}
+
+/// The factored system.
+pub(crate) struct Bordered {
+    lu: DenseLu,
+    /// Unknowns are amplitudes times this.
+    amplitude: f64,
+    /// Right-hand sides of the balance are divided by this.
+    balance: f64,
+    active: usize,
+}
+
+impl Bordered {
+    /// Assembles and factors it on the active rows, those of a point one after the other; `None` if it is singular.
+    pub fn new(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
+        let (w, q, rho) = (
+            &*problem.operator.w,
+            &problem.operator.modes.q,
+            problem.operator.rho,
+        );
+        let points = problem.rows.by_row();
+        let active: Vec<(usize, Range<usize>)> =
+            active.iter().map(|&k| (k, points[k].clone())).collect();
+        let (n, size) = (active.len(), active.len() + q.len());
+        let mut J = Mat::<f64>::zeros(size, size);
+        match law {
+            Law::Rows { a, c } => rows(&mut J, w, &active, a, c),
+            Law::Columns { e, s, series } => columns(&mut J, w, *series, &active, e, s),
+        }
+        for (j, q) in q.iter().enumerate() {
+            for (b, (k, own)) in active.iter().enumerate() {
+                let (k, own) = (*k, own.clone());
+                match law {
+                    Law::Rows { c, .. } => {
+                        J[(b, n + j)] = own.zip(c[k]).map(|(l, c)| c * q[l] / rho).sum();
+                        J[(n + j, b)] = q[k];
+                    }
+                    Law::Columns { s, .. } => {
+                        let column = k - own.start;
+                        J[(b, n + j)] = q[k];
+                        J[(n + j, b)] = own.map(|l| q[l] * s[l][column] / rho).sum();
+                    }
+                }
+            }
+        }
+        let (amplitude, balance) = match law {
+            Law::Rows { .. } => (rho, 1.0),
+            Law::Columns { .. } => (1.0, rho),
+        };
+        Some(Self {
+            lu: DenseLu::new(&J)?,
+            amplitude,
+            balance,
+            active: n,
+        })
+    }
+
+    /// (x, β) for right-hand sides f on the active rows and c; `None` if they are not finite.
+    pub fn solve(&self, f: &[f64], c: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let balance = c.iter().map(|c| c / self.balance);
+        let rhs: Vec<f64> = f.iter().copied().chain(balance).collect();
+        let mut x = self.lu.solve(&rhs)?;
+        let beta = x.split_off(self.active);
+        Some((x, beta.iter().map(|b| b / self.amplitude).collect()))
+    }
+}
+
+/// A + C W on the active rows.
+fn rows(
+    J: &mut Mat<f64>,
+    w: &dyn Delassus,
+    active: &[(usize, Range<usize>)],
+    a: Blocks<'_>,
+    c: Blocks<'_>,
+) {
+    let mut work = Vec::new();
+    for (column, (k, point)) in active.iter().enumerate() {
+        let w = w.column(*k, &mut work);
+        for (entry, (row, own)) in J.col_as_slice_mut(column).iter_mut().zip(active) {
+            for (w, c) in w[own.clone()].iter().zip(c[*row]) {
+                *entry += c * w;
+            }
+            if own.start == point.start {
+                *entry += a[*row][k - own.start];
+            }
+        }
+    }
+}
+
+/// E + (W + C) S on the active rows.
+fn columns(
+    J: &mut Mat<f64>,
+    w: &dyn Delassus,
+    series: Option<&Mat<f64>>,
+    active: &[(usize, Range<usize>)],
+    e: Blocks<'_>,
+    s: Blocks<'_>,
+) {
+    let mut work = Vec::new();
+    for (b, (k, point)) in active.iter().enumerate() {
+        let column = &mut J.col_as_slice_mut(b)[..active.len()];
+        for l in point.clone() {
+            let s = s[l][k - point.start];
+            if s != 0.0 {
+                let held = series.map(|c| c.col_as_slice(l));
+                for w in [Some(w.column(l, &mut work)), held].into_iter().flatten() {
+                    for (entry, (a, _)) in column.iter_mut().zip(active) {
+                        *entry += w[*a] * s;
+                    }
+                }
+            }
+            // Rows of one point follow each other, so row l of this point is active row b − k + l.
+            column[b + l - k] += e[l][k - point.start];
+        }
+    }
+}

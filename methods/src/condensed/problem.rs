@@ -1,0 +1,460 @@
+//! One increment seen from the contact points, as every method starts from it.
+//! ```text
+//! v = (g, d) = q + W P + Q β,    Qᵀ P = c
+//! ```
+//! with the start jump already taken off the tangential rows of q. Q and c are empty unless the body floats.
+
+use std::sync::Arc;
+
+use crate::algebra::dense::{dot, norm, ratio};
+use crate::algebra::rows::RowSet;
+use crate::condensed::method::End;
+use crate::contract::judge::{free_jump, natural_map_norm, reference_force, slip_from};
+use crate::contract::operator::{ContactOperator, DelassusForm};
+use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
+use crate::contract::system::Increment;
+use crate::error::MethodError;
+
+/// Methods stop at this fraction of the tolerance: what rounding adds when displacements are recovered must not turn
+/// a claim false.
+const STOP_FRACTION: f64 = 0.5;
+
+/// Compliance below which a point counts as rigid, as a fraction of the mean 1/ρ.
+pub(crate) const COMPLIANCE_FLOOR: f64 = 1e-2;
+
+/// Rescues per increment.
+const MAX_RESCUES: usize = 6;
+
+/// Iterations without progress after which a Newton method is moved on.
+const STAGNATION: usize = 15;
+
+/// Corrections of q per increment; each gains the digits that W has right.
+const MAX_CORRECTIONS: usize = 3;
+
+/// A natural map counts as progress below this fraction of the best before.
+const IMPROVEMENT: f64 = 0.99;
+
+/// When to give up.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Iterations in all.
+    pub iterations: usize,
+    /// Iterations without progress.
+    pub patience: usize,
+}
+
+/// What becomes of an iterate that was checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// The method goes on from it.
+    GoOn,
+    /// It fulfils the condensed laws, but not those of the body: q was corrected, and the jump has to be computed anew.
+    Corrected,
+    /// The method ends there.
+    End(Status),
+}
+
+/// How an increment begins.
+pub(crate) enum Begin<'a> {
+    /// Nothing closes, or nothing can: there is nothing to iterate on.
+    Done(Outcome),
+    /// Contact has to be resolved.
+    Contact(Box<ContactProblem<'a>>),
+}
+
+/// The condensed increment, with what happens to every iterate whatever the method: measured, noted, checked, recovered.
+pub struct ContactProblem<'a> {
+    /// The increment itself.
+    pub increment: &'a Increment<'a>,
+    /// W, Q and ρ.
+    pub operator: Arc<ContactOperator>,
+    /// Rows in use.
+    pub rows: &'a RowSet,
+    /// Rows (g, d) for P = 0, β = 0, in m.
+    pub q: Vec<f64>,
+    /// c in Qᵀ P = c.
+    pub balance: Vec<f64>,
+    /// Natural map at which methods stop.
+    pub stop: f64,
+    /// Work done so far.
+    pub counters: Counters,
+    /// Displacements for P = 0, pinned unknowns at 0.
+    pub(crate) free: Vec<f64>,
+    /// Forces on the body beside f + Bᵀ P: none, or Nitsche's consistency term.
+    pub(crate) further: Vec<f64>,
+    /// What `Converged` stands for.
+    pub(crate) claim: Claim,
+    pub(crate) history: Vec<Iteration>,
+    /// |q| of the natural map's denominator.
+    free_jump: f64,
+    rescues: usize,
+    /// Smallest natural map so far and its iteration.
+    best: (f64, usize),
+    corrections: usize,
+    /// The iterate confirmed last, with its displacements.
+    pub(crate) confirmed: Option<ContactState>,
+}
+
+impl<'a> ContactProblem<'a> {
+    /// Does the one linear solve without contact forces. If it leaves every gap open, that is the solution, and the
+    /// body is not even condensed.
+    pub(crate) fn begin(
+        increment: &'a Increment<'a>,
+        form: DelassusForm,
+        claim: impl Fn(f64) -> Claim,
+    ) -> Result<Begin<'a>, MethodError> {
+        increment.check()?;
+        let system = increment.system;
+        let (elastic, dim) = (system.elastic(), system.dim());
+        let mut u = increment.load.force.clone();
+        elastic.solve(&mut u)?;
+        let counters = Counters {
+            solves: 1,
+            ..Default::default()
+        };
+        let jump = increment.jump(&u);
+        if elastic.floating().is_empty() && jump.iter().step_by(dim).all(|&g| g >= 0.0) {
+            let p = vec![0.0; jump.len()];
+            return Ok(Begin::Done(Outcome {
+                status: Status::Converged,
+                // Slack springs are no modelling error: this holds for every method.
+                claim: Claim::Exact,
+                state: ContactState { u, p },
+                history: vec![Iteration {
+                    natural_map: 0.0,
+                    changes: 0,
+                }],
+                counters,
+            }));
+        }
+
+        let operator = system.operator(form)?;
+        if operator.modes.free > 0 {
+            return Ok(Begin::Done(Outcome {
+                status: Status::Mechanism,
+                claim: claim(operator.rho),
+                state: increment.start.clone(),
+                history: Vec::new(),
+                counters,
+            }));
+        }
+        let rows = system.row_set();
+        let resultant: Vec<f64> = elastic
+            .floating()
+            .iter()
+            .map(|r| -dot(r, &increment.load.force))
+            .collect();
+        let balance = operator.modes.balance(&resultant);
+        Ok(Begin::Contact(Box::new(ContactProblem {
+            free_jump: free_jump(increment, &operator, &rows.restrict(&jump), &balance),
+            q: slip_from(rows, dim, &jump, &increment.start_jump()),
+            stop: STOP_FRACTION * increment.tolerance,
+            history: Vec::new(),
+            increment,
+            rows,
+            rescues: 0,
+            best: (f64::INFINITY, 0),
+            balance,
+            counters,
+            free: u,
+            further: Vec::new(),
+            claim: claim(operator.rho),
+            corrections: 0,
+            confirmed: None,
+            operator,
+        })))
+    }
+
+    /// Number of rows.
+    #[expect(clippy::len_without_is_empty, reason = "there is contact to resolve")]
+    pub fn len(&self) -> usize {
+        self.q.len()
+    }
+
+    /// Number of rigid motions.
+    pub fn modes(&self) -> usize {
+        self.balance.len()
+    }
+
+    /// Friction coefficient of point `i`.
+    pub fn friction(&self, i: usize) -> f64 {
+        self.increment.system.friction()[i]
+    }
+
+    /// Contact forces to start from: those of the start state, corrected by the least change that balances the load.
+    pub fn start_forces(&self) -> Vec<f64> {
+        let mut p = self.rows.restrict(&self.increment.start.p);
+        self.rebalance(&mut p);
+        p
+    }
+
+    /// Rigid amplitudes that bring the jump closest to that at the start.
+    pub fn start_amplitudes(&self, p: &[f64]) -> Vec<f64> {
+        if self.modes() == 0 {
+            return Vec::new();
+        }
+        let dim = self.increment.system.dim();
+        let start = self.increment.start_jump();
+        let target = slip_from(self.rows, dim, &start, &start);
+        let zero = vec![0.0; self.modes()];
+        let v = self.jump(p, &zero);
+        let distance: Vec<f64> = target.iter().zip(&v).map(|(t, v)| t - v).collect();
+        self.operator.modes.components(&distance)
+    }
+
+    /// A vector with one value on normal and one on tangential rows.
+    pub fn by_row(&self, normal: f64, tangential: f64) -> Vec<f64> {
+        let mut values = vec![tangential; self.len()];
+        for &row in self.rows.normal() {
+            values[row] = normal;
+        }
+        values
+    }
+
+    /// r by row: 1/(W_nn + extra) for the normal and 1/mean(W_tt + extra) for the tangential rows of a point, so that
+    /// tangent frames do not matter. Points that move almost rigidly do not raise r without bound.
+    pub fn scales(&self, extra: &[f64]) -> Vec<f64> {
+        let w = self.operator.w.diagonal();
+        let floor = COMPLIANCE_FLOOR / self.operator.rho;
+        let mut scale = vec![0.0; self.len()];
+        for i in 0..self.rows.points() {
+            let rows = self.rows.of(i);
+            for part in [rows.start..rows.start + 1, rows.start + 1..rows.end] {
+                let sum: f64 = part.clone().map(|k| w[k] + extra[k]).sum();
+                let mean = sum / part.len().max(1) as f64;
+                scale[part].fill(1.0 / mean.max(floor));
+            }
+        }
+        scale
+    }
+
+    /// c − Qᵀ P: what the contact forces lack to balance the load.
+    pub fn missing(&self, p: &[f64]) -> Vec<f64> {
+        self.operator
+            .modes
+            .q
+            .iter()
+            .zip(&self.balance)
+            .map(|(q, c)| c - dot(q, p))
+            .collect()
+    }
+
+    /// Restores Qᵀ P = c by the smallest change. Meant for rounding and iteration errors.
+    pub fn rebalance(&self, p: &mut [f64]) {
+        let missing = self.missing(p);
+        self.operator.modes.add(&missing, p);
+    }
+
+    /// Whether a Newton method that cannot go on by itself may be moved on by [`rescue`](crate::condensed::stages::rescue): after
+    /// too long without progress, or where the tangent of a floating body is singular. On the way all points of a piece
+    /// may open or slide, but a piece that gets loose again and again is a mechanism.
+    pub(crate) fn rescue_left(&mut self) -> bool {
+        if self.modes() == 0 && !self.stagnates() {
+            return false;
+        }
+        self.rescues += 1;
+        self.best.1 = self.counters.iterations;
+        self.rescues <= MAX_RESCUES
+    }
+
+    /// Whether the natural map has not fallen for some iterations.
+    pub fn stagnates(&self) -> bool {
+        self.idle() >= STAGNATION
+    }
+
+    /// Forgets what progress was: another algorithm takes over.
+    pub(crate) fn begin_phase(&mut self) {
+        self.best = (f64::INFINITY, self.counters.iterations);
+    }
+
+    /// Iterations since the natural map last fell.
+    pub fn idle(&self) -> usize {
+        self.counters.iterations - self.best.1
+    }
+
+    /// Rescues before the current one.
+    pub(crate) fn earlier_rescues(&self) -> usize {
+        self.rescues.saturating_sub(1)
+    }
+
+    /// What a singular tangent means here.
+    pub fn singular(&self) -> Status {
+        if self.modes() > 0 {
+            Status::Mechanism
+        } else {
+            Status::SingularTangent
+        }
+    }
+
+    /// v = q + W P + Q β.
+    pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
+        let mut v = self.q.clone();
+        self.operator.w.apply_add(p, &mut v);
+        self.operator.modes.add(beta, &mut v);
+        v
+    }
+
+    /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
+    pub(crate) fn mean_jump(&self) -> f64 {
+        let least = norm(&self.balance) / self.operator.rho;
+        self.free_jump.max(least) / (self.rows.points() as f64).sqrt()
+    }
+
+    /// P_ref, the force the natural map is relative to.
+    pub fn reference_force(&self, p: &[f64]) -> f64 {
+        reference_force(self.operator.rho, p, self.free_jump)
+    }
+
+    /// The natural map, as the judge computes it.
+    pub fn natural_map(&mut self, p: &[f64], v: &[f64]) -> f64 {
+        self.counters.local_solves += self.rows.points();
+        let friction = self.increment.system.friction();
+        let e = natural_map_norm(friction, self.rows, self.operator.rho, p, v);
+        ratio(e, self.reference_force(p))
+    }
+
+    /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
+    pub(crate) fn ends(
+        &mut self,
+        natural_map: f64,
+        changes: usize,
+        limits: Limits,
+        monitor: &mut dyn Monitor,
+    ) -> Option<Status> {
+        if natural_map < IMPROVEMENT * self.best.0 {
+            self.best = (natural_map, self.counters.iterations);
+        }
+        self.history.push(Iteration {
+            natural_map,
+            changes,
+        });
+        let iteration = self.counters.iterations;
+        if natural_map <= self.stop {
+            Some(Status::Converged)
+        } else if !natural_map.is_finite() {
+            Some(Status::Diverged)
+        } else if !monitor.step(iteration, natural_map) {
+            Some(Status::Stopped)
+        } else if iteration >= limits.iterations {
+            Some(Status::MaxIterations)
+        } else if iteration >= self.best.1 + limits.patience {
+            Some(Status::Stalled)
+        } else {
+            self.counters.iterations += 1;
+            None
+        }
+    }
+
+    /// Notes an iterate (P, β) of this natural map and says what becomes of it. One that has converged is checked against K
+    /// itself, as the judge will.
+    ///
+    /// # Errors
+    /// Those of a solve with K.
+    pub fn check(
+        &mut self,
+        natural_map: f64,
+        (p, beta): (&[f64], &[f64]),
+        changes: usize,
+        limits: Limits,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Check, MethodError> {
+        match self.ends(natural_map, changes, limits, monitor) {
+            None => Ok(Check::GoOn),
+            Some(status) => self.confirm(status, p, beta),
+        }
+    }
+
+    /// Checks a converged iterate against K itself, as the judge will: W has lost digits to its own condition.
+    ///
+    /// If the recovered displacements do not fulfil the laws, q takes up the difference between their jump and the
+    /// condensed one, and the method goes on from where it is: iterative refinement of the condensed problem.
+    pub(crate) fn confirm(
+        &mut self,
+        status: Status,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Check, MethodError> {
+        if status != Status::Converged {
+            return Ok(Check::End(status));
+        }
+        let Some(state) = self.recover(p, beta)? else {
+            return Ok(Check::End(Status::Diverged));
+        };
+        let found = self.slip_of(&state.u);
+        let natural_map = self.natural_map(&self.rows.restrict(&state.p), &found);
+        if natural_map <= self.increment.tolerance {
+            self.confirmed = Some(state);
+            return Ok(Check::End(status));
+        }
+        if self.corrections == MAX_CORRECTIONS {
+            return Ok(Check::End(Status::Stalled));
+        }
+        self.corrections += 1;
+        self.counters.iterations += 1;
+        self.best = (f64::INFINITY, self.counters.iterations);
+        self.correct(&found, p, beta);
+        Ok(Check::Corrected)
+    }
+
+    /// Rows (g, d) of displacements.
+    pub(crate) fn slip_of(&self, u: &[f64]) -> Vec<f64> {
+        let (increment, dim) = (self.increment, self.increment.system.dim());
+        slip_from(self.rows, dim, &increment.jump(u), &increment.start_jump())
+    }
+
+    /// q takes up the difference between the jump found on the body and the condensed one.
+    pub(crate) fn correct(&mut self, found: &[f64], p: &[f64], beta: &[f64]) {
+        let condensed = self.jump(p, beta);
+        for ((q, found), condensed) in self.q.iter_mut().zip(found).zip(&condensed) {
+            *q += found - condensed;
+        }
+    }
+
+    /// Contact forces with all `dim` rows per point.
+    pub fn all_forces(&self, p: &[f64]) -> Vec<f64> {
+        let system = self.increment.system;
+        self.rows.extend(p, system.dim() * system.points())
+    }
+
+    /// The state with u = K⁻¹ (f + Bᵀ P) + R α, one solve; `None` if the forces left the finite range. What rounding took
+    /// from the balance of P is put back, so that it is small beside P itself however small that has become.
+    pub(crate) fn recover(
+        &mut self,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Option<ContactState>, MethodError> {
+        let mut p = p.to_vec();
+        self.rebalance(&mut p);
+        let p = self.all_forces(&p);
+        let elastic = self.increment.system.elastic();
+        let mut u = self.increment.load.force.clone();
+        elastic.jump().mul_transpose_add(&p, &mut u);
+        u.iter_mut().zip(&self.further).for_each(|(u, f)| *u += f);
+        if !u.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        elastic.solve(&mut u)?;
+        self.counters.solves += 1;
+        let amplitudes = self.operator.modes.amplitudes(beta);
+        for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
+            u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
+        }
+        Ok(Some(ContactState { u, p }))
+    }
+
+    /// Closes the outcome with the displacements of the last iterate.
+    pub(crate) fn finish(mut self, end: End) -> Result<Outcome, MethodError> {
+        let state = match self.confirmed.take() {
+            Some(state) => Some(state),
+            None => self.recover(&end.at.p, &end.at.beta)?,
+        };
+        let state = state.unwrap_or_else(|| self.increment.start.clone());
+        Ok(Outcome {
+            status: end.status,
+            claim: self.claim,
+            state,
+            history: self.history,
+            counters: self.counters,
+        })
+    }
+}

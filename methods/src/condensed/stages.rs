@@ -1,0 +1,206 @@
+//! The two stages of alternating methods: contact laws point by point, and linear equilibrium along a fixed search
+//! direction k₀.
+//! ```text
+//! local:   z = P − k₀ v,  P̂ = Π(z),  v̂ = (P̂ − z)/k₀
+//! global:  (I + k₀ W) P + k₀ Q β = P̂ + k₀ v̂ − k₀ q,   Qᵀ P = c
+//! ```
+//! LATIN iterates them. The Newton methods take a few of them where their tangent is singular: the global stage is
+//! regular whatever the points do.
+
+use std::sync::Arc;
+
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, MatMut, Side};
+
+use crate::algebra::dense::solve_dense;
+use crate::algebra::dense::{along, dot};
+use crate::algebra::factor::kernel;
+use crate::algebra::spectrum::extremes;
+use crate::condensed::forces::Pair;
+use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
+use crate::condensed::whole_body::WholeBody;
+use crate::contract::law::{Branch, return_map};
+use crate::contract::operator::ContactOperator;
+use crate::error::MethodError;
+
+/// Relaxation of the sweeps that rescue a Newton method.
+const RESCUE_RELAXATION: f64 = 0.8;
+/// Their number at the first rescue of an increment; each further one takes twice as many, so that it ends closer to the
+/// solution than the one that was not enough.
+const RESCUE_SWEEPS: usize = 20;
+
+/// The factored global stage, bordered by the rigid motions.
+pub(crate) struct GlobalStage {
+    operator: Arc<ContactOperator>,
+    k0: f64,
+    /// Cholesky factor of I + k₀ W.
+    factor: Llt<f64>,
+    /// (I + k₀ W)⁻¹ Q by column.
+    border: Vec<Vec<f64>>,
+    /// Qᵀ (I + k₀ W)⁻¹ Q.
+    schur: Mat<f64>,
+}
+
+impl GlobalStage {
+    /// k₀ = `multiple`/√(w_min w_max).
+    pub fn new(operator: Arc<ContactOperator>, multiple: f64) -> Result<Self, MethodError> {
+        let k0 = multiple * best_direction(&operator);
+        Self::along(operator, k0)
+    }
+
+    /// With the given k₀ in N/m.
+    pub fn along(operator: Arc<ContactOperator>, k0: f64) -> Result<Self, MethodError> {
+        let a = (operator.w).map(&|i, j, w| k0 * w + f64::from(u8::from(i == j)));
+        let factor = Llt::new(a.as_ref(), Side::Lower)
+            .map_err(|e| kernel("factorisation of I + k0 W", format!("{e:?}")))?;
+        let columns = operator.modes.q.iter();
+        let border: Vec<Vec<f64>> = columns.map(|q| apply(&factor, q.clone())).collect();
+        let schur = Mat::from_fn(border.len(), border.len(), |i, j| {
+            dot(&operator.modes.q[i], &border[j])
+        });
+        Ok(Self {
+            operator,
+            k0,
+            factor,
+            border,
+            schur,
+        })
+    }
+
+    /// k₀ in N/m.
+    pub fn k0(&self) -> f64 {
+        self.k0
+    }
+
+    /// Whether the stage was made for this operator.
+    pub fn belongs_to(&self, operator: &Arc<ContactOperator>) -> bool {
+        Arc::ptr_eq(&self.operator, operator)
+    }
+
+    /// The [local stage](local_stage) along this direction.
+    pub fn local_stage(
+        &self,
+        problem: &mut ContactProblem<'_>,
+        pair: &Pair,
+    ) -> (Vec<f64>, Vec<Branch>) {
+        local_stage(self.k0, problem, pair)
+    }
+
+    /// The pair with P + k₀ v = `target`; `None` if the rigid motions move no row.
+    pub fn global_stage(&self, problem: &ContactProblem<'_>, target: &[f64]) -> Option<Pair> {
+        let rhs = target
+            .iter()
+            .zip(&problem.q)
+            .map(|(t, q)| t - self.k0 * q)
+            .collect();
+        let mut p = apply(&self.factor, rhs);
+        let excess: Vec<f64> = problem.missing(&p).iter().map(|c| -c).collect();
+        let k0_beta = solve_dense(&self.schur, &excess)?;
+        for (column, b) in self.border.iter().zip(&k0_beta) {
+            p.iter_mut().zip(column).for_each(|(p, c)| *p -= b * c);
+        }
+        let v = target
+            .iter()
+            .zip(&p)
+            .map(|(t, p)| (t - p) / self.k0)
+            .collect();
+        Some(Pair {
+            p,
+            v,
+            beta: k0_beta.iter().map(|b| b / self.k0).collect(),
+        })
+    }
+}
+
+/// A pair out of the reach of a singular tangent or a cycle: sweeps of both stages from the start of the increment.
+///
+/// Not from the iterate that failed: a floating block it has pushed far down a slope slides on from there.
+pub(crate) fn rescue(problem: &mut ContactProblem<'_>) -> Result<Option<Pair>, MethodError> {
+    alternate(problem, RESCUE_SWEEPS << problem.earlier_rescues())
+}
+
+/// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row. Where W is
+/// not formed, neither is I + k₀ W: the matrix of the whole body takes its place.
+pub(crate) fn alternate(
+    problem: &mut ContactProblem<'_>,
+    sweeps: usize,
+) -> Result<Option<Pair>, MethodError> {
+    let mut pair = Pair::start(problem);
+    let k0 = best_direction(&problem.operator);
+    if problem.operator.w.formed() {
+        let stage = GlobalStage::along(problem.operator.clone(), k0)?;
+        problem.counters.factorisations += 1;
+        for _ in 0..sweeps {
+            let (target, _) = local_stage(k0, problem, &pair);
+            let Some(new) = stage.global_stage(problem, &target) else {
+                return Ok(None);
+            };
+            pair.relax(problem, RESCUE_RELAXATION, &new);
+        }
+        return Ok(Some(pair));
+    }
+    let body = WholeBody::explicit(problem.increment.system)?;
+    let Some(stage) = body.factorise(problem, &stage_rows(k0, problem, &pair, &pair.p))? else {
+        return Ok(None);
+    };
+    for _ in 0..sweeps {
+        let (target, _) = local_stage(k0, problem, &pair);
+        let mut rows = stage_rows(k0, problem, &pair, &target);
+        let Some(step) = stage.step(problem, &pair.p, &mut rows) else {
+            return Ok(None);
+        };
+        let (p, beta) = (
+            along(&pair.p, 1.0, &step.p),
+            along(&pair.beta, 1.0, &step.beta),
+        );
+        let v = problem.jump(&p, &beta);
+        pair.relax(problem, RESCUE_RELAXATION, &Pair { p, v, beta });
+    }
+    Ok(Some(pair))
+}
+
+/// The best k₀ in N/m, 1/√(w_min w_max). A body that is rigid at its contact points has none; ρ still has the right units.
+fn best_direction(operator: &ContactOperator) -> f64 {
+    extremes(&*operator.w, &operator.modes)
+        .map_or(operator.rho, |(least, most)| 1.0 / (least * most).sqrt())
+}
+
+/// P̂ + k₀ v̂ = 2 P̂ − z by row, and the branch of each point.
+fn local_stage(k0: f64, problem: &mut ContactProblem<'_>, pair: &Pair) -> (Vec<f64>, Vec<Branch>) {
+    problem.counters.local_solves += problem.rows.points();
+    let z: Vec<f64> = (pair.p.iter().zip(&pair.v))
+        .map(|(p, v)| p - k0 * v)
+        .collect();
+    let mut p_hat = z.clone();
+    let branches = (0..problem.rows.points())
+        .map(|i| return_map(problem.friction(i), &mut p_hat[problem.rows.of(i)]))
+        .collect();
+    let target = p_hat.iter().zip(&z).map(|(p, z)| 2.0 * p - z);
+    (target.collect(), branches)
+}
+
+/// The global stage as rows of a step of the whole body: δP + k₀ δv = target − P − k₀ v.
+fn stage_rows(
+    k0: f64,
+    problem: &ContactProblem<'_>,
+    pair: &Pair,
+    target: &[f64],
+) -> Vec<[PointRow; 3]> {
+    let of_point = |own: std::ops::Range<usize>| {
+        let mut rows = [0.0; 3].map(PointRow::reading);
+        for (l, k) in own.enumerate() {
+            rows[l].a[l] = 1.0;
+            rows[l].c[l] = k0;
+            rows[l].h = pair.p[k] + k0 * pair.v[k] - target[k];
+        }
+        rows
+    };
+    problem.rows.iter().map(of_point).collect()
+}
+
+fn apply(factor: &Llt<f64>, mut x: Vec<f64>) -> Vec<f64> {
+    let n = x.len();
+    factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
+    x
+}

@@ -1,0 +1,205 @@
+//! One increment from several starts: what a single answer cannot say about uniqueness.
+//!
+//! For friction above the critical value of a contact (Klarbring, Ing. Arch. 60 (1990) 529; Janovský 1981) an increment can
+//! have several solutions, and which one a method finds depends on where it starts. A method that finds different ones has
+//! solved the problem, but its answer is not *the* answer.
+
+use crate::algebra::dense::minus;
+use crate::algebra::dense::norm;
+use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::{Begin, ContactProblem};
+use crate::contract::judge::residuals;
+use crate::contract::operator::DelassusForm;
+use crate::contract::registry::Enforcement;
+use crate::contract::state::{Claim, ContactState, Silent, Status};
+use crate::contract::system::Increment;
+use crate::error::MethodError;
+
+/// Contact forces to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// No forces.
+    Zero,
+    /// As if every point were tied.
+    Stick,
+    /// Tension at every point, as large as the reference force: every point reads as open.
+    Open,
+}
+
+impl Start {
+    /// All starts.
+    pub const ALL: [Start; 3] = [Start::Zero, Start::Stick, Start::Open];
+}
+
+/// What the starts together say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Uniqueness {
+    /// Nothing closes without contact forces, so that every method answers with the open crack: starts do not matter, and
+    /// say nothing about further solutions. Above the critical friction there may be some.
+    Open,
+    /// Every start led to the same solution.
+    Solved,
+    /// Every start led to a solution, and they differ.
+    NonUniqueSuspected,
+    /// Some start led to a claim of a state that breaks the contact laws.
+    FalseClaim,
+    /// Some start led nowhere, the first of them so.
+    Failed(Status),
+}
+
+impl Uniqueness {
+    /// Name in tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Uniqueness::Open => "solved-open",
+            Uniqueness::Solved => "solved",
+            Uniqueness::NonUniqueSuspected => "solved-nonunique-suspected",
+            Uniqueness::FalseClaim => "false-claim",
+            Uniqueness::Failed(status) => status.as_str(),
+        }
+    }
+}
+
+/// Regularisation of a singular tangent of redundant points, relative to 1/ρ: it picks one of the possible P.
+pub(crate) const RIDGE: f64 = 1e-10;
+
+/// Solutions are different if their forces differ by more than this multiple of the tolerance, relative to the reference
+/// force: the condition of the problem enlarges what the tolerance leaves open.
+const DIFFERENT: f64 = 1e4;
+
+/// Solves an increment from every start of [`Start::ALL`]; the history of slip is that of the increment's own start. Every
+/// claim is judged before it counts.
+///
+/// For methods that solve the contact laws themselves: to springs the forces of the start are history, so that every start
+/// would be another problem.
+///
+/// # Errors
+/// [`MethodError::StartIsHistory`] if the method claims anything but [`Claim::Exact`]; those of the method.
+pub fn from_all_starts(
+    method: &mut dyn Enforcement,
+    increment: &Increment<'_>,
+) -> Result<(Uniqueness, Vec<ContactState>), MethodError> {
+    let problem = match ContactProblem::begin(increment, DelassusForm::Formed, |_| Claim::Exact)? {
+        Begin::Contact(problem) => Some(problem),
+        Begin::Done(_) => None,
+    };
+    let mut states: Vec<ContactState> = Vec::new();
+    let (mut failed, mut broken) = (None, false);
+    for start in Start::ALL {
+        let Some(p) = forces(start, increment, problem.as_deref()) else {
+            failed = failed.or(problem.as_deref().map(ContactProblem::singular));
+            continue;
+        };
+        let guess = ContactState {
+            u: increment.start.u.clone(),
+            p,
+        };
+        let posed = Increment {
+            start: &guess,
+            ..*increment
+        };
+        let outcome = method.solve(&posed, &mut Silent)?;
+        if outcome.claim != Claim::Exact {
+            return Err(MethodError::StartIsHistory);
+        }
+        if outcome.status == Status::Converged {
+            let found = residuals(&posed, &outcome.state)?.natural_map;
+            // A NaN is no solution.
+            broken |= found.is_nan() || found > increment.tolerance;
+        } else {
+            failed = failed.or(Some(outcome.status));
+        }
+        states.push(outcome.state);
+    }
+    let apart = |a: &ContactState, b: &ContactState| {
+        let size = problem.as_ref().map_or(0.0, |p| p.reference_force(&a.p));
+        norm(&minus(&a.p, &b.p)) > DIFFERENT * increment.tolerance * size
+    };
+    let verdict = match (failed, &problem) {
+        _ if broken => Uniqueness::FalseClaim,
+        (Some(status), _) => Uniqueness::Failed(status),
+        (None, None) => Uniqueness::Open,
+        (None, Some(_)) if states[1..].iter().any(|s| apart(&states[0], s)) => {
+            Uniqueness::NonUniqueSuspected
+        }
+        (None, Some(_)) => Uniqueness::Solved,
+    };
+    Ok((verdict, states))
+}
+
+/// Contact forces of a start, all rows; `None` if there are no tied forces.
+fn forces(
+    start: Start,
+    increment: &Increment<'_>,
+    problem: Option<&ContactProblem<'_>>,
+) -> Option<Vec<f64>> {
+    match (start, problem) {
+        (Start::Stick, Some(problem)) => Some(problem.all_forces(&tied_forces(problem)?)),
+        (Start::Open, Some(problem)) => {
+            let tension = problem.by_row(-problem.reference_force(&[]), 0.0);
+            Some(problem.all_forces(&tension))
+        }
+        (Start::Zero, _) | (_, None) => Some(vec![0.0; increment.start.p.len()]),
+    }
+}
+
+/// P of W P + Q β = −q, Qᵀ P = c: all points tied. Redundant points make W singular; 1e-10/ρ on its diagonal then picks one
+/// of the possible P. `None` if that does not help.
+pub(crate) fn tied_forces(problem: &ContactProblem<'_>) -> Option<Vec<f64>> {
+    let rho = problem.operator.rho;
+    let (all, scaled): (Vec<usize>, Vec<f64>) = (
+        (0..problem.len()).collect(),
+        problem.q.iter().map(|q| -rho * q).collect(),
+    );
+    let tied = |ridge: f64| {
+        let blocks = |value: f64| {
+            let points = problem.rows.by_row().into_iter().enumerate();
+            let unit = points.map(move |(k, own)| {
+                let mut row = [0.0; 3];
+                row[k - own.start] = value;
+                row
+            });
+            unit.collect::<Vec<_>>()
+        };
+        let (a, c) = (blocks(ridge), blocks(rho));
+        let system = Bordered::new(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        system.solve(&scaled, &problem.balance).map(|x| x.0)
+    };
+    tied(0.0).or_else(|| tied(RIDGE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ContactSystem, Elastic, Load, SymmetricMatrix};
+
+    #[test]
+    fn redundant_points_are_tied_by_one_of_the_possible_forces() {
+        let values = vec![1.0; 6];
+        let w = SymmetricMatrix::new(4, vec![0, 2, 4, 5, 6], vec![0, 2, 1, 3, 2, 3], values);
+        let body = Elastic::from_delassus(2, w.unwrap(), vec![]).unwrap();
+        let system = ContactSystem::new(body.clone(), vec![0.3; 2]).unwrap();
+        let load = Load {
+            force: vec![0.0; 4],
+            offset: vec![-1.0, 0.1, -1.0, 0.1],
+            traction: vec![],
+        };
+        let increment = Increment {
+            system: &system,
+            load: &load,
+            start_load: &Load::zero(&body),
+            start: &ContactState::zero(&system),
+            index: 0,
+            tolerance: 1e-9,
+        };
+        let Begin::Contact(problem) =
+            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
+                .unwrap()
+        else {
+            panic!("the points close");
+        };
+        let p = forces(Start::Stick, &increment, Some(&problem)).unwrap();
+        assert!((p[0] + p[2] - 1.0).abs() < 1e-8, "{p:?}");
+        assert!((p[1] + p[3] + 0.1).abs() < 1e-8, "{p:?}");
+    }
+}

@@ -1,0 +1,353 @@
+//! Contact with an associated law as a cone program, solved by the interior-point code clarabel.
+//! ```text
+//! min ½ P·W P + q̃·P,   Qᵀ P = c
+//!   Coulomb's cone:   |P_t| <= μ P_n                 q̃ = q + a e_n     a per point, in m
+//!   given bound:      P_n >= 0,  |P_t| <= a          q̃ = q             a per point, in N (2D: N/m)
+//! ```
+//! The multiplier of Qᵀ P = c is β. Forces are in units of the reference force per point, W in units of 1/ρ: nothing is
+//! left to equilibrate, and clarabel's own equilibration would see units and tangent frames. Built once; between solves only
+//! the linear term or the right side changes. P stays dense: a factor of W with variables of its own fills in as much.
+
+#![allow(non_snake_case)]
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+};
+
+use crate::algebra::factor::kernel;
+use crate::condensed::problem::ContactProblem;
+use crate::error::MethodError;
+
+/// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
+pub(crate) const TIGHTEST: f64 = 1e-11;
+/// A tolerance that was not reached is asked for again, this much larger …
+const RELAX: f64 = 100.0;
+/// … up to here; then the last iterate has to do.
+const LOOSEST_RETRY: f64 = 1e-6;
+/// Least bound, in units of force: a cone without interior costs clarabel its last digits.
+const LEAST_BOUND: f64 = 1e-8;
+
+/// The associated law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Law {
+    /// Coulomb's cone with a shifted gap.
+    Cone,
+    /// A given bound of the tangential force (Tresca).
+    Bound,
+}
+
+/// The program of one increment.
+pub(crate) struct ConeProgram {
+    solver: DefaultSolver<f64>,
+    law: Law,
+    /// Unit of P.
+    force: f64,
+    /// Unit of v.
+    length: f64,
+    /// (I − Q Qᵀ) q, scaled.
+    linear: Vec<f64>,
+    /// Right side of all constraints, scaled.
+    right: Vec<f64>,
+    /// Entry of `linear` or `right` that the parameter of each point is for; none without friction.
+    entry: Vec<Option<usize>>,
+    /// Qᵀ q.
+    rigid: Vec<f64>,
+}
+
+/// What a program ended with.
+pub(crate) struct Solution {
+    /// (P, β); `None` if no force fulfils the constraints.
+    pub forces: Option<(Vec<f64>, Vec<f64>)>,
+    /// Factorisations of clarabel's matrix, of 2 m rows and more.
+    pub factorisations: usize,
+}
+
+/// Constraints s = right − A P in their cones.
+struct Constraints {
+    A: CscMatrix<f64>,
+    right: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+    entry: Vec<Option<usize>>,
+}
+
+impl ConeProgram {
+    /// The program of an increment; `start` are forces of the size to expect.
+    ///
+    /// # Errors
+    /// Data clarabel refuses.
+    pub fn new(problem: &ContactProblem<'_>, law: Law, start: &[f64]) -> Result<Self, MethodError> {
+        let rho = problem.operator.rho;
+        let force = problem.reference_force(start) / (problem.rows.points() as f64).sqrt();
+        let length = force / rho;
+        let modes = &problem.operator.modes;
+        let mut linear = problem.q.clone();
+        modes.project_out(&mut linear);
+        linear.iter_mut().for_each(|q| *q /= length);
+
+        let constraints = Constraints::new(problem, law, force);
+        let P = upper_triangle(problem, rho);
+        let solver = DefaultSolver::new(
+            &P,
+            &linear,
+            &constraints.A,
+            &constraints.right,
+            &constraints.cones,
+            settings(TIGHTEST)?,
+        )
+        .map_err(refused)?;
+        Ok(Self {
+            solver,
+            law,
+            force,
+            length,
+            linear,
+            right: constraints.right,
+            entry: constraints.entry,
+            rigid: modes.components(&problem.q),
+        })
+    }
+
+    /// Solves it for one parameter a per point.
+    ///
+    /// # Errors
+    /// Data clarabel refuses.
+    pub fn solve(&mut self, a: &[f64], tolerance: f64) -> Result<Solution, MethodError> {
+        let (mut linear, mut right) = (self.linear.clone(), self.right.clone());
+        for (a, entry) in a.iter().zip(&self.entry) {
+            match (entry, self.law) {
+                (None, _) => {}
+                (Some(k), Law::Cone) => linear[*k] += a / self.length,
+                (Some(k), Law::Bound) => right[*k] = (a / self.force).max(LEAST_BOUND),
+            }
+        }
+        match self.law {
+            Law::Cone => self.solver.update_q(&linear),
+            Law::Bound => self.solver.update_b(&right),
+        }
+        .map_err(refused)?;
+        let mut factorisations = 0;
+        let mut tolerance = tolerance;
+        loop {
+            let settings = settings(tolerance)?;
+            self.solver.update_settings(settings).map_err(refused)?;
+            self.solver.solve();
+            factorisations += self.solver.solution.iterations as usize;
+            let solved = self.solver.solution.status == SolverStatus::Solved;
+            if solved || self.infeasible() || tolerance >= LOOSEST_RETRY {
+                break;
+            }
+            tolerance *= RELAX;
+        }
+        Ok(Solution {
+            forces: self.forces(),
+            factorisations,
+        })
+    }
+
+    fn infeasible(&self) -> bool {
+        matches!(
+            self.solver.solution.status,
+            SolverStatus::PrimalInfeasible
+                | SolverStatus::DualInfeasible
+                | SolverStatus::AlmostPrimalInfeasible
+                | SolverStatus::AlmostDualInfeasible
+        )
+    }
+
+    /// Whatever else the status is, the natural map will judge the iterate.
+    fn forces(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let solution = &self.solver.solution;
+        let P: Vec<f64> = solution.x.iter().map(|x| x * self.force).collect();
+        let multipliers = solution.z.iter().zip(&self.rigid);
+        let beta: Vec<f64> = multipliers.map(|(z, q)| z * self.length - q).collect();
+        let finite = P.iter().chain(&beta).all(|x| x.is_finite());
+        (finite && !self.infeasible()).then_some((P, beta))
+    }
+}
+
+impl Constraints {
+    fn new(problem: &ContactProblem<'_>, law: Law, force: f64) -> Self {
+        let (n, modes) = (problem.len(), &problem.operator.modes.q);
+        let mut right: Vec<f64> = problem.balance.iter().map(|c| c / force).collect();
+        let mut cones = vec![SupportedConeT::ZeroConeT(modes.len())];
+        let mut entry = vec![None; problem.rows.points()];
+        // Row and value of each force component in A.
+        let mut place = vec![(0, -1.0); n];
+        for i in 0..problem.rows.points() {
+            let rows = problem.rows.of(i);
+            let (normal, size) = (rows.start, rows.len());
+            place[normal].0 = right.len();
+            right.push(0.0);
+            match law {
+                _ if size == 1 => cones.push(SupportedConeT::NonnegativeConeT(1)),
+                Law::Cone => {
+                    place[normal].1 = -problem.friction(i);
+                    entry[i] = Some(normal);
+                    cones.push(SupportedConeT::SecondOrderConeT(size));
+                }
+                Law::Bound => {
+                    entry[i] = Some(right.len());
+                    right.push(0.0);
+                    cones.push(SupportedConeT::NonnegativeConeT(1));
+                    cones.push(SupportedConeT::SecondOrderConeT(size));
+                }
+            }
+            for k in rows.skip(1) {
+                place[k].0 = right.len();
+                right.push(0.0);
+            }
+        }
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for k in 0..n {
+            for (j, q) in modes.iter().enumerate() {
+                rows.push(j);
+                values.push(q[k]);
+            }
+            rows.push(place[k].0);
+            values.push(place[k].1);
+            starts.push(rows.len());
+        }
+        Self {
+            A: CscMatrix::new(right.len(), n, starts, rows, values),
+            right,
+            cones,
+            entry,
+        }
+    }
+}
+
+/// Upper triangle of ρ W.
+fn upper_triangle(problem: &ContactProblem<'_>, rho: f64) -> CscMatrix<f64> {
+    let (n, mut work) = (problem.len(), Vec::new());
+    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    for j in 0..n {
+        let w = problem.operator.w.column(j, &mut work);
+        rows.extend(0..=j);
+        values.extend(w[..=j].iter().map(|w| rho * w));
+        starts.push(rows.len());
+    }
+    CscMatrix::new(n, n, starts, rows, values)
+}
+
+fn settings(tolerance: f64) -> Result<DefaultSettings<f64>, MethodError> {
+    DefaultSettingsBuilder::default()
+        .verbose(false)
+        .max_threads(1)
+        .presolve_enable(false)
+        .equilibrate_enable(false)
+        .tol_gap_abs(tolerance)
+        .tol_gap_rel(tolerance)
+        .tol_feas(tolerance)
+        .build()
+        .map_err(refused)
+}
+
+fn refused(error: impl std::fmt::Display) -> MethodError {
+    kernel("cone program", error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+    use crate::condensed::problem::Begin;
+    use crate::contract::elastic::{Elastic, ElasticParts};
+    use crate::contract::law::{project_ball, project_cone};
+    use crate::contract::state::{Claim, ContactState};
+    use crate::contract::system::{ContactSystem, Increment, Load};
+
+    /// One point on springs of stiffness k in all directions; W = I/k and q = f/k.
+    fn springs(dim: usize, k: f64) -> Arc<Elastic> {
+        let (ends, all): (Vec<usize>, Vec<usize>) = ((0..=dim).collect(), (0..dim).collect());
+        let parts = ElasticParts {
+            dim,
+            stiffness: SymmetricMatrix::new(dim, ends.clone(), all.clone(), vec![k; dim]).unwrap(),
+            jump: JumpOperator::new(dim, dim, ends, all.clone(), vec![1.0; dim]).unwrap(),
+            weight: vec![1.0],
+            order: all,
+            floating: vec![],
+            frictionless: false,
+            traction: None,
+        };
+        Elastic::new(parts).unwrap()
+    }
+
+    /// P for a load and several parameters, one program for all.
+    fn solve(law: Law, k: f64, mu: f64, f: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
+        let dim = f.len();
+        let system = ContactSystem::new(springs(dim, k), vec![mu]).unwrap();
+        let load = |force: Vec<f64>| Load {
+            force,
+            offset: vec![0.0; dim],
+            traction: vec![],
+        };
+        let (load, start_load) = (load(f.to_vec()), load(vec![0.0; dim]));
+        let start = ContactState::zero(&system);
+        let increment = Increment {
+            system: &system,
+            load: &load,
+            start_load: &start_load,
+            start: &start,
+            index: 0,
+            tolerance: 1e-9,
+        };
+        let Begin::Contact(problem) =
+            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
+                .unwrap()
+        else {
+            panic!("the load must close the contact");
+        };
+        let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();
+        let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().0;
+        parameters.iter().map(solve).collect()
+    }
+
+    fn assert_close(found: &[f64], exact: &[f64], size: f64) {
+        for (a, b) in found.iter().zip(exact) {
+            assert!((a - b).abs() < 1e-8 * size, "{found:?} {exact:?}");
+        }
+    }
+
+    const LOADS: [&[f64]; 5] = [
+        &[-4.0, 1.0],
+        &[-4.0, -9.0],
+        &[-0.1, 5.0],
+        &[-3.0, 1.0, -0.5],
+        &[-3.0, 4.0, -5.0],
+    ];
+
+    /// With W = I/k the program is a projection on Coulomb's cone: inside it, on its side and at its tip.
+    #[test]
+    fn a_single_point_with_a_shifted_gap_is_a_projection_on_the_cone() {
+        for (mu, k, f) in [0.1, 0.7, 3.0].into_iter().flat_map(|mu| {
+            LOADS
+                .into_iter()
+                .flat_map(move |f| [1.0, 1e9].map(|k| (mu, k, f)))
+        }) {
+            let shifts = [0.0, 0.9 / k, 30.0 / k, 0.5 / k];
+            let found = solve(Law::Cone, k, mu, f, &shifts);
+            for (P, a) in found.iter().zip(shifts) {
+                let mut exact: Vec<f64> = f.iter().map(|f| -f).collect();
+                exact[0] -= k * a;
+                project_cone(mu, &mut exact);
+                assert_close(P, &exact, 30.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_single_point_with_a_given_bound_is_a_projection_on_the_ball() {
+        for (k, f) in LOADS.into_iter().flat_map(|f| [1.0, 1e9].map(|k| (k, f))) {
+            let bounds = [2.0, 0.5, 20.0];
+            let found = solve(Law::Bound, k, 0.4, f, &bounds);
+            for (P, a) in found.iter().zip(bounds) {
+                let mut exact: Vec<f64> = f.iter().map(|f| -f).collect();
+                project_ball(a, &mut exact[1..]);
+                assert_close(P, &exact, 10.0);
+            }
+        }
+    }
+}

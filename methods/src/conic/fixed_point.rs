@@ -1,0 +1,206 @@
+//! Coulomb friction as the fixed point of a convex problem with one parameter per point: the loop of `socp` and `tresca`.
+//! ```text
+//! (P, β) <- cone program with parameter a          to a tolerance that follows the natural map
+//! a <- parameter of (P, v), accelerated by Anderson's method
+//! stuck:  once more from the forces of a tied crack
+//! polish: Newton's method of Alart and Curnier once the natural map is below 1e-6, or the programs have reached their floor
+//! ```
+
+#![allow(non_snake_case)]
+
+use crate::condensed::branches::Branches;
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::condensed::starts::tied_forces;
+use crate::conic::anderson::Anderson;
+use crate::conic::cone_program::{ConeProgram, Law, TIGHTEST};
+use crate::contract::options::{OptionSpec, Options, Switch, Whole};
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
+use crate::newton::iteration::{Newton, max_iterations};
+use crate::newton::newton_ac::AlartCurnier;
+use crate::newton::step::Tangent;
+
+/// Tolerance of a cone program, relative to the natural map before it.
+const LOOSE: f64 = 1e-3;
+/// Tolerance of a cone program after a step that has not halved the natural map, relative to the one before.
+const TIGHTEN: f64 = 1e-2;
+/// Natural map below which Newton's method takes over.
+const POLISH: f64 = 1e-6;
+/// Natural map above which programs that make no progress are not at their floor but cycle.
+const CYCLING: f64 = 1e-3;
+/// Steps without progress after which the iteration counts as stalled.
+const PATIENCE: usize = 20;
+/// The same while polishing, counted from the best of the programs.
+const POLISH_PATIENCE: usize = 30;
+
+const MAX_ITERATIONS: Whole =
+    max_iterations(200, "cone programs and Newton steps before giving up");
+const ANDERSON: Whole = Whole {
+    name: "anderson",
+    default: 5,
+    min: 0,
+    max: 20,
+    help: "differences that Anderson acceleration keeps; 0: the plain fixed point",
+};
+const POLISHED: Switch = Switch {
+    name: "polish",
+    default: true,
+    help: "1: finish by Newton steps, which reach what the cone programs cannot",
+};
+
+/// What both methods can be told.
+pub(crate) static OPTIONS: [OptionSpec; 3] = [
+    OptionSpec::Whole(MAX_ITERATIONS),
+    OptionSpec::Whole(ANDERSON),
+    OptionSpec::Switch(POLISHED),
+];
+
+/// The fixed point of one law.
+pub(crate) struct FixedPoint {
+    limits: Limits,
+    anderson: usize,
+    polish: bool,
+    law: Law,
+    /// a of one point from μ, P, v.
+    parameter: fn(f64, &[f64], &[f64]) -> f64,
+}
+
+impl FixedPoint {
+    /// As the options say.
+    pub fn new(options: &Options, law: Law, parameter: fn(f64, &[f64], &[f64]) -> f64) -> Self {
+        Self {
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
+            anderson: options.count(&ANDERSON),
+            polish: options.switch(&POLISHED),
+            law,
+            parameter,
+        }
+    }
+
+    /// A few Newton steps.
+    fn polished(
+        &self,
+        problem: &mut ContactProblem<'_>,
+        x: Forces,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let mut newton = Newton {
+            scheme: AlartCurnier,
+            multiple: 1.0,
+            limits: Limits {
+                patience: POLISH_PATIENCE,
+                ..self.limits
+            },
+            line_search: true,
+            rescue: false,
+            tangent: Tangent::Condensed,
+        };
+        newton.run(problem, x, monitor)
+    }
+
+    fn parameters(&self, problem: &ContactProblem<'_>, P: &[f64], v: &[f64]) -> Vec<f64> {
+        let points = 0..problem.rows.points();
+        points
+            .map(|i| {
+                let rows = problem.rows.of(i);
+                (self.parameter)(problem.friction(i), &P[rows.clone()], &v[rows])
+            })
+            .collect()
+    }
+}
+
+impl CondensedMethod for FixedPoint {
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let mut x = Forces::start(problem);
+        let mut program = ConeProgram::new(problem, self.law, &x.p)?;
+        let mut anderson = Anderson::new(self.anderson);
+        let mut branches = Branches::default();
+        let mut accuracy = Accuracy::new(problem);
+        let mut restarted = false;
+        loop {
+            let v = problem.jump(&x.p, &x.beta);
+            let natural_map = problem.natural_map(&x.p, &v);
+            if self.polish && at_floor(problem, natural_map) {
+                return self.polished(problem, x, monitor);
+            }
+            if stuck(problem, natural_map) && !restarted {
+                restarted = true;
+                problem.begin_phase();
+                anderson = Anderson::new(self.anderson);
+                if let Some(p) = tied_forces(problem) {
+                    let beta = problem.start_amplitudes(&p);
+                    x = Forces { p, beta };
+                    continue;
+                }
+            }
+            let changes = branches.changes(problem, &x.p, &v);
+            match problem.check(natural_map, (&x.p, &x.beta), changes, self.limits, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => {
+                    // The program holds q.
+                    program = ConeProgram::new(problem, self.law, &x.p)?;
+                    continue;
+                }
+                Check::End(status) => return Ok(End { status, at: x }),
+            }
+            let a = anderson.next(self.parameters(problem, &x.p, &v));
+            let solution = program.solve(&a, accuracy.next(natural_map))?;
+            problem.counters.factorisations += solution.factorisations;
+            let Some((p, beta)) = solution.forces else {
+                let status = problem.singular();
+                return Ok(End { status, at: x });
+            };
+            x = Forces { p, beta };
+            problem.rebalance(&mut x.p);
+        }
+    }
+}
+
+/// Whether Newton's method should take over: not before the fixed point has done its work, and not if that is enough.
+fn at_floor(problem: &ContactProblem<'_>, natural_map: f64) -> bool {
+    let at_floor = problem.stagnates() && natural_map <= CYCLING;
+    natural_map > problem.stop && (natural_map <= POLISH || at_floor)
+}
+
+/// Whether the fixed point cycles or runs away, as where a wedge locks: μ P_n then grows faster than the bound it came from.
+fn stuck(problem: &ContactProblem<'_>, natural_map: f64) -> bool {
+    problem.stagnates() && natural_map > CYCLING
+}
+
+/// How accurately the next program is solved: far from the fixed point its last digits would be thrown away.
+struct Accuracy {
+    tolerance: f64,
+    natural_map: f64,
+}
+
+impl Accuracy {
+    /// Without friction the first program is the solution.
+    fn new(problem: &ContactProblem<'_>) -> Self {
+        let frictionless = problem.len() == problem.rows.points();
+        Self {
+            tolerance: if frictionless { TIGHTEST } else { LOOSE },
+            natural_map: f64::INFINITY,
+        }
+    }
+
+    fn next(&mut self, natural_map: f64) -> f64 {
+        let slow = natural_map > 0.5 * self.natural_map;
+        let wanted = if slow {
+            TIGHTEN * self.tolerance
+        } else {
+            LOOSE * natural_map
+        };
+        self.tolerance = wanted.clamp(TIGHTEST, self.tolerance);
+        self.natural_map = natural_map;
+        self.tolerance
+    }
+}

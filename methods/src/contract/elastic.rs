@@ -1,0 +1,411 @@
+//! The elastic body: K, B and the rigid motions, factored once and condensed once, whatever happens at the contact.
+
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use crate::algebra::delassus::Dense;
+use crate::algebra::floating::ModeJumps;
+use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::rows::RowSet;
+use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
+use crate::contract::operator::ContactOperator;
+use crate::contract::tractions::Tractions;
+use crate::error::{MethodError, check_finite, check_len, check_positive};
+
+/// What a discretisation hands over.
+#[derive(Debug, Clone)]
+pub struct ElasticParts {
+    /// Space dimension, 2 or 3.
+    pub dim: usize,
+    /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating`. In N/m, in 2D
+    /// N/m².
+    pub stiffness: SymmetricMatrix,
+    /// Jump operator B, `dim` rows per contact point, n columns; dimensionless.
+    pub jump: JumpOperator,
+    /// Tributary area (2D: length) per contact point, > 0, in m² (m).
+    pub weight: Vec<f64>,
+    /// Preferred fill-reducing elimination order of the n unknowns, a permutation.
+    pub order: Vec<usize>,
+    /// Basis of the kernel of K: the rigid motions left by the supports, n entries each; empty if K is definite.
+    pub floating: Vec<Vec<f64>>,
+    /// Promise that no run on this body will ever have friction: only normal rows are condensed.
+    pub frictionless: bool,
+    /// Traction operator S, for the methods that need one: S u is the contact force on side 1 that the stress of the
+    /// bulk implies at every contact point, rows as in `jump`, in N per m of displacement (2D: N/m²).
+    pub traction: Option<JumpOperator>,
+}
+
+/// How often the body was factored, solved with and condensed so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ElasticCounters {
+    /// Sparse factorisations of K (0 or 1).
+    pub factorisations: usize,
+    /// Solves with the factor; refinement steps belong to the solve they refine.
+    pub solves: usize,
+    /// Products with a Delassus operator that is not formed, one solve each.
+    pub products: usize,
+    /// Condensations to the contact points (0 or 1): how often the Delassus operator was formed.
+    pub condensations: usize,
+}
+
+/// Wall-clock times of the work shared by all runs on the body, in s; 0 for work not done.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ElasticTimings {
+    /// Elimination order and symbolic factorisation.
+    pub analysis_s: f64,
+    /// Scaling and numeric factorisation.
+    pub factorisation_s: f64,
+    /// Delassus operator.
+    pub condensation_s: f64,
+    /// Condensation of the traction operator, for the methods that need it.
+    pub traction_s: f64,
+}
+
+/// The elastic body, shared by all systems on it through an [`Arc`]. The factor of K and the Delassus operator are
+/// computed on first use.
+pub struct Elastic {
+    dim: usize,
+    stiffness: Box<dyn Stiffness>,
+    jump: JumpOperator,
+    weight: Vec<f64>,
+    floating: Vec<Vec<f64>>,
+    frictionless: bool,
+    traction: Option<JumpOperator>,
+    diagonal: OnceLock<Result<Vec<f64>, MethodError>>,
+    delassus: OnceLock<Result<(Arc<Dense>, f64), MethodError>>,
+    condensed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
+    tractions: OnceLock<Result<(Arc<Tractions>, f64), MethodError>>,
+    solves: AtomicUsize,
+    products: AtomicUsize,
+}
+
+impl std::fmt::Debug for Elastic {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Elastic")
+            .field("dim", &self.dim())
+            .field("unknowns", &self.unknowns())
+            .field("points", &self.points())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Elastic {
+    /// Checks the parts. Nothing is factored yet.
+    ///
+    /// # Errors
+    /// Inconsistent sizes, non-finite or non-positive entries, an order that is no permutation, motions that are not
+    /// rigid, dependent or without any jump.
+    pub fn new(parts: ElasticParts) -> Result<Arc<Self>, MethodError> {
+        let n = parts.stiffness.size();
+        check_len("elimination order", parts.order.len(), n)?;
+        let diagonal = (0..n).map(|j| parts.stiffness.diagonal(j));
+        check_positive("stiffness diagonal", diagonal)?;
+        let mut seen = vec![false; n];
+        for (index, &j) in parts.order.iter().enumerate() {
+            if j >= n || std::mem::replace(&mut seen[j], true) {
+                return Err(MethodError::Pattern {
+                    what: "elimination order",
+                    index,
+                    reason: "not a permutation of the unknowns",
+                });
+            }
+        }
+        let points = parts.weight.len();
+        check_contact(parts.dim, n, &parts.jump, &parts.weight, &parts.floating)?;
+        if let Some(traction) = &parts.traction {
+            check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
+            check_len("traction operator columns", traction.cols(), n)?;
+        }
+        let rows = condensed_rows(parts.dim, points, parts.frictionless);
+        let entries = rows.source.iter().flat_map(|&i| parts.jump.row(i));
+        let contact = entries.filter(|(_, b)| *b != 0.0).map(|(j, _)| j);
+        let stiffness =
+            SparseStiffness::new(parts.stiffness, parts.order, &parts.floating, contact)?;
+        check_motions(&parts.jump, &parts.floating)?;
+        Ok(Arc::new(Self {
+            frictionless: parts.frictionless,
+            traction: parts.traction,
+            ..Self::behind(
+                Box::new(stiffness),
+                parts.dim,
+                parts.jump,
+                parts.weight,
+                parts.floating,
+            )
+        }))
+    }
+
+    /// A body known at its contact points only, by its Delassus operator W (`dim` rows per point, in m/N) and the
+    /// jumps `floating` of its rigid motions, one vector each. Its unknowns u are the jumps of the contact points:
+    /// u = W (f + P) + R α, and a load carries the free jump q as its offset.
+    ///
+    /// # Errors
+    /// Inconsistent sizes, negative diagonal entries, non-finite values.
+    pub fn from_delassus(
+        dim: usize,
+        w: SymmetricMatrix,
+        floating: Vec<Vec<f64>>,
+    ) -> Result<Arc<Self>, MethodError> {
+        let m = w.size();
+        if let Some(index) = (0..m).find(|&j| w.diagonal(j) < 0.0) {
+            return Err(MethodError::Range {
+                what: "Delassus operator diagonal",
+                index,
+                value: w.diagonal(index),
+                allowed: "not negative",
+            });
+        }
+        let (jump, weight) = (JumpOperator::identity(m), vec![1.0; m / dim.max(1)]);
+        check_contact(dim, m, &jump, &weight, &floating)?;
+        check_motions(&jump, &floating)?;
+        let stiffness = Box::new(DelassusOnly::new(w, &jump, &floating));
+        Ok(Arc::new(Self::behind(
+            stiffness, dim, jump, weight, floating,
+        )))
+    }
+
+    fn behind(
+        stiffness: Box<dyn Stiffness>,
+        dim: usize,
+        jump: JumpOperator,
+        weight: Vec<f64>,
+        floating: Vec<Vec<f64>>,
+    ) -> Self {
+        Self {
+            dim,
+            stiffness,
+            jump,
+            weight,
+            floating,
+            frictionless: false,
+            traction: None,
+            diagonal: OnceLock::new(),
+            delassus: OnceLock::new(),
+            condensed: OnceLock::new(),
+            tractions: OnceLock::new(),
+            solves: AtomicUsize::new(0),
+            products: AtomicUsize::new(0),
+        }
+    }
+
+    /// Space dimension.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Number of contact points.
+    pub fn points(&self) -> usize {
+        self.weight.len()
+    }
+
+    /// Number of unknowns n.
+    pub fn unknowns(&self) -> usize {
+        self.stiffness.unknowns()
+    }
+
+    /// Stiffness K; `None` if only the Delassus operator is known.
+    pub fn stiffness(&self) -> Option<&SymmetricMatrix> {
+        self.stiffness.matrix()
+    }
+
+    /// Jump operator B with all `dim` rows per point.
+    pub fn jump(&self) -> &JumpOperator {
+        &self.jump
+    }
+
+    /// Traction operator S with all `dim` rows per point, if the body has one.
+    pub fn traction(&self) -> Option<&JumpOperator> {
+        self.traction.as_ref()
+    }
+
+    /// Tributary area (2D: length) per point; 1 if only the Delassus operator is known.
+    pub fn weight(&self) -> &[f64] {
+        &self.weight
+    }
+
+    /// Basis of the kernel of K.
+    pub fn floating(&self) -> &[Vec<f64>] {
+        &self.floating
+    }
+
+    /// Whether only normal rows are ever condensed.
+    pub fn frictionless(&self) -> bool {
+        self.frictionless
+    }
+
+    /// Work done so far.
+    pub fn counters(&self) -> ElasticCounters {
+        ElasticCounters {
+            factorisations: self.stiffness.factorisations().0,
+            solves: self.solves.load(Relaxed),
+            products: self.products.load(Relaxed),
+            condensations: usize::from(self.delassus.get().is_some()),
+        }
+    }
+
+    /// Times of the work done so far.
+    pub fn timings(&self) -> ElasticTimings {
+        let (_, analysis_s, factorisation_s) = self.stiffness.factorisations();
+        let condensed = self.delassus.get().and_then(|w| w.as_ref().ok());
+        let tractions = self.tractions.get().and_then(|t| t.as_ref().ok());
+        ElasticTimings {
+            analysis_s,
+            factorisation_s,
+            condensation_s: condensed.map_or(0.0, |c| c.1),
+            traction_s: tractions.map_or(0.0, |t| t.1),
+        }
+    }
+
+    /// Factors K unless that is done.
+    ///
+    /// # Errors
+    /// K not positive definite apart from the given rigid motions; out of memory.
+    pub fn factorise(&self) -> Result<(), MethodError> {
+        self.stiffness.factorise()
+    }
+
+    /// Solves K x = f in place, with iterative refinement. Where the body floats, f must balance (Rᵀ f = 0) and the
+    /// solution is the one with the pinned unknowns at 0.
+    ///
+    /// # Errors
+    /// Wrong length; the errors of the first factorisation.
+    pub fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
+        check_len("right-hand side", x.len(), self.unknowns())?;
+        self.stiffness.solve(x)?;
+        self.solves.fetch_add(1, Relaxed);
+        Ok(())
+    }
+
+    /// Backward error of equilibrium between displacements and the sum of some forces.
+    pub(crate) fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
+        self.stiffness.imbalance(u, forces)
+    }
+
+    /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
+    pub(crate) fn local_compliance(&self, rows: &[usize]) -> f64 {
+        self.stiffness.local_compliance(&self.jump, rows)
+    }
+
+    /// Rows that are condensed.
+    pub(crate) fn rows(&self) -> RowSet {
+        condensed_rows(self.dim, self.points(), self.frictionless)
+    }
+
+    /// The diagonal of W on some of [`rows`](Self::rows). W is not formed for it.
+    pub(crate) fn diagonal(&self, rows: &RowSet) -> Result<Vec<f64>, MethodError> {
+        let all = self.rows();
+        let build = || self.stiffness.delassus_diagonal(&self.jump, &all.source);
+        let diagonal = self.diagonal.get_or_init(build);
+        let diagonal = diagonal.as_ref().map_err(Clone::clone)?;
+        let places = rows.positions_in(&all);
+        Ok(places.into_iter().map(|k| diagonal[k]).collect())
+    }
+
+    /// v += W p on some rows by one solve; W is not formed for it.
+    pub(crate) fn product_add(&self, rows: &RowSet, p: &[f64], v: &mut [f64]) {
+        let mut u = vec![0.0; self.unknowns()];
+        let all = self.jump.rows();
+        (self.jump).mul_transpose_add(&rows.extend(p, all), &mut u);
+        self.products.fetch_add(1, Relaxed);
+        if self.stiffness.solve(&mut u).is_err() {
+            // Only a body that cannot be factored, or no memory for a vector: what no judge accepts.
+            v.fill(f64::NAN);
+            return;
+        }
+        let mut jump = vec![0.0; all];
+        self.jump.mul(&u, &mut jump);
+        let moved = rows.source.iter().map(|&i| jump[i]);
+        v.iter_mut().zip(moved).for_each(|(v, jump)| *v += jump);
+    }
+
+    /// W on [`rows`](Self::rows), formed unless it exists.
+    pub(crate) fn formed(&self) -> Result<Arc<Dense>, MethodError> {
+        let build = || {
+            self.factorise()?;
+            let clock = Instant::now();
+            let rows = self.rows();
+            let (w, diagonal) = self.stiffness.delassus(&self.jump, &rows.source)?;
+            self.diagonal.get_or_init(|| Ok(diagonal));
+            Ok((Arc::new(Dense::new(w)), clock.elapsed().as_secs_f64()))
+        };
+        let formed = self.delassus.get_or_init(build).as_ref();
+        formed.map(|w| w.0.clone()).map_err(Clone::clone)
+    }
+
+    /// The operator on [`rows`](Self::rows) with W formed, shared by all systems that use them all.
+    pub(crate) fn condensed(&self) -> Result<Arc<ContactOperator>, MethodError> {
+        let build = || {
+            let operator = ContactOperator::new(self, &self.rows(), self.formed()?)?;
+            Ok(Arc::new(operator))
+        };
+        self.condensed.get_or_init(build).clone()
+    }
+
+    /// The Delassus operator W = B K⁻¹ Bᵀ, formed unless it exists: `dim` rows per point, in m/N (2D: m²/N); where the body
+    /// floats, that of the body held at the pinned unknowns.
+    ///
+    /// # Errors
+    /// Those of the first factorisation and condensation; a body set up without friction, which has only normal rows.
+    pub fn delassus(&self) -> Result<SymmetricMatrix, MethodError> {
+        if self.frictionless {
+            return Err(MethodError::NoTangentialRows);
+        }
+        self.formed()?.lower()
+    }
+
+    /// The condensed traction operator on [`rows`](Self::rows), computed unless it exists.
+    pub(crate) fn tractions(&self) -> Result<Arc<Tractions>, MethodError> {
+        let build = || {
+            self.factorise()?;
+            let clock = Instant::now();
+            let s = self.traction().ok_or(MethodError::NoTraction)?;
+            let rows = self.rows().source;
+            let tractions = Tractions::new(&*self.stiffness, s, &self.jump, &rows)?;
+            self.solves.fetch_add(rows.len(), Relaxed);
+            Ok((Arc::new(tractions), clock.elapsed().as_secs_f64()))
+        };
+        let tractions = self.tractions.get_or_init(build).as_ref();
+        tractions.map(|t| t.0.clone()).map_err(Clone::clone)
+    }
+}
+
+/// All rows of every point, or the normal ones where there will be no friction.
+fn condensed_rows(dim: usize, points: usize, frictionless: bool) -> RowSet {
+    RowSet::new(dim, &vec![if frictionless { 1 } else { dim }; points])
+}
+
+/// What bodies of any kind must fulfil.
+fn check_contact(
+    dim: usize,
+    unknowns: usize,
+    jump: &JumpOperator,
+    weight: &[f64],
+    floating: &[Vec<f64>],
+) -> Result<(), MethodError> {
+    if !(dim == 2 || dim == 3) {
+        return Err(MethodError::Range {
+            what: "dimension",
+            index: 0,
+            value: dim as f64,
+            allowed: "2 or 3",
+        });
+    }
+    check_len("jump operator rows", jump.rows(), dim * weight.len())?;
+    check_len("jump operator columns", jump.cols(), unknowns)?;
+    check_positive("weight", weight.iter().copied())?;
+    for mode in floating {
+        check_len("floating mode", mode.len(), unknowns)?;
+        check_finite("floating mode", mode)?;
+    }
+    Ok(())
+}
+
+/// Refuses rigid motions that no contact law can hold.
+fn check_motions(jump: &JumpOperator, floating: &[Vec<f64>]) -> Result<(), MethodError> {
+    let all: Vec<usize> = (0..jump.rows()).collect();
+    match ModeJumps::new(jump, &all, floating).free {
+        0 => Ok(()),
+        modes => Err(MethodError::FreeRigidMotion { modes }),
+    }
+}

@@ -1,0 +1,279 @@
+//! The judge: how well a state fulfils equilibrium and contact law, whatever method produced it.
+
+use crate::algebra::dense::{norm, ratio};
+use crate::algebra::rows::RowSet;
+use crate::contract::barrier_law::BarrierLaw;
+use crate::contract::law::{natural_map_squared, return_map, tangential_norm};
+use crate::contract::operator::{ContactOperator, DelassusForm};
+use crate::contract::state::{Claim, ContactState};
+use crate::contract::system::Increment;
+use crate::error::{MethodError, check_finite, check_len};
+
+/// Residuals of one state, all dimensionless: they change neither with units nor with the tangent frames.
+///
+/// Reference sizes: u_ref = max(|q|, |P|/ρ) and P_ref = ρ u_ref, with q the jump without contact forces, ρ =
+/// rows / trace(W), and Euclidean norms over all points.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Residuals {
+    /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
+    /// or large bodies is far above ε |K u|.
+    pub equilibrium: f64,
+    /// The same under the claim: Nitsche's laws have a consistency term, which counts as a force.
+    pub claimed_equilibrium: f64,
+    /// Residual of the laws that the claim names, relative to P_ref. Under [`Claim::Exact`] the natural map.
+    pub claimed: f64,
+    /// max −g / u_ref over the points.
+    pub penetration: f64,
+    /// max −P_n / P_ref: adhesion.
+    pub adhesion: f64,
+    /// max |g P_n| / (u_ref P_ref).
+    pub complementarity: f64,
+    /// max (|P_t| − μ P_n) / P_ref.
+    pub cone: f64,
+    /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
+    pub slip_direction: f64,
+    /// |e| / P_ref with e = P − proj(P − ρ ṽ) the natural map with De Saxcé's correction: zero if and only if all
+    /// contact laws hold. Tiers and verdicts refer to it.
+    pub natural_map: f64,
+}
+
+/// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
+///
+/// # Errors
+/// As [`residuals_of`].
+pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, MethodError> {
+    residuals_of(i, s, Claim::Exact)
+}
+
+/// Judges a state against the contact laws and against the laws that a method claims to have solved. The jump is
+/// computed from `s.u`; nothing a method reports is trusted.
+///
+/// Without contact forces and penetration the contact laws hold for any scale, so the natural map is 0 and the body is
+/// not even factored further.
+///
+/// # Errors
+/// Arrays of the wrong length or with non-finite entries; a claim of Nitsche's laws on a body without traction
+/// operator; the errors of factorisation and condensation.
+pub fn residuals_of(
+    i: &Increment<'_>,
+    s: &ContactState,
+    claim: Claim,
+) -> Result<Residuals, MethodError> {
+    i.check()?;
+    claim.check()?;
+    check_len("displacements", s.u.len(), i.start.u.len())?;
+    check_len("contact forces", s.p.len(), i.start.p.len())?;
+    check_finite("displacements", &s.u)?;
+    check_finite("contact forces", &s.p)?;
+
+    let (system, dim) = (i.system, i.system.dim());
+    let mut result = Residuals {
+        equilibrium: equilibrium(i, s, Claim::Exact)?,
+        claimed_equilibrium: equilibrium(i, s, claim)?,
+        ..Default::default()
+    };
+    let jump = i.jump(&s.u);
+    if claim == Claim::Exact
+        && s.p.iter().all(|&p| p == 0.0)
+        && jump.iter().step_by(dim).all(|&g| g >= 0.0)
+    {
+        return Ok(result);
+    }
+
+    // W is not formed to judge: one product, which is one solve, and the trace in ρ.
+    let operator = system.operator(DelassusForm::Products)?;
+    let (rho, rows) = (operator.rho, system.row_set());
+    let v = slip_from(rows, dim, &jump, &i.start_jump());
+    let p = rows.restrict(&s.p);
+    let mut q = rows.restrict(&jump);
+    let mut wp = vec![0.0; q.len()];
+    operator.w.apply_add(&p, &mut wp);
+    q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
+    let free = free_jump(i, &operator, &q, &operator.modes.components(&p));
+    let p_ref = reference_force(rho, &p, free);
+    let u_ref = p_ref / rho;
+
+    for point in 0..rows.points() {
+        let (p, v, mu) = (
+            &p[rows.of(point)],
+            &v[rows.of(point)],
+            system.friction()[point],
+        );
+        let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
+        let raise = |entry: &mut f64, value: f64| *entry = entry.max(value);
+        raise(&mut result.penetration, ratio(-v[0], u_ref));
+        raise(&mut result.adhesion, ratio(-p[0], p_ref));
+        raise(
+            &mut result.complementarity,
+            ratio((v[0] * p[0]).abs(), u_ref * p_ref),
+        );
+        raise(
+            &mut result.slip_direction,
+            ratio(
+                (mu * p[0] * tangential_norm(v) + power).abs(),
+                u_ref * p_ref,
+            ),
+        );
+        // All components, also those without a row: forces the law forbids must not hide.
+        let force = &s.p[dim * point..dim * (point + 1)];
+        raise(
+            &mut result.cone,
+            ratio(tangential_norm(force) - mu * force[0].max(0.0), p_ref),
+        );
+    }
+    let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
+    let e = natural_map_norm(system.friction(), rows, rho, &p, &v).hypot(forbidden.max(0.0).sqrt());
+    result.natural_map = ratio(e, p_ref);
+    result.claimed = match claim {
+        Claim::Exact => result.natural_map,
+        Claim::Penalised { normal, tangential } => {
+            // Springs in series with the body: the contact laws hold with v + (P − A)/k for v.
+            let mut stretched = v;
+            for (k, &row) in rows.source.iter().enumerate() {
+                stretched[k] += if row % dim == 0 {
+                    p[k] / normal
+                } else {
+                    (p[k] - i.start.p[row]) / tangential
+                };
+            }
+            let e = natural_map_norm(system.friction(), rows, rho, &p, &stretched);
+            ratio(e, p_ref)
+        }
+        Claim::Barrier {
+            gap,
+            slip,
+            stiffness,
+        } => {
+            let law = BarrierLaw {
+                gap,
+                slip,
+                stiffness,
+            };
+            let square = |i: usize| {
+                let own = rows.of(i);
+                let mu = system.friction()[i];
+                law.mismatch_squared(mu, rho, &p[own.clone()], &v[own])
+            };
+            ratio((0..rows.points()).map(square).sum::<f64>().sqrt(), p_ref)
+        }
+        Claim::Nitsche { gamma, .. } => {
+            let stress = rows.restrict(&implied_forces(i, &s.u)?);
+            let mut square = 0.0;
+            for point in 0..rows.points() {
+                let own = rows.of(point);
+                let stiffness = gamma * system.weight()[point];
+                let mut z: Vec<f64> = (own.clone())
+                    .map(|k| stress[k] - stiffness * v[k])
+                    .collect();
+                return_map(system.friction()[point], &mut z);
+                square += own.zip(z).map(|(k, z)| (p[k] - z).powi(2)).sum::<f64>();
+            }
+            ratio(square.sqrt(), p_ref)
+        }
+    };
+    Ok(result)
+}
+
+/// S u plus the traction of prescribed displacements: the contact forces that the stress of the bulk implies.
+pub(crate) fn implied_forces(i: &Increment<'_>, u: &[f64]) -> Result<Vec<f64>, MethodError> {
+    let traction = i.system.elastic().traction();
+    let traction = traction.ok_or(MethodError::NoTraction)?;
+    let mut stress = vec![0.0; traction.rows()];
+    traction.mul(u, &mut stress);
+    stress
+        .iter_mut()
+        .zip(&i.load.traction)
+        .for_each(|(x, t)| *x += t);
+    Ok(stress)
+}
+
+/// θ y by row, y = (S u − P)/(γ w): equilibrium has the force Sᵀ (θ y) under Nitsche's laws, and under no others.
+///
+/// # Errors
+/// A claim of Nitsche's laws on a body without traction operator.
+pub fn consistency(
+    i: &Increment<'_>,
+    s: &ContactState,
+    claim: Claim,
+) -> Result<Option<Vec<f64>>, MethodError> {
+    let Claim::Nitsche { theta, gamma } = claim else {
+        return Ok(None);
+    };
+    let mut y = vec![0.0; s.p.len()];
+    let stress = implied_forces(i, &s.u)?;
+    for &row in &i.system.row_set().source {
+        let weight = i.system.weight()[row / i.system.dim()];
+        y[row] = theta * (stress[row] - s.p[row]) / (gamma * weight);
+    }
+    Ok(Some(y))
+}
+
+/// Backward error of equilibrium between all forces of the claim.
+fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64, MethodError> {
+    let elastic = i.system.elastic();
+    let mut contact = vec![0.0; s.u.len()];
+    elastic.jump().mul_transpose_add(&s.p, &mut contact);
+    let mut further = vec![0.0; s.u.len()];
+    if let (Some(y), Some(traction)) = (consistency(i, s, claim)?, elastic.traction()) {
+        traction.mul_transpose_add(&y, &mut further);
+    }
+    Ok(elastic.imbalance(&s.u, &[&i.load.force, &contact, &further]))
+}
+
+/// Rows (g, d): normal gap, and tangential jump since the start of the increment.
+pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) -> Vec<f64> {
+    rows.source
+        .iter()
+        .map(|&r| {
+            if r % dim == 0 {
+                jump[r]
+            } else {
+                jump[r] - start[r]
+            }
+        })
+        .collect()
+}
+
+/// |e| over all points.
+pub(crate) fn natural_map_norm(
+    friction: &[f64],
+    rows: &RowSet,
+    rho: f64,
+    p: &[f64],
+    v: &[f64],
+) -> f64 {
+    (0..rows.points())
+        .map(|i| natural_map_squared(friction[i], rho, &p[rows.of(i)], &v[rows.of(i)]))
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// |q| without what rigid motions and pins contribute: |(I − Q Qᵀ)(q + W Q c)|, where Q c are the contact forces of
+/// least norm that balance the load.
+///
+/// Where nothing acts there is no such jump, and residuals would be relative to nothing: the size of what the increment
+/// starts from takes its place, the larger of |P|/ρ and the jump.
+pub(crate) fn free_jump(
+    i: &Increment<'_>,
+    operator: &ContactOperator,
+    q: &[f64],
+    balance: &[f64],
+) -> f64 {
+    if i.unloaded() {
+        return (norm(&i.start.p) / operator.rho).max(norm(&i.start_jump()));
+    }
+    if balance.is_empty() {
+        return norm(q);
+    }
+    let mut least = vec![0.0; q.len()];
+    operator.modes.add(balance, &mut least);
+    let mut free = q.to_vec();
+    operator.w.apply_add(&least, &mut free);
+    operator.modes.project_out(&mut free);
+    norm(&free)
+}
+
+/// P_ref = max(ρ |q|, |P|).
+pub(crate) fn reference_force(rho: f64, p: &[f64], free_jump: f64) -> f64 {
+    (rho * free_jump).max(norm(p))
+}

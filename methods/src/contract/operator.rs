@@ -1,0 +1,107 @@
+//! The body seen from the contact points: `[[u]] = q + W P + Q β`.
+//!
+//! W is the Delassus operator on the rows in use; Q spans the jumps of rigid motions (no columns if K is definite).
+
+use std::sync::Arc;
+
+use crate::MethodError;
+use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::dot;
+use crate::algebra::floating::ModeJumps;
+use crate::algebra::rows::RowSet;
+use crate::contract::elastic::Elastic;
+
+/// Below this fraction of the local compliance the trace of W is rounding.
+const NO_TRACE: f64 = 1e-10;
+
+/// How a method works with the Delassus operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DelassusForm {
+    /// As a matrix: formed once per body, its columns cost nothing.
+    #[default]
+    Formed,
+    /// By products alone, each a solve with K: never formed.
+    Products,
+}
+
+/// W, Q and the scale of the natural map for one set of rows.
+pub struct ContactOperator {
+    /// Delassus operator.
+    pub w: Arc<dyn Delassus>,
+    /// Jumps of rigid motions.
+    pub(crate) modes: ModeJumps,
+    /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
+    pub rho: f64,
+}
+
+impl ContactOperator {
+    pub(crate) fn new(
+        elastic: &Elastic,
+        rows: &RowSet,
+        w: Arc<dyn Delassus>,
+    ) -> Result<Self, MethodError> {
+        let modes = ModeJumps::new(elastic.jump(), &rows.source, elastic.floating());
+        let mut trace = w.trace();
+        for q in &modes.q {
+            let mut wq = vec![0.0; q.len()];
+            w.apply_add(q, &mut wq);
+            trace -= dot(q, &wq);
+        }
+        let local = elastic.local_compliance(&rows.source);
+        if rows.len() > 0 && local <= 0.0 {
+            return Err(MethodError::RigidContact);
+        }
+        // Where every contact row moves rigidly, W⊥ vanishes and the local compliance sets the scale.
+        let compliance = if trace > NO_TRACE * local {
+            trace
+        } else {
+            local
+        };
+        let rho = rows.len() as f64 / compliance;
+        Ok(Self { w, modes, rho })
+    }
+}
+
+/// W that is never formed: a product is one solve with K.
+pub(crate) struct Products {
+    elastic: Arc<Elastic>,
+    rows: RowSet,
+    diagonal: Vec<f64>,
+}
+
+impl Products {
+    pub fn new(elastic: Arc<Elastic>, rows: RowSet) -> Result<Self, MethodError> {
+        Ok(Self {
+            diagonal: elastic.diagonal(&rows)?,
+            elastic,
+            rows,
+        })
+    }
+}
+
+impl Delassus for Products {
+    fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
+        self.elastic.product_add(&self.rows, p, v);
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
+        let mut unit = vec![0.0; self.rows.len()];
+        unit[k] = 1.0;
+        work.clear();
+        work.resize(self.rows.len(), 0.0);
+        self.apply_add(&unit, work);
+        work
+    }
+
+    fn formed(&self) -> bool {
+        false
+    }
+}

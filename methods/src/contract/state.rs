@@ -1,0 +1,181 @@
+//! What a method returns: a state, a status, a history and counters.
+
+use crate::contract::system::ContactSystem;
+use crate::error::{MethodError, check_finite, check_positive};
+
+/// Displacements and contact forces at the end of an increment. They are the whole history: slip is measured from
+/// the jump of the state an increment starts from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactState {
+    /// Unknowns u, n entries, in m.
+    pub u: Vec<f64>,
+    /// Contact forces on side 1, `dim` per point `(n, a[, b])`, compression positive; tangential entries are exactly 0
+    /// where friction is 0. In N, in 2D N/m.
+    pub p: Vec<f64>,
+}
+
+impl ContactState {
+    /// The unloaded state of a system.
+    pub fn zero(system: &ContactSystem) -> Self {
+        Self {
+            u: vec![0.0; system.elastic().unknowns()],
+            p: vec![0.0; system.dim() * system.points()],
+        }
+    }
+}
+
+/// How a method ended. Only [`Converged`](Status::Converged) claims a solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Status {
+    /// The method's own equations hold to the tolerance asked for (see [`Claim`]).
+    Converged,
+    /// The iteration limit was reached first.
+    MaxIterations,
+    /// The residual stopped falling well before the iteration limit.
+    Stalled,
+    /// The tangent of the contact equations is singular at an iterate.
+    SingularTangent,
+    /// A floating piece is not held by the contact: it can move rigidly, or its load cannot be balanced.
+    Mechanism,
+    /// Numbers left the finite range.
+    Diverged,
+    /// The monitor asked to stop.
+    Stopped,
+}
+
+impl Status {
+    /// Name in tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Status::Converged => "converged",
+            Status::MaxIterations => "max-iterations",
+            Status::Stalled => "stalled",
+            Status::SingularTangent => "singular-tangent",
+            Status::Mechanism => "mechanism",
+            Status::Diverged => "diverged",
+            Status::Stopped => "stopped",
+        }
+    }
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Which equations a converged method claims to have solved. [`residuals_of`](super::residuals_of) holds it to them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Claim {
+    /// The contact laws themselves: the natural map is at or below the tolerance asked for.
+    Exact,
+    /// Penalised laws, whose distance from the contact laws is a modelling error: the natural map is reported, not
+    /// promised. P_n = k_n max(−g, 0), and |P_t| <= μ P_n with the elastic slip P_t/k_t.
+    Penalised {
+        /// Normal stiffness k_n, in N/m.
+        normal: f64,
+        /// Tangential stiffness k_t, in N/m.
+        tangential: f64,
+    },
+    /// Barrier and smoothed friction: P_n = −B'(g) with B = −κ (g − ĝ)² ln(g/ĝ) for 0 < g < ĝ and 0 beyond, and
+    /// P_t = −μ P_n f(|d|/ε) d/|d| with f(y) = 2 y − y² for y < 1 and 1 beyond.
+    Barrier {
+        /// ĝ in m.
+        gap: f64,
+        /// ε in m.
+        slip: f64,
+        /// κ in N/m.
+        stiffness: f64,
+    },
+    /// Nitsche's laws: P is the return mapping of S u − γ w v, S u the contact force that the stress of the bulk
+    /// implies, and equilibrium has the consistency term θ Sᵀ (S u − P)/(γ w). Consistent with the contact laws of the
+    /// continuum, it differs from those of the contact points by the error of the discretisation.
+    Nitsche {
+        /// 1: symmetric, 0: incomplete, −1: skew-symmetric.
+        theta: f64,
+        /// γ in N/m³, w the weight of a point.
+        gamma: f64,
+    },
+}
+
+impl Claim {
+    /// Refuses parameters with which the laws would say nothing: a spring of no stiffness fulfils any law.
+    pub(crate) fn check(&self) -> Result<(), MethodError> {
+        match *self {
+            Claim::Exact => Ok(()),
+            Claim::Penalised { normal, tangential } => check_positive(
+                "penalty stiffness of the claim",
+                [normal, tangential].into_iter(),
+            ),
+            Claim::Barrier {
+                gap,
+                slip,
+                stiffness,
+            } => check_positive(
+                "barrier parameter of the claim",
+                [gap, slip, stiffness].into_iter(),
+            ),
+            Claim::Nitsche { theta, gamma } => {
+                check_finite("theta of the claim", &[theta])?;
+                check_positive("gamma of the claim", [gamma].into_iter())
+            }
+        }
+    }
+}
+
+/// One entry of the iteration history; the first describes the start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Iteration {
+    /// Natural map of the contact laws [-]; of an approximate method it ends at the modelling error.
+    pub natural_map: f64,
+    /// Points that changed between open, stick and slip since the entry before.
+    pub changes: usize,
+}
+
+/// Work done within one increment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Iterations as the published algorithm counts them (one history entry each, not counting the start).
+    pub iterations: usize,
+    /// Dense factorisations of condensed matrices.
+    pub factorisations: usize,
+    /// Sparse factorisations of matrices over all unknowns, as monolithic variants need them.
+    pub global_factorisations: usize,
+    /// Solves with the factor of K.
+    pub solves: usize,
+    /// Evaluations of the contact law at one point.
+    pub local_solves: usize,
+}
+
+/// Result of one increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// How the method ended.
+    pub status: Status,
+    /// What `Converged` stands for.
+    pub claim: Claim,
+    /// Last state, whatever the status.
+    pub state: ContactState,
+    /// Residual per iteration.
+    pub history: Vec<Iteration>,
+    /// Work done.
+    pub counters: Counters,
+}
+
+/// Watches a running method and may stop it, e.g. at a time limit.
+pub trait Monitor {
+    /// Called once per iteration; `false` ends the method with [`Status::Stopped`].
+    fn step(&mut self, iteration: usize, natural_map: f64) -> bool;
+}
+
+/// A monitor that never stops anything.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Monitor for Silent {
+    fn step(&mut self, _iteration: usize, _natural_map: f64) -> bool {
+        true
+    }
+}

@@ -1,0 +1,169 @@
+//! What can be wrong with the input of a method.
+
+use crate::contract::options::OptionError;
+
+/// Everything that keeps a method from starting. Failure to converge is not among it: that is a
+/// [`Status`](super::Status).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MethodError {
+    /// An array has the wrong length.
+    #[error("{what}: {found} entries, expected {expected}")]
+    Size {
+        /// Which array.
+        what: &'static str,
+        /// Required length.
+        expected: usize,
+        /// Length found.
+        found: usize,
+    },
+    /// A sparse matrix or a permutation is malformed.
+    #[error("{what} is malformed at index {index}: {reason}")]
+    Pattern {
+        /// Which object.
+        what: &'static str,
+        /// Where.
+        index: usize,
+        /// What is wrong there.
+        reason: &'static str,
+    },
+    /// A number is NaN, infinite or outside its range.
+    #[error("{what}[{index}] = {value}, allowed: {allowed}")]
+    Range {
+        /// Which array.
+        what: &'static str,
+        /// Entry.
+        index: usize,
+        /// Value found.
+        value: f64,
+        /// Allowed range, in words.
+        allowed: &'static str,
+    },
+    /// The stiffness is not positive definite although all its rigid motions were given: a support is missing, or a
+    /// piece of the body is free.
+    #[error(
+        "the stiffness is not positive definite: elimination breaks down at unknown {unknown} of {size}"
+    )]
+    NotPositiveDefinite {
+        /// Unknown whose pivot is not positive.
+        unknown: usize,
+        /// Number of unknowns.
+        size: usize,
+    },
+    /// A vector given as rigid motion costs energy.
+    #[error("floating mode {mode} is no rigid motion: |K r| is {relative:.1e} of |diag(K)| |r|")]
+    NotRigid {
+        /// Which mode.
+        mode: usize,
+        /// Relative size of K r.
+        relative: f64,
+    },
+    /// The rigid motions given are linearly dependent.
+    #[error("floating mode {mode} depends linearly on the others")]
+    DependentModes {
+        /// Which mode.
+        mode: usize,
+    },
+    /// A rigid motion opens or shifts no contact point: no contact law can hold it.
+    #[error(
+        "{modes} rigid motion(s) move no contact point: the piece needs a support or a contact point"
+    )]
+    FreeRigidMotion {
+        /// Dimension of the space of such motions.
+        modes: usize,
+    },
+    /// Friction was asked of an [`Elastic`](super::Elastic) built for frictionless contact only.
+    #[error(
+        "point {point} has friction {friction}, but the elastic body was set up for frictionless contact only"
+    )]
+    FrictionlessBody {
+        /// First point with friction.
+        point: usize,
+        /// Its coefficient.
+        friction: f64,
+    },
+    /// The stiffness is needed where only the Delassus operator is known.
+    #[error("only the Delassus operator of the body is known, not its stiffness")]
+    NoStiffness,
+    /// Laws that need the stress at the contact points were asked of a body without traction operator.
+    #[error("the body has no traction operator: the stress at its contact points is unknown")]
+    NoTraction,
+    /// The tangential rows of a body set up for frictionless contact were asked for.
+    #[error("the elastic body was set up for frictionless contact only: it has no tangential rows")]
+    NoTangentialRows,
+    /// No contact row responds to a contact force: the scale of the natural map is undefined.
+    #[error("the contact forces move no contact point: the jump operator is zero")]
+    RigidContact,
+    /// The Delassus operator would not fit.
+    #[error("{rows} contact rows: the dense Delassus operator is limited to {limit} rows")]
+    TooManyRows {
+        /// Contact rows.
+        rows: usize,
+        /// Limit.
+        limit: usize,
+    },
+    /// A dense or sparse kernel ran out of memory or overflowed its index.
+    #[error("{what} failed: {reason}")]
+    Kernel {
+        /// Which kernel.
+        what: &'static str,
+        /// Its own words.
+        reason: String,
+    },
+    /// An increment was to be solved from several starts by a method that does not claim the contact laws themselves.
+    #[error(
+        "the method solves laws of its own, to which the forces at the start are history: other starts are other problems"
+    )]
+    StartIsHistory,
+    /// A method option is unknown or out of range.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+}
+
+/// Refuses arrays of the wrong length.
+pub(crate) fn check_len(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), MethodError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(MethodError::Size {
+            what,
+            expected,
+            found,
+        })
+    }
+}
+
+/// Refuses NaN and infinite entries.
+pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), MethodError> {
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(MethodError::Range {
+            what,
+            index,
+            value: values[index],
+            allowed: "finite",
+        }),
+    }
+}
+
+/// Refuses entries that are not positive and finite.
+pub(crate) fn check_positive(
+    what: &'static str,
+    values: impl Iterator<Item = f64>,
+) -> Result<(), MethodError> {
+    for (index, value) in values.enumerate() {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(MethodError::Range {
+                what,
+                index,
+                value,
+                allowed: "positive and finite",
+            });
+        }
+    }
+    Ok(())
+}

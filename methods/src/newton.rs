@@ -1,0 +1,18 @@
+//! Newton methods on the contact points.
+
+// Contact equations, solved by one loop (`iteration`) that differs in H and H'.
+pub mod b_newton;
+pub mod newton_ac;
+pub mod pdas;
+
+// Sweeps first, Newton to finish.
+pub mod hybrid;
+
+// Along the central path of the cones.
+pub mod interior_point;
+
+pub(crate) mod central_path;
+pub(crate) mod iteration;
+pub(crate) mod line_search;
+pub(crate) mod springs;
+pub(crate) mod step;

@@ -1,0 +1,296 @@
+//! Newton's method on non-smooth contact equations: the loop of `b-newton`, `newton-ac` and `pdas`.
+//! ```text
+//! H(P, v) = 0 at every point,  v = q + W P + Q β,  Qᵀ P = c
+//! V (δP, δv) = −H,  δv = W δP + Q δβ,  x <- x + t δ,   x = (P, β),  V an element of the generalised derivative of H
+//! ```
+//! What H and V are is the [`Scheme`]. Full steps are tried first; the non-monotone line search on the energy-scaled
+//! merit Σ H²/r steps in only after a rise above the last five merits. A singular V is regularised once by 1e-10/ρ on
+//! the diagonal of W: redundant points make W singular, and this picks one of the possible P.
+
+#![allow(non_snake_case)]
+
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::condensed::stages::rescue;
+use crate::condensed::starts::RIDGE;
+use crate::contract::law::{Branch, return_map};
+use crate::contract::options::{Options, Real, Whole};
+use crate::contract::registry::Needs;
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
+use crate::newton::line_search::LineSearch;
+use crate::newton::step::Tangent;
+
+/// Scale of the equations, an option of every scheme.
+pub(crate) const R: Real = Real {
+    name: "r",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "multiple of 1/W_ii that turns gaps and slips into forces",
+};
+
+/// Steps that a method may take, an option of every scheme.
+pub(crate) const fn max_iterations(default: i64, help: &'static str) -> Whole {
+    Whole {
+        name: "max_iterations",
+        default,
+        min: 1,
+        max: 1_000_000,
+        help,
+    }
+}
+
+/// Steps without progress after which an iteration counts as cycling.
+const PATIENCE: usize = 60;
+
+/// The equations of one point and the pieces of their derivative. `r`, `P`, `v` are the rows of the point.
+pub(crate) trait Scheme: Send {
+    /// Which smooth piece of H a point is on.
+    type Piece: Copy + PartialEq;
+
+    /// H.
+    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3];
+
+    /// The piece at (P, v).
+    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
+
+    /// V (δP, δv) = −H on a piece.
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        piece: Self::Piece,
+    ) -> [PointRow; 3];
+
+    /// The Newton direction; `None` if the tangent is singular. `pieces` are those at x.
+    fn direction(
+        &self,
+        at: &mut At<'_, '_>,
+        pieces: &[Self::Piece],
+    ) -> Result<Option<Forces>, MethodError> {
+        at.step(self, pieces)
+    }
+}
+
+/// Newton's method on a scheme.
+pub(crate) struct Newton<S> {
+    pub scheme: S,
+    /// r = `multiple`/W_ii.
+    pub multiple: f64,
+    pub limits: Limits,
+    /// Shorten steps that raise the merit.
+    pub line_search: bool,
+    /// Move on by a few local and global stages where stuck.
+    pub rescue: bool,
+    pub tangent: Tangent,
+}
+
+impl<S: Scheme> Newton<S> {
+    /// The method as its options say, with all safeguards.
+    pub fn new(scheme: S, options: &Options, max_iterations: &Whole) -> Self {
+        Self {
+            scheme,
+            multiple: options.real(&R),
+            limits: Limits {
+                iterations: options.count(max_iterations),
+                patience: PATIENCE,
+            },
+            line_search: true,
+            rescue: true,
+            tangent: Tangent::new(options),
+        }
+    }
+
+    /// The loop, from `x` until it ends.
+    pub fn run(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        mut x: Forces,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let mut r = problem.scales(&vec![0.0; problem.len()]);
+        r.iter_mut().for_each(|r| *r *= self.multiple);
+        let mut search = LineSearch::default();
+        let mut before: Vec<S::Piece> = Vec::new();
+        loop {
+            let v = problem.jump(&x.p, &x.beta);
+            let pieces = self.pieces(problem, &r, &x.p, &v);
+            let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
+            let natural_map = problem.natural_map(&x.p, &v);
+            match problem.check(natural_map, (&x.p, &x.beta), changes, self.limits, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => continue,
+                Check::End(status) => return Ok(End { status, at: x }),
+            }
+
+            let stuck = self.rescue && problem.stagnates();
+            let direction = match stuck {
+                true => None,
+                false => self.direction(problem, &r, &x, &v, &pieces)?,
+            };
+            before = pieces;
+            let Some(step) = direction else {
+                if self.rescue
+                    && problem.rescue_left()
+                    && let Some(pair) = rescue(problem)?
+                {
+                    x = pair.into();
+                    continue;
+                }
+                let status = match stuck {
+                    true => Status::Stalled,
+                    false => problem.singular(),
+                };
+                return Ok(End { status, at: x });
+            };
+
+            let mut t = 1.0;
+            if self.line_search {
+                search.record(self.merit(problem, &r, &x.p, &v));
+                t = search.length(|t| {
+                    let trial = x.moved(t, &step);
+                    let v = problem.jump(&trial.p, &trial.beta);
+                    self.merit(problem, &r, &trial.p, &v)
+                });
+            }
+            x = x.moved(t, &step);
+            problem.rebalance(&mut x.p);
+        }
+    }
+
+    fn direction(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        r: &[f64],
+        x: &Forces,
+        v: &[f64],
+        pieces: &[S::Piece],
+    ) -> Result<Option<Forces>, MethodError> {
+        let tangent = &mut self.tangent;
+        let mut at = At {
+            problem,
+            tangent,
+            r,
+            x,
+            v,
+        };
+        self.scheme.direction(&mut at, pieces)
+    }
+
+    fn pieces(
+        &self,
+        problem: &ContactProblem<'_>,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+    ) -> Vec<S::Piece> {
+        let points = problem.rows.iter().enumerate();
+        let piece = |(i, own): (usize, std::ops::Range<usize>)| {
+            let (r, P) = (&r[own.clone()], &P[own.clone()]);
+            self.scheme.piece(problem.friction(i), r, P, &v[own])
+        };
+        points.map(piece).collect()
+    }
+
+    /// Σ H²/r over all rows, an energy.
+    fn merit(&self, problem: &ContactProblem<'_>, r: &[f64], P: &[f64], v: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for (i, own) in problem.rows.iter().enumerate() {
+            let (mu, range) = (problem.friction(i), own.clone());
+            let (r_i, P, v) = (&r[range.clone()], &P[range.clone()], &v[range]);
+            let H = self.scheme.equations(mu, r_i, P, v);
+            sum += own.zip(H).map(|(k, h)| h * h / r[k]).sum::<f64>();
+        }
+        sum
+    }
+}
+
+impl<S: Scheme> CondensedMethod for Newton<S> {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
+    fn needs(&self) -> Needs {
+        self.tangent.needs()
+    }
+
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let start = Forces::start(problem);
+        self.run(problem, start, monitor)
+    }
+}
+
+/// Where the iteration stands.
+pub(crate) struct At<'p, 'i> {
+    pub problem: &'p mut ContactProblem<'i>,
+    pub tangent: &'p mut Tangent,
+    /// Scale by row that turns jumps into forces.
+    pub r: &'p [f64],
+    pub x: &'p Forces,
+    pub v: &'p [f64],
+}
+
+impl At<'_, '_> {
+    /// The step of the given pieces, regularised if their tangent is singular.
+    pub fn step<S: Scheme + ?Sized>(
+        &mut self,
+        scheme: &S,
+        pieces: &[S::Piece],
+    ) -> Result<Option<Forces>, MethodError> {
+        let mut rows = self.rows(scheme, pieces);
+        if let Some(step) = self.tangent.solve(self.problem, self.x, &mut rows)? {
+            return Ok(Some(step));
+        }
+        let mut rows = self.rows(scheme, pieces);
+        let ridge = RIDGE / self.problem.operator.rho;
+        for row in rows.iter_mut().flatten() {
+            for l in 0..3 {
+                row.a[l] += ridge * row.c[l];
+            }
+        }
+        self.tangent.solve(self.problem, self.x, &mut rows)
+    }
+
+    fn rows<S: Scheme + ?Sized>(&self, scheme: &S, pieces: &[S::Piece]) -> Vec<[PointRow; 3]> {
+        let points = self.problem.rows.iter().enumerate();
+        let row = |(i, own): (usize, std::ops::Range<usize>)| {
+            let (r, P) = (&self.r[own.clone()], &self.x.p[own.clone()]);
+            scheme.linearise(self.problem.friction(i), r, P, &self.v[own], pieces[i])
+        };
+        points.map(row).collect()
+    }
+}
+
+/// P − Π(P − r v) at one point, Π the return mapping: the equations of the augmented Lagrangian.
+pub(crate) fn augmented_equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+    let mut H = trial(r, P, v);
+    return_map(mu, &mut H[..P.len()]);
+    for k in 0..P.len() {
+        H[k] = P[k] - H[k];
+    }
+    H
+}
+
+/// The branch of Π(P − r v).
+pub(crate) fn augmented_branch(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
+    return_map(mu, &mut trial(r, P, v)[..P.len()])
+}
+
+/// z = P − r v at one point, the trial force of the augmented Lagrangian.
+pub(crate) fn trial(r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+    let mut z = [0.0; 3];
+    for k in 0..P.len() {
+        z[k] = P[k] - r[k] * v[k];
+    }
+    z
+}

@@ -1,0 +1,160 @@
+//! Penalty method with return mapping.
+//!
+//! Wriggers, Computational Contact Mechanics (2006), ch. 5 and 6; consistent tangent: Simo & Laursen, Comput. Struct.
+//! 42 (1992) 97.
+//!
+//! ```text
+//! P_n = k_n max(−g, 0)
+//! P_t = proj_{|·| <= μ P_n}(P_t(start) − k_t d)        elastic predictor, radial return
+//! k_n = normal · ρ,   k_t = tangential · ρ,   ρ = rows / trace(W)
+//! ```
+//!
+//! The contact laws are replaced by springs: a contact force needs a penetration P_n/k_n, and sticking creeps by
+//! P_t/k_t. That error falls like 1/k and never vanishes. `Converged` therefore refers to the penalised equations
+//! above, whose residual fills the history; the outcome says so by [`Claim::Penalised`], and the natural map the judge
+//! finds measures the modelling error.
+//!
+//! # Options
+//! `normal`, `tangential`: k as multiples of ρ, the mean stiffness the body itself opposes to a contact force.
+//! `max_iterations`. `monolithic`: 1 solves each step
+//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
+//! method; the iterates are the same.
+//!
+//! # Guarantees
+//! Without friction the penalised energy is convex: the solution is unique, and Newton's method on a piecewise linear
+//! gradient ends after finitely many steps. With friction quadratic convergence at regular points. A claim is judged
+//! before it is made; if it would be false, Newton's method goes on, at most three times, and then ends as `stalled`.
+//!
+//! # Skips
+//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
+//!
+//! # Failure modes
+//! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
+//! to W as compliances 1/k.
+
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::ContactProblem;
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Claim, Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
+use crate::newton::iteration::max_iterations;
+use crate::newton::springs::{Springs, recorded};
+use crate::newton::step::Tangent;
+use crate::own_laws::confirm::confirm;
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "penalty",
+    label: "Penalty, return mapping",
+    reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97; Wriggers, Computational Contact Mechanics (2006)",
+    summary: "replaces the contact laws by stiff springs with a frictional return mapping; its error falls like 1/stiffness",
+    exact: false,
+    options: &OPTIONS,
+    source: include_str!("penalty.rs"),
+    build: |options| Box::new(Penalty::new(options)),
+};
+
+const NORMAL: Real = Real {
+    name: "normal",
+    default: 1e4,
+    min: 1e-2,
+    max: 1e10,
+    help: "normal penalty stiffness as a multiple of rho = rows/trace(W)",
+};
+const TANGENTIAL: Real = Real {
+    name: "tangential",
+    help: "tangential penalty stiffness as a multiple of rho",
+    ..NORMAL
+};
+const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
+static OPTIONS: [OptionSpec; 4] = [
+    OptionSpec::Real(NORMAL),
+    OptionSpec::Real(TANGENTIAL),
+    OptionSpec::Whole(MAX_ITERATIONS),
+    Tangent::OPTION,
+];
+
+/// The penalised equations are solved this much more accurately than asked, because the judge holds the claim to them in
+/// another norm; and again by this much after every claim that he would reject.
+const CLAIM_FRACTION: f64 = 0.1;
+
+struct Penalty {
+    normal: f64,
+    tangential: f64,
+    max_iterations: usize,
+    tangent: Tangent,
+}
+
+impl Penalty {
+    fn new(options: &Options) -> Self {
+        Self {
+            normal: options.real(&NORMAL),
+            tangential: options.real(&TANGENTIAL),
+            max_iterations: options.count(&MAX_ITERATIONS),
+            tangent: Tangent::new(options),
+        }
+    }
+}
+
+impl CondensedMethod for Penalty {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
+    fn needs(&self) -> Needs {
+        self.tangent.needs()
+    }
+
+    fn claim(&self, rho: f64) -> Claim {
+        Claim::Penalised {
+            normal: self.normal * rho,
+            tangential: self.tangential * rho,
+        }
+    }
+
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let rho = problem.operator.rho;
+        // Springs start unloaded along the normal, and loaded by the friction force of the start along the tangent.
+        let mut anchor = problem.rows.restrict(&problem.increment.start.p);
+        for &row in problem.rows.normal() {
+            anchor[row] = 0.0;
+        }
+        let springs = Springs {
+            normal: self.normal * rho,
+            tangential: self.tangential * rho,
+            anchor,
+            coupled: None,
+        };
+
+        let mut start = springs.predict(problem, Forces::start(problem));
+        let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
+        loop {
+            let left = (self.max_iterations).saturating_sub(problem.history.len());
+            let report = recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta));
+            let tangent = &mut self.tangent;
+            let (status, end) = springs.solve(problem, start, stop, left, tangent, report)?;
+            let mut at = Forces::from(end);
+            problem.rebalance(&mut at.p);
+            // Stalled: solved to rounding, which may be enough.
+            if status != Status::Converged && status != Status::Stalled {
+                return Ok(End { status, at });
+            }
+            if let Some(status) = confirm(problem, &at.p, &at.beta, &mut corrections)? {
+                return Ok(End { status, at });
+            }
+            if problem.counters.iterations >= self.max_iterations {
+                let status = Status::MaxIterations;
+                return Ok(End { status, at });
+            }
+            stop *= CLAIM_FRACTION;
+            start = springs.predict(problem, at);
+        }
+    }
+}

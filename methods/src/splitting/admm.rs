@@ -1,0 +1,335 @@
+//! Alternating direction method of multipliers (ADMM).
+//!
+//! Boyd, Parikh, Chu, Peleato & Eckstein, Found. Trends Mach. Learn. 3 (2011) 1; for frictional contact Tasora, Mangoni,
+//! Benatti & Garziera, Int. J. Numer. Meth. Engng 122 (2021) 4093. De Saxcé's correction, updated in every iteration, makes
+//! it Coulomb's law: De Saxcé & Feng, Math. Comput. Modelling 28 (1998) 225.
+//!
+//! ```text
+//! min ½ P·W P + (q + s)·P   over Qᵀ P = c,  P = y,  y in K_μ        s = (μ|d|, 0), De Saxcé's correction
+//!
+//! P <- (W + I/k)⁻¹ ((y − ξ)/k − q − s − Q β),  Qᵀ P = c             linear, all points
+//! z <- α P + (1 − α) y + ξ                                          over-relaxation
+//! y <- proj_{K_μ}(z),   ξ <- z − y                                  point by point
+//! s <- (μ|d|, 0),       d = −ξ_t/k
+//! ```
+//! 1/k is the penalty parameter and ξ the scaled multiplier: −ξ/k tends to ṽ = (g + μ|d|, d). A fixed point has
+//! y = proj_{K_μ}(y − k ṽ), the natural map itself.
+//!
+//! LATIN with ω = 1/2 takes the same linear step and differs in the local one: it solves the local problem
+//! z = P̂ − k v̂ with v̂ and its own |d̂| at once (return mapping, not associated), where ADMM projects on the cone along its
+//! normal and takes s from the iteration before. Without friction both are Douglas–Rachford splitting.
+//!
+//! # Options
+//! `penalty`: the first k as a multiple of ρ = rows/trace(W). It follows the residuals |P − y| and |y − y_old|/k (Boyd et al.
+//! §3.4.1) in powers of 2, by the mean of their ratio since the last look, at iterations ever farther apart. The ratio is
+//! the geometric mean of two that fail in different places: relative to |P| and |ξ|/k (Wohlberg 2017; misled by large gaps
+//! elsewhere), and to the scale 1 : 1/ρ of the natural map (misled by the condition of W). `over_relaxation`: α, dropped
+//! to 1 once 25 iterations in a row bring no progress. `max_iterations`.
+//!
+//! # Guarantees
+//! Without friction convergence for any fixed k and α < 2, so also once k no longer changes. With friction each s gives a
+//! convex problem; their sequence has no proof.
+//!
+//! # Failure modes
+//! Large μ: s then overshoots, the more the larger α. Of 200 random, strongly coupled systems per μ all converge up to
+//! μ = 1, 199 at μ = 2 and 197 at μ = 5, with α = 1 throughout as many, at small μ in nearly twice the iterations
+//! (`tests/robustness.rs`). Over-relaxation to the end loses many of them at μ = 5.
+//!
+//! # Skips
+//! W + I/k is factored once per move of k; the three factors used last are kept, also between increments.
+
+use std::sync::Arc;
+
+use crate::algebra::dense::norm;
+use crate::condensed::forces::Pair;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
+use crate::condensed::stages::GlobalStage;
+use crate::contract::law::{Branch, project_cone, tangential_norm};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "admm",
+    label: "ADMM",
+    reference: "Tasora, Mangoni, Benatti & Garziera, Int. J. Numer. Meth. Engng 122 (2021) 4093",
+    summary: "alternates linear equilibrium and projections on Coulomb's cone, with De Saxce's correction",
+    exact: true,
+    options: &OPTIONS,
+    source: include_str!("admm.rs"),
+    build: |options| Box::new(Admm::new(options)),
+};
+
+const PENALTY: Real = Real {
+    name: "penalty",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)",
+};
+const OVER_RELAXATION: Real = Real {
+    name: "over_relaxation",
+    default: 1.6,
+    min: 0.5,
+    max: 1.9,
+    help: "over-relaxation; 1 is the plain method",
+};
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 20_000,
+    min: 1,
+    max: 10_000_000,
+    help: "pairs of steps before giving up",
+};
+static OPTIONS: [OptionSpec; 3] = [
+    OptionSpec::Real(PENALTY),
+    OptionSpec::Real(OVER_RELAXATION),
+    OptionSpec::Whole(MAX_ITERATIONS),
+];
+
+/// Iterations without progress after which the iteration counts as stalled.
+const PATIENCE: usize = 2000;
+/// Iterations without progress after which there is no more over-relaxation.
+const STAGNATION: usize = 25;
+/// The first iteration at which k may move; each further one comes twice as late.
+const FIRST_BALANCE: usize = 10;
+/// Largest power of 2 in one move of k.
+const MAX_MOVE: f64 = 4.0;
+
+/// Factors kept: each is as large as W. The first k, the one before a move and the one after.
+const KEPT: usize = 3;
+
+struct Admm {
+    penalty: f64,
+    over_relaxation: f64,
+    limits: Limits,
+    /// The linear step with its power of 2, the last one used at the end.
+    stages: Vec<(i32, Arc<GlobalStage>)>,
+}
+
+impl Admm {
+    fn new(options: &Options) -> Self {
+        Self {
+            penalty: options.real(&PENALTY),
+            over_relaxation: options.real(&OVER_RELAXATION),
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
+            stages: Vec::new(),
+        }
+    }
+
+    /// The linear step with k = penalty ρ 2^power.
+    fn stage(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        power: i32,
+    ) -> Result<Arc<GlobalStage>, MethodError> {
+        self.stages
+            .retain(|(_, stage)| stage.belongs_to(&problem.operator));
+        let kept = self.stages.iter().position(|(kept, _)| *kept == power);
+        let stage = if let Some(place) = kept {
+            self.stages.remove(place).1
+        } else {
+            let k = self.penalty * problem.operator.rho * 2.0_f64.powi(power);
+            problem.counters.factorisations += 1;
+            Arc::new(GlobalStage::along(problem.operator.clone(), k)?)
+        };
+        self.stages.push((power, stage.clone()));
+        if self.stages.len() > KEPT {
+            self.stages.remove(0);
+        }
+        Ok(stage)
+    }
+}
+
+impl CondensedMethod for Admm {
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let (mut power, mut balance) = (0, Balance::default());
+        let mut stage = self.stage(problem, power)?;
+        let mut pair = Pair::start(problem);
+        let mut cone = Cone::start(problem, &pair, stage.k0());
+        let (mut changes, mut alpha) = (0, self.over_relaxation);
+
+        let status = loop {
+            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+                break status;
+            }
+            if problem.idle() >= STAGNATION {
+                alpha = alpha.min(1.0);
+            }
+            let growth;
+            (changes, growth) = cone.project(problem, &pair, alpha);
+            let power_step = balance.moves(problem.counters.iterations, growth);
+            if power_step != 0 {
+                power += power_step;
+                stage = self.stage(problem, power)?;
+                cone.rescale(stage.k0());
+            }
+            match stage.global_stage(problem, &cone.target(problem)) {
+                Some(new) => pair = new,
+                None => break problem.singular(),
+            }
+        };
+        let at = pair.into();
+        Ok(End { status, at })
+    }
+}
+
+/// When k moves and how far.
+struct Balance {
+    next: usize,
+    /// log₂ of the growth asked for since the last look.
+    asked: Vec<f64>,
+}
+
+impl Default for Balance {
+    fn default() -> Self {
+        Self {
+            next: FIRST_BALANCE,
+            asked: Vec::new(),
+        }
+    }
+}
+
+impl Balance {
+    /// The power of 2 by which k moves, from the growth each iteration asks for.
+    fn moves(&mut self, iteration: usize, growth: f64) -> i32 {
+        self.asked.push(growth.log2());
+        if iteration < self.next {
+            return 0;
+        }
+        let mean = self.asked.iter().sum::<f64>() / self.asked.len() as f64;
+        self.asked.clear();
+        self.next *= 2;
+        // Where all points stick, the multiplier vanishes and the mean is infinite: the largest move is right, as v = 0
+        // is then the fixed point of k = ∞. NaN casts to 0.
+        mean.round().clamp(-MAX_MOVE, MAX_MOVE) as i32
+    }
+}
+
+/// The copy of the forces in the cone and its multiplier.
+struct Cone {
+    y: Vec<f64>,
+    xi: Vec<f64>,
+    k: f64,
+    branches: Vec<Branch>,
+}
+
+impl Cone {
+    /// y = P, ξ = −k ṽ.
+    fn start(problem: &ContactProblem<'_>, pair: &Pair, k: f64) -> Self {
+        let mut xi: Vec<f64> = pair.v.iter().map(|v| -k * v).collect();
+        for i in 0..problem.rows.points() {
+            let rows = problem.rows.of(i);
+            let d = tangential_norm(&pair.v[rows.clone()]);
+            xi[rows.start] -= k * problem.friction(i) * d;
+        }
+        Self {
+            y: pair.p.clone(),
+            xi,
+            k,
+            branches: vec![Branch::Open; problem.rows.points()],
+        }
+    }
+
+    /// y and ξ from the new P. Returns how many points changed their branch, and the factor by which k should grow.
+    fn project(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        pair: &Pair,
+        alpha: f64,
+    ) -> (usize, f64) {
+        problem.counters.local_solves += problem.rows.points();
+        let mut z: Vec<f64> = (0..self.y.len())
+            .map(|k| alpha * pair.p[k] + (1.0 - alpha) * self.y[k] + self.xi[k])
+            .collect();
+        self.xi.clone_from(&z);
+        let mut changes = 0;
+        for i in 0..problem.rows.points() {
+            let rows = problem.rows.of(i);
+            let branch = project_cone(problem.friction(i), &mut z[rows]);
+            changes += usize::from(std::mem::replace(&mut self.branches[i], branch) != branch);
+        }
+        let old = std::mem::replace(&mut self.y, z);
+        self.xi.iter_mut().zip(&self.y).for_each(|(x, y)| *x -= y);
+        let distance = |a: &[f64]| {
+            let square = |(a, y): (&f64, &f64)| (a - y).powi(2);
+            a.iter().zip(&self.y).map(square).sum::<f64>().sqrt()
+        };
+        let relative = norm(&pair.p).max(norm(&self.y)) / norm(&self.xi);
+        let scaled = problem.operator.rho / self.k;
+        let ratio = distance(&old) / distance(&pair.p) * (relative * scaled).sqrt();
+        (changes, ratio.sqrt())
+    }
+
+    /// The same multiplier −ξ/k for another k.
+    fn rescale(&mut self, k: f64) {
+        let factor = k / self.k;
+        self.xi.iter_mut().for_each(|x| *x *= factor);
+        self.k = k;
+    }
+
+    /// y − ξ − k s: what P + k v of the linear step has to be.
+    fn target(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
+        let mut target: Vec<f64> = self.y.iter().zip(&self.xi).map(|(y, x)| y - x).collect();
+        for i in 0..problem.rows.points() {
+            let rows = problem.rows.of(i);
+            let d = tangential_norm(&self.xi[rows.clone()]);
+            target[rows.start] -= problem.friction(i) * d;
+        }
+        target
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::condensed::problem::Begin;
+    use crate::{
+        Claim, ContactState, ContactSystem, DelassusForm, Elastic, Increment, Load, SymmetricMatrix,
+    };
+
+    #[test]
+    fn only_the_last_factors_are_kept() {
+        let w = SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
+        let body = Elastic::from_delassus(2, w, vec![]).unwrap();
+        let system = ContactSystem::new(body.clone(), vec![0.3]).unwrap();
+        let load = Load {
+            force: vec![-1.0, 0.0],
+            offset: vec![0.0; 2],
+            traction: vec![],
+        };
+        let increment = Increment {
+            system: &system,
+            load: &load,
+            start_load: &Load::zero(&body),
+            start: &ContactState::zero(&system),
+            index: 0,
+            tolerance: 1e-9,
+        };
+        let begun = ContactProblem::begin(&increment, DelassusForm::Formed, |_| Claim::Exact);
+        let Begin::Contact(mut problem) = begun.unwrap() else {
+            panic!("the point closes");
+        };
+        let mut admm = Admm::new(&Options::new(&OPTIONS, &[]).unwrap());
+        let counted = |admm: &mut Admm, problem: &mut ContactProblem<'_>, power: i32| {
+            let k0 = admm.stage(problem, power).unwrap().k0();
+            assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
+            assert!(admm.stages.len() <= KEPT);
+            problem.counters.factorisations
+        };
+        for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)] {
+            let found = counted(&mut admm, &mut problem, power);
+            assert_eq!(found, factorisations, "power {power}");
+        }
+    }
+}

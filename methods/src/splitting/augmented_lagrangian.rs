@@ -1,0 +1,164 @@
+//! Augmented Lagrangian method, Uzawa form.
+//!
+//! Simo & Laursen, Comput. Struct. 42 (1992) 97; Alart & Curnier, Comput. Meth. Appl. Mech. Engng 92 (1991) 353.
+//!
+//! ```text
+//! repeat                                                      outer loop (Uzawa)
+//!   solve  K u = f + Bᵀ P,  P = Π(Λ − k v)                    inner loop: penalised problem, Newton
+//!   Λ <- P
+//! until the natural map of (u, P) is small
+//! Π: P_n = max(z_n, 0),  P_t = proj_{|·| <= μ P_n}(z_t);   k = stiffness · ρ,   v = (g, d)
+//! ```
+//!
+//! A fixed point has P = Π(P − k v), which is the contact law itself: the answer does not depend on k.
+//!
+//! # Options
+//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step
+//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
+//! method; the iterates are the same.
+//!
+//! # Guarantees
+//! Without friction the outer loop contracts by 1/(1 + k w_min), w_min the smallest eigenvalue of W, for any k > 0; the
+//! condensed inner problem stays well conditioned for large k, unlike K + k Bᵀ B.
+//!
+//! # Skips
+//! An open crack is one linear solve. Each inner problem starts from the last; open points leave its dense LU.
+//!
+//! # Failure modes
+//! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
+
+use crate::condensed::forces::Forces;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
+use crate::newton::springs::Springs;
+use crate::newton::step::Tangent;
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "augmented-lagrangian",
+    label: "Augmented Lagrangian (Uzawa)",
+    reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97",
+    summary: "repeats a penalised solve, each time anchored at the contact forces of the last, until the springs are slack",
+    exact: true,
+    options: &OPTIONS,
+    source: include_str!("augmented_lagrangian.rs"),
+    build: |options| Box::new(AugmentedLagrangian::new(options)),
+};
+
+const STIFFNESS: Real = Real {
+    name: "stiffness",
+    default: 1e3,
+    min: 1e-2,
+    max: 1e6,
+    help: "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)",
+};
+const MAX_OUTER: Whole = Whole {
+    name: "max_outer",
+    default: 1000,
+    min: 1,
+    max: 1_000_000,
+    help: "multiplier updates before giving up",
+};
+const MAX_INNER: Whole = Whole {
+    name: "max_inner",
+    default: 100,
+    min: 1,
+    max: 1_000_000,
+    help: "Newton steps per inner problem before giving up",
+};
+static OPTIONS: [OptionSpec; 4] = [
+    OptionSpec::Real(STIFFNESS),
+    OptionSpec::Whole(MAX_OUTER),
+    OptionSpec::Whole(MAX_INNER),
+    Tangent::OPTION,
+];
+
+/// The inner problem is solved this much more accurately than the outer loop is stopped.
+const INNER_FRACTION: f64 = 1e-2;
+
+/// Multiplier updates without progress after which the iteration counts as stalled.
+const PATIENCE: usize = 200;
+
+struct AugmentedLagrangian {
+    stiffness: f64,
+    outer: Limits,
+    max_inner: usize,
+    tangent: Tangent,
+}
+
+impl AugmentedLagrangian {
+    fn new(options: &Options) -> Self {
+        Self {
+            stiffness: options.real(&STIFFNESS),
+            outer: Limits {
+                iterations: options.count(&MAX_OUTER),
+                patience: PATIENCE,
+            },
+            max_inner: options.count(&MAX_INNER),
+            tangent: Tangent::new(options),
+        }
+    }
+}
+
+impl CondensedMethod for AugmentedLagrangian {
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.tangent.refuses(system)
+    }
+
+    fn needs(&self) -> Needs {
+        self.tangent.needs()
+    }
+
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let k = self.stiffness * problem.operator.rho;
+        let mut x = Forces::start(problem);
+        let mut springs = Springs {
+            normal: k,
+            tangential: k,
+            anchor: x.p.clone(),
+            coupled: None,
+        };
+        let inner_stop = INNER_FRACTION * problem.stop;
+        let mut changes = 0;
+
+        let status = loop {
+            let v = problem.jump(&x.p, &x.beta);
+            let natural_map = problem.natural_map(&x.p, &v);
+            match problem.check(natural_map, (&x.p, &x.beta), changes, self.outer, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => continue,
+                Check::End(status) => break status,
+            }
+            springs.anchor.clone_from(&x.p);
+            let start = springs.predict(problem, x);
+            changes = 0;
+            let (inner, end) = springs.solve(
+                problem,
+                start,
+                inner_stop,
+                self.max_inner,
+                &mut self.tangent,
+                |_, _, c| {
+                    changes += c;
+                    true
+                },
+            )?;
+            x = end.into();
+            problem.rebalance(&mut x.p);
+            // Stalled: solved to rounding, which the outer loop can still use.
+            if !matches!(inner, Status::Converged | Status::Stalled) {
+                break inner;
+            }
+        };
+        Ok(End { status, at: x })
+    }
+}

@@ -1,0 +1,145 @@
+//! LATIN method: local and global stages in turn.
+//!
+//! Ladevèze, Nonlinear Computational Structural Mechanics (1999); on cracks in XFEM: Dolbow, Moës & Belytschko,
+//! Comput. Meth. Appl. Mech. Engng 190 (2001) 6825.
+//!
+//! ```text
+//! local stage,   at each point:  z = P − k₀ v                   search direction +k₀
+//!                                P̂_n = max(z_n, 0),  P̂_t = proj_{|·| <= μ P̂_n}(z_t),  v̂ = (P̂ − z)/k₀
+//! global stage,  all points:     P + k₀ v = P̂ + k₀ v̂,  v = q + W P + Q β,  Qᵀ P = c      search direction −k₀
+//!                                (I + k₀ W) P + k₀ Q β = P̂ + k₀ v̂ − k₀ q
+//! relaxation:                    (P, v) <- (P, v) + ω (new − old)
+//! ```
+//! The local pair (P̂, v̂) fulfils the contact laws, the global pair (P, v) equilibrium; both meet at the solution.
+//! I + k₀ W never changes and is factored once per system.
+//!
+//! # Options
+//! `search_direction`: k₀ as a multiple of 1/√(w_min w_max), which minimises the contraction of the linear part,
+//! max |1 − k₀ w|/(1 + k₀ w) over the eigenvalues w of W. w_min and w_max come from 60 Lanczos steps; eigenvalues
+//! below 1e-4 w_max (redundant contact points) do not count. `relaxation`: ω; 1/2 is Douglas–Rachford, 1
+//! Peaceman–Rachford. `max_iterations`.
+//!
+//! # Guarantees
+//! Convergence for monotone laws (no friction, or Tresca) and ω < 1. For Coulomb friction there is no proof; the
+//! iteration count hardly depends on μ in practice.
+//!
+//! # Skips
+//! An open crack is one linear solve. I + k₀ W is factored once for all increments, loads and friction values of a body.
+//!
+//! # Failure modes
+//! Slow far from the best k₀ (times ten in iterations for a factor of ten), and on ill-conditioned W.
+
+use std::sync::Arc;
+
+use crate::condensed::forces::Pair;
+use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::problem::{ContactProblem, Limits};
+use crate::condensed::stages::GlobalStage;
+use crate::contract::law::Branch;
+use crate::contract::options::{OptionSpec, Options, Real, Whole};
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "latin",
+    label: "LATIN",
+    reference: "Dolbow, Moës & Belytschko, Comput. Meth. Appl. Mech. Engng 190 (2001) 6825",
+    summary: "alternates the contact laws point by point with linear equilibrium along fixed search directions",
+    exact: true,
+    options: &OPTIONS,
+    source: include_str!("latin.rs"),
+    build: |options| Box::new(Latin::new(options)),
+};
+
+const SEARCH_DIRECTION: Real = Real {
+    name: "search_direction",
+    default: 1.0,
+    min: 1e-3,
+    max: 1e3,
+    help: "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W",
+};
+const RELAXATION: Real = Real {
+    name: "relaxation",
+    default: 0.8,
+    min: 0.1,
+    max: 1.0,
+    help: "relaxation of the global stage",
+};
+const MAX_ITERATIONS: Whole = Whole {
+    name: "max_iterations",
+    default: 20_000,
+    min: 1,
+    max: 10_000_000,
+    help: "pairs of stages before giving up",
+};
+static OPTIONS: [OptionSpec; 3] = [
+    OptionSpec::Real(SEARCH_DIRECTION),
+    OptionSpec::Real(RELAXATION),
+    OptionSpec::Whole(MAX_ITERATIONS),
+];
+
+/// Iterations without progress after which the iteration counts as stalled: plateaus of some hundred are normal.
+const PATIENCE: usize = 2000;
+
+struct Latin {
+    search_direction: f64,
+    relaxation: f64,
+    limits: Limits,
+    /// The global stage, kept for as long as the system stays the same.
+    global: Option<Arc<GlobalStage>>,
+}
+
+impl Latin {
+    fn new(options: &Options) -> Self {
+        Self {
+            search_direction: options.real(&SEARCH_DIRECTION),
+            relaxation: options.real(&RELAXATION),
+            limits: Limits {
+                iterations: options.count(&MAX_ITERATIONS),
+                patience: PATIENCE,
+            },
+            global: None,
+        }
+    }
+
+    fn stage(&mut self, problem: &mut ContactProblem<'_>) -> Result<Arc<GlobalStage>, MethodError> {
+        match &self.global {
+            Some(stage) if stage.belongs_to(&problem.operator) => Ok(stage.clone()),
+            _ => {
+                problem.counters.factorisations += 1;
+                let stage = GlobalStage::new(problem.operator.clone(), self.search_direction)?;
+                Ok(self.global.insert(Arc::new(stage)).clone())
+            }
+        }
+    }
+}
+
+impl CondensedMethod for Latin {
+    fn iterate(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<End, MethodError> {
+        let global = self.stage(problem)?;
+        let mut pair = Pair::start(problem);
+        let mut before: Vec<Branch> = Vec::new();
+        let mut changes = 0;
+
+        let status = loop {
+            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+                break status;
+            }
+            let (target, branches) = global.local_stage(problem, &pair);
+            changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
+            before = branches;
+            let Some(new) = global.global_stage(problem, &target) else {
+                break problem.singular();
+            };
+            pair.relax(problem, self.relaxation, &new);
+        };
+        let at = pair.into();
+        Ok(End { status, at })
+    }
+}
