@@ -9,7 +9,7 @@ use stickslip::model::body::{Body, Needs};
 use stickslip::model::errors::Deviation;
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
-use stickslip::studies::convergence::{self, Measured, Study, slope};
+use stickslip::studies::convergence::{self, ConvergencePlan, Measured, slope};
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -17,7 +17,7 @@ struct Errors(Vec<(f64, Vec<Deviation>)>);
 impl Errors {
     /// A case with star multipliers and one enrichment of its tips, on refinements of its mesh.
     fn of(case: &Case, refine: &[usize], tip: Option<Tip>) -> Self {
-        let study = Study {
+        let study = ConvergencePlan {
             refine: Some(refine.to_vec()),
             spaces: Some(vec![ContactSpace::Star]),
             tips: tip.map(|tip| vec![tip]),

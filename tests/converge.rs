@@ -13,7 +13,7 @@ use stickslip::report::{Provenance, csv as table};
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
 use stickslip::studies::convergence::orders::{self, ErrorRow, Kind, OrderRow};
-use stickslip::studies::convergence::{self, Measured, Regularity, Sample, Study};
+use stickslip::studies::convergence::{self, ConvergencePlan, Measured, Regularity, Sample};
 
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
@@ -39,9 +39,9 @@ fn plate(right: f64, tip: &str) -> Case {
     parse(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest))
 }
 
-fn study(method: &str, tips: Option<Vec<Tip>>) -> Study {
+fn study(method: &str, tips: Option<Vec<Tip>>) -> ConvergencePlan {
     let method = stickslip::run::registry::method(method).unwrap();
-    Study {
+    ConvergencePlan {
         refine: Some(vec![1, 3, 5]),
         spaces: Some(vec![ContactSpace::EdgePairs]),
         tips,
@@ -69,7 +69,7 @@ fn power_law(case: &Case, body: &stickslip::model::body::Body) -> Vec<Deviation>
     ]
 }
 
-fn samples(case: &Case, study: &Study) -> Vec<Sample> {
+fn samples(case: &Case, study: &ConvergencePlan) -> Vec<Sample> {
     let exact: &convergence::ClosedForm<'_> =
         &|loading, _| Ok(Some(power_law(case, loading.body())));
     convergence::run(case, study, exact, &Quiet).unwrap()
@@ -163,7 +163,7 @@ fn verdicts_that_are_not_honest_have_no_error() {
 #[test]
 fn meshes_spaces_and_tips_come_from_the_case_unless_asked_for() {
     let mut case = plate(0.53, "branch");
-    let own = Study {
+    let own = ConvergencePlan {
         refine: None,
         spaces: None,
         tips: None,

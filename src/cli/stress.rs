@@ -10,7 +10,7 @@ use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, prepare_output, robustness};
 use crate::run::verdict::Verdict;
-use crate::studies::stress::{self, Study, Trial};
+use crate::studies::stress::{self, StressPlan, Trial};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -62,7 +62,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let mut dims: Vec<usize> = arguments.dims.iter().map(|&d| usize::from(d)).collect();
     dims.sort_unstable();
     dims.dedup();
-    let study = Study {
+    let plan = StressPlan {
         seed: arguments.seed,
         dims,
         problems: arguments.problems as usize,
@@ -73,23 +73,23 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     };
     prepare_output(&arguments.out)?;
     let bar = Bar::new();
-    let trials = stress::run(&study, &choices, &bar)?;
+    let trials = stress::run(&plan, &choices, &bar)?;
     bar.finish();
 
-    let provenance = Provenance::collect(study.jobs)
-        .with_option("jobs", study.jobs.to_string())
-        .with_option("tier", study.tier.to_string())
-        .with_option("seed", study.seed.to_string())
-        .with_option("problems", study.problems.to_string());
-    let mut bundle = robustness::bundle(&study, &trials, &provenance)?;
-    if let Some(problem) = study.only {
-        for &dim in &study.dims {
+    let provenance = Provenance::collect(plan.jobs)
+        .with_option("jobs", plan.jobs.to_string())
+        .with_option("tier", plan.tier.to_string())
+        .with_option("seed", plan.seed.to_string())
+        .with_option("problems", plan.problems.to_string());
+    let mut bundle = robustness::bundle(&plan, &trials, &provenance)?;
+    if let Some(problem) = plan.only {
+        for &dim in &plan.dims {
             let name = format!("problem-{dim}d-{problem}.toml");
-            bundle.add(name, stress::case_of(&study, &choices, dim, problem)?)?;
+            bundle.add(name, stress::case_of(&plan, &choices, dim, problem)?)?;
         }
     }
     bundle.commit(&arguments.out)?;
-    let table = robustness::table(&robustness::rows(&study, &trials))?;
+    let table = robustness::table(&robustness::rows(&plan, &trials))?;
     say(format_args!("{}", table.terminal()));
     say(format_args!(
         "{}\nResults: {}",

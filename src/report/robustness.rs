@@ -11,7 +11,7 @@ use super::plot::success_rates;
 use super::tables::{self, Align, Column, Table};
 use super::{Bundle, Provenance, ReportError};
 use crate::run::verdict::Verdict;
-use crate::studies::stress::{Study, Trial};
+use crate::studies::stress::{StressPlan, Trial};
 use crate::studies::sweep::analysis::proportion::wilson;
 
 /// Ends without a claim that have a column of their own.
@@ -145,22 +145,22 @@ impl RobustnessRow {
 }
 
 /// Sums the study up: rows by dimension, method and friction.
-pub fn rows(study: &Study, trials: &[Trial]) -> Vec<RobustnessRow> {
+pub fn rows(plan: &StressPlan, trials: &[Trial]) -> Vec<RobustnessRow> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     let key = |t: &Trial| (t.dim, t.method.clone());
     sorted.sort_by(|a, b| key(a).cmp(&key(b)).then(a.friction.total_cmp(&b.friction)));
     sorted
         .chunk_by(|a, b| key(a) == key(b) && a.friction == b.friction)
-        .filter_map(|group| RobustnessRow::of(group, study.tier))
+        .filter_map(|group| RobustnessRow::of(group, plan.tier))
         .collect()
 }
 
 /// Everything that was neither solved nor declined.
-pub fn failures(study: &Study, trials: &[Trial]) -> Vec<FailureRow> {
+pub fn failures(plan: &StressPlan, trials: &[Trial]) -> Vec<FailureRow> {
     let failed = trials.iter().filter(|t| t.verdict.is_failure());
     failed
         .map(|t| FailureRow {
-            seed: study.seed,
+            seed: plan.seed,
             dimension: t.dim,
             problem: t.problem,
             friction: t.friction,
@@ -354,14 +354,14 @@ pub fn table(rows: &[RobustnessRow]) -> Result<Table, ReportError> {
 /// # Errors
 /// Those of [`Bundle::add`] and of the figure.
 pub fn bundle(
-    study: &Study,
+    plan: &StressPlan,
     trials: &[Trial],
     provenance: &Provenance,
 ) -> Result<Bundle, ReportError> {
-    let rows = rows(study, trials);
+    let rows = rows(plan, trials);
     let mut bundle = Bundle::new();
     bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
-    bundle.add(FailureRow::FILE, csv::file(&failures(study, trials))?)?;
+    bundle.add(FailureRow::FILE, csv::file(&failures(plan, trials))?)?;
     tables::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
     // Where every method declines every problem there is nothing to draw.
     if rows.iter().any(|row| row.success[0].is_finite()) {

@@ -41,9 +41,9 @@ const FOLLOWED: [&str; 5] = [
     "max_gap",
 ];
 
-/// What to run. `None`: what the case says, see [`Study::meshes`], [`Study::spaces`], [`Study::tips`].
+/// What to run. `None`: what the case says, see [`ConvergencePlan::meshes`], [`ConvergencePlan::spaces`], [`ConvergencePlan::tips`].
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct ConvergencePlan {
     /// Refinement factors, increasing.
     pub refine: Option<Vec<usize>>,
     /// Contact spaces of all cracks.
@@ -54,7 +54,7 @@ pub struct Study {
     pub choice: Choice,
 }
 
-impl Study {
+impl ConvergencePlan {
     /// Refinement factors: those asked for, or those of the case if it has several, or 1, 2, 4, 8.
     pub fn meshes(&self, case: &Case) -> Vec<usize> {
         match &self.refine {
@@ -116,13 +116,13 @@ pub fn closed_form(
 /// Of the case or its discretisation; what the method does wrong is a verdict.
 pub fn run(
     case: &Case,
-    study: &Study,
+    plan: &ConvergencePlan,
     closed_form: &ClosedForm<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Sample>, RunError> {
-    let (meshes, tips) = (study.meshes(case), study.tips(case));
+    let (meshes, tips) = (plan.meshes(case), plan.tips(case));
     let frictions = friction_values(case);
-    let spaces = study.spaces(case);
+    let spaces = plan.spaces(case);
     let combinations = spaces
         .iter()
         .flat_map(|&space| tips.iter().map(move |&tip| (space, tip)));
@@ -131,7 +131,7 @@ pub fn run(
         .collect();
     let needs = Needs {
         frictionless: frictions.iter().flatten().all(|&mu| mu == 0.0),
-        traction: study.choice.needs_traction(),
+        traction: plan.choice.needs_traction(),
     };
     progress.plan(variants.len() * meshes.len() * frictions.len());
     // The first run of a program starts threads and fills caches: it is done twice, and timed once.
@@ -139,7 +139,7 @@ pub fn run(
         (variants.first(), meshes.first(), frictions.first())
     {
         let body = Body::new(first, refine, needs)?;
-        run_one(first, &body, refine, per_crack, &study.choice, closed_form)?;
+        run_one(first, &body, refine, per_crack, &plan.choice, closed_form)?;
     }
     let mut samples = Vec::new();
     // A crack along cell facets has the same pairs in every space.
@@ -151,14 +151,8 @@ pub fn run(
             let new = seen.insert((body.space.clone(), tip.clone(), refine));
             for per_crack in &frictions {
                 if new {
-                    let sample = run_one(
-                        variant,
-                        &body,
-                        refine,
-                        per_crack,
-                        &study.choice,
-                        closed_form,
-                    )?;
+                    let sample =
+                        run_one(variant, &body, refine, per_crack, &plan.choice, closed_form)?;
                     samples.push(sample);
                 }
                 let mu = per_crack.first().copied().unwrap_or(0.0);

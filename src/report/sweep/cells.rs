@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
+use super::records::{CELL_COLUMNS, SweepRecords, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
@@ -17,8 +17,8 @@ const ERROR_DIGITS: usize = 4;
 const EXACT: &str = "exact";
 
 /// Adds `cells.csv`, `increments.csv` and `deviations.csv`.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let records = study.sorted();
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let records = sweep.sorted();
     let cells: Vec<CellRow> = records.iter().map(|record| CellRow(record)).collect();
     bundle.add(CellRow::FILE, csv::file(&cells)?)?;
     let increments = records.iter().flat_map(|record| {
@@ -32,7 +32,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
     let increments: Vec<IncrementRow> = increments.collect();
     bundle.add(IncrementRow::FILE, csv::file(&increments)?)?;
     // A quantity without exact value says something only beside that of another mesh.
-    let refined: Vec<Problem> = sequences(study.records).into_iter().flatten().collect();
+    let refined: Vec<Problem> = sequences(sweep.records).into_iter().flatten().collect();
     let deviations = records.iter().flat_map(|record| {
         let several = refined.contains(&record.cell.problem());
         let rows = DeviationRow::all(record).into_iter();

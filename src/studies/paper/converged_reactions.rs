@@ -18,7 +18,7 @@ use stickslip_xfem::mesh::grid_motion::Twist;
 use crate::case::{Case, ContactSpace, Tip};
 use crate::run::run_case::Progress;
 use crate::studies::convergence::orders::{self, Kind};
-use crate::studies::convergence::{self, Study};
+use crate::studies::convergence::{self, ConvergencePlan};
 use crate::studies::paper::lookup::{PaperError, case, choice};
 use crate::studies::paper::printed_tables::Table1Row;
 
@@ -144,13 +144,13 @@ pub fn converged_reactions(
     let mut limits = Vec::new();
     for (name, mesh, turned, factors) in MESHES {
         let plate = plate(name, turned)?;
-        let study = Study {
+        let plan = ConvergencePlan {
             refine: Some(factors.to_vec()),
             spaces: Some(vec![ContactSpace::Star]),
             tips: Some(vec![Tip::Radius(RADIUS)]),
             choice: choice(METHOD, &[])?,
         };
-        let samples = convergence::run(&plate, &study, &convergence::closed_form, progress)?;
+        let samples = convergence::run(&plate, &plan, &convergence::closed_form, progress)?;
         let (errors, orders) = orders::rows(&samples);
         // A mesh that is not solved has a row without quantity.
         let wanted = |quantity: &str, at: &str| (quantity, at) == ("reaction", "top y");
