@@ -19,7 +19,7 @@ use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 
 use super::super::b_equations::Row;
 use super::super::condensed::Condensed;
-use super::factor::{kernel, norm};
+use super::factor::{norm, sparse};
 use crate::{ContactSystem, MethodError};
 
 /// (δP, δv) or another pair of vectors by row.
@@ -124,9 +124,9 @@ impl Global {
         }
         let size = if explicit { n } else { n + m };
         let (pattern, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &at)
-            .map_err(|e| kernel("pattern of the monolithic matrix", format!("{e:?}")))?;
+            .map_err(|e| sparse("pattern of the monolithic matrix", e))?;
         let symbolic = SymbolicLu::try_new(pattern.as_ref())
-            .map_err(|e| kernel("symbolic LU of the monolithic matrix", format!("{e:?}")))?;
+            .map_err(|e| sparse("symbolic LU of the monolithic matrix", e))?;
         Ok(Self {
             condensed,
             explicit,
@@ -151,7 +151,7 @@ impl Global {
 
     /// (δP, δv) by row; `None` if the matrix is singular.
     pub fn solve(&self, rows: &[[Row; 3]]) -> Result<Option<TwoVectors>, MethodError> {
-        let failed = |e: FaerError| kernel("sparse LU of the monolithic matrix", format!("{e:?}"));
+        let failed = |e: FaerError| sparse("sparse LU of the monolithic matrix", e);
         // In scaled unknowns C becomes C/ρ: B carries √ρ, and so does P.
         let rho = self.sigma * self.sigma;
         let c = |point: usize, k: usize, l: usize| rows[point][k].c[l] / rho;
