@@ -10,7 +10,6 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::harness::case;
 use stickslip::harness::record::Results;
 use stickslip::harness::run::{Choice, Fields, Quiet, Settings, run_case};
-use stickslip::paper::as_expected;
 use stickslip_methods::method;
 
 const SETTINGS: Settings = Settings {
@@ -38,7 +37,7 @@ fn end_to_end(criterion: &mut Criterion) {
         let mut group = group(criterion, &problem.end_to_end("").group);
         for (methods, choices) in sets {
             let name = problem.end_to_end(methods);
-            if !as_expected(&run(&file, &case.source, choices)) {
+            if !run(&file, &case.source, choices).as_expected() {
                 left_out(
                     &name,
                     &"a run failed or an expected number is not as stated",

@@ -277,7 +277,7 @@ fn paper_verb(out: &Path, jobs: usize) -> Result<bool, CliError> {
     say(format_args!("{}", paper.text()?));
     say(format_args!("Report: {}", out.display()));
     print_missed(&paper.results);
-    Ok(paper::as_expected(&paper.results))
+    Ok(paper.results.as_expected())
 }
 
 fn run_verb(
@@ -321,10 +321,10 @@ fn run_verb(
     }
     say(format_args!(
         "{}\nResults: {}",
-        paper::summary(&results),
+        standard::summary(&results),
         out.display()
     ));
-    Ok(paper::as_expected(&results))
+    Ok(results.as_expected())
 }
 
 /// Two runs of one name would write the same files.

@@ -1,6 +1,5 @@
 //! Cases, load paths, runs, verdicts.
 
-pub mod attempt;
 pub mod body;
 pub mod boundary;
 pub mod case;
@@ -10,11 +9,12 @@ pub mod exact_curve;
 pub mod exchange;
 pub mod expect;
 pub mod export;
+pub mod increment;
 pub mod infsup;
+pub mod load_path;
 pub mod loading;
 pub mod nodal_forces;
 pub mod patch;
-pub mod path;
 pub mod picture;
 pub mod problem_file;
 pub mod quantities;
@@ -24,6 +24,5 @@ pub mod refusals;
 pub mod run;
 pub mod shipped;
 pub mod sides;
-pub mod step;
 pub mod stress;
 pub mod verdict;

@@ -14,6 +14,7 @@ use crate::harness::case::{Case, CaseError};
 use crate::harness::record::{Results, RunKey};
 use crate::harness::run::{Choice, Fields, Progress, RunError, Settings, run_case};
 use crate::harness::shipped;
+use crate::harness::verdict::Verdict;
 use crate::report::comparison::{VariantRow, variant_table};
 use crate::report::converged::{self as converged_report, ConvergedRow, SequenceRow};
 use crate::report::paper::{Digits, Table1Row, Table2Row, table1, table2};
@@ -160,51 +161,10 @@ impl Paper {
             "{}\n\nModel I with exact sub-cells against Model II: {:.1e} mm\n{}\n",
             converged_report::summary(&self.converged),
             self.beam_models_mm,
-            summary(&self.results)
+            standard::summary(&self.results)
         ));
         Ok(text)
     }
-}
-
-/// One line on the verdicts and expectations of all runs.
-pub fn summary(results: &Results) -> String {
-    let count = |prefix: &str| {
-        results
-            .runs
-            .iter()
-            .filter(|r| r.verdict.starts_with(prefix))
-            .count()
-    };
-    let stated = results
-        .expectations
-        .iter()
-        .filter(|e| e.as_stated())
-        .count();
-    format!(
-        "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
-        results.runs.len(),
-        count("solved"),
-        count("approximate"),
-        count("refused"),
-        failures(results),
-        stated,
-        results.expectations.len()
-    )
-}
-
-/// Number of runs that did not do what they claimed, gave up or crashed.
-pub fn failures(results: &Results) -> usize {
-    let bad = |verdict: &str| {
-        ["false-claim", "gave-up", "crashed"]
-            .iter()
-            .any(|p| verdict.starts_with(p))
-    };
-    results.runs.iter().filter(|r| bad(&r.verdict)).count()
-}
-
-/// True if no run failed and every expected number was met.
-pub fn as_expected(results: &Results) -> bool {
-    failures(results) == 0 && results.expectations.iter().all(|e| e.as_stated())
 }
 
 fn case(name: &str) -> Result<Case, PaperError> {
@@ -236,9 +196,9 @@ fn value(
 }
 
 /// Verdict of the last increment of a run.
-fn verdict(results: &Results, key: impl Fn(&RunKey) -> bool) -> String {
+fn verdict(results: &Results, key: impl Fn(&RunKey) -> bool) -> Option<Verdict> {
     let last = results.runs.iter().rfind(|r| key(&r.key));
-    last.map_or_else(|| "not run".to_owned(), |r| r.verdict.clone())
+    last.map(|r| r.verdict.clone())
 }
 
 fn plate_rows(results: &Results) -> Result<Vec<Table1Row>, PaperError> {
@@ -366,7 +326,7 @@ fn penalty_rows(
                 max_penetration_m: value(&swept, key, "max_penetration", "crack-1", "")
                     .unwrap_or(f64::NAN),
                 natural_map: run.map_or(f64::NAN, |r| r.natural_map),
-                verdict: run.map_or_else(|| "not run".into(), |r| r.verdict.clone()),
+                verdict: run.map(|r| r.verdict.clone()),
             });
         }
     }

@@ -9,6 +9,7 @@ use stickslip::harness::converge::{self, Measured, Study, slope};
 use stickslip::harness::errors::Deviation;
 use stickslip::harness::run::{Choice, Quiet};
 use stickslip::harness::shipped;
+use stickslip::harness::verdict::Verdict;
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -195,7 +196,7 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     case.expects.clear();
     case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
-    assert!(results.runs.iter().all(|r| r.verdict == "solved"));
+    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
     let rows = results.quantities.iter();
     rows.filter(|q| q.quantity == "dissipation")
         .map(|q| q.value)

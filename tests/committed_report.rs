@@ -11,8 +11,8 @@ use std::path::Path;
 
 use stickslip::harness::run::{Fields, Quiet, Settings};
 use stickslip::paper;
-use stickslip::report::Provenance;
 use stickslip::report::converged::{agreements, summary};
+use stickslip::report::{Provenance, standard};
 
 /// Columns printed with two to four digits.
 const FEW_DIGITS: [&str; 15] = [
@@ -152,9 +152,9 @@ fn the_committed_tables_are_those_of_this_source() {
     };
     let paper = paper::run(settings, &Quiet).expect("the main job runs");
     assert!(
-        paper::as_expected(&paper.results),
+        paper.results.as_expected(),
         "{}",
-        paper::summary(&paper.results)
+        standard::summary(&paper.results)
     );
     assert!(
         paper.beam_models_mm < 1e-9,

@@ -12,7 +12,9 @@ use stickslip::harness::converge::orders::{self, ErrorRow, Kind, OrderRow};
 use stickslip::harness::converge::{self, Measured, Regularity, Sample, Study};
 use stickslip::harness::errors::Deviation;
 use stickslip::harness::run::{Choice, Quiet};
+use stickslip::harness::verdict::Verdict;
 use stickslip::report::{Provenance, csv as table};
+use stickslip_methods::Status;
 
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
@@ -150,7 +152,7 @@ fn verdicts_that_are_not_honest_have_no_error() {
     let (errors, orders) = orders::rows(&samples);
     assert_eq!((errors.len(), orders.len()), (3, 0));
     for row in &errors {
-        assert_eq!(row.verdict, "gave-up: max-iterations");
+        assert_eq!(row.verdict, Verdict::GaveUp(Status::MaxIterations));
         assert!(row.error.is_nan() && row.kind.is_none() && row.seconds.total().is_nan());
     }
     let bundle = stickslip::report::converge::bundle(&errors, &orders, &Provenance::collect(1));

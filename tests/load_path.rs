@@ -9,6 +9,7 @@ use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::case::Case;
 use stickslip::harness::record::Results;
 use stickslip::harness::shipped;
+use stickslip::harness::verdict::Verdict;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, METHODS, Options, Outcome, Silent, Status,
 };
@@ -194,7 +195,7 @@ fn energy_balances_and_friction_only_dissipates_in_every_2d_case() {
         case.sweep.refine = vec![1];
         let results = run(&case, &exact);
         for row in &results.runs {
-            assert_eq!(row.verdict, "solved", "{:?}", row.key);
+            assert_eq!(row.verdict, Verdict::Solved, "{:?}", row.key);
         }
         for (run, values) in histories(&results, "energy_identity") {
             assert_eq!(values.len(), case.path.increments, "{run}");

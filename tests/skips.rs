@@ -5,6 +5,7 @@ mod common;
 use common::*;
 use stickslip::harness::body::{Body, Needs};
 use stickslip::harness::shipped;
+use stickslip::harness::verdict::Verdict;
 use stickslip_methods::METHODS;
 
 fn names(exact: bool) -> Vec<&'static str> {
@@ -35,7 +36,7 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
         let results = run(&case, &[method.name]);
         assert_eq!(results.runs.len(), 1);
         let row = &results.runs[0];
-        assert_eq!(row.verdict, "solved", "{}", method.name);
+        assert_eq!(row.verdict, Verdict::Solved, "{}", method.name);
         assert_eq!((row.solves, row.iterations), (1, 0), "{}", method.name);
         assert_eq!(row.condensation_s, 0.0, "{}", method.name);
     }

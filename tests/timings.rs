@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
+use stickslip::harness::verdict::Verdict;
 use stickslip::report::Bundle;
 use stickslip::report::timings::{
     BenchmarkName, Expected, Harvest, Ignored, add_to, harvest, last_built,
@@ -48,7 +49,7 @@ fn raw(method: &str, samples: &[(f64, u64)]) -> String {
 fn expected(method: &str) -> Expected {
     Expected {
         name: BenchmarkName::new("g", "solve", method),
-        verdict: "solved".into(),
+        verdict: Some(Verdict::Solved),
         newer_than: built(),
     }
 }

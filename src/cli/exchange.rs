@@ -13,7 +13,6 @@ use crate::harness::record::Results;
 use crate::harness::run::Choice;
 use crate::harness::run::{Fields, Progress, Settings};
 use crate::harness::verdict::EQUILIBRIUM;
-use crate::paper;
 use crate::report::number::residual;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, prepare_output, standard};
@@ -120,10 +119,10 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     ));
     say(format_args!(
         "{}\nResults: {}",
-        paper::summary(&results),
+        standard::summary(&results),
         args.out.display()
     ));
-    Ok(paper::as_expected(&results))
+    Ok(results.as_expected())
 }
 
 pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {

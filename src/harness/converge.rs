@@ -20,12 +20,12 @@ use stickslip_methods::ContactSystem;
 use super::body::{Body, BodyError, Needs};
 use super::case::{Case, ContactSpace, MeshSpec, Tip};
 use super::errors::{Deviation, errors};
+use super::load_path::LoadPathRun;
 use super::loading::Loading;
-use super::path::Path;
 use super::quantities::{Snapshot, quantity_rows};
 use super::record::RunKey;
 use super::run::{Choice, Progress, RunError, friction_values};
-use super::verdict::{Accuracy, Verdict};
+use super::verdict::Accuracy;
 
 /// Refinement factors where neither the study nor the case names several.
 const REFINE: [usize; 4] = [1, 2, 4, 8];
@@ -189,34 +189,20 @@ fn run_one(
 ) -> Result<Sample, RunError> {
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: per_crack.first().copied().unwrap_or(0.0),
-        increment: 1,
-    };
     let mu = per_crack.first().copied().unwrap_or(0.0);
     let loading = Loading::new(body, case, mu)?;
-    let path = Path {
+    let path = LoadPathRun {
         case,
         loading: &loading,
         system: &system,
+        friction: mu,
         choice,
         accuracy: Accuracy::of(case, case.tier),
     };
     let mut rows = Vec::new();
-    let mut last: Option<(Verdict, Option<Snapshot>)> = None;
-    path.follow(&mut key, &mut |_, ended| {
-        rows.push(ended.run);
-        last = Some((ended.verdict, ended.now.cloned()));
-    });
-    let (verdict, now) = last.ok_or_else(|| {
-        let message = "a load path without increments";
-        case.error(&case.mesh.span, case.path.increments, ">= 1", message)
-    })?;
-    let measured = match &now {
+    let end = path.follow(&mut |key, increment, _| rows.push(path.row(key, increment)));
+    let key = end.key;
+    let measured = match &end.now {
         None => Measured::Nothing,
         Some(now) => match closed_form(&loading, now)? {
             Some(deviations) => Measured::Exact(deviations),
@@ -238,12 +224,12 @@ fn run_one(
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
-        seconds: if now.is_some() {
+        seconds: if end.now.is_some() {
             Seconds::of(&rows)
         } else {
             Seconds::NONE
         },
-        verdict,
+        verdict: end.verdict,
         measured,
     })
 }

@@ -4,14 +4,13 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
 };
 
-use crate::harness::attempt::Judged;
 use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::Case;
 use crate::harness::exchange::{global_problem, local_problem};
+use crate::harness::increment::{Judged, Solver};
 use crate::harness::loading::Loading;
 use crate::harness::record::RunKey;
 use crate::harness::run::{Choice, RunError, friction_values};
-use crate::harness::step::Solver;
 use crate::harness::verdict::{Accuracy, Verdict};
 use crate::interchange::{Info, InterchangeError, matrix_market};
 use crate::report::standard::problem_name;
@@ -124,8 +123,8 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         verdict,
     };
     let accuracy = Accuracy::of(case, Tier::High);
-    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), accuracy, &key)
-        .map_err(|step| unsolved(1, step.verdict))?;
+    let mut solver =
+        Solver::new(&request.choice, &system).map_err(|verdict| unsolved(1, verdict))?;
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);
     loop {
@@ -138,10 +137,10 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
             index: key.increment - 1,
             tolerance: accuracy.asked,
         };
-        let step = solver.solve(&key, &increment);
-        let solved = step.answer.filter(|_| step.verdict == Verdict::Solved);
+        let tried = solver.judge(&increment, accuracy.accepted);
+        let solved = tried.judged.filter(|_| tried.verdict == Verdict::Solved);
         let Some(Judged { outcome, .. }) = solved else {
-            return Err(unsolved(key.increment, step.verdict));
+            return Err(unsolved(key.increment, tried.verdict));
         };
         if key.increment == wanted {
             let name = format!("{}.increment-{wanted}", problem_name(&key));

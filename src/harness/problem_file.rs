@@ -8,9 +8,9 @@ use stickslip_methods::{
 };
 
 use crate::harness::exchange::{System, global_system, local_system, local_velocity};
-use crate::harness::record::{Results, RunKey};
+use crate::harness::increment::{JudgedIncrement, Solver};
+use crate::harness::record::{Results, RunKey, Setup};
 use crate::harness::run::{Choice, Progress};
-use crate::harness::step::{Setup, Solver};
 use crate::harness::verdict::Accuracy;
 use crate::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::report::{Bundle, ReportError, standard};
@@ -186,15 +186,15 @@ impl ProblemFile {
                 friction: self.system.friction().first().copied().unwrap_or(0.0),
                 increment: 1,
             };
-            let prepared = Solver::prepare(choice, &self.system, self.setup, accuracy, &key);
-            let step = match prepared {
-                Ok(mut solver) => solver.solve(&key, &increment),
-                Err(refused) => *refused,
+            let tried = match Solver::new(choice, &self.system) {
+                Ok(mut solver) => solver.judge(&increment, accuracy.accepted),
+                Err(verdict) => JudgedIncrement::not_started(verdict),
             };
             progress.done(&format!("{} {}", self.name, choice.label));
-            results.runs.push(step.run);
-            results.history.extend(step.history);
-            if let Some(judged) = step.answer.filter(|_| step.verdict.is_honest()) {
+            let row = tried.run_row(&key, &self.system, self.setup, accuracy);
+            results.runs.push(row);
+            results.history.extend(tried.history_rows(&key));
+            if let Some(judged) = tried.honest() {
                 let stem = standard::stem(&key);
                 let velocity = local_velocity(&increment, &judged.outcome.state);
                 for (part, values) in [("r", &judged.outcome.state.p), ("u", &velocity)] {

@@ -6,6 +6,7 @@
 use serde::Serialize;
 
 use super::expect;
+use super::verdict::Verdict;
 
 /// Version of the CSV schema, written in every `runs.csv` row.
 pub const SCHEMA: u32 = 2;
@@ -27,6 +28,15 @@ pub struct RunKey {
     pub increment: usize,
 }
 
+/// Where the system of a run comes from: times shared by all runs on it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Setup {
+    /// Seconds for mesh, cutting, pattern and ordering; for a file, for reading.
+    pub setup_s: f64,
+    /// Seconds for cell matrices and their sum.
+    pub assembly_s: f64,
+}
+
 /// One row of `runs.csv`: one increment of one run.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunRow {
@@ -35,8 +45,8 @@ pub struct RunRow {
     pub key: RunKey,
     /// Requested tier: low, mid or high.
     pub tier: String,
-    /// Claim × check, e.g. `solved`, `false-claim`, `gave-up: max-iterations`, `refused: …`.
-    pub verdict: String,
+    /// Claim × check.
+    pub verdict: Verdict,
     /// Natural-map residual found by the judge [-].
     pub natural_map: f64,
     /// Iterations of the method.
@@ -333,6 +343,16 @@ impl Results {
         self.exact.extend(other.exact);
         self.expectations.extend(other.expectations);
         self.fields.extend(other.fields);
+    }
+
+    /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
+    pub fn failures(&self) -> usize {
+        self.runs.iter().filter(|r| r.verdict.is_failure()).count()
+    }
+
+    /// True if no run failed and every expected number came out as stated: the exit code of what made these results.
+    pub fn as_expected(&self) -> bool {
+        self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
     }
 }
 

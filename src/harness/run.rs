@@ -9,11 +9,11 @@ use crate::harness::body::{Body, BodyError, Needs};
 use crate::harness::case::{Case, CaseError, MethodSpec};
 use crate::harness::exact_curve::exact_rows;
 use crate::harness::expect::{self, expectation_rows};
+use crate::harness::load_path::LoadPathRun;
 use crate::harness::loading::Loading;
-use crate::harness::path::Path;
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{point_rows, quantity_rows};
-use crate::harness::record::{Results, RunFields, RunKey, RunRow};
+use crate::harness::record::{Results, RunFields, RunRow};
 use crate::harness::verdict::Accuracy;
 
 /// A method with its options.
@@ -326,34 +326,20 @@ pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
-    let Cell {
-        body,
-        loading,
-        system,
-        choice,
-        ..
-    } = cell;
-    let mut results = Results::default();
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: cell.friction,
-        increment: 1,
-    };
-    let mut steps = Vec::new();
-    let path = Path {
+    let Cell { body, choice, .. } = *cell;
+    let path = LoadPathRun {
         case,
-        loading,
-        system,
+        loading: &cell.loading,
+        system: &cell.system,
+        friction: cell.friction,
         choice,
         accuracy,
     };
-    let started = path.follow(&mut key, &mut |key, ended| {
-        results.runs.push(ended.run);
-        results.history.extend(ended.history);
-        let Some(now) = ended.now else { return };
+    let (mut results, mut steps) = (Results::default(), Vec::new());
+    let end = path.follow(&mut |key, increment, now| {
+        results.runs.push(path.row(key, increment));
+        results.history.extend(increment.history_rows(key));
+        let Some(now) = now else { return };
         results
             .quantities
             .extend(quantity_rows(case, body, key, now));
@@ -363,9 +349,10 @@ fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
         }
     });
     // A run that could not start is held to nothing.
-    if !started {
+    if !end.started {
         return results;
     }
+    let key = end.key;
     results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
     if !steps.is_empty() {
         results.fields.push(RunFields { key, steps });

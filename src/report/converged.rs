@@ -8,6 +8,7 @@ use super::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, ital
 use super::study::RefinementRow;
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
+use crate::harness::verdict::Verdict;
 
 /// Digits of orders, error bars and differences: they are estimates.
 const ORDER_DIGITS: usize = 3;
@@ -36,7 +37,7 @@ pub struct SequenceRow {
     /// Observed order over the last two halvings; NaN where there is none.
     pub order: f64,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
 }
 
 impl Row for SequenceRow {
@@ -64,7 +65,7 @@ impl Row for SequenceRow {
             self.points.to_string(),
             value(self.reaction_mn_per_m),
             significant(self.order, ORDER_DIGITS),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -279,7 +280,7 @@ pub fn sequence_table(rows: &[SequenceRow]) -> Result<Table, ReportError> {
             row.points.to_string(),
             shown(row.reaction_mn_per_m, |r| fixed(r, 3)),
             shown(row.order, |p| fixed(p, 2)),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)

@@ -7,6 +7,7 @@ use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError};
+use crate::harness::verdict::Verdict;
 use std::cmp::Ordering;
 
 /// Method name of lines that repeat the published numbers.
@@ -36,8 +37,8 @@ pub struct Table1Row {
     pub printed_mn_per_m: Option<f64>,
     /// (computed − printed) / printed [-].
     pub relative_difference: Option<f64>,
-    /// Claim × check.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run.
+    pub verdict: Option<Verdict>,
 }
 
 impl Table1Row {
@@ -48,7 +49,7 @@ impl Table1Row {
         method: impl Into<String>,
         reaction_mn_per_m: Option<f64>,
         printed_mn_per_m: Option<f64>,
-        verdict: impl Into<String>,
+        verdict: Option<Verdict>,
     ) -> Self {
         let relative_difference = match (reaction_mn_per_m, printed_mn_per_m) {
             (Some(ours), Some(theirs)) => Some((ours - theirs) / theirs),
@@ -61,7 +62,7 @@ impl Table1Row {
             reaction_mn_per_m,
             printed_mn_per_m,
             relative_difference,
-            verdict: verdict.into(),
+            verdict,
         }
     }
 }
@@ -89,7 +90,7 @@ impl Row for Table1Row {
             optional(self.relative_difference, |d| {
                 significant(d, DIFFERENCE_DIGITS)
             }),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -116,8 +117,8 @@ pub struct Table2Row {
     pub p_mm: [f64; 7],
     /// Largest |computed − printed| over the seven points (mm); none for the printed line itself.
     pub max_difference_mm: Option<f64>,
-    /// Claim × check; empty for the printed line.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run, as for the printed line.
+    pub verdict: Option<Verdict>,
 }
 
 impl Table2Row {
@@ -135,7 +136,7 @@ impl Table2Row {
             method: PRINTED.into(),
             p_mm,
             max_difference_mm: None,
-            verdict: String::new(),
+            verdict: None,
         }
     }
 
@@ -144,7 +145,7 @@ impl Table2Row {
         reference: &Self,
         method: impl Into<String>,
         p_mm: [f64; 7],
-        verdict: impl Into<String>,
+        verdict: Option<Verdict>,
     ) -> Self {
         // `f64::max` would swallow the NaN of a run without a solution.
         let solved = p_mm.iter().all(|p| p.is_finite());
@@ -158,9 +159,17 @@ impl Table2Row {
             method: method.into(),
             p_mm,
             max_difference_mm: solved.then(difference),
-            verdict: verdict.into(),
+            verdict,
             ..reference.clone()
         }
+    }
+
+    /// Printed numbers were not run here, and nobody expects it.
+    fn verdict_cell(&self) -> String {
+        if self.method == PRINTED {
+            return String::new();
+        }
+        Verdict::or_not_run(self.verdict.as_ref())
     }
 }
 
@@ -194,7 +203,7 @@ impl Row for Table2Row {
         cells.push(optional(self.max_difference_mm, |d| {
             significant(d, DIFFERENCE_DIGITS)
         }));
-        cells.push(self.verdict.clone());
+        cells.push(self.verdict_cell());
         cells
     }
 
@@ -255,7 +264,7 @@ pub fn table1(rows: &[Table1Row]) -> Result<Table, ReportError> {
             shown(row.reaction_mn_per_m, |r| fixed(r, REACTION_DECIMALS)),
             shown(row.printed_mn_per_m, |r| fixed(r, REACTION_DECIMALS - 2)),
             shown(row.relative_difference, short),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -303,7 +312,7 @@ pub fn table2(rows: &[Table2Row], digits: Digits) -> Result<Table, ReportError> 
         ];
         cells.extend(row.p_mm.map(|p| shown(Some(p), |p| fixed(p, decimals))));
         cells.push(shown(row.max_difference_mm, short));
-        cells.push(row.verdict.clone());
+        cells.push(row.verdict_cell());
         table.push(cells)?;
     }
     Ok(table)

@@ -9,6 +9,7 @@ use super::tables::{Align, Column, Table};
 use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
 use crate::harness::expect;
 use crate::harness::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use crate::harness::verdict::{Verdict, VerdictKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -90,7 +91,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
     let last = last_increments(rows.iter().map(|row| &row.key));
     for row in sorted.into_iter().filter(|row| is_last(&last, &row.key)) {
         // A time is published only beside a right answer.
-        let solve = if solved(&row.verdict) {
+        let solve = if row.verdict == Verdict::Solved {
             time(row.solve_s)
         } else {
             "–".into()
@@ -103,7 +104,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
             value(row.key.friction),
             row.key.increment.to_string(),
             row.tier.clone(),
-            row.verdict.clone(),
+            row.verdict.to_string(),
             residual(row.natural_map),
             row.iterations.to_string(),
             row.factorisations.to_string(),
@@ -199,14 +200,26 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// Whether a verdict is that of a run that did what it claims.
-pub fn honest(verdict: &str) -> bool {
-    solved(verdict) || verdict.starts_with("approximate")
-}
-
-/// Whether a verdict is that of a right answer.
-pub fn solved(verdict: &str) -> bool {
-    verdict.starts_with("solved")
+/// One line on the verdicts and expectations of all runs.
+pub fn summary(results: &Results) -> String {
+    let count = |kind| {
+        results
+            .runs
+            .iter()
+            .filter(|r| r.verdict.kind() == kind)
+            .count()
+    };
+    let stated = results.expectations.iter().filter(|e| e.as_stated());
+    format!(
+        "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
+        results.runs.len(),
+        count(VerdictKind::Solved),
+        count(VerdictKind::Approximate),
+        count(VerdictKind::Refused),
+        results.failures(),
+        stated.count(),
+        results.expectations.len()
+    )
 }
 
 /// What identifies a run without its increment; the friction as printed, so that it can be compared.
@@ -271,7 +284,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     let right: BTreeSet<(RunName, usize)> = results
         .runs
         .iter()
-        .filter(|row| honest(&row.verdict))
+        .filter(|row| row.verdict.is_honest())
         .map(|row| (run_name(&row.key), row.key.increment))
         .collect();
     let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();

@@ -7,6 +7,7 @@ use super::number::{fixed, residual, significant, value};
 use super::plot::{Curve, CurvePlot, error_plot};
 use super::tables::{Align, Column, Table};
 use super::{Bundle, ReportError, paper};
+use crate::harness::verdict::Verdict;
 
 /// Error of the penalty method for one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +24,8 @@ pub struct PenaltyRow {
     pub max_penetration_m: f64,
     /// Natural map found by the judge [-].
     pub natural_map: f64,
-    /// Claim × check.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run.
+    pub verdict: Option<Verdict>,
 }
 
 impl Row for PenaltyRow {
@@ -48,7 +49,7 @@ impl Row for PenaltyRow {
             significant(self.relative_error, 3),
             significant(self.max_penetration_m, 3),
             residual(self.natural_map),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -74,7 +75,7 @@ pub struct RefinementRow {
     /// Reaction at the top [MN/m].
     pub reaction_mn_per_m: f64,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
 }
 
 impl Row for RefinementRow {
@@ -98,7 +99,7 @@ impl Row for RefinementRow {
             value(self.friction),
             self.dofs.to_string(),
             value(self.reaction_mn_per_m),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -185,7 +186,7 @@ pub fn penalty_table(rows: &[PenaltyRow]) -> Result<Table, ReportError> {
             significant(row.relative_error, 2),
             significant(row.max_penetration_m, 2),
             residual(row.natural_map),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -216,7 +217,7 @@ pub fn refinement_table(rows: &[RefinementRow]) -> Result<Table, ReportError> {
             row.dofs.to_string(),
             value(row.friction),
             fixed(row.reaction_mn_per_m, 3),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)

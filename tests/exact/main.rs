@@ -13,6 +13,7 @@ use stickslip::harness::body::{Body, BodyError, Needs};
 use stickslip::harness::case::{self, Amount, Case};
 use stickslip::harness::loading::Loading;
 use stickslip::harness::sides::Sides;
+use stickslip::harness::verdict::Verdict;
 use stickslip::xfem::cell_facets::region_at;
 use stickslip_methods::Load;
 
@@ -135,7 +136,7 @@ fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() 
     );
     assert_eq!(results.runs.len(), 6);
     for row in &results.runs {
-        assert_eq!((row.factorisations, row.verdict.as_str()), (1, "solved"));
+        assert_eq!((row.factorisations, &row.verdict), (1, &Verdict::Solved));
     }
     for point in &results.points {
         let ratio = -point.p_a / point.p_n;

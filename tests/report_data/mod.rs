@@ -6,6 +6,7 @@
 pub mod figures;
 
 use stickslip::harness::record::*;
+use stickslip::harness::verdict::Verdict;
 use stickslip::report::robustness::RobustnessRow;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
@@ -72,7 +73,7 @@ fn add_run(results: &mut Results, key: RunKey) {
     results.runs.push(RunRow {
         key: key.clone(),
         tier: "high".into(),
-        verdict: "solved".into(),
+        verdict: Verdict::Solved,
         natural_map: residual(iterations),
         iterations,
         factorisations: 1,
