@@ -3,13 +3,14 @@
 mod common;
 
 use common::*;
-use stickslip::case::shipped;
-use stickslip::case::{Case, ContactSpace, CrackShape, Tip};
+use stickslip::case::{Case, ContactSpace, CrackShape, Tip, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::errors::Deviation;
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
-use stickslip::studies::convergence::{self, ConvergencePlan, Measured, slope};
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::convergence;
+use stickslip::studies::convergence::{ConvergencePlan, Measured, slope};
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -196,7 +197,7 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     case.expects.clear();
     case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
-    assert!(results.runs.iter().all(|r| r.verdict == "solved"));
+    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
     let rows = results.quantities.iter();
     rows.filter(|q| q.quantity.name == "dissipation")
         .map(|q| q.quantity.value)

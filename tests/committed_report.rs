@@ -9,8 +9,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use stickslip::report;
 use stickslip::report::paper::converged_reactions::summary;
-use stickslip::report::{self, Provenance, standard};
+use stickslip::report::{Provenance, standard};
 use stickslip::run::run_case::{Fields, Quiet, Settings};
 use stickslip::studies::paper;
 use stickslip::studies::paper::converged_reactions::agreements;

@@ -12,8 +12,11 @@ use stickslip::model::errors::Deviation;
 use stickslip::report::{Provenance, csv as table};
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
-use stickslip::studies::convergence::orders::{self, ErrorRow, Kind, OrderRow};
-use stickslip::studies::convergence::{self, ConvergencePlan, Measured, Regularity, Sample};
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::convergence;
+use stickslip::studies::convergence::orders::{ErrorRow, Kind, OrderRow};
+use stickslip::studies::convergence::{ConvergencePlan, Measured, Regularity, Sample, orders};
+use stickslip_methods::Status;
 
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
@@ -152,7 +155,7 @@ fn verdicts_that_are_not_honest_have_no_error() {
     let (errors, orders) = orders::rows(&samples);
     assert_eq!((errors.len(), orders.len()), (3, 0));
     for row in &errors {
-        assert_eq!(row.verdict, "gave-up: max-iterations");
+        assert_eq!(row.verdict, Verdict::GaveUp(Status::MaxIterations));
         assert!(row.error.is_nan() && row.kind.is_none() && row.seconds.total().is_nan());
     }
     let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));

@@ -5,11 +5,11 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::case::Case;
-use stickslip::case::shipped;
+use stickslip::case::{Case, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::record::Results;
 use stickslip::run::registry::methods;
+use stickslip::run::verdict::Verdict;
 use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
 
 /// One body, one method, increments by hand.
@@ -202,7 +202,7 @@ fn energy_balances_and_friction_only_dissipates_in_every_2d_case() {
         case.sweep.refine = vec![1];
         let results = run(&case, &exact);
         for row in &results.runs {
-            assert_eq!(row.verdict, "solved", "{:?}", row.key);
+            assert_eq!(row.verdict, Verdict::Solved, "{:?}", row.key);
         }
         for (run, values) in histories(&results, "energy_identity") {
             assert_eq!(values.len(), case.path.increments, "{run}");

@@ -3,13 +3,14 @@
 mod common;
 
 use common::*;
+use stickslip::run::verdict::Verdict;
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
 
 fn assert_solved(text: &str) {
     let results = run(&parse(text), &EXACT);
     for row in &results.runs {
-        assert_eq!(row.verdict, "solved", "{}: {row:?}", row.key.method);
+        assert_eq!(row.verdict, Verdict::Solved, "{}: {row:?}", row.key.method);
     }
     assert_eq!(results.runs.len(), EXACT.len());
 }

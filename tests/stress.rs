@@ -103,11 +103,7 @@ fn a_problem_taken_alone_gives_the_same_bits() {
             let row = results.runs.iter().find(|r| same(&r.key)).unwrap();
             assert_eq!(
                 (row.natural_map, row.iterations, &row.verdict),
-                (
-                    trial.natural_map,
-                    trial.iterations,
-                    &trial.verdict.to_string()
-                )
+                (trial.natural_map, trial.iterations, &trial.verdict)
             );
         }
     }
@@ -261,6 +257,8 @@ fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
         (Verdict::Refused("no".into()), true),
         (Verdict::FalseClaim, false),
         (Verdict::Crashed("oh".into()), false),
+        // Nobody limits a trial.
+        (Verdict::OutOfMemory, false),
     ] {
         trial.verdict = verdict;
         assert_eq!(stress::as_expected(std::slice::from_ref(&trial)), expected);

@@ -8,9 +8,10 @@ use super::arguments::methods_or_all;
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
+use crate::report::robustness::RobustnessRow;
 use crate::report::{Provenance, prepare_output, robustness};
-use crate::run::verdict::Verdict;
-use crate::studies::stress::{self, StressPlan, Trial};
+use crate::studies::stress;
+use crate::studies::stress::StressPlan;
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -89,11 +90,12 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         }
     }
     bundle.commit(&arguments.out)?;
-    let table = robustness::table(&robustness::rows(&plan, &trials))?;
+    let rows = robustness::rows(&plan, &trials);
+    let table = robustness::table(&rows)?;
     say(format_args!("{}", table.terminal()));
     say(format_args!(
         "{}\nResults: {}",
-        summary(&trials),
+        summary(&rows),
         arguments.out.display()
     ));
     for trial in trials.iter().filter(|t| t.is_wrong()) {
@@ -105,17 +107,16 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     Ok(stress::as_expected(&trials))
 }
 
-fn summary(trials: &[Trial]) -> String {
-    let count =
-        |keep: &dyn Fn(&Verdict) -> bool| trials.iter().filter(|t| keep(&t.verdict)).count();
+fn summary(rows: &[RobustnessRow]) -> String {
+    let sum = |count: fn(&RobustnessRow) -> usize| rows.iter().map(count).sum::<usize>();
     format!(
         "{} runs: {} solved, {} approximate, {} gave up, {} refused, {} false claims, {} crashed",
-        trials.len(),
-        count(&|v| matches!(v, Verdict::Solved)),
-        count(&|v| matches!(v, Verdict::Approximate(_))),
-        count(&|v| matches!(v, Verdict::GaveUp(_))),
-        count(&|v| matches!(v, Verdict::Refused(_))),
-        count(&|v| *v == Verdict::FalseClaim),
-        count(&|v| matches!(v, Verdict::Crashed(_))),
+        sum(|row| row.problems),
+        sum(|row| row.solved),
+        sum(|row| row.approximate.iter().sum()),
+        sum(|row| row.gave_up),
+        sum(|row| row.refused),
+        sum(|row| row.false_claims),
+        sum(|row| row.crashed),
     )
 }

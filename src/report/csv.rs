@@ -175,7 +175,7 @@ impl Row for RunRow {
         } = self;
         vec![
             tier.clone(),
-            verdict.clone(),
+            verdict.to_string(),
             residual(*natural_map),
             iterations.to_string(),
             factorisations.to_string(),

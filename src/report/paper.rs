@@ -11,8 +11,9 @@ use self::plate_series::{
 };
 use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
-use super::tables::{self, Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, comparison, standard};
+use super::tables::{Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, comparison, standard, tables};
+use crate::run::verdict::Verdict;
 use crate::studies::paper::Paper;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
 use std::cmp::Ordering;
@@ -49,7 +50,7 @@ impl Row for Table1Row {
             optional(self.relative_difference, |d| {
                 significant(d, DIFFERENCE_DIGITS)
             }),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -59,6 +60,14 @@ impl Row for Table1Row {
             .then(self.friction.total_cmp(&other.friction))
             .then_with(|| compare_methods(&self.method, &other.method))
     }
+}
+
+/// Printed numbers were not run here, and nobody expects it.
+fn verdict_cell(row: &Table2Row) -> String {
+    if row.method == PRINTED {
+        return String::new();
+    }
+    Verdict::or_not_run(row.verdict.as_ref())
 }
 
 impl Row for Table2Row {
@@ -91,7 +100,7 @@ impl Row for Table2Row {
         cells.push(optional(self.max_difference_mm, |d| {
             significant(d, DIFFERENCE_DIGITS)
         }));
-        cells.push(self.verdict.clone());
+        cells.push(verdict_cell(self));
         cells
     }
 
@@ -152,7 +161,7 @@ pub fn table1(rows: &[Table1Row]) -> Result<Table, ReportError> {
             shown(row.reaction_mn_per_m, |r| fixed(r, REACTION_DECIMALS)),
             shown(row.printed_mn_per_m, |r| fixed(r, REACTION_DECIMALS - 2)),
             shown(row.relative_difference, short),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -200,7 +209,7 @@ pub fn table2(rows: &[Table2Row], digits: Digits) -> Result<Table, ReportError> 
         ];
         cells.extend(row.p_mm.map(|p| shown(Some(p), |p| fixed(p, decimals))));
         cells.push(shown(row.max_difference_mm, short));
-        cells.push(row.verdict.clone());
+        cells.push(verdict_cell(row));
         table.push(cells)?;
     }
     Ok(table)

@@ -5,11 +5,12 @@
 
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
-use super::tables::{self, Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, loops, vtu};
+use super::tables::{Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, csv, loops, tables, vtu};
 use crate::run::record::{
     ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, Results, RunFields, RunKey, RunRow,
 };
+use crate::run::verdict::{Verdict, VerdictKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -91,7 +92,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
     let last = last_increments(rows.iter().map(|row| &row.key));
     for row in sorted.into_iter().filter(|row| is_last(&last, &row.key)) {
         // A time is published only beside a right answer.
-        let solve = if solved(&row.verdict) {
+        let solve = if row.verdict == Verdict::Solved {
             time(row.solve_s)
         } else {
             "–".into()
@@ -104,7 +105,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
             value(row.key.friction),
             row.key.increment.to_string(),
             row.tier.clone(),
-            row.verdict.clone(),
+            row.verdict.to_string(),
             residual(row.natural_map),
             row.iterations.to_string(),
             row.factorisations.to_string(),
@@ -202,38 +203,24 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
 
 /// One line on the verdicts and expectations of all runs.
 pub fn summary(results: &Results) -> String {
-    let count = |prefix: &str| {
+    let count = |kind| {
         results
             .runs
             .iter()
-            .filter(|r| r.verdict.starts_with(prefix))
+            .filter(|r| r.verdict.kind() == kind)
             .count()
     };
-    let stated = results
-        .expectations
-        .iter()
-        .filter(|e| e.as_stated())
-        .count();
+    let stated = results.expectations.iter().filter(|e| e.as_stated());
     format!(
         "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
         results.runs.len(),
-        count("solved"),
-        count("approximate"),
-        count("refused"),
+        count(VerdictKind::Solved),
+        count(VerdictKind::Approximate),
+        count(VerdictKind::Refused),
         results.failures(),
-        stated,
+        stated.count(),
         results.expectations.len()
     )
-}
-
-/// Whether a verdict is that of a run that did what it claims.
-pub fn honest(verdict: &str) -> bool {
-    solved(verdict) || verdict.starts_with("approximate")
-}
-
-/// Whether a verdict is that of a right answer.
-pub fn solved(verdict: &str) -> bool {
-    verdict.starts_with("solved")
 }
 
 /// What identifies a run without its increment; the friction as printed, so that it can be compared.
@@ -298,7 +285,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     let right: BTreeSet<(RunName, usize)> = results
         .runs
         .iter()
-        .filter(|row| honest(&row.verdict))
+        .filter(|row| row.verdict.is_honest())
         .map(|row| (run_name(&row.key), row.key.increment))
         .collect();
     let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::model::field_mesh::FieldStep;
 use crate::model::quantities::{PointState, Quantity};
+use crate::run::verdict::Verdict;
 
 /// Version of the CSV schema, written in every `runs.csv` row.
 pub const SCHEMA: u32 = 2;
@@ -36,8 +37,8 @@ pub struct RunRow {
     pub key: RunKey,
     /// Requested tier: low, mid or high.
     pub tier: String,
-    /// Claim × check, e.g. `solved`, `false-claim`, `gave-up: max-iterations`, `refused: …`.
-    pub verdict: String,
+    /// Claim × check.
+    pub verdict: Verdict,
     /// Natural-map residual found by the judge [-].
     pub natural_map: f64,
     /// Iterations of the method.
@@ -258,17 +259,12 @@ impl Results {
         self.fields.extend(other.fields);
     }
 
-    /// Number of runs that did not do what they claimed, gave up or crashed.
+    /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
     pub fn failures(&self) -> usize {
-        let bad = |verdict: &str| {
-            ["false-claim", "gave-up", "crashed"]
-                .iter()
-                .any(|p| verdict.starts_with(p))
-        };
-        self.runs.iter().filter(|r| bad(&r.verdict)).count()
+        self.runs.iter().filter(|r| r.verdict.is_failure()).count()
     }
 
-    /// True if no run failed and every expected number came out as stated.
+    /// True if no run failed and every expected number came out as stated: the exit code of what made these results.
     pub fn as_expected(&self) -> bool {
         self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
     }

@@ -13,8 +13,8 @@ use crate::model::quantities::{point_states, quantities};
 use crate::run::choice::{Choice, choices};
 use crate::run::exact_curve::exact_rows;
 use crate::run::expect::{self, expectation_rows};
-use crate::run::path::Path;
-use crate::run::record::{Results, RunFields, RunKey, RunRow};
+use crate::run::load_path::LoadPathRun;
+use crate::run::record::{Results, RunFields, RunRow};
 use crate::run::verdict::Accuracy;
 
 /// How to run cases.
@@ -175,43 +175,30 @@ pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
-    let Cell {
-        body,
-        loading,
-        system,
-        choice,
-        ..
-    } = cell;
-    let mut results = Results::default();
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: cell.friction,
-        increment: 1,
-    };
-    let mut steps = Vec::new();
-    let path = Path {
+    let Cell { body, choice, .. } = *cell;
+    let path = LoadPathRun {
         case,
-        loading,
-        system,
+        loading: &cell.loading,
+        system: &cell.system,
+        friction: cell.friction,
         choice,
         accuracy,
     };
-    let started = path.follow(&mut key, &mut |key, ended| {
-        results.runs.push(ended.run);
-        results.history.extend(ended.history);
-        let Some(now) = ended.now else { return };
+    let (mut results, mut steps) = (Results::default(), Vec::new());
+    let end = path.follow(&mut |key, increment, now| {
+        results.runs.push(path.row(key, increment));
+        results.history.extend(increment.history_rows(key));
+        let Some(now) = now else { return };
         results.add_found(key, quantities(case, body, now), point_states(body, now));
         if cell.fields {
             steps.push(field_step(body, now));
         }
     });
     // A run that could not start is held to nothing.
-    if !started {
+    if !end.started {
         return results;
     }
+    let key = end.key;
     results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
     if !steps.is_empty() {
         results.fields.push(RunFields { key, steps });

@@ -24,10 +24,9 @@ use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
 use crate::model::quantities::{Snapshot, quantities};
 use crate::run::choice::Choice;
-use crate::run::path::Path;
-use crate::run::record::RunKey;
+use crate::run::load_path::LoadPathRun;
 use crate::run::run_case::{Progress, RunError, friction_values};
-use crate::run::verdict::{Accuracy, Verdict};
+use crate::run::verdict::Accuracy;
 
 /// Refinement factors where neither the study nor the case names several.
 const REFINE: [usize; 4] = [1, 2, 4, 8];
@@ -185,34 +184,20 @@ fn run_one(
 ) -> Result<Sample, RunError> {
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: per_crack.first().copied().unwrap_or(0.0),
-        increment: 1,
-    };
     let mu = per_crack.first().copied().unwrap_or(0.0);
     let loading = Loading::new(body, case, mu)?;
-    let path = Path {
+    let path = LoadPathRun {
         case,
         loading: &loading,
         system: &system,
+        friction: mu,
         choice,
         accuracy: Accuracy::of(case, case.tier),
     };
     let mut rows = Vec::new();
-    let mut last: Option<(Verdict, Option<Snapshot>)> = None;
-    path.follow(&mut key, &mut |_, ended| {
-        rows.push(ended.run);
-        last = Some((ended.verdict, ended.now.cloned()));
-    });
-    let (verdict, now) = last.ok_or_else(|| {
-        let message = "a load path without increments";
-        case.error(&case.mesh.span, case.path.increments, ">= 1", message)
-    })?;
-    let measured = match &now {
+    let end = path.follow(&mut |key, increment, _| rows.push(path.row(key, increment)));
+    let key = end.key;
+    let measured = match &end.now {
         None => Measured::Nothing,
         Some(now) => match closed_form(&loading, now)? {
             Some(deviations) => Measured::Exact(deviations),
@@ -234,12 +219,12 @@ fn run_one(
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
-        seconds: if now.is_some() {
+        seconds: if end.now.is_some() {
             Seconds::of(&rows)
         } else {
             Seconds::NONE
         },
-        verdict,
+        verdict: end.verdict,
         measured,
     })
 }

@@ -15,11 +15,12 @@ use stickslip_methods::{
     contact_wise_margin,
 };
 
-use crate::case::{self, Case};
+use crate::case;
+use crate::case::Case;
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
-use crate::run::attempt::{Attempt, attempt, prepare};
 use crate::run::choice::Choice;
+use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::stress::random::{Kind, Specimen, Stream};
@@ -102,16 +103,12 @@ pub fn as_expected(trials: &[Trial]) -> bool {
 impl Trial {
     /// Whether the run gave what its method is for: an exact one the contact laws, another one the laws it claims.
     pub fn succeeded(&self) -> bool {
-        match self.verdict {
-            Verdict::Solved => true,
-            Verdict::Approximate(_) => !self.exact,
-            _ => false,
-        }
+        self.verdict == Verdict::Solved || !self.exact && self.verdict.is_honest()
     }
 
-    /// A claim that does not hold, or an error.
+    /// A claim that does not hold, or an error. A trial has no limits, so that running into one is an error too.
     pub fn is_wrong(&self) -> bool {
-        matches!(self.verdict, Verdict::FalseClaim | Verdict::Crashed(_))
+        self.verdict.is_wrong() || self.verdict.kind().is_limit()
     }
 }
 
@@ -317,7 +314,7 @@ fn run_body(
         let unique = contact_wise_margin(&system)? > 0.0;
         let start = ContactState::zero(&system);
         for choice in choices {
-            let mut method = prepare(choice, &system);
+            let mut solver = Solver::new(choice, &system);
             for (problem, load) in &loads {
                 let increment = Increment {
                     system: &system,
@@ -327,9 +324,9 @@ fn run_body(
                     index: 0,
                     tolerance: plan.tier.tolerance(),
                 };
-                let tried = match &mut method {
-                    Ok((method, _)) => attempt(method.as_mut(), &increment, plan.tier.tolerance()),
-                    Err(verdict) => Attempt::unsolved(verdict.clone()),
+                let tried = match &mut solver {
+                    Ok(solver) => solver.judge(&increment, plan.tier.tolerance()),
+                    Err(verdict) => JudgedIncrement::not_started(verdict.clone()),
                 };
                 let count = |of: PointStatus| {
                     let judged = tried.judged.iter().flat_map(|j| &j.status);
@@ -346,11 +343,8 @@ fn run_body(
                     iterations: outcome.map_or(0, |c| c.iterations),
                     factorisations: outcome
                         .map_or(0, |c| c.factorisations + c.global_factorisations),
-                    solve_s: if plan.jobs == 1 {
-                        tried.solve_s
-                    } else {
-                        f64::NAN
-                    },
+                    solve_s: (tried.work.filter(|_| plan.jobs == 1))
+                        .map_or(f64::NAN, |work| work.solve_s),
                     unique,
                     points: body.points.len(),
                     statuses: [PointStatus::Open, PointStatus::Stick, PointStatus::Slip].map(count),

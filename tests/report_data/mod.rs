@@ -9,6 +9,7 @@ use stickslip::model::field_mesh::*;
 use stickslip::model::quantities::{PointState, Quantity};
 use stickslip::report::robustness::RobustnessRow;
 use stickslip::run::record::*;
+use stickslip::run::verdict::Verdict;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];
@@ -74,7 +75,7 @@ fn add_run(results: &mut Results, key: RunKey) {
     results.runs.push(RunRow {
         key: key.clone(),
         tier: "high".into(),
-        verdict: "solved".into(),
+        verdict: Verdict::Solved,
         natural_map: residual(iterations),
         iterations,
         factorisations: 1,

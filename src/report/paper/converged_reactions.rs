@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
-use crate::report::csv::{self, Row};
+use crate::report::csv::Row;
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
-use crate::report::tables::{self, Align, Column, Table};
-use crate::report::{Bundle, ReportError};
+use crate::report::tables::{Align, Column, Table};
+use crate::report::{Bundle, ReportError, csv, tables};
 use crate::studies::paper::converged_reactions::{
     Agreement, ConvergedRow, SequenceRow, agreements,
 };
@@ -44,7 +44,7 @@ impl Row for SequenceRow {
             self.points.to_string(),
             value(self.reaction_mn_per_m),
             significant(self.order, ORDER_DIGITS),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -182,7 +182,7 @@ pub fn sequence_table(rows: &[SequenceRow]) -> Result<Table, ReportError> {
             row.points.to_string(),
             shown(row.reaction_mn_per_m, |r| fixed(r, 3)),
             shown(row.order, |p| fixed(p, 2)),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)

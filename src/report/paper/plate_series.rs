@@ -7,6 +7,7 @@ use crate::report::number::{fixed, residual, significant, value};
 use crate::report::plot::{Curve, CurvePlot, error_plot};
 use crate::report::tables::{self, Align, Column, Table};
 use crate::report::{Bundle, ReportError};
+use crate::run::verdict::Verdict;
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 
 impl Row for PenaltyRow {
@@ -30,7 +31,7 @@ impl Row for PenaltyRow {
             significant(self.relative_error, 3),
             significant(self.max_penetration_m, 3),
             residual(self.natural_map),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -61,7 +62,7 @@ impl Row for RefinementRow {
             value(self.friction),
             self.dofs.to_string(),
             value(self.reaction_mn_per_m),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -122,7 +123,7 @@ pub fn penalty_table(rows: &[PenaltyRow]) -> Result<Table, ReportError> {
             significant(row.relative_error, 2),
             significant(row.max_penetration_m, 2),
             residual(row.natural_map),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -153,7 +154,7 @@ pub fn refinement_table(rows: &[RefinementRow]) -> Result<Table, ReportError> {
             row.dofs.to_string(),
             value(row.friction),
             fixed(row.reaction_mn_per_m, 3),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)

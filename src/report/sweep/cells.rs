@@ -111,7 +111,7 @@ impl Row for CellRow<'_> {
         cells.extend([
             record.cell.digest.clone(),
             found.exact.to_string(),
-            found.verdict.clone(),
+            found.verdict.to_string(),
             residual(natural_map),
             optional(error.map(|e| e.energy), residual),
             optional(error.map(|e| e.force), residual),
@@ -170,7 +170,7 @@ impl Row for IncrementRow<'_> {
         let mut cells = Vec::new();
         cells.extend([
             self.number.to_string(),
-            self.found.verdict.clone(),
+            self.found.verdict.to_string(),
             optional(self.found.natural_map, residual),
         ]);
         cells.extend(counters(|counter| counter(self.found)));

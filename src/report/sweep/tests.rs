@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use crate::run::registry::methods;
 
 use crate::report::sweep::*;
-use crate::studies::sweep::analysis::support::{lying, record, timed};
+use crate::studies::sweep::analysis::support::{end_with, lying, record, timed};
 use crate::studies::sweep::record::{DeviationFound, ValueFound};
 
 /// Files that must not depend on times.
@@ -138,15 +138,14 @@ fn approximate(cell: &mut Record, map: f64) {
     };
     for increment in &mut cell.found.increments {
         increment.natural_map = Some(map);
-        increment.verdict = verdict.into();
+        increment.verdict = verdict.parse().unwrap();
     }
-    cell.found.verdict = verdict.into();
+    cell.found.verdict = verdict.parse().unwrap();
     cell.found.solver_error.as_mut().unwrap().energy = 0.1 * map;
 }
 
 fn fail(cell: &mut Record, verdict: &str) {
-    cell.found.verdict = verdict.into();
-    cell.found.increments[0].verdict = verdict.into();
+    end_with(cell, verdict);
     cell.found.solver_error = None;
     cell.found.deviations.clear();
     cell.found.values.clear();
@@ -164,8 +163,10 @@ fn a_liar_leaves_no_time_in_any_file() {
     let verdicts = [
         "false-claim",
         "gave-up: stalled",
+        "refused: no",
         "crashed: no",
         "timed-out",
+        "out-of-memory",
     ];
     for (record, verdict) in records
         .iter_mut()
@@ -181,13 +182,9 @@ fn a_liar_leaves_no_time_in_any_file() {
         *record = liar;
     }
     let with = files(&records);
-    let honest = ["solved", "approximate"];
     let mut stripped = 0;
     for record in &mut records {
-        if !honest
-            .iter()
-            .any(|start| record.found.verdict.starts_with(start))
-        {
+        if !record.found.verdict.is_honest() {
             assert!(record.spent.take().is_some());
             stripped += 1;
         }
@@ -290,7 +287,7 @@ fn an_incomplete_sweep_says_so() {
 fn a_comparison_lists_what_changed() {
     let a = records_of_a_sweep();
     let mut b = a.clone();
-    b[0].found.verdict = "false-claim".into();
+    b[0].found.verdict = "false-claim".parse().unwrap();
     let comparison = crate::studies::sweep::compare::compare(&a, &b);
     assert!(comparison.worse());
     let bundle = comparison_bundle(&comparison).unwrap();

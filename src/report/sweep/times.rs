@@ -8,6 +8,7 @@ use crate::report::number::{significant, time, value};
 use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
+use crate::run::verdict::Verdict;
 use crate::studies::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
@@ -122,7 +123,7 @@ impl Row for TimeRow<'_> {
         let Spent { prepare, solve, .. } = self.spent;
         let method = method_time(self.spent);
         let mut cells = Vec::new();
-        cells.push(self.record.found.verdict.clone());
+        cells.push(self.record.found.verdict.to_string());
         cells.extend(self.stages()[..4].iter().map(|t| time(*t)));
         cells.extend(timing_cells(prepare));
         cells.extend(timing_cells(solve));
@@ -146,8 +147,9 @@ fn add_figures(
     rows: &[TimeRow<'_>],
     sweep: &SweepRecords<'_>,
 ) -> Result<(), ReportError> {
-    let solved =
-        |row: &&TimeRow| row.record.found.verdict == "solved" && has_defaults(&row.record.cell);
+    let solved = |row: &&TimeRow| {
+        row.record.found.verdict == Verdict::Solved && has_defaults(&row.record.cell)
+    };
     let mut own: Vec<&TimeRow> = rows.iter().filter(solved).collect();
     let problem = |row: &TimeRow| row.record.cell.problem().without_mesh();
     own.sort_by(|a, b| {

@@ -85,7 +85,7 @@ impl Row for PointRow<'_> {
             value(*swept_value),
             self.exact.to_string(),
             record.id.clone(),
-            found.verdict.clone(),
+            found.verdict.to_string(),
             residual(*error),
             found.sum(|i| i.iterations).to_string(),
             found.sum(|i| i.local_solves).to_string(),

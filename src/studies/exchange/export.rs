@@ -8,11 +8,10 @@ use crate::case::Case;
 use crate::files::interchange::{Info, InterchangeError, matrix_market};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
-use crate::run::attempt::Judged;
 use crate::run::choice::Choice;
+use crate::run::increment::{Judged, Solver};
 use crate::run::record::RunKey;
 use crate::run::run_case::{RunError, friction_values};
-use crate::run::step::Solver;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::exchange::{global_problem, local_problem};
 
@@ -128,8 +127,8 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
         verdict,
     };
     let accuracy = Accuracy::of(case, Tier::High);
-    let mut solver = Solver::prepare(&request.choice, &system, body.setup, accuracy, &key)
-        .map_err(|step| unsolved(1, step.verdict))?;
+    let mut solver =
+        Solver::new(&request.choice, &system).map_err(|verdict| unsolved(1, verdict))?;
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);
     loop {
@@ -142,10 +141,10 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
             index: key.increment - 1,
             tolerance: accuracy.asked,
         };
-        let step = solver.solve(&key, &increment);
-        let solved = step.answer.filter(|_| step.verdict == Verdict::Solved);
+        let tried = solver.judge(&increment, accuracy.accepted);
+        let solved = tried.judged.filter(|_| tried.verdict == Verdict::Solved);
         let Some(Judged { outcome, .. }) = solved else {
-            return Err(unsolved(key.increment, step.verdict));
+            return Err(unsolved(key.increment, tried.verdict));
         };
         if key.increment == wanted {
             let info = info(case, &key, &increment);

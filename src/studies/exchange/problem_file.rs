@@ -10,9 +10,9 @@ use stickslip_methods::{
 use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
+use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::record::{Results, RunKey};
 use crate::run::run_case::Progress;
-use crate::run::step::Solver;
 use crate::run::verdict::Accuracy;
 use crate::studies::exchange::{System, global_system, local_system, local_velocity};
 
@@ -197,18 +197,18 @@ impl ProblemFile {
                 friction: self.system.friction().first().copied().unwrap_or(0.0),
                 increment: 1,
             };
-            let prepared = Solver::prepare(choice, &self.system, self.setup, accuracy, &key);
-            let step = match prepared {
-                Ok(mut solver) => solver.solve(&key, &increment),
-                Err(refused) => *refused,
+            let tried = match Solver::new(choice, &self.system) {
+                Ok(mut solver) => solver.judge(&increment, accuracy.accepted),
+                Err(verdict) => JudgedIncrement::not_started(verdict),
             };
             progress.done(&format!("{} {}", self.name, choice.label));
-            solved.results.runs.push(step.run);
-            solved.results.history.extend(step.history);
-            if let Some(judged) = step.answer.filter(|_| step.verdict.is_honest()) {
+            let row = tried.run_row(&key, &self.system, self.setup, accuracy);
+            solved.results.runs.push(row);
+            solved.results.history.extend(tried.history_rows(&key));
+            if let Some(judged) = tried.honest() {
                 solved.solutions.push(ProblemSolution {
                     velocity: local_velocity(&increment, &judged.outcome.state),
-                    reaction: judged.outcome.state.p,
+                    reaction: judged.outcome.state.p.clone(),
                     key,
                 });
             }

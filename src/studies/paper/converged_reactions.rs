@@ -17,6 +17,7 @@ use stickslip_xfem::mesh::grid_motion::Twist;
 
 use crate::case::{Case, ContactSpace, Tip};
 use crate::run::run_case::Progress;
+use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, Kind};
 use crate::studies::convergence::{self, ConvergencePlan};
 use crate::studies::paper::lookup::{PaperError, case, choice};
@@ -55,7 +56,7 @@ pub struct SequenceRow {
     /// Observed order over the last two halvings; NaN where there is none.
     pub order: f64,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
 }
 
 /// Limit of the reaction on one kind of mesh.

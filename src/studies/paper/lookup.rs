@@ -5,6 +5,7 @@ use crate::run::choice::Choice;
 use crate::run::record::{Results, RunKey};
 use crate::run::registry::method;
 use crate::run::run_case::RunError;
+use crate::run::verdict::Verdict;
 
 /// Method that the others are compared with.
 pub const REFERENCE_METHOD: &str = "b-newton";
@@ -68,7 +69,7 @@ pub fn value(
 }
 
 /// Verdict of the last increment of a run.
-pub fn verdict(results: &Results, key: impl Fn(&RunKey) -> bool) -> String {
+pub fn verdict(results: &Results, key: impl Fn(&RunKey) -> bool) -> Option<Verdict> {
     let last = results.runs.iter().rfind(|r| key(&r.key));
-    last.map_or_else(|| "not run".to_owned(), |r| r.verdict.clone())
+    last.map(|r| r.verdict.clone())
 }

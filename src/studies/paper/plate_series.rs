@@ -2,6 +2,7 @@
 
 use crate::run::record::{Results, RunKey};
 use crate::run::run_case::{Progress, Settings, run_case};
+use crate::run::verdict::Verdict;
 use crate::studies::paper::lookup::{PaperError, REFERENCE_METHOD, case, choice, value};
 
 /// Multiples of the natural scale that the penalty stiffness is swept over.
@@ -27,8 +28,8 @@ pub struct PenaltyRow {
     pub max_penetration_m: f64,
     /// Natural map found by the judge [-].
     pub natural_map: f64,
-    /// Claim × check.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run.
+    pub verdict: Option<Verdict>,
 }
 
 /// Reaction of the plate on one mesh.
@@ -47,7 +48,7 @@ pub struct RefinementRow {
     /// Reaction at the top [MN/m].
     pub reaction_mn_per_m: f64,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
 }
 
 /// Limits of the reaction for h → 0.
@@ -115,7 +116,7 @@ pub fn penalty_rows(
                 max_penetration_m: value(&swept, key, "max_penetration", "crack-1", "")
                     .unwrap_or(f64::NAN),
                 natural_map: run.map_or(f64::NAN, |r| r.natural_map),
-                verdict: run.map_or_else(|| "not run".into(), |r| r.verdict.clone()),
+                verdict: run.map(|r| r.verdict.clone()),
             });
         }
     }

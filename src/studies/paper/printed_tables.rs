@@ -5,6 +5,7 @@
 
 use crate::run::record::{Results, RunKey};
 use crate::run::registry::methods;
+use crate::run::verdict::Verdict;
 use crate::studies::paper::lookup::{PaperError, value, verdict};
 
 /// Printed numbers.
@@ -38,8 +39,8 @@ pub struct Table1Row {
     pub printed_mn_per_m: Option<f64>,
     /// (computed − printed) / printed [-].
     pub relative_difference: Option<f64>,
-    /// Claim × check.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run.
+    pub verdict: Option<Verdict>,
 }
 
 impl Table1Row {
@@ -50,7 +51,7 @@ impl Table1Row {
         method: impl Into<String>,
         reaction_mn_per_m: Option<f64>,
         printed_mn_per_m: Option<f64>,
-        verdict: impl Into<String>,
+        verdict: Option<Verdict>,
     ) -> Self {
         let relative_difference = match (reaction_mn_per_m, printed_mn_per_m) {
             (Some(ours), Some(theirs)) => Some((ours - theirs) / theirs),
@@ -63,7 +64,7 @@ impl Table1Row {
             reaction_mn_per_m,
             printed_mn_per_m,
             relative_difference,
-            verdict: verdict.into(),
+            verdict,
         }
     }
 }
@@ -83,8 +84,8 @@ pub struct Table2Row {
     pub p_mm: [f64; 7],
     /// Largest |computed − printed| over the seven points (mm); none for the printed line itself.
     pub max_difference_mm: Option<f64>,
-    /// Claim × check; empty for the printed line.
-    pub verdict: String,
+    /// Claim × check; none where there is no such run, as for the printed line.
+    pub verdict: Option<Verdict>,
 }
 
 impl Table2Row {
@@ -102,7 +103,7 @@ impl Table2Row {
             method: PRINTED.into(),
             p_mm,
             max_difference_mm: None,
-            verdict: String::new(),
+            verdict: None,
         }
     }
 
@@ -111,7 +112,7 @@ impl Table2Row {
         reference: &Self,
         method: impl Into<String>,
         p_mm: [f64; 7],
-        verdict: impl Into<String>,
+        verdict: Option<Verdict>,
     ) -> Self {
         // `f64::max` would swallow the NaN of a run without a solution.
         let solved = p_mm.iter().all(|p| p.is_finite());
@@ -125,7 +126,7 @@ impl Table2Row {
             method: method.into(),
             p_mm,
             max_difference_mm: solved.then(difference),
-            verdict: verdict.into(),
+            verdict,
             ..reference.clone()
         }
     }
