@@ -34,7 +34,7 @@ fn discretisation(criterion: &mut Criterion) {
         });
         bench(&mut group, &name(ASSEMBLY), |b| {
             // A part of the stage above, which tells its time itself.
-            let assembly_s = || black_box(body()).assembly_s;
+            let assembly_s = || black_box(body()).setup.assembly_s;
             b.iter_custom(|calls| Duration::from_secs_f64((0..calls).map(|_| assembly_s()).sum()));
         });
         bench(&mut group, &name(FACTORISATION), |b| {

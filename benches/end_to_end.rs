@@ -8,10 +8,10 @@ mod common;
 use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_methods, settings};
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
+use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
-use stickslip::studies::paper::as_expected;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 
 const SETTINGS: Settings = Settings {
     tier: None,
@@ -38,7 +38,7 @@ fn end_to_end(criterion: &mut Criterion) {
         let mut group = group(criterion, &problem.end_to_end("").group);
         for (methods, choices) in sets {
             let name = problem.end_to_end(methods);
-            if !as_expected(&run(&file, &case.source, choices)) {
+            if !run(&file, &case.source, choices).as_expected() {
                 left_out(
                     &name,
                     &"a run failed or an expected number is not as stated",

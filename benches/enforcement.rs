@@ -11,7 +11,7 @@ use std::time::Duration;
 use common::scene::Scene;
 use common::{MEASUREMENT, PREPARE, PROBLEMS, SOLVE, WARM_UP, bench, group, left_out, settings};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
 
 /// For what takes nanoseconds.
 const SHORT: Duration = Duration::from_millis(20);

@@ -27,8 +27,8 @@ use common::{PROBLEMS, Problem};
 use gungraun::{
     Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use stickslip::run::registry::{method, methods};
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
+use stickslip::run::registry;
 use stickslip_methods::{Enforcement, Outcome};
 
 /// A method in front of its increment.
@@ -38,11 +38,11 @@ type Ready = (Scene, Box<dyn Enforcement>);
 fn methods() -> impl Iterator<Item = &'static str> {
     static PRINTED: Once = Once::new();
     PRINTED.call_once(|| {
-        for (number, method) in methods().iter().enumerate() {
+        for (number, method) in registry::methods().iter().enumerate() {
             println!("plate_{number}, beam_{number}: {}", method.name);
         }
     });
-    methods().iter().map(|method| method.name)
+    registry::methods().iter().map(|method| method.name)
 }
 
 /// Instructions only: the model of a cache says little about a machine's, and its counts change with addresses.
@@ -54,7 +54,8 @@ fn instructions_only() -> LibraryBenchmarkConfig {
 
 fn ready(problem: &Problem, name: &str) -> Ready {
     common::one_thread();
-    let choice = Choice::new(method(name).expect("registered"), &[]).expect("defaults are valid");
+    let choice =
+        Choice::new(registry::method(name).expect("registered"), &[]).expect("defaults are valid");
     let scene = Scene::new(problem);
     let verdict = scene.judge(&choice);
     assert!(verdict.is_honest(), "{}, {name}: {verdict}", problem.case);

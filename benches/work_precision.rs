@@ -22,8 +22,10 @@ use common::{
 use stickslip::report::page;
 use stickslip::report::sweep;
 use stickslip::report::timings::{self, BenchmarkName, Expected, Ignored, harvest, last_built};
-use stickslip::report::{Bundle, Provenance, prepare_output};
-use stickslip::run::run_case::{Choice, Progress};
+use stickslip::report::{Bundle, Provenance, add_provenance, prepare_output};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Progress;
+use stickslip::run::verdict::Verdict;
 use stickslip::studies::sweep::conduct::{Conduct, Shard, conduct};
 use stickslip::studies::sweep::plan::Plan;
 use stickslip::studies::sweep::store::Store;
@@ -50,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut bundle = Bundle::new();
     add_timings(&mut bundle, &home, problems)?;
     let provenance = Provenance::collect(1).with_option("arguments", arguments.join(" "));
-    provenance.add_to(&mut bundle)?;
+    add_provenance(&mut bundle, &provenance)?;
     bundle.commit(&out)?;
     for path in bundle.paths() {
         println!("wrote {}", out.join(path).display());
@@ -221,7 +223,7 @@ fn expected(problems: &[Problem]) -> Result<Vec<Expected>, Box<dyn Error>> {
     let [discretisation, end_to_end, enforcement] =
         ["discretisation", "end_to_end", "enforcement"].map(built);
     let mut expected = Vec::new();
-    let mut expect = |name: BenchmarkName, verdict: String, newer_than| {
+    let mut expect = |name: BenchmarkName, verdict: Option<Verdict>, newer_than| {
         expected.push(Expected {
             name,
             verdict,
@@ -231,11 +233,11 @@ fn expected(problems: &[Problem]) -> Result<Vec<Expected>, Box<dyn Error>> {
     let choices = Choice::all()?;
     for problem in problems {
         for stage in STAGES {
-            expect(problem.discretisation(stage), String::new(), discretisation);
+            expect(problem.discretisation(stage), None, discretisation);
         }
-        expect(problem.end_to_end(EXACT), String::new(), end_to_end);
+        expect(problem.end_to_end(EXACT), None, end_to_end);
         if runs_all_methods(problem) {
-            expect(problem.end_to_end(ALL_METHODS), String::new(), end_to_end);
+            expect(problem.end_to_end(ALL_METHODS), None, end_to_end);
         }
         let scene = Scene::new(problem);
         for choice in &choices {
@@ -243,7 +245,7 @@ fn expected(problems: &[Problem]) -> Result<Vec<Expected>, Box<dyn Error>> {
             if verdict.is_honest() {
                 for stage in [PREPARE, SOLVE] {
                     let name = problem.enforcement(stage, choice.method.name);
-                    expect(name, verdict.to_string(), enforcement);
+                    expect(name, Some(verdict.clone()), enforcement);
                 }
             }
         }

@@ -3,9 +3,11 @@
 pub mod body;
 pub mod boundary;
 pub mod errors;
+pub mod field_mesh;
+pub mod fixed_loads;
 pub mod loading;
 pub mod nodal_forces;
-pub mod picture;
+
 pub mod quantities;
 pub mod refusals;
 pub mod sides;

@@ -5,8 +5,7 @@
 //! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
 
 pub mod comparison;
-pub mod converge;
-pub mod converged;
+pub mod convergence;
 pub mod csv;
 mod error;
 mod error_figures;
@@ -20,7 +19,6 @@ pub mod plot;
 mod quantity_name;
 pub mod robustness;
 pub mod standard;
-pub mod study;
 pub mod sweep;
 pub mod tables;
 pub mod timings;
@@ -29,3 +27,11 @@ pub mod vtu;
 pub use crate::files::bundle::{Bundle, prepare_output};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
+
+/// Adds `provenance.toml`.
+///
+/// # Errors
+/// Those of [`Provenance::to_toml`] and [`Bundle::add`].
+pub fn add_provenance(bundle: &mut Bundle, provenance: &Provenance) -> Result<(), ReportError> {
+    Ok(bundle.add("provenance.toml", provenance.to_toml()?)?)
+}

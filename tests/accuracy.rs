@@ -3,12 +3,14 @@
 mod common;
 
 use common::*;
-use stickslip::case::shipped;
-use stickslip::case::{Case, ContactSpace, CrackShape, Tip};
+use stickslip::case::{Case, ContactSpace, CrackShape, Tip, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::errors::Deviation;
-use stickslip::run::run_case::{Choice, Quiet};
-use stickslip::studies::convergence::{self, Measured, Study, slope};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Quiet;
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::convergence;
+use stickslip::studies::convergence::{ConvergencePlan, Measured, slope};
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -16,7 +18,7 @@ struct Errors(Vec<(f64, Vec<Deviation>)>);
 impl Errors {
     /// A case with star multipliers and one enrichment of its tips, on refinements of its mesh.
     fn of(case: &Case, refine: &[usize], tip: Option<Tip>) -> Self {
-        let study = Study {
+        let study = ConvergencePlan {
             refine: Some(refine.to_vec()),
             spaces: Some(vec![ContactSpace::Star]),
             tips: tip.map(|tip| vec![tip]),
@@ -195,10 +197,10 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     case.expects.clear();
     case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
-    assert!(results.runs.iter().all(|r| r.verdict == "solved"));
+    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
     let rows = results.quantities.iter();
-    rows.filter(|q| q.quantity == "dissipation")
-        .map(|q| q.value)
+    rows.filter(|q| q.quantity.name == "dissipation")
+        .map(|q| q.quantity.value)
         .collect()
 }
 
@@ -286,11 +288,12 @@ fn a_circular_interface_has_its_pressures_and_orders() {
     case.sweep.refine = vec![4];
     let results = run(&case, &[METHOD]);
     let pressure = |angle: f64| {
-        let away =
-            |p: &&stickslip::run::record::PointRow| (p.y_m.atan2(p.x_m) - angle.to_radians()).abs();
+        let away = |p: &&stickslip::run::record::PointRow| {
+            (p.point.y_m.atan2(p.point.x_m) - angle.to_radians()).abs()
+        };
         let points = results.points.iter();
         let nearest = points.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap();
-        nearest.p_n / nearest.weight / 1e6
+        nearest.point.p_n / nearest.point.weight / 1e6
     };
     let (p0, p90) = (pressure(0.0), pressure(90.0));
     println!("{p0} {p90}");

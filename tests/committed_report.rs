@@ -9,10 +9,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use stickslip::report::Provenance;
-use stickslip::report::converged::{agreements, summary};
+use stickslip::report;
+use stickslip::report::paper::converged_reactions::summary;
+use stickslip::report::{Provenance, standard};
 use stickslip::run::run_case::{Fields, Quiet, Settings};
 use stickslip::studies::paper;
+use stickslip::studies::paper::converged_reactions::agreements;
 
 /// Columns printed with two to four digits.
 const FEW_DIGITS: [&str; 15] = [
@@ -164,9 +166,9 @@ fn the_committed_tables_are_those_of_this_source() {
     };
     let paper = paper::run(settings, &Quiet).expect("the main job runs");
     assert!(
-        paper::as_expected(&paper.results),
+        paper.results.as_expected(),
         "{}",
-        paper::summary(&paper.results)
+        standard::summary(&paper.results)
     );
     assert!(
         paper.beam_models_mm < 1e-9,
@@ -180,9 +182,8 @@ fn the_committed_tables_are_those_of_this_source() {
         "{}",
         summary(&paper.converged)
     );
-    let bundle = paper
-        .bundle(&Provenance::collect(1))
-        .expect("the report can be written");
+    let bundle =
+        report::paper::bundle(&paper, &Provenance::collect(1)).expect("the report can be written");
 
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
     let is_table = |name: &&str| name.ends_with(".csv") && !name.contains('/');

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use stickslip::run::run_case::Choice;
+use stickslip::run::choice::Choice;
 use stickslip::studies::sweep::Bench;
 use stickslip::studies::sweep::measure::{Repeats, measure};
 use stickslip::studies::sweep::plan::Plan;
@@ -55,7 +55,7 @@ fn the_committed_numbers_of_the_plate_are_found_again() {
         let choice = Choice::parse(&task.cell.method).unwrap();
         let record = measure(&mut bench, &task.cell, &task.text, &choice, Repeats::NONE).unwrap();
         let (row, found) = (&committed[&task.id], &record.found);
-        assert_eq!(row["verdict"], found.verdict, "{}", task.id);
+        assert_eq!(row["verdict"], found.verdict.to_string(), "{}", task.id);
         let number = |column: &str| row[column].parse::<f64>().unwrap();
         let close = |column: &str, value: usize| {
             let difference = (number(column) - value as f64).abs();

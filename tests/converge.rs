@@ -10,9 +10,13 @@ use common::*;
 use stickslip::case::{Case, ContactSpace, Tip};
 use stickslip::model::errors::Deviation;
 use stickslip::report::{Provenance, csv as table};
-use stickslip::run::run_case::{Choice, Quiet};
-use stickslip::studies::convergence::orders::{self, ErrorRow, Kind, OrderRow};
-use stickslip::studies::convergence::{self, Measured, Regularity, Sample, Study};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Quiet;
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::convergence;
+use stickslip::studies::convergence::orders::{ErrorRow, Kind, OrderRow};
+use stickslip::studies::convergence::{ConvergencePlan, Measured, Regularity, Sample, orders};
+use stickslip_methods::Status;
 
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
@@ -38,9 +42,9 @@ fn plate(right: f64, tip: &str) -> Case {
     parse(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest))
 }
 
-fn study(method: &str, tips: Option<Vec<Tip>>) -> Study {
+fn study(method: &str, tips: Option<Vec<Tip>>) -> ConvergencePlan {
     let method = stickslip::run::registry::method(method).unwrap();
-    Study {
+    ConvergencePlan {
         refine: Some(vec![1, 3, 5]),
         spaces: Some(vec![ContactSpace::EdgePairs]),
         tips,
@@ -68,7 +72,7 @@ fn power_law(case: &Case, body: &stickslip::model::body::Body) -> Vec<Deviation>
     ]
 }
 
-fn samples(case: &Case, study: &Study) -> Vec<Sample> {
+fn samples(case: &Case, study: &ConvergencePlan) -> Vec<Sample> {
     let exact: &convergence::ClosedForm<'_> =
         &|loading, _| Ok(Some(power_law(case, loading.body())));
     convergence::run(case, study, exact, &Quiet).unwrap()
@@ -99,7 +103,7 @@ fn closed_forms_give_observed_beside_theoretical_orders() {
     let total = |row: &ErrorRow| row.seconds.total();
     assert!(errors.iter().all(|r| total(r) > 0.0 && total(r) < 60.0));
 
-    let bundle = stickslip::report::converge::bundle(&errors, &orders, &Provenance::collect(1));
+    let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let bundle = bundle.unwrap();
     for what in ["energy", "traction-crack-1"] {
         for axis in ["error", "error-time"] {
@@ -151,10 +155,10 @@ fn verdicts_that_are_not_honest_have_no_error() {
     let (errors, orders) = orders::rows(&samples);
     assert_eq!((errors.len(), orders.len()), (3, 0));
     for row in &errors {
-        assert_eq!(row.verdict, "gave-up: max-iterations");
+        assert_eq!(row.verdict, Verdict::GaveUp(Status::MaxIterations));
         assert!(row.error.is_nan() && row.kind.is_none() && row.seconds.total().is_nan());
     }
-    let bundle = stickslip::report::converge::bundle(&errors, &orders, &Provenance::collect(1));
+    let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let names: Vec<String> = bundle.unwrap().paths().map(str::to_owned).collect();
     assert_eq!(names, FILES);
 }
@@ -162,7 +166,7 @@ fn verdicts_that_are_not_honest_have_no_error() {
 #[test]
 fn meshes_spaces_and_tips_come_from_the_case_unless_asked_for() {
     let mut case = plate(0.53, "branch");
-    let own = Study {
+    let own = ConvergencePlan {
         refine: None,
         spaces: None,
         tips: None,

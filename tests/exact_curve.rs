@@ -93,8 +93,8 @@ fn the_mean_slip_of_a_sliding_block_is_its_slip() {
         let found: Vec<f64> = results
             .quantities
             .iter()
-            .filter(|row| row.quantity == "mean_slip" && row.key.increment == increment)
-            .map(|row| row.value)
+            .filter(|row| row.quantity.name == "mean_slip" && row.key.increment == increment)
+            .map(|row| row.quantity.value)
             .collect();
         assert_eq!(found.len(), 1, "one crack, one tangent");
         assert!(

@@ -9,9 +9,10 @@ use assert_cmd::Command;
 use common::*;
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::files::{Problem, fclib, matrix_market};
+use stickslip::files::interchange::{Problem, fclib, matrix_market};
+use stickslip::run::choice::Choice;
 use stickslip::run::registry::methods;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::Tier;
 use tempfile::TempDir;
 
@@ -54,8 +55,12 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
     let own = (results.points.iter()).filter(|row| row.key.increment == increment);
     let dim = case.model.dim();
-    own.flat_map(|row| [row.p_n, row.p_a, row.p_b].into_iter().take(dim))
-        .collect()
+    own.flat_map(|row| {
+        [row.point.p_n, row.point.p_a, row.point.p_b]
+            .into_iter()
+            .take(dim)
+    })
+    .collect()
 }
 
 fn vector(path: &Path) -> Vec<f64> {

@@ -224,17 +224,28 @@ fn bits(results: &Results) -> (Vec<u64>, Vec<String>) {
         ));
     }
     for q in &results.quantities {
-        numbers.push(q.value.to_bits());
+        numbers.push(q.quantity.value.to_bits());
         words.push(format!(
             "{:?} {} {} {}",
-            q.key, q.quantity, q.at, q.component
+            q.key, q.quantity.name, q.quantity.at, q.quantity.component
         ));
     }
     for p in &results.points {
-        let values = [p.x_m, p.y_m, p.z_m, p.s_m, p.weight, p.gap_m, p.slip_a_m];
+        let values = [
+            p.point.x_m,
+            p.point.y_m,
+            p.point.z_m,
+            p.point.s_m,
+            p.point.weight,
+            p.point.gap_m,
+            p.point.slip_a_m,
+        ];
         numbers.extend(values.map(f64::to_bits));
-        numbers.extend([p.slip_b_m, p.p_n, p.p_a, p.p_b].map(f64::to_bits));
-        words.push(format!("{:?} {} {} {}", p.key, p.crack, p.point, p.status));
+        numbers.extend([p.point.slip_b_m, p.point.p_n, p.point.p_a, p.point.p_b].map(f64::to_bits));
+        words.push(format!(
+            "{:?} {} {} {}",
+            p.key, p.point.crack, p.point.number, p.point.status
+        ));
     }
     for h in &results.history {
         numbers.push(h.natural_map.to_bits());

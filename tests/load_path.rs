@@ -5,11 +5,11 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
-use stickslip::case::Case;
-use stickslip::case::shipped;
+use stickslip::case::{Case, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::record::Results;
 use stickslip::run::registry::methods;
+use stickslip::run::verdict::Verdict;
 use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
 
 /// One body, one method, increments by hand.
@@ -98,7 +98,7 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
                 .points
                 .iter()
                 .filter(|p| p.key.increment == increments);
-            let forces: Vec<f64> = last.flat_map(|p| [p.p_n, p.p_a]).collect();
+            let forces: Vec<f64> = last.flat_map(|p| [p.point.p_n, p.point.p_a]).collect();
             assert_eq!(forces, states[increments].p, "{name} {}", method.name);
         }
     }
@@ -164,12 +164,16 @@ fn a_cycle_of_the_sliding_block_dissipates_its_closed_form() {
 /// Per run: values of a quantity by increment.
 fn histories(results: &Results, quantity: &str) -> Vec<(String, Vec<f64>)> {
     let mut found: Vec<(String, Vec<f64>)> = Vec::new();
-    for q in results.quantities.iter().filter(|q| q.quantity == quantity) {
+    for q in results
+        .quantities
+        .iter()
+        .filter(|q| q.quantity.name == quantity)
+    {
         let k = &q.key;
         let run = format!("{} {} {} {}", k.case, k.mesh, k.method, k.friction);
         match found.last_mut() {
-            Some((name, values)) if *name == run => values.push(q.value),
-            _ => found.push((run, vec![q.value])),
+            Some((name, values)) if *name == run => values.push(q.quantity.value),
+            _ => found.push((run, vec![q.quantity.value])),
         }
     }
     found
@@ -198,7 +202,7 @@ fn energy_balances_and_friction_only_dissipates_in_every_2d_case() {
         case.sweep.refine = vec![1];
         let results = run(&case, &exact);
         for row in &results.runs {
-            assert_eq!(row.verdict, "solved", "{:?}", row.key);
+            assert_eq!(row.verdict, Verdict::Solved, "{:?}", row.key);
         }
         for (run, values) in histories(&results, "energy_identity") {
             assert_eq!(values.len(), case.path.increments, "{run}");

@@ -269,10 +269,13 @@ fn a_held_body_carries_its_initial_stress_across_the_crack() {
             assert!(!results.points.is_empty());
             for point in &results.points {
                 let factor = [0.5, 1.5][point.key.increment - 1];
-                let (p, q) = (point.p_n / point.weight, point.p_a / point.weight);
+                let (p, q) = (
+                    point.point.p_n / point.point.weight,
+                    point.point.p_a / point.point.weight,
+                );
                 assert!((p - factor * 4e-3).abs() < 1e-10, "{name} {y}: {p}");
                 assert!((q + factor * 1e-3).abs() < 1e-10, "{name} {y}: {q}");
-                assert!(point.gap_m.abs() < 1e-12 && point.slip_a_m.abs() < 1e-12);
+                assert!(point.point.gap_m.abs() < 1e-12 && point.point.slip_a_m.abs() < 1e-12);
             }
         }
     }

@@ -4,7 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip::case::shipped;
 use stickslip::report::{Provenance, sweep};
-use stickslip::run::run_case::{Choice, friction_values};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::friction_values;
+use stickslip::run::verdict::Verdict;
 use stickslip::studies::sweep::Bench;
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::measure::{Repeats, measure};
@@ -110,14 +112,14 @@ fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
     let choice = Choice::new(&LIAR, &[]).unwrap();
     let (cell, text) = cell("plate_mesh1", 0, "liar", 1e-3);
     let mut lie = measure(&mut bench, &cell, &text, &choice, REPEATS).unwrap();
-    assert_eq!(lie.found.verdict, "false-claim");
-    assert_eq!(lie.found.increments[0].verdict, "false-claim");
+    assert_eq!(lie.found.verdict, Verdict::FalseClaim);
+    assert_eq!(lie.found.increments[0].verdict, Verdict::FalseClaim);
     assert_eq!((&lie.spent, &lie.found.solver_error), (&None, &None));
     assert!(lie.found.deviations.is_empty() && lie.found.values.is_empty());
 
     // Even where a record had a time, nothing made from it shows one.
     let truth = measured(&mut bench, "plate_mesh1", "hybrid", 1e-3);
-    assert_eq!(truth.found.verdict, "solved");
+    assert_eq!(truth.found.verdict, Verdict::Solved);
     lie.spent.clone_from(&truth.spent);
     lie.spent.as_mut().unwrap().solve.median_s = 0.123_456_7;
     lie.spent.as_mut().unwrap().setup_s = 0.765_432_1;
@@ -148,12 +150,11 @@ fn a_method_that_answers_differently_when_asked_again_is_caught() {
     let choice = Choice::new(&FORGETFUL, &[]).unwrap();
     let (cell, text) = cell("plate_mesh1", 0, "forgetful", 1e-6);
     let record = measure(&mut Bench::default(), &cell, &text, &choice, REPEATS).unwrap();
+    let verdict = &record.found.verdict;
     assert!(
-        record.found.verdict.starts_with("crashed: "),
-        "{}",
-        record.found.verdict
+        matches!(verdict, Verdict::Crashed(why) if why.contains("other bits")),
+        "{verdict}"
     );
-    assert!(record.found.verdict.contains("other bits"));
     assert_eq!(record.spent, None);
 }
 

@@ -3,12 +3,13 @@
 mod common;
 
 use common::*;
-use stickslip::case::shipped;
-use stickslip::case::{Case, Expect, Tolerance};
+use stickslip::case::{Case, Expect, Tolerance, shipped};
 use stickslip::model::body::{Body, Needs};
+use stickslip::run::choice::Choice;
 use stickslip::run::record::{Results, RunKey};
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::run::verdict::Verdict;
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
 };
@@ -83,7 +84,7 @@ fn the_sliding_block_is_solved_exactly() {
         let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
         let mut checked = 0;
         for run in &results.runs {
-            assert_eq!(run.verdict, "solved", "{:?}", run.key);
+            assert_eq!(run.verdict, Verdict::Solved, "{:?}", run.key);
             for expect in case.expects.iter().filter(|e| applies(e, &case, &run.key)) {
                 let at = [&expect.quantity, &expect.at, &expect.component];
                 let value = found(&results, &run.key, at.map(|s| s.as_str()));
@@ -124,7 +125,11 @@ fn the_plate_agrees_with_the_multipliers_on_every_mesh() {
         list.extend(variants());
         let results = run_case(&case, &list, SETTINGS, &Quiet).unwrap();
         for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
-            assert!(run.verdict.starts_with("approximate"), "{:?}", run.key);
+            assert!(
+                matches!(run.verdict, Verdict::Approximate(_)),
+                "{:?}",
+                run.key
+            );
             let at = ["reaction", "top", "y"];
             let reference = RunKey {
                 method: METHOD.into(),
@@ -159,7 +164,11 @@ fn the_beam_agrees_with_the_multipliers() {
     let results = run_case(&case, &list, SETTINGS, &Quiet).unwrap();
     let mut worst: f64 = 0.0;
     for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
-        assert!(run.verdict.starts_with("approximate"), "{:?}", run.key);
+        assert!(
+            matches!(run.verdict, Verdict::Approximate(_)),
+            "{:?}",
+            run.key
+        );
         let reference = RunKey {
             method: METHOD.into(),
             ..run.key.clone()
@@ -353,7 +362,7 @@ fn reactions_balance_the_load_where_the_crack_meets_a_support() {
     let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
     for run in &results.runs {
         assert!(
-            run.verdict.starts_with("approximate"),
+            matches!(run.verdict, Verdict::Approximate(_)),
             "{:?}: {}",
             run.key,
             run.verdict
@@ -403,7 +412,12 @@ fn a_consistency_term_is_never_taken_for_equilibrium() {
     let results = run_case(&case, &[nitsche], settings, &Quiet).unwrap();
     assert!(!results.runs.is_empty());
     for run in &results.runs {
-        assert_eq!(run.verdict, "approximate: low", "μ = {}", run.key.friction);
+        assert_eq!(
+            run.verdict,
+            Verdict::Approximate(Some(Tier::Low)),
+            "μ = {}",
+            run.key.friction
+        );
         assert!(
             run.claimed_equilibrium <= 1e-12,
             "{:e}",

@@ -5,6 +5,7 @@ mod common;
 use common::*;
 use stickslip::case::{Case, ContactSpace};
 use stickslip::model::body::{Body, Needs};
+use stickslip::run::verdict::Verdict;
 
 /// A crack oblique to the grid, pulled open at one end and pressed together at the other: the pressure of the uncracked body
 /// rises from −0.3 to 0.9 along it. The sides move as the closed form says.
@@ -23,7 +24,7 @@ fn half_open(cells: usize, space: ContactSpace) -> Case {
 /// Penetration of the points and of the samples over the largest gap.
 fn overlaps(cells: usize, space: ContactSpace) -> [f64; 2] {
     let results = run(&half_open(cells, space), &["hybrid"]);
-    assert!(results.runs.iter().all(|r| r.verdict == "solved"));
+    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
     let found = |quantity| value(&results, |_| true, [quantity, "crack-1", ""]);
     let whole = |quantity| value(&results, |_| true, [quantity, "", ""]);
     let quantities = ["max_penetration", "max_penetration_sampled"];

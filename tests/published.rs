@@ -126,11 +126,10 @@ fn both_plate_meshes_approach_one_limit() {
         case.sweep.refine = factors.to_vec();
         case.expects.clear();
         let results = run(&case, &[METHOD]);
-        let rows = results
-            .quantities
-            .iter()
-            .filter(|q| q.quantity == "reaction" && q.at == "top" && q.component == "y");
-        rows.map(|q| -q.value / 1e6).collect::<Vec<f64>>()
+        let rows = results.quantities.iter().filter(|q| {
+            q.quantity.name == "reaction" && q.quantity.at == "top" && q.quantity.component == "y"
+        });
+        rows.map(|q| -q.quantity.value / 1e6).collect::<Vec<f64>>()
     };
     for friction in [0.1, 1.2] {
         let first = reactions("plate_mesh1", &[1, 2, 4], friction);

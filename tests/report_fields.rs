@@ -7,8 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 use report_data::{beam, crack_line, plate, results};
 use std::collections::BTreeMap;
 use std::io::Read;
+use stickslip::model::field_mesh::{CellShape, FieldMesh};
 use stickslip::report::{Provenance, standard, vtu};
-use stickslip::run::record::{Picture, PictureShape};
 
 /// Arrays of a `.vtu` file by name, decoded: base64, header, zlib blocks.
 fn decoded(vtu: &[u8]) -> BTreeMap<String, Vec<u8>> {
@@ -71,7 +71,7 @@ fn as_i64(bytes: &[u8]) -> Vec<i64> {
 
 #[test]
 fn vtu_files_decode_to_the_bits_that_were_written() {
-    for picture in [plate(), beam(), crack_line(), Picture::default()] {
+    for picture in [plate(), beam(), crack_line(), FieldMesh::default()] {
         let file = vtu::vtu(&picture, 0.5, "a -- b").expect("a file");
         let arrays = decoded(&file);
         let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -112,9 +112,9 @@ fn vtu_files_decode_to_the_bits_that_were_written() {
 
 #[test]
 fn large_arrays_span_several_blocks() {
-    let mut picture = Picture {
+    let mut picture = FieldMesh {
         dim: 2,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     picture.points = (0..4096).map(|i| [f64::from(i), 0.5, -1.0]).collect();
     let arrays = decoded(&vtu::vtu(&picture, 0.0, "").expect("a file"));
@@ -142,7 +142,7 @@ fn vtu_refuses_arrays_that_do_not_fit() {
     far.cells[7].points[0] = 9999;
     assert!(vtu::vtu(&far, 0.0, "").is_err());
     let mut wrong = plate();
-    wrong.cells[0].shape = PictureShape::Hexahedron;
+    wrong.cells[0].shape = CellShape::Hexahedron;
     assert!(vtu::vtu(&wrong, 0.0, "").is_err());
 }
 

@@ -4,9 +4,10 @@ mod report_data;
 
 use report_data::figures::figures;
 use report_data::{beam, beam_step, cycle, exact, key, plate, points};
+use stickslip::model::field_mesh::{FieldCell, FieldMesh};
 use stickslip::report::ReportError;
 use stickslip::report::plot::{self, Axis3, Curve, CurvePlot, Magnification};
-use stickslip::run::record::{HistoryRow, Picture, PictureCell};
+use stickslip::run::record::HistoryRow;
 
 /// Texts with their estimated boxes [x0, x1, y0, y1]; texts that read upwards are left out.
 fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
@@ -168,7 +169,7 @@ fn figures_refuse_what_they_cannot_show() {
     assert!(other.to_string().contains("crack 2"), "{other}");
     let mut solid = points(&key("latin", 0.1));
     for row in &mut solid {
-        row.force_unit = "N".into();
+        row.point.force_unit = "N".into();
     }
     assert!(plot::contact_traction(&solid, &[], 1).is_err());
     let wrong = plot::displacement_contours(&beam(), Magnification::Auto, "").expect_err("3D");
@@ -207,7 +208,7 @@ fn figures_survive_sparse_and_flat_data() {
 
     let mut rows = points(&key("latin", 0.0));
     for row in &mut rows {
-        (row.slip_a_m, row.gap_m, row.status) = (1e-19, 0.0, "stick".into());
+        (row.point.slip_a_m, row.point.gap_m, row.point.status) = (1e-19, 0.0, "stick".into());
     }
     let svg = plot::contact_slip(&rows, &[], 1).expect("round-off slips");
     assert!(
@@ -237,10 +238,10 @@ fn unit_marks_in_data_do_not_reach_the_typesetting() {
 }
 
 /// The same picture with points of its own for every cell.
-fn unshared(picture: &Picture) -> Picture {
-    let mut own = Picture {
+fn unshared(picture: &FieldMesh) -> FieldMesh {
+    let mut own = FieldMesh {
         dim: picture.dim,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     let mut u = Vec::new();
     for cell in &picture.cells {
@@ -250,7 +251,7 @@ fn unshared(picture: &Picture) -> Picture {
             u.push(picture.point_vectors[0].1[*point]);
         }
         let points = (first..own.points.len()).collect();
-        own.cells.push(PictureCell {
+        own.cells.push(FieldCell {
             shape: cell.shape,
             points,
         });
@@ -262,12 +263,12 @@ fn unshared(picture: &Picture) -> Picture {
 
 #[test]
 fn figures_do_not_depend_on_whether_cells_share_points() {
-    let plane = |picture: &Picture| {
+    let plane = |picture: &FieldMesh| {
         plot::displacement_contours(picture, Magnification::Auto, "").expect("a figure")
     };
     assert_eq!(plane(&plate()), plane(&unshared(&plate())));
     // Patches at one depth may come in another order.
-    let solid = |picture: &Picture| {
+    let solid = |picture: &FieldMesh| {
         let svg = plot::solid_displacement(picture, Axis3::X, Magnification::Auto, "");
         let mut lines: Vec<String> = svg.expect("a figure").lines().map(str::to_owned).collect();
         lines.sort();

@@ -5,6 +5,7 @@ mod report_data;
 use report_data::results;
 use std::fs;
 use std::path::Path;
+use stickslip::files::bundle::FolderError;
 use stickslip::report::{Bundle, Provenance, ReportError, csv, prepare_output, standard};
 
 fn temporary() -> tempfile::TempDir {
@@ -55,7 +56,10 @@ fn folders_that_cannot_be_written_are_named_before_anything_is_computed() {
             "{error}"
         );
         let error = csv::write_all(&target, &results()).expect_err("a file is no folder");
-        assert!(matches!(error, ReportError::Io { .. }), "{error}");
+        assert!(
+            matches!(error, ReportError::Folder(FolderError::Io { .. })),
+            "{error}"
+        );
     }
     assert_eq!(fs::read_to_string(&file).expect("the file"), "in the way");
     let fresh = dir.path().join("a/b");
@@ -123,7 +127,7 @@ fn bundles_refuse_names_outside_and_names_taken() {
         assert!(
             matches!(
                 bundle.add(path, "x"),
-                Err(ReportError::OutsideFolder { .. })
+                Err(FolderError::OutsideFolder { .. })
             ),
             "{path}"
         );
@@ -131,7 +135,7 @@ fn bundles_refuse_names_outside_and_names_taken() {
     bundle.add("a.csv", "x").expect("a name");
     assert!(matches!(
         bundle.add("a.csv", "y"),
-        Err(ReportError::Duplicate { .. })
+        Err(FolderError::Duplicate { .. })
     ));
 }
 

@@ -49,10 +49,10 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
         );
     }
     for row in points.iter_mut().filter(|row| row.key.method == "latin") {
-        row.p_n *= 1.02;
+        row.point.p_n *= 1.02;
     }
     for row in points.iter_mut().filter(|row| row.key.method == "nsgs") {
-        row.p_n *= 1.0 - 4e-4;
+        row.point.p_n *= 1.0 - 4e-4;
     }
     let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
     assert!(svg.contains(">latin<"), "one that differs stands alone");
@@ -61,9 +61,9 @@ fn methods_that_agree_share_a_curve_and_others_have_their_own() {
     // The same laws with another status at a point are another answer, whatever the forces.
     for row in points
         .iter_mut()
-        .filter(|row| row.key.method == "tresca" && row.point == 5)
+        .filter(|row| row.key.method == "tresca" && row.point.number == 5)
     {
-        row.status = "stick".into();
+        row.point.status = "stick".into();
     }
     let svg = plot::contact_traction(&points, &[], 1).expect("a figure");
     let fewer = format!("{} exact methods", exact - 2);

@@ -6,19 +6,23 @@ use report_data::{METHODS, key, results};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use stickslip::report::comparison::{ComparisonRow, VariantRow};
-use stickslip::report::converged::{ConvergedRow, SequenceRow};
+use stickslip::report::comparison::ComparisonRow;
 use stickslip::report::csv::Row;
 use stickslip::report::infsup::InfSupRow;
-use stickslip::report::paper::{self, Digits, Table1Row, Table2Row};
+use stickslip::report::paper::{self, Digits};
 use stickslip::report::robustness::{FailureRow, RobustnessRow};
-use stickslip::report::study::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::report::tables::{Align, Column, Table};
 use stickslip::report::timings::TimingRow;
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
 use stickslip::run::record::RunRow;
+use stickslip::run::verdict::Verdict;
 use stickslip::studies::convergence::orders::{ErrorRow, OrderRow};
+use stickslip::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use stickslip::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
+use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::spaces::patch::PatchRow;
+use stickslip_methods::Status;
 
 fn text(bundle: &Bundle, path: &str) -> String {
     let bytes = bundle
@@ -62,7 +66,7 @@ fn table1_rows() -> Vec<Table1Row> {
             "b-newton",
             Some(1_108.412_345),
             Some(1108.8),
-            "solved",
+            Some(Verdict::Solved),
         ),
         Table1Row::new(
             "I",
@@ -70,7 +74,7 @@ fn table1_rows() -> Vec<Table1Row> {
             "penalty",
             None,
             Some(1137.5),
-            "gave-up: max-iterations",
+            Some(Verdict::GaveUp(Status::MaxIterations)),
         ),
         Table1Row::new(
             "I",
@@ -78,7 +82,7 @@ fn table1_rows() -> Vec<Table1Row> {
             "b-newton",
             Some(973.543_21),
             Some(973.3),
-            "solved",
+            Some(Verdict::Solved),
         ),
     ]
 }
@@ -90,9 +94,11 @@ fn table2_rows() -> Vec<Table2Row> {
     let printed = Table2Row::printed("I", "as-printed", "y", p);
     let mut ours = p;
     ours[3] += 4.2e-7;
-    let computed = Table2Row::computed(&printed, "b-newton", ours, "solved");
-    let failed = Table2Row::computed(&printed, "a-fails", [f64::NAN; 7], "gave-up: diverged");
-    vec![computed, failed, printed]
+    let computed = |method, p, verdict| Table2Row::computed(&printed, method, p, Some(verdict));
+    let solved = computed("b-newton", ours, Verdict::Solved);
+    let diverged = Verdict::GaveUp(Status::Diverged);
+    let failed = computed("a-fails", [f64::NAN; 7], diverged);
+    vec![solved, failed, printed]
 }
 
 /// Columns that docs/schema.md lists, by file.
@@ -199,17 +205,19 @@ fn points_read_back_to_ten_digits() {
     let header = reader.headers().expect("a header").clone();
     let column = |name: &str| header.iter().position(|h| h == name).expect("a column");
     let mut expected = results().points;
-    expected.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then(a.point.cmp(&b.point)));
+    expected.sort_by(|a, b| {
+        csv::compare_keys(&a.key, &b.key).then(a.point.number.cmp(&b.point.number))
+    });
     let rows: Vec<::csv::StringRecord> = reader.records().map(|r| r.expect("a record")).collect();
     assert_eq!(rows.len(), expected.len());
     for (row, point) in rows.iter().zip(&expected) {
         assert_eq!(row[column("method")], point.key.method);
-        assert_eq!(row[column("status")], point.status);
+        assert_eq!(row[column("status")], point.point.status);
         for (name, value) in [
-            ("p_n", point.p_n),
-            ("p_a", point.p_a),
-            ("slip_a_m", point.slip_a_m),
-            ("x_m", point.x_m),
+            ("p_n", point.point.p_n),
+            ("p_a", point.point.p_a),
+            ("slip_a_m", point.point.slip_a_m),
+            ("x_m", point.point.x_m),
         ] {
             let found: f64 = row[column(name)].parse().expect("a number");
             assert!(
@@ -331,7 +339,7 @@ fn wrong_answers_have_no_profile_and_no_time() {
         .iter_mut()
         .filter(|row| row.key.method == "latin")
     {
-        row.verdict = "false-claim".into();
+        row.verdict = Verdict::FalseClaim;
     }
     let bundle = standard::bundle(&results, &Provenance::collect(1)).expect("a bundle");
     let profile = text(

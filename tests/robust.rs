@@ -3,13 +3,14 @@
 mod common;
 
 use common::*;
+use stickslip::run::verdict::Verdict;
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
 
 fn assert_solved(text: &str) {
     let results = run(&parse(text), &EXACT);
     for row in &results.runs {
-        assert_eq!(row.verdict, "solved", "{}: {row:?}", row.key.method);
+        assert_eq!(row.verdict, Verdict::Solved, "{}: {row:?}", row.key.method);
     }
     assert_eq!(results.runs.len(), EXACT.len());
 }
@@ -73,11 +74,12 @@ fn overlapping_supports_balance_the_load_once() {
     for (component, applied) in [("x", 6e-3), ("y", -2e-3)] {
         let rows = || {
             let all = results.quantities.iter();
-            all.filter(|q| q.quantity == "reaction" && q.component == component)
+            all.filter(|q| q.quantity.name == "reaction" && q.quantity.component == component)
         };
-        let total: f64 = rows().map(|q| q.value).sum();
+        let total: f64 = rows().map(|q| q.quantity.value).sum();
         assert!((total + applied).abs() < 1e-14, "{component}: {total:e}");
-        let places: std::collections::BTreeSet<&str> = rows().map(|q| q.at.as_str()).collect();
+        let places: std::collections::BTreeSet<&str> =
+            rows().map(|q| q.quantity.at.as_str()).collect();
         assert_eq!(places.len(), rows().count(), "one row per place");
     }
 }

@@ -6,6 +6,7 @@ use common::*;
 use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::registry::methods;
+use stickslip::run::verdict::Verdict;
 
 fn names(exact: bool) -> Vec<&'static str> {
     let methods = methods().iter().filter(|m| m.exact || !exact);
@@ -35,7 +36,7 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
         let results = run(&case, &[method.name]);
         assert_eq!(results.runs.len(), 1);
         let row = &results.runs[0];
-        assert_eq!(row.verdict, "solved", "{}", method.name);
+        assert_eq!(row.verdict, Verdict::Solved, "{}", method.name);
         assert_eq!((row.solves, row.iterations), (1, 0), "{}", method.name);
         assert_eq!(row.condensation_s, 0.0, "{}", method.name);
     }

@@ -11,13 +11,13 @@ use stickslip::report::{Provenance, robustness};
 use stickslip::run::registry::methods;
 use stickslip::run::run_case::Quiet;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::stress::{self, Study, Trial};
+use stickslip::studies::stress::{self, StressPlan, Trial};
 use stickslip_methods::{Status, Tier};
 
 const FRICTION: [f64; 3] = [0.0, 0.6, 5.0];
 
-fn study() -> Study {
-    Study {
+fn study() -> StressPlan {
+    StressPlan {
         seed: 7,
         dims: vec![2, 3],
         problems: 6,
@@ -28,7 +28,7 @@ fn study() -> Study {
     }
 }
 
-fn trials(study: &Study, methods: &[&str]) -> Vec<Trial> {
+fn trials(study: &StressPlan, methods: &[&str]) -> Vec<Trial> {
     stress::run(study, &choices(methods), &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -83,7 +83,7 @@ fn a_problem_taken_alone_gives_the_same_bits() {
     let methods = ["b-newton", "penalty"];
     let (whole, problem) = (study(), 5);
     let all = trials(&whole, &methods);
-    let alone = Study {
+    let alone = StressPlan {
         only: Some(problem),
         problems: 1,
         jobs: 2,
@@ -103,11 +103,7 @@ fn a_problem_taken_alone_gives_the_same_bits() {
             let row = results.runs.iter().find(|r| same(&r.key)).unwrap();
             assert_eq!(
                 (row.natural_map, row.iterations, &row.verdict),
-                (
-                    trial.natural_map,
-                    trial.iterations,
-                    &trial.verdict.to_string()
-                )
+                (trial.natural_map, trial.iterations, &trial.verdict)
             );
         }
     }
@@ -247,7 +243,7 @@ fn bad_arguments_are_refused() {
 #[test]
 fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
     let mut trial = trials(
-        &Study {
+        &StressPlan {
             problems: 1,
             dims: vec![2],
             ..study()
@@ -261,6 +257,8 @@ fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
         (Verdict::Refused("no".into()), true),
         (Verdict::FalseClaim, false),
         (Verdict::Crashed("oh".into()), false),
+        // Nobody limits a trial.
+        (Verdict::OutOfMemory, false),
     ] {
         trial.verdict = verdict;
         assert_eq!(stress::as_expected(std::slice::from_ref(&trial)), expected);
@@ -270,7 +268,7 @@ fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
 /// Goal: problems that a method declines are neither successes nor failures, and a study of refusals only is still written.
 #[test]
 fn refused_problems_have_no_rate() {
-    let study = Study {
+    let study = StressPlan {
         problems: 1,
         dims: vec![2],
         friction: vec![0.3],
@@ -292,7 +290,7 @@ fn refused_problems_have_no_rate() {
 /// Goal: laws of a method's own do not count as the contact laws, and what they are worth shows.
 #[test]
 fn exact_methods_are_rated_by_solutions_and_approximate_ones_by_kept_claims() {
-    let study = Study {
+    let study = StressPlan {
         problems: 6,
         dims: vec![2],
         friction: vec![0.3],

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use stickslip::run::verdict::Verdict;
 use stickslip::studies::sweep::record::Record;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
@@ -295,22 +296,28 @@ fn limits_of_time_and_memory_are_verdicts() {
     );
     let timed_out = found(&at("time"));
     assert_eq!(timed_out.len(), 2);
-    assert!(timed_out.values().all(|r| r.found.verdict == "timed-out"));
+    let ended = |r: &Record| r.found.verdict == Verdict::TimedOut && r.limits.is_some();
+    assert!(timed_out.values().all(ended));
 
     let text = fs::read_to_string(&file)
         .unwrap()
-        .replace("refine = [1]", "refine = [8, 1]");
+        .replace("refine = [1]", "refine = [32, 8, 1]");
     fs::write(&file, text).unwrap();
-    // The coarse mesh fits into 70 MB of address space, 176 × 176 cells do not.
+    // The coarse mesh fits into 70 MB of address space; of 176 × 176 cells the factor does not, which an error says; of
+    // 704 × 704 nothing does, and the process dies.
     let out = at("memory");
     assert_eq!(code(study(&file, &out, &["--memory-limit", "70"])), 0);
     let verdict = |part: &str| {
         let records = found(&out);
         let own = records.values().filter(|r| r.id.contains(part));
-        own.map(|r| r.found.verdict.clone()).collect::<Vec<_>>()
+        own.map(|r| (r.found.verdict.clone(), r.limits.is_some()))
+            .collect::<Vec<_>>()
     };
-    assert_eq!(verdict(".r8."), ["out-of-memory", "out-of-memory"]);
-    assert_eq!(verdict(".r1."), ["solved", "solved"]);
+    let (denied, solved) = ((Verdict::OutOfMemory, true), (Verdict::Solved, false));
+    for mesh in [".r32.", ".r8."] {
+        assert_eq!(verdict(mesh), [denied.clone(), denied.clone()]);
+    }
+    assert_eq!(verdict(".r1."), [solved.clone(), solved]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use stickslip::report::Bundle;
 use stickslip::report::timings::{
     BenchmarkName, Expected, Harvest, Ignored, add_to, harvest, last_built,
 };
+use stickslip::run::verdict::Verdict;
 
 const HEADER: &str = "group,function,value,throughput_num,throughput_type,sample_measured_value,unit,iteration_count";
 
@@ -48,7 +49,7 @@ fn raw(method: &str, samples: &[(f64, u64)]) -> String {
 fn expected(method: &str) -> Expected {
     Expected {
         name: BenchmarkName::new("g", "solve", method),
-        verdict: "solved".into(),
+        verdict: Some(Verdict::Solved),
         newer_than: built(),
     }
 }

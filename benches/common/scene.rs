@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::loading::Loading;
-use stickslip::run::attempt::{attempt, prepare};
+use stickslip::run::choice::Choice;
+use stickslip::run::increment::Solver;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::Choice;
 use stickslip::run::verdict::Verdict;
 use stickslip_methods::{
     ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier,
@@ -40,7 +40,7 @@ impl Scene {
         path.condense().expect("the body is held");
         let loading = Loading::new(&body, &case, problem.friction).expect("the closed form holds");
         let exact = Choice::new(method(EXACT).expect("registered"), &[]).expect("defaults");
-        let (mut solver, _) = prepare(&exact, &path).expect("an exact method takes every case");
+        let mut solver = Solver::new(&exact, &path).expect("an exact method takes every case");
         let (mut start, mut start_load) = (ContactState::zero(&path), Load::zero(&body.elastic));
         let mut hardest = None;
         for index in 0..case.path.increments {
@@ -52,7 +52,7 @@ impl Scene {
                 start,
                 index,
             };
-            let tried = attempt(solver.as_mut(), &scene.increment(), Tier::High.tolerance());
+            let tried = solver.judge(&scene.increment(), Tier::High.tolerance());
             assert_eq!(tried.verdict, Verdict::Solved, "{}", case.name);
             let outcome = tried.judged.expect("solved").outcome;
             let iterations = outcome.counters.iterations;
@@ -78,12 +78,15 @@ impl Scene {
 
     /// What the judge says of a method on this increment. Afterwards all is computed that methods share.
     pub fn judge(&self, choice: &Choice) -> Verdict {
-        match prepare(choice, &self.system) {
-            Ok((mut solver, _)) => {
-                attempt(solver.as_mut(), &self.increment(), Tier::High.tolerance()).verdict
-            }
-            Err(verdict) => verdict,
-        }
+        let solver = Solver::new(choice, &self.system);
+        solver.map_or_else(
+            |verdict| verdict,
+            |mut solver| {
+                solver
+                    .judge(&self.increment(), Tier::High.tolerance())
+                    .verdict
+            },
+        )
     }
 
     /// A new instance of a method that has seen nothing.

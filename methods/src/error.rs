@@ -102,7 +102,13 @@ pub enum MethodError {
         /// Limit.
         limit: usize,
     },
-    /// A dense or sparse kernel ran out of memory or overflowed its index.
+    /// A factorisation, or its solve, was denied memory.
+    #[error("{what} failed: out of memory")]
+    OutOfMemory {
+        /// Which one.
+        what: &'static str,
+    },
+    /// A dense or sparse kernel overflowed its index, or stopped for a reason of its own.
     #[error("{what} failed: {reason}")]
     Kernel {
         /// Which kernel.

@@ -1,9 +1,11 @@
 //! `[[crack]]` of a case file: shapes, tip enrichment, contact space.
 
-use super::error::CaseError;
+use stickslip_xfem::contact::ContactSpace;
+use stickslip_xfem::cut::crack::Tip;
+use stickslip_xfem::geometry::CrackShape;
+
+use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
-use super::schema::friction;
-use super::{ContactSpace, CrackShape, CrackSpec, Tip};
 
 /// Most points of a polyline: all pairs of its segments are compared.
 const MAX_POINTS: usize = 1000;
@@ -13,6 +15,30 @@ const PARALLEL: f64 = 1e-9;
 
 /// Keys that say where a crack lies.
 const SHAPES: [&str; 5] = ["points_m", "arc", "plane", "disc", "ellipse"];
+
+/// One crack.
+#[derive(Debug, Clone)]
+pub struct CrackSpec {
+    /// Where the crack's table stands in the file.
+    pub span: Span,
+    /// Where the geometry (the value of `points_m`, `arc`, `plane`, ...) stands in the file.
+    pub geometry_span: Span,
+    /// Place and shape.
+    pub geometry: CrackShape,
+    /// Coulomb friction coefficient μ >= 0, for runs without a friction sweep.
+    pub friction: f64,
+    /// Enrichment at tips inside the body.
+    pub tip: Tip,
+    /// Where `tip` stands in the file, or the crack's table.
+    pub tip_span: Span,
+    /// Contact space.
+    pub contact: ContactSpace,
+}
+
+/// A friction coefficient.
+pub(super) fn friction(value: Value<'_>) -> Result<f64, CaseError> {
+    value.number_if("friction >= 0", |mu| mu >= 0.0)
+}
 
 /// `[[crack]]`.
 pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError> {

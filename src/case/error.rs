@@ -1,12 +1,14 @@
 //! What is wrong with a case file, and where.
 
 use std::fmt;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::Span;
+/// Byte range of a key's value in the case file, for error messages.
+pub type Span = Range<usize>;
 
 /// Longest value, key or source line printed, in characters: a megabyte of garbage must not flood a terminal.
 const WIDTH: usize = 80;

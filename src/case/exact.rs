@@ -2,10 +2,10 @@
 
 use stickslip_xfem::exact::SolutionSpec;
 
-use super::error::CaseError;
-use super::load::history;
+use super::error::{CaseError, Span};
+use super::load::{History, history};
 use super::reader::Table;
-use super::{History, PathSpec, Span};
+use super::settings::PathSpec;
 
 /// The closed form of a case.
 #[derive(Debug, Clone)]

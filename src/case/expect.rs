@@ -1,10 +1,79 @@
 //! `[[probe]]` and `[[expect]]` of a case file, checked against what the case runs.
 
-use super::error::CaseError;
-use super::mesh::MAX_REFINE;
+use super::crack::friction;
+use super::error::{CaseError, Span};
+use super::load::side_names;
+use super::mesh::{MAX_REFINE, Sweep};
 use super::reader::Value;
-use super::schema::{friction, side_names};
-use super::{Expect, ExpectKind, PathSpec, ProbeSpec, Sweep, Tolerance};
+use super::settings::PathSpec;
+
+/// A named place: the mesh node at it is recorded.
+#[derive(Debug, Clone)]
+pub struct ProbeSpec {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Name in `quantities.csv`; differs from every side, crack and other probe.
+    pub name: String,
+    /// Place [m]; must coincide with a node.
+    pub point: [f64; 3],
+}
+
+/// One expected number.
+#[derive(Debug, Clone)]
+pub struct Expect {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Quantity name as in `quantities.csv`.
+    pub quantity: String,
+    /// Place (`at` column): a side, a probe or a crack (`crack-1`); empty: the whole body.
+    pub at: String,
+    /// Component (`component` column), e.g. `y`; empty: none.
+    pub component: String,
+    /// Only for this friction coefficient.
+    pub friction: Option<f64>,
+    /// Only for this refinement factor.
+    pub refine: Option<usize>,
+    /// Only for this method; otherwise every exact method (not `penalty`).
+    pub method: Option<String>,
+    /// Increment, counted from 1; otherwise the last.
+    pub increment: Option<usize>,
+    /// Expected value, in SI units.
+    pub value: f64,
+    /// Unit of the value, as in `quantities.csv`.
+    pub unit: String,
+    /// |found − value| <= tolerance.
+    pub tolerance: Tolerance,
+    /// Where the number comes from.
+    pub kind: ExpectKind,
+    /// Book, paper, table, derivation.
+    pub source: String,
+    /// What had to be assumed.
+    pub assumptions: Vec<String>,
+    /// True for a documented limitation: the number must be found outside its tolerance.
+    pub missed: bool,
+}
+
+/// Tolerance of an expected number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// Relative to |value|.
+    Relative(f64),
+    /// In the unit of the value.
+    Absolute(f64),
+}
+
+/// Origin of an expected number, strongest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExpectKind {
+    /// Closed form.
+    Analytic,
+    /// Printed in a publication.
+    Published,
+    /// Another code.
+    Independent,
+    /// This code, earlier; certifies nothing but stability.
+    Snapshot,
+}
 
 const NO_RUN: &str = "no run of this case has this value";
 

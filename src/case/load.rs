@@ -1,8 +1,8 @@
 //! Supports and loads of a case file: where they act, what they prescribe, how they evolve.
 
-use super::error::CaseError;
+use super::condition::Condition;
+use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
-use super::{Condition, Span};
 
 /// The part of the boundary a support or load acts on.
 #[derive(Debug, Clone)]

@@ -3,10 +3,39 @@
 use stickslip_xfem::mesh::box_mesh::{GridSpec, Motion};
 use stickslip_xfem::mesh::grid_motion::{Distort, Follow, Twist};
 
-use super::error::CaseError;
+use super::crack::friction;
+use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
-use super::schema::friction;
-use super::{MeshSpec, Sweep};
+
+/// `[mesh]`: a structured box mesh.
+#[derive(Debug, Clone)]
+pub struct MeshSpec {
+    /// Where `mesh` stands in the file.
+    pub span: Span,
+    /// Grid lines and what moves their points.
+    pub grid: GridSpec,
+    /// Where the motions of the grid points stand in the file.
+    pub motion_spans: Vec<(Motion, Span)>,
+}
+
+impl MeshSpec {
+    /// Where a motion of the grid points stands in the file; of one that is not in the file, where `mesh` stands.
+    pub fn motion_span(&self, motion: Motion) -> &Span {
+        let spans = &self.motion_spans;
+        let found = spans.iter().find(|(own, _)| *own == motion);
+        found.map_or(&self.span, |(_, span)| span)
+    }
+}
+
+/// Parameter sweep; no value occurs twice.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Friction coefficients; empty: every crack keeps its own.
+    pub friction: Vec<f64>,
+    /// Mesh refinement factors >= 1, at least one: every cell of the base mesh is divided by this number in each
+    /// direction.
+    pub refine: Vec<usize>,
+}
 
 /// Largest number of cells, also after refinement: beyond it the matrix does not fit the machines meant here.
 const MAX_CELLS: usize = 20_000_000;

@@ -1,18 +1,91 @@
 //! From a file to a checked [`Case`].
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use stickslip_methods::Tier;
 use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
+use stickslip_xfem::material::{Material, Model};
+use stickslip_xfem::quadrature::Quadrature;
 use toml::de::DeTable;
 
-use super::error::{CaseError, Source};
-use super::expect::Runs;
+use super::crack::{CrackSpec, crack};
+use super::error::{CaseError, Source, Span};
+use super::exact::{ExactSpec, exact};
+use super::expect::{Expect, ProbeSpec, Runs};
+use super::load::{LoadSpec, Scene, SupportSpec, load, support};
+use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
-use super::schema::Scene;
-use super::{Case, Model, schema};
+use super::settings::{self, MethodSpec, PathSpec};
+
+/// One checked case file.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// File stem, the identifier in every table.
+    pub name: String,
+    /// File as given on the command line.
+    pub file: PathBuf,
+    /// Full text of the file; spans index into it.
+    pub source: String,
+    /// One-line title.
+    pub title: String,
+    /// Kinematics: plane strain, plane stress or a 3D solid.
+    pub model: Model,
+    /// Isotropic linear elasticity.
+    pub material: Material,
+    /// Structured mesh.
+    pub mesh: MeshSpec,
+    /// Cracks, in file order.
+    pub cracks: Vec<CrackSpec>,
+    /// Prescribed displacements, in file order; at a node and component named twice the later one wins.
+    pub supports: Vec<SupportSpec>,
+    /// Loads, in file order; they add up.
+    pub loads: Vec<LoadSpec>,
+    /// The closed form the case has, if it names one.
+    pub exact: Option<ExactSpec>,
+    /// Quadrature of cut cells.
+    pub quadrature: Quadrature,
+    /// Load path.
+    pub path: PathSpec,
+    /// What the case is run for.
+    pub sweep: Sweep,
+    /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
+    pub methods: Vec<MethodSpec>,
+    /// Default tier of the case.
+    pub tier: Tier,
+    /// Natural map the methods must reach, at most that of the tier; tighter where a closed form is held to more digits.
+    pub tolerance: f64,
+    /// Named places whose displacement is recorded.
+    pub probes: Vec<ProbeSpec>,
+    /// Numbers the case must reproduce.
+    pub expects: Vec<Expect>,
+}
+
+impl Case {
+    /// The source text at a span, for error messages.
+    pub fn text(&self, span: &Span) -> &str {
+        self.source.get(span.clone()).unwrap_or_default()
+    }
+
+    /// Error about the value at `span`, found later than by the parser (e.g. a crack wholly outside the mesh).
+    ///
+    /// `value` is what was found, `allowed` what would be accepted; key, line and column follow from the span.
+    pub fn error(
+        &self,
+        span: &Span,
+        value: impl Display,
+        allowed: impl Display,
+        message: impl Display,
+    ) -> CaseError {
+        Source {
+            file: &self.file,
+            text: &self.source,
+        }
+        .error(span, value, allowed, message)
+    }
+}
 
 /// Largest case file read [bytes]; the largest of this project has 8 kB.
 const MAX_BYTES: u64 = 1 << 20;
@@ -167,15 +240,15 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         );
         v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
     })?;
-    let quadrature = schema::quadrature(root)?;
-    let material = schema::material(root)?;
-    let mesh = schema::mesh(root, dim)?;
-    let sweep = schema::sweep(root, &mesh)?;
-    let path = schema::path(root)?;
-    let cracks = each(root, "crack", |v| schema::crack(v, dim))?;
+    let quadrature = settings::quadrature(root)?;
+    let material = settings::material(root)?;
+    let mesh = mesh(root, dim)?;
+    let sweep = sweep(root, &mesh)?;
+    let path = settings::path(root)?;
+    let cracks = each(root, "crack", |v| crack(v, dim))?;
     let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
     let mut runs = Runs::new(dim, &frictions, &sweep, &path);
-    let exact = schema::exact(root, solutions, cracks.len())?;
+    let exact = exact(root, solutions, cracks.len())?;
     let scene = Scene {
         dim,
         cracks: cracks.len(),
@@ -191,13 +264,13 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         material,
         mesh,
         cracks,
-        supports: each(root, "support", |v| schema::support(v, &scene))?,
-        loads: each(root, "load", |v| schema::load(v, &scene))?,
+        supports: each(root, "support", |v| support(v, &scene))?,
+        loads: each(root, "load", |v| load(v, &scene))?,
         exact,
         quadrature,
         path,
         sweep,
-        methods: each(root, "method", schema::method)?,
+        methods: each(root, "method", settings::method)?,
         tier,
         tolerance,
         probes,

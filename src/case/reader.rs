@@ -9,8 +9,7 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::Span;
-use super::error::{CaseError, Source, clip};
+use super::error::{CaseError, Source, Span, clip};
 
 /// A value of the document with its place.
 #[derive(Clone, Copy)]

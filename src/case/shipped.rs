@@ -1,6 +1,7 @@
 //! The cases that come with the program: every file of `cases/`, compiled in, so that a copied binary still has them.
 
-use crate::case::{self, Case, CaseError};
+use super::error::CaseError;
+use super::parse::{Case, parse};
 
 /// Name and text of every shipped case, sorted by name.
 pub static CASES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/cases.rs"));
@@ -10,5 +11,5 @@ pub fn find(name: &str) -> Option<Result<Case, CaseError>> {
     CASES
         .iter()
         .find(|(own, _)| *own == name)
-        .map(|(own, text)| case::parse(format!("cases/{own}.toml"), *text))
+        .map(|(own, text)| parse(format!("cases/{own}.toml"), *text))
 }

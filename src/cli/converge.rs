@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use super::arguments::{find_case, refuse_twins};
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, find_case, refuse_twins};
 use crate::case::{ContactSpace, Tip};
 use crate::report::{Provenance, prepare_output};
-use crate::run::run_case::Choice;
-use crate::studies::convergence::{self, Study, orders};
+use crate::run::choice::Choice;
+use crate::studies::convergence::{self, ConvergencePlan, orders};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -69,7 +70,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let mut refine: Vec<usize> = arguments.refine.into_iter().map(usize::from).collect();
     refine.sort_unstable();
     refine.dedup();
-    let study = Study {
+    let plan = ConvergencePlan {
         refine: given(refine),
         spaces: given(arguments.spaces),
         tips: given(arguments.tips),
@@ -81,7 +82,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     for case in &cases {
         samples.extend(convergence::run(
             case,
-            &study,
+            &plan,
             &convergence::closed_form,
             &bar,
         )?);
@@ -90,10 +91,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
 
     let (errors, orders) = orders::rows(&samples);
     let provenance = Provenance::collect(rayon::current_num_threads())
-        .with_option("method", study.choice.label.clone());
-    let bundle = crate::report::converge::bundle(&errors, &orders, &provenance)?;
+        .with_option("method", plan.choice.label.clone());
+    let bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
     bundle.commit(&arguments.out)?;
-    let table = crate::report::converge::order_table(&orders)?;
+    let table = crate::report::convergence::order_table(&orders)?;
     say(format_args!("{}", table.terminal()));
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());
     say(format_args!(

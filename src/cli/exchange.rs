@@ -5,18 +5,21 @@ use std::path::PathBuf;
 use clap::Args;
 use stickslip_methods::{Residuals, Tier};
 
+use super::arguments::{find_case, methods_or_all, provenance, refuse_twins};
+use super::error::CliError;
 use super::output::say;
-use super::{Bar, CliError, find_case, methods_or_all, provenance, refuse_twins};
+use super::progress::Bar;
+use crate::files::interchange::matrix_market;
 use crate::report::number::residual;
+use crate::report::standard::{self, problem_name};
 use crate::report::tables::{Align, Column, Table};
-use crate::report::{Bundle, prepare_output, standard};
+use crate::report::{Bundle, prepare_output};
+use crate::run::choice::Choice;
 use crate::run::record::Results;
-use crate::run::run_case::Choice;
 use crate::run::run_case::{Fields, Progress, Settings};
 use crate::run::verdict::EQUILIBRIUM;
 use crate::studies::exchange::export::{Request, export};
 use crate::studies::exchange::problem_file::ProblemFile;
-use crate::studies::paper;
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]
@@ -70,7 +73,7 @@ pub struct JudgeArgs {
     tier: Tier,
 }
 
-pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
+pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
     let case = find_case(&args.case)?;
     let request = Request {
         increment: args.increment,
@@ -79,7 +82,13 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
         choice: Choice::parse(&args.method)?,
     };
     prepare_output(&args.out)?;
-    let (name, bundle) = export(&case, &request)?;
+    let exported = export(&case, &request)?;
+    let (problem, increment) = (problem_name(&exported.key), exported.key.increment);
+    let name = format!("{problem}.increment-{increment}");
+    let mut bundle = Bundle::new();
+    for (end, contents) in exported.files {
+        bundle.add(format!("{name}.{end}"), contents)?;
+    }
     bundle.commit(&args.out)?;
     say(format_args!("{}", args.out.join(name).display()));
     for path in bundle.paths() {
@@ -88,7 +97,7 @@ pub(super) fn export_verb(args: ExportArgs) -> Result<bool, CliError> {
     Ok(true)
 }
 
-pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
+pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     let chosen = methods_or_all(&args.method)?;
     let problems = (args.files.iter())
         .map(|file| ProblemFile::read(file))
@@ -108,7 +117,15 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     let mut results = Results::default();
     let mut solutions = Bundle::new();
     for problem in &problems {
-        results.append(problem.run(&chosen, args.tier, &bar, &mut solutions)?);
+        let solved = problem.run(&chosen, args.tier, &bar);
+        results.append(solved.results);
+        for solution in solved.solutions {
+            let stem = standard::stem(&solution.key);
+            for (part, values) in [("r", &solution.reaction), ("u", &solution.velocity)] {
+                let text = matrix_market::vector(values);
+                solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
+            }
+        }
     }
     bar.finish();
     let mut bundle = standard::bundle(&results, &provenance(settings))?;
@@ -120,13 +137,13 @@ pub(super) fn solve_verb(args: SolveArgs) -> Result<bool, CliError> {
     ));
     say(format_args!(
         "{}\nResults: {}",
-        paper::summary(&results),
+        standard::summary(&results),
         args.out.display()
     ));
-    Ok(paper::as_expected(&results))
+    Ok(results.as_expected())
 }
 
-pub(super) fn judge_verb(args: JudgeArgs) -> Result<bool, CliError> {
+pub fn run_judge(args: JudgeArgs) -> Result<bool, CliError> {
     let problem = ProblemFile::read(&args.problem)?;
     let mut columns = vec![Column::new("reaction", "", Align::Left)];
     let residuals = [

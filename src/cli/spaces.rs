@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::CliError;
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::case::ContactSpace;
-use crate::report::{Bundle, Provenance, prepare_output};
-use crate::run::run_case::Choice;
+use crate::report::{Bundle, Provenance, add_provenance, prepare_output};
+use crate::run::choice::Choice;
 use crate::studies::spaces::infsup::{self, SCENES, Scene};
 use crate::studies::spaces::patch::{self, PatchRow};
 
@@ -49,10 +49,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let mut bundle = Bundle::new();
     crate::report::infsup::add_to(&mut bundle, &sequences)?;
     crate::report::patch::add_to(&mut bundle, &rows)?;
-    Provenance::collect(rayon::current_num_threads())
+    let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("meshes", meshes.to_string())
-        .with_option("distances", distances.to_string())
-        .add_to(&mut bundle)?;
+        .with_option("distances", distances.to_string());
+    add_provenance(&mut bundle, &provenance)?;
     bundle.commit(&arguments.out)?;
     for table in [
         crate::report::infsup::table(&sequences)?,

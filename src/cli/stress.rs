@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use stickslip_methods::Tier;
 
+use super::arguments::methods_or_all;
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use super::{CliError, methods_or_all};
+use crate::report::robustness::RobustnessRow;
 use crate::report::{Provenance, prepare_output, robustness};
-use crate::run::verdict::Verdict;
-use crate::studies::stress::{self, Study, Trial};
+use crate::studies::stress;
+use crate::studies::stress::StressPlan;
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -61,7 +63,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let mut dims: Vec<usize> = arguments.dims.iter().map(|&d| usize::from(d)).collect();
     dims.sort_unstable();
     dims.dedup();
-    let study = Study {
+    let plan = StressPlan {
         seed: arguments.seed,
         dims,
         problems: arguments.problems as usize,
@@ -72,27 +74,28 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     };
     prepare_output(&arguments.out)?;
     let bar = Bar::new();
-    let trials = stress::run(&study, &choices, &bar)?;
+    let trials = stress::run(&plan, &choices, &bar)?;
     bar.finish();
 
-    let provenance = Provenance::collect(study.jobs)
-        .with_option("jobs", study.jobs.to_string())
-        .with_option("tier", study.tier.to_string())
-        .with_option("seed", study.seed.to_string())
-        .with_option("problems", study.problems.to_string());
-    let mut bundle = robustness::bundle(&study, &trials, &provenance)?;
-    if let Some(problem) = study.only {
-        for &dim in &study.dims {
+    let provenance = Provenance::collect(plan.jobs)
+        .with_option("jobs", plan.jobs.to_string())
+        .with_option("tier", plan.tier.to_string())
+        .with_option("seed", plan.seed.to_string())
+        .with_option("problems", plan.problems.to_string());
+    let mut bundle = robustness::bundle(&plan, &trials, &provenance)?;
+    if let Some(problem) = plan.only {
+        for &dim in &plan.dims {
             let name = format!("problem-{dim}d-{problem}.toml");
-            bundle.add(name, stress::case_of(&study, &choices, dim, problem)?)?;
+            bundle.add(name, stress::case_of(&plan, &choices, dim, problem)?)?;
         }
     }
     bundle.commit(&arguments.out)?;
-    let table = robustness::table(&robustness::rows(&study, &trials))?;
+    let rows = robustness::rows(&plan, &trials);
+    let table = robustness::table(&rows)?;
     say(format_args!("{}", table.terminal()));
     say(format_args!(
         "{}\nResults: {}",
-        summary(&trials),
+        summary(&rows),
         arguments.out.display()
     ));
     for trial in trials.iter().filter(|t| t.is_wrong()) {
@@ -104,17 +107,16 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     Ok(stress::as_expected(&trials))
 }
 
-fn summary(trials: &[Trial]) -> String {
-    let count =
-        |keep: &dyn Fn(&Verdict) -> bool| trials.iter().filter(|t| keep(&t.verdict)).count();
+fn summary(rows: &[RobustnessRow]) -> String {
+    let sum = |count: fn(&RobustnessRow) -> usize| rows.iter().map(count).sum::<usize>();
     format!(
         "{} runs: {} solved, {} approximate, {} gave up, {} refused, {} false claims, {} crashed",
-        trials.len(),
-        count(&|v| matches!(v, Verdict::Solved)),
-        count(&|v| matches!(v, Verdict::Approximate(_))),
-        count(&|v| matches!(v, Verdict::GaveUp(_))),
-        count(&|v| matches!(v, Verdict::Refused(_))),
-        count(&|v| *v == Verdict::FalseClaim),
-        count(&|v| matches!(v, Verdict::Crashed(_))),
+        sum(|row| row.problems),
+        sum(|row| row.solved),
+        sum(|row| row.approximate.iter().sum()),
+        sum(|row| row.gave_up),
+        sum(|row| row.refused),
+        sum(|row| row.false_claims),
+        sum(|row| row.crashed),
     )
 }

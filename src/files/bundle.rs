@@ -4,11 +4,49 @@
 //! is atomic), and renamed only when every file is complete. A file that stood in the way is moved aside first and moved
 //! back when a later rename fails.
 
-use crate::report::ReportError;
 use std::collections::BTreeMap;
 use std::fs;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Component, Path, PathBuf};
+
+/// Failure to write into a folder.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FolderError {
+    /// The file system refused.
+    #[error("cannot {action} `{}`: {source}", path.display())]
+    Io {
+        /// What was tried, e.g. `create folder`.
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Two outputs were given the same file name.
+    #[error("two outputs are named `{path}`")]
+    Duplicate {
+        /// File name relative to the output folder.
+        path: String,
+    },
+    /// An output name that would leave the output folder.
+    #[error("output name `{path}` is not a relative path inside the output folder")]
+    OutsideFolder {
+        /// The refused name.
+        path: String,
+    },
+}
+
+impl FolderError {
+    /// The file system refused an action on a path.
+    pub fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
+        Self::Io {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+}
 
 /// Files of one command, by path relative to the output folder.
 #[derive(Debug, Default)]
@@ -25,23 +63,23 @@ impl Bundle {
     /// Adds one file; `path` is relative, with `/` between folders.
     ///
     /// # Errors
-    /// [`ReportError::Duplicate`] when the name is taken, [`ReportError::OutsideFolder`] when it is absolute, empty or
+    /// [`FolderError::Duplicate`] when the name is taken, [`FolderError::OutsideFolder`] when it is absolute, empty or
     /// climbs out of the folder.
     pub fn add(
         &mut self,
         path: impl Into<String>,
         contents: impl Into<Vec<u8>>,
-    ) -> Result<(), ReportError> {
+    ) -> Result<(), FolderError> {
         let path = path.into();
         let inside = !path.is_empty()
             && Path::new(&path)
                 .components()
                 .all(|c| matches!(c, Component::Normal(_)));
         if !inside {
-            return Err(ReportError::OutsideFolder { path });
+            return Err(FolderError::OutsideFolder { path });
         }
         if self.files.contains_key(&path) {
-            return Err(ReportError::Duplicate { path });
+            return Err(FolderError::Duplicate { path });
         }
         self.files.insert(path, contents.into());
         Ok(())
@@ -51,7 +89,7 @@ impl Bundle {
     ///
     /// # Errors
     /// Those of [`Bundle::add`].
-    pub fn append(&mut self, other: Bundle) -> Result<(), ReportError> {
+    pub fn append(&mut self, other: Bundle) -> Result<(), FolderError> {
         let mut files = other.files.into_iter();
         files.try_for_each(|(path, contents)| self.add(path, contents))
     }
@@ -71,18 +109,18 @@ impl Bundle {
     ///
     /// # Errors
     /// Those of [`commit`](Self::commit), and a folder that cannot be listed or cleared.
-    pub fn commit_all(&self, dir: &Path, own: &str) -> Result<(), ReportError> {
+    pub fn commit_all(&self, dir: &Path, own: &str) -> Result<(), FolderError> {
         self.commit(dir)?;
         let folder = dir.join(own);
         if !folder.is_dir() {
             return Ok(());
         }
-        let listing = |e| ReportError::io("list folder", &folder, e);
+        let listing = |e| FolderError::io("list folder", &folder, e);
         for entry in fs::read_dir(&folder).map_err(listing)? {
             let path = entry.map_err(listing)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if path.is_file() && !self.files.contains_key(&format!("{own}/{name}")) {
-                fs::remove_file(&path).map_err(|e| ReportError::io("remove file", &path, e))?;
+                fs::remove_file(&path).map_err(|e| FolderError::io("remove file", &path, e))?;
             }
         }
         Ok(())
@@ -91,8 +129,8 @@ impl Bundle {
     /// Writes everything into `dir`, replacing files of the same name; other files stay.
     ///
     /// # Errors
-    /// [`ReportError::Io`] naming the path; the folder then holds what it held before.
-    pub fn commit(&self, dir: &Path) -> Result<(), ReportError> {
+    /// [`FolderError::Io`] naming the path; the folder then holds what it held before.
+    pub fn commit(&self, dir: &Path) -> Result<(), FolderError> {
         create_dir(dir)?;
         let staging = Staging::create(dir)?;
         for (name, contents) in &self.files {
@@ -113,14 +151,14 @@ impl Bundle {
 /// any computing.
 ///
 /// # Errors
-/// [`ReportError::Io`] naming the path.
-pub fn prepare_output(dir: &Path) -> Result<(), ReportError> {
+/// [`FolderError::Io`] naming the path.
+pub fn prepare_output(dir: &Path) -> Result<(), FolderError> {
     // A folder that is still to be made takes its rights from the nearest one that exists.
     let existing = dir.ancestors().find(|path| path.exists());
     let folder = existing.unwrap_or(Path::new("."));
     if !folder.is_dir() {
         let source = std::io::Error::from(std::io::ErrorKind::NotADirectory);
-        return Err(ReportError::io("create folder", dir, source));
+        return Err(FolderError::io("create folder", dir, source));
     }
     let staging = Staging::create(folder)?;
     write(&staging.new_files().join("probe"), b"probe")
@@ -138,9 +176,9 @@ struct Swapped<'a> {
 }
 
 impl Staging {
-    fn create(dir: &Path) -> Result<Self, ReportError> {
+    fn create(dir: &Path) -> Result<Self, FolderError> {
         let root = dir.join(format!(".stickslip-partial-{}", unique()));
-        fs::create_dir(&root).map_err(|e| ReportError::io("create folder", &root, e))?;
+        fs::create_dir(&root).map_err(|e| FolderError::io("create folder", &root, e))?;
         Ok(Self { root })
     }
 
@@ -158,7 +196,7 @@ impl Staging {
         dir: &Path,
         name: &'a str,
         swapped: &mut Vec<Swapped<'a>>,
-    ) -> Result<(), ReportError> {
+    ) -> Result<(), FolderError> {
         let target = dir.join(name);
         if let Some(parent) = target.parent() {
             create_dir(parent)?;
@@ -168,7 +206,7 @@ impl Staging {
                 std::io::ErrorKind::IsADirectory,
                 "a folder stands where a file goes",
             );
-            return Err(ReportError::io("write file", &target, source));
+            return Err(FolderError::io("write file", &target, source));
         }
         let replaced = target.exists();
         if replaced {
@@ -176,11 +214,11 @@ impl Staging {
             if let Some(parent) = old.parent() {
                 create_dir(parent)?;
             }
-            fs::rename(&target, &old).map_err(|e| ReportError::io("replace file", &target, e))?;
+            fs::rename(&target, &old).map_err(|e| FolderError::io("replace file", &target, e))?;
         }
         swapped.push(Swapped { name, replaced });
         fs::rename(self.new_files().join(name), &target)
-            .map_err(|e| ReportError::io("write file", &target, e))
+            .map_err(|e| FolderError::io("write file", &target, e))
     }
 
     /// Undoes [`Staging::swap_in`]. The first failure is what the user is told, so failures in here are not reported.
@@ -209,13 +247,13 @@ pub fn unique() -> String {
     format!("{}-{random:016x}", std::process::id())
 }
 
-fn create_dir(dir: &Path) -> Result<(), ReportError> {
-    fs::create_dir_all(dir).map_err(|e| ReportError::io("create folder", dir, e))
+fn create_dir(dir: &Path) -> Result<(), FolderError> {
+    fs::create_dir_all(dir).map_err(|e| FolderError::io("create folder", dir, e))
 }
 
-fn write(path: &Path, contents: &[u8]) -> Result<(), ReportError> {
+fn write(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
     if let Some(parent) = path.parent() {
         create_dir(parent)?;
     }
-    fs::write(path, contents).map_err(|e| ReportError::io("write file", path, e))
+    fs::write(path, contents).map_err(|e| FolderError::io("write file", path, e))
 }

@@ -28,9 +28,9 @@ use stickslip_xfem::stiffness::elasticity::CellMatrix;
 
 use crate::case::{Case, CaseError, ContactSpace, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};
-use crate::model::loading::{FixedLoad, fixed_loads};
+use crate::model::fixed_loads::{FixedLoad, fixed_loads};
+pub use crate::model::refusals::BodyError;
 use crate::model::refusals::{check_probes, check_supports, crack_error, motion_error};
-use crate::run::step::Setup;
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -68,10 +68,8 @@ pub struct Body {
     pub space: String,
     /// By crack of the case file: its contact points are means over multiplier functions, not places.
     pub integrated: Vec<bool>,
-    /// Seconds for mesh, cutting, pattern and ordering.
-    pub setup_s: f64,
-    /// Seconds for cell matrices and their sum.
-    pub assembly_s: f64,
+    /// Times shared by all runs on the body.
+    pub setup: Setup,
     /// Jump operator over all unknowns: rows point by point, (n, a[, b]), as (unknown, coefficient).
     pub jump_rows: Vec<Vec<(usize, f64)>>,
     /// Traction operator over all unknowns, in the same form; empty unless a run [`Needs`] it.
@@ -80,18 +78,13 @@ pub struct Body {
     pub loads: Vec<FixedLoad>,
 }
 
-/// Why a case cannot be discretised.
-#[derive(Debug, thiserror::Error)]
-pub enum BodyError {
-    /// The case asks for something impossible; carries file, line and column.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A cut cell could not be integrated.
-    #[error(transparent)]
-    Cell(#[from] CellError),
-    /// The algebraic system was refused.
-    #[error(transparent)]
-    Method(#[from] MethodError),
+/// Where the system of a run comes from: times shared by all runs on it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Setup {
+    /// Seconds for mesh, cutting, pattern and ordering; for a file, for reading.
+    pub setup_s: f64,
+    /// Seconds for cell matrices and their sum.
+    pub assembly_s: f64,
 }
 
 /// What the runs on a body will ask of it: a body pays for nothing else.
@@ -288,8 +281,10 @@ impl Body {
             label,
             space,
             integrated,
-            setup_s,
-            assembly_s,
+            setup: Setup {
+                setup_s,
+                assembly_s,
+            },
             jump_rows: jump,
             traction_rows: traction,
             loads,
@@ -297,14 +292,6 @@ impl Body {
             cracks,
             enrichment,
         })
-    }
-
-    /// Times shared by all runs on the body.
-    pub fn setup(&self) -> Setup {
-        Setup {
-            setup_s: self.setup_s,
-            assembly_s: self.assembly_s,
-        }
     }
 
     /// Integrator over the cells.

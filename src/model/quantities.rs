@@ -7,7 +7,57 @@ use crate::case::Case;
 use crate::model::body::Body;
 use crate::model::boundary::region_name;
 use crate::model::loading::Loading;
-use crate::run::record::{PointRow, QuantityRow, RunKey};
+
+/// One quantity of interest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
+    /// max_penetration_sampled, max_slip, mean_slip, dissipation, strain_energy, …
+    pub name: String,
+    /// Place: a side, a probe, a crack (`crack-1`), or empty.
+    pub at: String,
+    /// x, y, z, n, a, b, or empty.
+    pub component: String,
+    /// Value, SI.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: String,
+}
+
+/// One contact point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointState {
+    /// Crack number, from 1.
+    pub crack: usize,
+    /// Point number within the crack, from 1, ordered along it.
+    pub number: usize,
+    /// Position [m].
+    pub x_m: f64,
+    /// Position [m].
+    pub y_m: f64,
+    /// Position [m]; 0 in 2D.
+    pub z_m: f64,
+    /// Distance along the crack from its first point (2D) [m]; 0 in 3D.
+    pub s_m: f64,
+    /// Tributary length [m] (2D) or area [m²] (3D).
+    pub weight: f64,
+    /// Normal gap, open > 0 [m].
+    pub gap_m: f64,
+    /// Tangential jump along a, total [m].
+    pub slip_a_m: f64,
+    /// Tangential jump along b, total [m]; 0 in 2D.
+    pub slip_b_m: f64,
+    /// Contact force along n on side 1, compression > 0 [`force_unit`].
+    pub p_n: f64,
+    /// Contact force along a on side 1 [`force_unit`].
+    pub p_a: f64,
+    /// Contact force along b on side 1; 0 in 2D [`force_unit`].
+    pub p_b: f64,
+    /// `N/m` in 2D (per metre of thickness), `N` in 3D.
+    pub force_unit: String,
+    /// open, stick or slip.
+    pub status: String,
+}
 
 /// The mechanics at the end of an increment, over all unknowns and points.
 #[derive(Debug, Clone)]
@@ -108,15 +158,14 @@ impl Snapshot {
 const AXES: [&str; 3] = ["x", "y", "z"];
 const LOCAL: [&str; 3] = ["n", "a", "b"];
 
-/// Rows of `quantities.csv` for one increment.
-pub fn quantity_rows(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<QuantityRow> {
+/// All quantities of interest.
+pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     let dim = body.mesh.dim();
     let (force_unit, energy_unit) = if dim == 2 { ("N/m", "J/m") } else { ("N", "J") };
     let mut rows = Vec::new();
-    let mut push = |quantity: &str, at: &str, component: &str, value: f64, unit: &str| {
-        rows.push(QuantityRow {
-            key: key.clone(),
-            quantity: quantity.into(),
+    let mut push = |name: &str, at: &str, component: &str, value: f64, unit: &str| {
+        rows.push(Quantity {
+            name: name.into(),
             at: at.into(),
             component: component.into(),
             value,
@@ -241,8 +290,8 @@ fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<(String, usize, f6
     totals
 }
 
-/// Rows of `points.csv` for one increment.
-pub fn point_rows(body: &Body, key: &RunKey, now: &Snapshot) -> Vec<PointRow> {
+/// All contact points.
+pub fn point_states(body: &Body, now: &Snapshot) -> Vec<PointState> {
     let dim = body.mesh.dim();
     let mut number = 0;
     let mut last = usize::MAX;
@@ -257,10 +306,9 @@ pub fn point_rows(body: &Body, key: &RunKey, now: &Snapshot) -> Vec<PointRow> {
                 &now.jump[i * dim..(i + 1) * dim],
                 &now.p[i * dim..(i + 1) * dim],
             );
-            PointRow {
-                key: key.clone(),
+            PointState {
                 crack: point.crack + 1,
-                point: number,
+                number,
                 x_m: point.x[0],
                 y_m: point.x[1],
                 z_m: point.x[2],

@@ -1,14 +1,28 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
+use stickslip_methods::MethodError;
 use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::mesh::Mesh;
-use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use crate::case::{Case, CaseError, LoadKind, Span};
-use crate::model::body::BodyError;
 use crate::model::boundary::region_nodes;
 use crate::model::nodal_forces::LoadError;
+
+/// Why a case cannot be discretised.
+#[derive(Debug, thiserror::Error)]
+pub enum BodyError {
+    /// The case asks for something impossible; carries file, line and column.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A cut cell could not be integrated.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+    /// The algebraic system was refused.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}
 
 /// Refuses a support whose region holds no node.
 pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {

@@ -1,14 +1,16 @@
 //! Method against method: every case times every method, and the paper's two problems by every method and variant.
 
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{residual, significant, time, value};
 use super::plot::method_cost;
 use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper, standard};
+use super::{Bundle, ReportError, tables};
 use crate::run::record::RunRow;
+use crate::run::verdict::Verdict;
+use crate::studies::paper::variants::VariantRow;
 
 /// One method on one case: all meshes, friction coefficients and increments together.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +22,7 @@ pub struct ComparisonRow {
     /// Increments run.
     pub increments: usize,
     /// The verdict farthest from `solved` among them.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// Largest natural map found by the judge [-].
     pub natural_map: f64,
     /// Iterations in all.
@@ -33,28 +35,10 @@ pub struct ComparisonRow {
     pub solve_s: f64,
 }
 
-/// How far a verdict is from `solved`.
-fn distance(verdict: &str) -> usize {
-    const FROM_BEST: [&str; 9] = [
-        "solved",
-        "approximate: high",
-        "approximate: mid",
-        "approximate: low",
-        "approximate: none",
-        "refused",
-        "gave-up",
-        "crashed",
-        "false-claim",
-    ];
-    let known = FROM_BEST.iter().position(|p| verdict.starts_with(p));
-    known.unwrap_or(FROM_BEST.len())
-}
-
 /// The verdict farthest from `solved`; of equally far ones the first by name, so that the order of the runs does not
 /// matter.
-fn worst<'a>(verdicts: impl Iterator<Item = &'a str>) -> &'a str {
-    let farther = |a: &&str, b: &&str| distance(a).cmp(&distance(b)).then_with(|| b.cmp(a));
-    verdicts.max_by(farther).unwrap_or_default()
+fn worst<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> Option<&'a Verdict> {
+    verdicts.max_by_key(|verdict| (verdict.rank(), Reverse(verdict.to_string())))
 }
 
 /// Sums the runs up by case and method.
@@ -65,12 +49,12 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
         groups.entry(key).or_default().push(run);
     }
     let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
-        let all_solved = group.iter().all(|r| standard::solved(&r.verdict));
-        ComparisonRow {
+        let all_solved = group.iter().all(|r| r.verdict == Verdict::Solved);
+        Some(ComparisonRow {
             case: case.into(),
             method: method.into(),
             increments: group.len(),
-            verdict: worst(group.iter().map(|r| r.verdict.as_str())).into(),
+            verdict: worst(group.iter().map(|r| &r.verdict))?.clone(),
             natural_map: group.iter().map(|r| r.natural_map).fold(0.0, worse),
             iterations: group.iter().map(|r| r.iterations).sum(),
             tangent_factorisations: group.iter().map(|r| r.tangent_factorisations).sum(),
@@ -80,9 +64,9 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
             } else {
                 f64::NAN
             },
-        }
+        })
     };
-    groups.into_iter().map(row).collect()
+    groups.into_iter().filter_map(row).collect()
 }
 
 /// The larger residual; NaN, nothing judged, is worse than any.
@@ -114,7 +98,7 @@ impl Row for ComparisonRow {
             self.case.clone(),
             self.method.clone(),
             self.increments.to_string(),
-            self.verdict.clone(),
+            self.verdict.to_string(),
             residual(self.natural_map),
             self.iterations.to_string(),
             self.tangent_factorisations.to_string(),
@@ -152,7 +136,7 @@ pub fn comparison_table(rows: &[ComparisonRow]) -> Result<Table, ReportError> {
             row.case.clone(),
             row.method.clone(),
             row.increments.to_string(),
-            row.verdict.clone(),
+            row.verdict.to_string(),
             residual(row.natural_map),
             row.iterations.to_string(),
             row.tangent_factorisations.to_string(),
@@ -168,35 +152,6 @@ fn shown_time(seconds: f64) -> String {
     } else {
         time(seconds)
     }
-}
-
-/// One of the paper's problems by one method or variant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VariantRow {
-    /// Case.
-    pub case: String,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Method, options other than the default in brackets.
-    pub method: String,
-    /// Claim × check.
-    pub verdict: String,
-    /// What is compared: `reaction top y` of the plate [N/m], `displacement P4 z` of the beam [m].
-    pub quantity: String,
-    /// Its value; NaN where the run has no answer.
-    pub value: f64,
-    /// Deviation from the reference method on the same mesh, relative [-].
-    pub deviation: f64,
-    /// Natural map found by the judge [-].
-    pub natural_map: f64,
-    /// Iterations.
-    pub iterations: usize,
-    /// Dense factorisations of condensed matrices.
-    pub tangent_factorisations: usize,
-    /// Sparse factorisations over all unknowns.
-    pub global_factorisations: usize,
-    /// Solve time [s].
-    pub solve_s: f64,
 }
 
 impl Row for VariantRow {
@@ -222,7 +177,7 @@ impl Row for VariantRow {
             self.case.clone(),
             value(self.friction),
             self.method.clone(),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
             self.quantity.clone(),
             value(self.value),
             residual(self.deviation),
@@ -264,12 +219,12 @@ pub fn variant_table(rows: &[VariantRow]) -> Result<Table, ReportError> {
         ],
     );
     for row in rows {
-        let honest = standard::honest(&row.verdict);
+        let honest = row.verdict.as_ref().is_some_and(Verdict::is_honest);
         table.push(vec![
             row.case.clone(),
             value(row.friction),
             row.method.clone(),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
             row.quantity.clone(),
             significant(row.value, 8),
             residual(row.deviation),
@@ -294,13 +249,13 @@ pub fn add(
 ) -> Result<(), ReportError> {
     let rows = comparison(runs);
     bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
-    paper::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
+    tables::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
     // Where nothing did what it claims there is nothing to draw.
-    if rows.iter().any(|row| standard::honest(&row.verdict)) {
+    if rows.iter().any(|row| row.verdict.is_honest()) {
         bundle.add("figures/cost.svg", method_cost(&rows)?)?;
     }
     bundle.add(VariantRow::FILE, csv::file(variants)?)?;
-    paper::add_readable(bundle, "variants", &variant_table(variants)?)
+    tables::add_readable(bundle, "variants", &variant_table(variants)?)
 }
 
 #[cfg(test)]
@@ -315,15 +270,18 @@ mod tests {
             "approximate: mid",
             "approximate: low",
             "approximate: none",
+            "refused: yes",
             "refused: no",
             "gave-up: stalled",
+            "timed-out",
+            "out-of-memory",
             "crashed: oh",
             "false-claim",
-            "unheard of",
-        ];
+        ]
+        .map(|text| text.parse::<Verdict>().unwrap());
         for pair in from_best.windows(2) {
-            for order in [[pair[0], pair[1]], [pair[1], pair[0]]] {
-                assert_eq!(worst(order.into_iter()), pair[1]);
+            for order in [[&pair[0], &pair[1]], [&pair[1], &pair[0]]] {
+                assert_eq!(worst(order.into_iter()), Some(&pair[1]));
             }
         }
     }

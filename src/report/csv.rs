@@ -2,6 +2,7 @@
 
 use super::number::{residual, time, value};
 use super::{Bundle, ReportError};
+use crate::model::quantities::{PointState, Quantity};
 use crate::run::record::{
     ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, Results, RunKey, RunRow,
 };
@@ -102,17 +103,17 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
     bundle.add(HistoryRow::FILE, file(&results.history)?)?;
     bundle.add(PointRow::FILE, file(&results.points)?)?;
     bundle.add(ExactRow::FILE, file(&results.exact)?)?;
-    bundle.add(ExpectRow::FILE, file(&results.expectations)?)
+    Ok(bundle.add(ExpectRow::FILE, file(&results.expectations)?)?)
 }
 
 /// Writes these six files into `dir`, all or none.
 ///
 /// # Errors
-/// [`ReportError::Io`] naming the path that could not be written.
+/// [`FolderError::Io`](crate::files::bundle::FolderError::Io) naming the path that could not be written.
 pub fn write_all(dir: &Path, results: &Results) -> Result<(), ReportError> {
     let mut bundle = Bundle::new();
     add_to(&mut bundle, results)?;
-    bundle.commit(dir)
+    Ok(bundle.commit(dir)?)
 }
 
 impl Row for RunRow {
@@ -174,7 +175,7 @@ impl Row for RunRow {
         } = self;
         vec![
             tier.clone(),
-            verdict.clone(),
+            verdict.to_string(),
             residual(*natural_map),
             iterations.to_string(),
             factorisations.to_string(),
@@ -212,16 +213,15 @@ impl Row for QuantityRow {
     }
 
     fn cells(&self) -> Vec<String> {
-        let QuantityRow {
-            key: _,
-            quantity,
+        let Quantity {
+            name,
             at,
             component,
             value: v,
             unit,
-        } = self;
+        } = &self.quantity;
         vec![
-            quantity.clone(),
+            name.clone(),
             at.clone(),
             component.clone(),
             value(*v),
@@ -230,11 +230,8 @@ impl Row for QuantityRow {
     }
 
     fn order(&self, other: &Self) -> Ordering {
-        (&self.quantity, &self.at, &self.component).cmp(&(
-            &other.quantity,
-            &other.at,
-            &other.component,
-        ))
+        let (a, b) = (&self.quantity, &other.quantity);
+        (&a.name, &a.at, &a.component).cmp(&(&b.name, &b.at, &b.component))
     }
 }
 
@@ -285,10 +282,9 @@ impl Row for PointRow {
     }
 
     fn cells(&self) -> Vec<String> {
-        let PointRow {
-            key: _,
+        let PointState {
             crack,
-            point,
+            number,
             x_m,
             y_m,
             z_m,
@@ -302,8 +298,8 @@ impl Row for PointRow {
             p_b,
             force_unit,
             status,
-        } = self;
-        let mut cells = vec![crack.to_string(), point.to_string()];
+        } = &self.point;
+        let mut cells = vec![crack.to_string(), number.to_string()];
         let numbers = [
             x_m, y_m, z_m, s_m, weight, gap_m, slip_a_m, slip_b_m, p_n, p_a, p_b,
         ];
@@ -313,7 +309,7 @@ impl Row for PointRow {
     }
 
     fn order(&self, other: &Self) -> Ordering {
-        (self.crack, self.point).cmp(&(other.crack, other.point))
+        (self.point.crack, self.point.number).cmp(&(other.point.crack, other.point.number))
     }
 }
 

@@ -1,36 +1,17 @@
 //! What can go wrong while results become files.
 
-use std::path::{Path, PathBuf};
+use crate::files::bundle::FolderError;
 
 /// Failure to write a report.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The file system refused.
-    #[error("cannot {action} `{}`: {source}", path.display())]
-    Io {
-        /// What was tried, e.g. `create folder`.
-        action: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// Two outputs were given the same file name.
-    #[error("two outputs are named `{path}`")]
-    Duplicate {
-        /// File name relative to the output folder.
-        path: String,
-    },
-    /// An output name that would leave the output folder.
-    #[error("output name `{path}` is not a relative path inside the output folder")]
-    OutsideFolder {
-        /// The refused name.
-        path: String,
-    },
+    /// The folder that the report goes to.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A picture whose arrays do not fit together.
     #[error("picture `{name}`: {reason}")]
-    Picture {
+    FieldMesh {
         /// Array or picture name.
         name: String,
         /// What does not fit, with sizes.
@@ -68,11 +49,11 @@ pub enum ReportError {
 }
 
 impl ReportError {
-    pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
-        Self::Io {
-            action,
-            path: path.to_path_buf(),
-            source,
+    /// What a picture lacks for a figure.
+    pub(crate) fn field_mesh(name: &str, reason: String) -> Self {
+        Self::FieldMesh {
+            name: name.to_owned(),
+            reason,
         }
     }
 

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
 use super::plot::{Lattice, SmallPanel, italic, lattice};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, ReportError};
 use crate::case::ContactSpace;
 use crate::studies::spaces::infsup::{
     LARGEST_SLOPE, LEAST_SHARE, SCENES, SPACES, Sample, Sequence,
@@ -241,6 +241,6 @@ fn heading(name: &str) -> Vec<String> {
 /// Those of [`Bundle::add`], of the table and the figure.
 pub fn add_to(bundle: &mut Bundle, sequences: &[Sequence]) -> Result<(), ReportError> {
     bundle.add(InfSupRow::FILE, csv::file(&rows(sequences))?)?;
-    paper::add_readable(bundle, "infsup", &table(sequences)?)?;
-    bundle.add("figures/infsup.svg", figure(sequences)?)
+    tables::add_readable(bundle, "infsup", &table(sequences)?)?;
+    Ok(bundle.add("figures/infsup.svg", figure(sequences)?)?)
 }

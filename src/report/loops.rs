@@ -18,21 +18,21 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
     let solid: BTreeSet<String> = results
         .quantities
         .iter()
-        .filter(|row| row.quantity == "mean_slip" && row.component == "b")
+        .filter(|row| row.quantity.name == "mean_slip" && row.quantity.component == "b")
         .map(|row| problem_name(&row.key))
         .collect();
     let mut problems: BTreeMap<String, Vec<QuantityRow>> = BTreeMap::new();
     for row in &results.quantities {
         let wanted = ["mean_slip", "contact_force", "dissipation"];
         let name = problem_name(&row.key);
-        if wanted.contains(&row.quantity.as_str()) && !solid.contains(&name) {
+        if wanted.contains(&row.quantity.name.as_str()) && !solid.contains(&name) {
             problems.entry(name).or_default().push(row.clone());
         }
     }
     for (name, rows) in problems {
         let cracks: BTreeSet<usize> = rows
             .iter()
-            .filter_map(|row| row.at.strip_prefix("crack-")?.parse().ok())
+            .filter_map(|row| row.quantity.at.strip_prefix("crack-")?.parse().ok())
             .collect();
         let note = dissipation(&rows, results);
         for crack in cracks {
@@ -46,7 +46,7 @@ pub fn add_to(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError>
 
 /// What the first method of a problem dissipates over the path, beside the closed form if the case states it.
 fn dissipation(rows: &[QuantityRow], results: &Results) -> Option<String> {
-    let own = rows.iter().filter(|row| row.quantity == "dissipation");
+    let own = rows.iter().filter(|row| row.quantity.name == "dissipation");
     let last = own.max_by_key(|row| {
         let rank = plot::method_rank(&row.key.method);
         (row.key.increment, std::cmp::Reverse(rank))
@@ -62,7 +62,7 @@ fn dissipation(rows: &[QuantityRow], results: &Results) -> Option<String> {
     let exact = exact.map_or(String::new(), |row| {
         format!(", closed form {}", number(row.expected))
     });
-    let (found, unit) = (number(last.value), &last.unit);
+    let (found, unit) = (number(last.quantity.value), &last.quantity.unit);
     Some(format!(
         "dissipated up to increment {increment} ({method}): {found} {unit}{exact}"
     ))

@@ -1,16 +1,22 @@
-//! The two tables of the founding paper, our values beside the printed ones.
+//! The main job: the two tables of the founding paper, our values beside the printed ones, and all that stands with them.
 //!
-//! Table 1: vertical reaction at the top of the plate. Table 2: displacement of seven points of the beam. The printed
-//! numbers come from the caller (`cases/reference/`); lines with the method [`PRINTED`] carry them.
+//! Table 1: vertical reaction at the top of the plate. Table 2: displacement of seven points of the beam. Lines
+//! with the method [`PRINTED`] carry the printed numbers.
 
+pub mod converged_reactions;
+pub mod plate_series;
+
+use self::plate_series::{
+    add_penalty, add_refinement, limit_table, penalty_table, refinement_table,
+};
 use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError};
+use super::{Bundle, Provenance, ReportError, comparison, standard, tables};
+use crate::run::verdict::Verdict;
+use crate::studies::paper::Paper;
+use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
 use std::cmp::Ordering;
-
-/// Method name of lines that repeat the published numbers.
-pub const PRINTED: &str = "printed";
 
 /// Decimals of a reaction: the paper prints one, two more are shown.
 const REACTION_DECIMALS: usize = 3;
@@ -20,51 +26,6 @@ const DIFFERENCE_DIGITS: usize = 3;
 
 /// What a table shows where a run has no value.
 const NO_VALUE: &str = "–";
-
-/// One line of Table 1.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Table1Row {
-    /// Mesh of the paper: `I` or `II`.
-    pub mesh: String,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Method label.
-    pub method: String,
-    /// Computed reaction [MN/m]; none where the method gave no solution.
-    pub reaction_mn_per_m: Option<f64>,
-    /// Printed reaction [MN/m]; none where the paper has none.
-    pub printed_mn_per_m: Option<f64>,
-    /// (computed − printed) / printed [-].
-    pub relative_difference: Option<f64>,
-    /// Claim × check.
-    pub verdict: String,
-}
-
-impl Table1Row {
-    /// A line with its relative difference computed.
-    pub fn new(
-        mesh: impl Into<String>,
-        friction: f64,
-        method: impl Into<String>,
-        reaction_mn_per_m: Option<f64>,
-        printed_mn_per_m: Option<f64>,
-        verdict: impl Into<String>,
-    ) -> Self {
-        let relative_difference = match (reaction_mn_per_m, printed_mn_per_m) {
-            (Some(ours), Some(theirs)) => Some((ours - theirs) / theirs),
-            _ => None,
-        };
-        Self {
-            mesh: mesh.into(),
-            friction,
-            method: method.into(),
-            reaction_mn_per_m,
-            printed_mn_per_m,
-            relative_difference,
-            verdict: verdict.into(),
-        }
-    }
-}
 
 impl Row for Table1Row {
     const FILE: &'static str = "table1.csv";
@@ -89,7 +50,7 @@ impl Row for Table1Row {
             optional(self.relative_difference, |d| {
                 significant(d, DIFFERENCE_DIGITS)
             }),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -101,67 +62,12 @@ impl Row for Table1Row {
     }
 }
 
-/// One line of Table 2: the displacement component of the seven points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Table2Row {
-    /// Model of the paper: `I` or `II`.
-    pub model: String,
-    /// `as-printed` (μ = 0) or `as-stated` (μ = 0.1).
-    pub variant: String,
-    /// `x`, `y` or `z`.
-    pub component: String,
-    /// Method label, or [`PRINTED`].
-    pub method: String,
-    /// Displacement of P1 … P7 (mm); NaN where the method gave no solution.
-    pub p_mm: [f64; 7],
-    /// Largest |computed − printed| over the seven points (mm); none for the printed line itself.
-    pub max_difference_mm: Option<f64>,
-    /// Claim × check; empty for the printed line.
-    pub verdict: String,
-}
-
-impl Table2Row {
-    /// The line that repeats the published numbers.
-    pub fn printed(
-        model: impl Into<String>,
-        variant: impl Into<String>,
-        component: impl Into<String>,
-        p_mm: [f64; 7],
-    ) -> Self {
-        Self {
-            model: model.into(),
-            variant: variant.into(),
-            component: component.into(),
-            method: PRINTED.into(),
-            p_mm,
-            max_difference_mm: None,
-            verdict: String::new(),
-        }
+/// Printed numbers were not run here, and nobody expects it.
+fn verdict_cell(row: &Table2Row) -> String {
+    if row.method == PRINTED {
+        return String::new();
     }
-
-    /// A computed line to stand below the printed line `reference`.
-    pub fn computed(
-        reference: &Self,
-        method: impl Into<String>,
-        p_mm: [f64; 7],
-        verdict: impl Into<String>,
-    ) -> Self {
-        // `f64::max` would swallow the NaN of a run without a solution.
-        let solved = p_mm.iter().all(|p| p.is_finite());
-        let difference = || {
-            p_mm.iter()
-                .zip(reference.p_mm)
-                .map(|(ours, theirs)| (ours - theirs).abs())
-                .fold(0.0, f64::max)
-        };
-        Self {
-            method: method.into(),
-            p_mm,
-            max_difference_mm: solved.then(difference),
-            verdict: verdict.into(),
-            ..reference.clone()
-        }
-    }
+    Verdict::or_not_run(row.verdict.as_ref())
 }
 
 impl Row for Table2Row {
@@ -194,7 +100,7 @@ impl Row for Table2Row {
         cells.push(optional(self.max_difference_mm, |d| {
             significant(d, DIFFERENCE_DIGITS)
         }));
-        cells.push(self.verdict.clone());
+        cells.push(verdict_cell(self));
         cells
     }
 
@@ -255,7 +161,7 @@ pub fn table1(rows: &[Table1Row]) -> Result<Table, ReportError> {
             shown(row.reaction_mn_per_m, |r| fixed(r, REACTION_DECIMALS)),
             shown(row.printed_mn_per_m, |r| fixed(r, REACTION_DECIMALS - 2)),
             shown(row.relative_difference, short),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -303,7 +209,7 @@ pub fn table2(rows: &[Table2Row], digits: Digits) -> Result<Table, ReportError> 
         ];
         cells.extend(row.p_mm.map(|p| shown(Some(p), |p| fixed(p, decimals))));
         cells.push(shown(row.max_difference_mm, short));
-        cells.push(row.verdict.clone());
+        cells.push(verdict_cell(row));
         table.push(cells)?;
     }
     Ok(table)
@@ -321,7 +227,7 @@ fn sorted<R: Row>(rows: &[R]) -> Vec<&R> {
 /// Those of [`Bundle::add`].
 pub fn add_table1(bundle: &mut Bundle, rows: &[Table1Row]) -> Result<(), ReportError> {
     bundle.add(Table1Row::FILE, csv::file(rows)?)?;
-    add_readable(bundle, "table1", &table1(rows)?)
+    tables::add_readable(bundle, "table1", &table1(rows)?)
 }
 
 /// Adds `table2.csv`, `table2.md` and `table2.tex`.
@@ -330,14 +236,53 @@ pub fn add_table1(bundle: &mut Bundle, rows: &[Table1Row]) -> Result<(), ReportE
 /// Those of [`Bundle::add`].
 pub fn add_table2(bundle: &mut Bundle, rows: &[Table2Row]) -> Result<(), ReportError> {
     bundle.add(Table2Row::FILE, csv::file(rows)?)?;
-    add_readable(bundle, "table2", &table2(rows, Digits::TwoMore)?)
+    tables::add_readable(bundle, "table2", &table2(rows, Digits::TwoMore)?)
 }
 
-/// Adds a table as `<stem>.md` and `<stem>.tex`, its LaTeX label `tab:<stem>`.
+/// All files of the report of the main job.
 ///
 /// # Errors
-/// Those of [`Bundle::add`].
-pub fn add_readable(bundle: &mut Bundle, stem: &str, table: &Table) -> Result<(), ReportError> {
-    bundle.add(format!("{stem}.md"), table.markdown())?;
-    bundle.add(format!("{stem}.tex"), table.latex(&format!("tab:{stem}")))
+/// Those of the parts.
+pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportError> {
+    let mut bundle = standard::bundle(&paper.results, provenance)?;
+    add_table1(&mut bundle, &paper.table1)?;
+    add_table2(&mut bundle, &paper.table2)?;
+    add_penalty(&mut bundle, &paper.penalty)?;
+    add_refinement(&mut bundle, &paper.refinement, &paper.limits)?;
+    converged_reactions::add(
+        &mut bundle,
+        &paper.converged_meshes,
+        &paper.converged,
+        &paper.refinement,
+    )?;
+    comparison::add(&mut bundle, &paper.results.runs, &paper.variants)?;
+    Ok(bundle)
+}
+
+/// What the terminal shows of the main job.
+///
+/// # Errors
+/// Those of the tables.
+pub fn text(paper: &Paper) -> Result<String, ReportError> {
+    let mut text = String::new();
+    for table in [
+        table1(&paper.table1)?,
+        table2(&paper.table2, Digits::Printed)?,
+        penalty_table(&paper.penalty)?,
+        refinement_table(&paper.refinement)?,
+        limit_table(&paper.limits)?,
+        converged_reactions::converged_table(&paper.converged)?,
+        comparison::variant_table(&paper.variants)?,
+        standard::expectation_summary(&paper.results.expectations)?,
+    ] {
+        text.push_str(&table.terminal());
+        text.push('\n');
+    }
+    text.push_str(&format!(
+        "{}\n\nModel I with exact sub-cells against Model II: {:.1e} mm\n{}\n",
+        converged_reactions::summary(&paper.converged),
+        paper.beam_models_mm,
+        standard::summary(&paper.results)
+    ));
+    Ok(text)
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::csv::{self, Row};
 use super::number::{significant, value};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, ReportError};
 use crate::studies::spaces::patch::{Loaded, PASSED, PatchRow, State};
 
 /// Significant digits of errors.
@@ -63,7 +63,11 @@ impl Row for PatchRow {
             space.clone(),
             points.to_string(),
             // The place in a case file that nobody has says nothing.
-            run.lines().next().unwrap_or_default().to_owned(),
+            run.to_string()
+                .lines()
+                .next()
+                .unwrap_or_default()
+                .to_owned(),
             error(*traction),
             error(*displacement),
             verdict(self.passed()).into(),
@@ -154,12 +158,13 @@ pub fn table(rows: &[PatchRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`].
 pub fn add_to(bundle: &mut Bundle, rows: &[PatchRow]) -> Result<(), ReportError> {
     bundle.add(PatchRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "patch", &table(rows)?)
+    tables::add_readable(bundle, "patch", &table(rows)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::verdict::Verdict;
 
     fn row(distance: f64, space: &str, traction: f64) -> PatchRow {
         PatchRow {
@@ -171,7 +176,7 @@ mod tests {
             distance,
             space: space.into(),
             points: 5,
-            verdict: "solved\n  at a place".into(),
+            verdict: Verdict::Refused("no\n  at a place".into()),
             traction,
             displacement: 1e-15,
         }
@@ -190,8 +195,8 @@ mod tests {
         add_to(&mut bundle, &rows).unwrap();
         let text = |name| String::from_utf8(bundle.get(name).unwrap().to_vec()).unwrap();
         let csv = text("patch.csv");
-        assert!(csv.contains("stick,displacement,2,27°,regular,0.1,star,5,solved,0,0,pass"));
-        assert!(csv.contains("stick,displacement,2,27°,regular,0,facet,5,solved,NaN,0,fail"));
+        assert!(csv.contains("stick,displacement,2,27°,regular,0.1,star,5,refused: no,0,0,pass"));
+        assert!(csv.contains("stick,displacement,2,27°,regular,0,facet,5,refused: no,NaN,0,fail"));
         let markdown = text("patch.md");
         let line = |space: &str| {
             let found = markdown.lines().find(|l| l.contains(space));

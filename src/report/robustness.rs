@@ -3,25 +3,16 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use stickslip_methods::{Status, Tier};
+use stickslip_methods::Tier;
 
 use super::csv::{self, Row};
 use super::number::{fixed, residual, significant, time, value};
 use super::plot::success_rates;
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, paper};
-use crate::run::verdict::Verdict;
-use crate::studies::stress::{Study, Trial};
+use super::{Bundle, Provenance, ReportError, tables};
+use crate::run::verdict::{GIVE_UPS, Verdict};
+use crate::studies::stress::{StressPlan, Trial};
 use crate::studies::sweep::analysis::proportion::wilson;
-
-/// Ends without a claim that have a column of their own.
-const GIVE_UPS: [Status; 5] = [
-    Status::MaxIterations,
-    Status::Stalled,
-    Status::SingularTangent,
-    Status::Mechanism,
-    Status::Diverged,
-];
 
 /// Tiers that contact laws held to beside an approximate method's own laws; none comes last.
 const GRADES: [Option<Tier>; 4] = [Some(Tier::High), Some(Tier::Mid), Some(Tier::Low), None];
@@ -47,11 +38,11 @@ pub struct RobustnessRow {
     pub approximate: [usize; 4],
     /// Ended without a claim.
     pub gave_up: usize,
-    /// Those of them with each status of `GIVE_UPS`.
+    /// Those of them with each of [`GIVE_UPS`] but the last: nobody stops a trial.
     pub gave_up_by: [usize; 5],
     /// Claims the judge refuted.
     pub false_claims: usize,
-    /// Errors.
+    /// Errors, out of memory among them.
     pub crashed: usize,
     /// Problems declined; they count neither as success nor as failure.
     pub refused: usize,
@@ -86,7 +77,7 @@ pub struct FailureRow {
     /// Method label.
     pub method: String,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// Natural map found by the judge.
     pub natural_map: f64,
     /// Whether every contact point alone has one solution.
@@ -106,15 +97,35 @@ fn quantile(q: f64, values: impl Iterator<Item = f64>) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// Counts one of those that have a column of their own.
+fn count<T: PartialEq>(counts: &mut [usize], columns: &[T], own: &T) {
+    let place = columns.iter().position(|column| column == own);
+    if let Some(count) = place.and_then(|place| counts.get_mut(place)) {
+        *count += 1;
+    }
+}
+
 impl RobustnessRow {
     /// Sums up the trials of one dimension, friction coefficient and method.
     fn of(trials: &[&Trial], tier: Tier) -> Option<Self> {
         let first = trials.first()?;
-        let count =
-            |keep: &dyn Fn(&Verdict) -> bool| trials.iter().filter(|t| keep(&t.verdict)).count();
+        let (mut solved, mut refused, mut false_claims, mut crashed) = (0, 0, 0, 0);
+        let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; 5], 0);
+        for trial in trials {
+            match &trial.verdict {
+                Verdict::Solved => solved += 1,
+                Verdict::Approximate(tier) => count(&mut approximate, &GRADES, tier),
+                Verdict::GaveUp(status) => {
+                    gave_up += 1;
+                    count(&mut gave_up_by, &GIVE_UPS, status);
+                }
+                Verdict::FalseClaim => false_claims += 1,
+                Verdict::Crashed(_) | Verdict::TimedOut | Verdict::OutOfMemory => crashed += 1,
+                Verdict::Refused(_) => refused += 1,
+            }
+        }
         let good = || trials.iter().filter(|t| t.succeeded());
         let iterations = |q| quantile(q, good().map(|t| t.iterations as f64));
-        let refused = count(&|v| matches!(v, Verdict::Refused(_)));
         let statuses = good().fold([0; 3], |sum: [usize; 3], t| {
             std::array::from_fn(|k| sum[k] + t.statuses[k])
         });
@@ -126,12 +137,12 @@ impl RobustnessRow {
             exact: first.exact,
             tier,
             problems: trials.len(),
-            solved: count(&|v| matches!(v, Verdict::Solved)),
-            approximate: GRADES.map(|grade| count(&|v| *v == Verdict::Approximate(grade))),
-            gave_up: count(&|v| matches!(v, Verdict::GaveUp(_))),
-            gave_up_by: GIVE_UPS.map(|status| count(&|v| *v == Verdict::GaveUp(status))),
-            false_claims: count(&|v| *v == Verdict::FalseClaim),
-            crashed: count(&|v| matches!(v, Verdict::Crashed(_))),
+            solved,
+            approximate,
+            gave_up,
+            gave_up_by,
+            false_claims,
+            crashed,
             refused,
             success: wilson(good().count(), trials.len() - refused),
             iterations: [iterations(0.5), iterations(0.9), iterations(1.0)],
@@ -145,27 +156,27 @@ impl RobustnessRow {
 }
 
 /// Sums the study up: rows by dimension, method and friction.
-pub fn rows(study: &Study, trials: &[Trial]) -> Vec<RobustnessRow> {
+pub fn rows(plan: &StressPlan, trials: &[Trial]) -> Vec<RobustnessRow> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     let key = |t: &Trial| (t.dim, t.method.clone());
     sorted.sort_by(|a, b| key(a).cmp(&key(b)).then(a.friction.total_cmp(&b.friction)));
     sorted
         .chunk_by(|a, b| key(a) == key(b) && a.friction == b.friction)
-        .filter_map(|group| RobustnessRow::of(group, study.tier))
+        .filter_map(|group| RobustnessRow::of(group, plan.tier))
         .collect()
 }
 
 /// Everything that was neither solved nor declined.
-pub fn failures(study: &Study, trials: &[Trial]) -> Vec<FailureRow> {
+pub fn failures(plan: &StressPlan, trials: &[Trial]) -> Vec<FailureRow> {
     let failed = trials.iter().filter(|t| t.verdict.is_failure());
     failed
         .map(|t| FailureRow {
-            seed: study.seed,
+            seed: plan.seed,
             dimension: t.dim,
             problem: t.problem,
             friction: t.friction,
             method: t.method.clone(),
-            verdict: t.verdict.to_string(),
+            verdict: t.verdict.clone(),
             natural_map: t.natural_map,
             unique: t.unique,
             points: t.points,
@@ -264,7 +275,7 @@ impl Row for FailureRow {
             self.problem.to_string(),
             value(self.friction),
             self.method.clone(),
-            self.verdict.clone(),
+            self.verdict.to_string(),
             residual(self.natural_map),
             self.unique.to_string(),
             self.points.to_string(),
@@ -354,20 +365,20 @@ pub fn table(rows: &[RobustnessRow]) -> Result<Table, ReportError> {
 /// # Errors
 /// Those of [`Bundle::add`] and of the figure.
 pub fn bundle(
-    study: &Study,
+    plan: &StressPlan,
     trials: &[Trial],
     provenance: &Provenance,
 ) -> Result<Bundle, ReportError> {
-    let rows = rows(study, trials);
+    let rows = rows(plan, trials);
     let mut bundle = Bundle::new();
     bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
-    bundle.add(FailureRow::FILE, csv::file(&failures(study, trials))?)?;
-    paper::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
+    bundle.add(FailureRow::FILE, csv::file(&failures(plan, trials))?)?;
+    tables::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
     // Where every method declines every problem there is nothing to draw.
     if rows.iter().any(|row| row.success[0].is_finite()) {
         bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
     }
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 

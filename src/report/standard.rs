@@ -6,23 +6,25 @@
 use super::number::{residual, significant, time, value};
 use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, loops, paper, vtu};
-use crate::run::expect;
-use crate::run::record::{ExpectRow, HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use super::{Bundle, Provenance, ReportError, csv, loops, tables, vtu};
+use crate::run::record::{
+    ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, Results, RunFields, RunKey, RunRow,
+};
+use crate::run::verdict::{Verdict, VerdictKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Everything that one command writes, apart from the tables of the paper.
 ///
 /// # Errors
-/// Those of the parts; [`ReportError::Duplicate`] where two runs give the same file name.
+/// Those of the parts; [`FolderError::Duplicate`](crate::files::bundle::FolderError::Duplicate) where two runs give the same file name.
 pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
     let mut bundle = Bundle::new();
     csv::add_to(&mut bundle, results)?;
-    paper::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
+    tables::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
     if !results.expectations.is_empty() {
         let table = expectations_table(&results.expectations)?;
-        paper::add_readable(&mut bundle, "expectations", &table)?;
+        tables::add_readable(&mut bundle, "expectations", &table)?;
     }
     add_residuals(&mut bundle, results)?;
     add_profiles(&mut bundle, results)?;
@@ -30,7 +32,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
     for fields in &results.fields {
         add_fields(&mut bundle, fields, provenance)?;
     }
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 
@@ -39,7 +41,7 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
 /// # Errors
 /// Those of [`bundle`] and [`Bundle::commit`].
 pub fn write(dir: &Path, results: &Results, provenance: &Provenance) -> Result<(), ReportError> {
-    bundle(results, provenance)?.commit(dir)
+    Ok(bundle(results, provenance)?.commit(dir)?)
 }
 
 /// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
@@ -90,7 +92,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
     let last = last_increments(rows.iter().map(|row| &row.key));
     for row in sorted.into_iter().filter(|row| is_last(&last, &row.key)) {
         // A time is published only beside a right answer.
-        let solve = if solved(&row.verdict) {
+        let solve = if row.verdict == Verdict::Solved {
             time(row.solve_s)
         } else {
             "–".into()
@@ -103,7 +105,7 @@ pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
             value(row.key.friction),
             row.key.increment.to_string(),
             row.tier.clone(),
-            row.verdict.clone(),
+            row.verdict.to_string(),
             residual(row.natural_map),
             row.iterations.to_string(),
             row.factorisations.to_string(),
@@ -185,28 +187,40 @@ pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
         let own = || rows.iter().filter(move |row| row.key.case == case);
         let count = |verdict: &str| own().filter(|row| row.verdict == verdict).count();
         let worst = own()
-            .filter(|row| row.verdict == expect::MET)
+            .filter(|row| row.verdict == MET)
             .map(|row| (row.found - row.expected).abs() / row.allowed)
             .fold(0.0, f64::max);
         table.push(vec![
             case.to_owned(),
             own().count().to_string(),
-            count(expect::MET).to_string(),
-            count(expect::MISSED_AS_DOCUMENTED).to_string(),
+            count(MET).to_string(),
+            count(MISSED_AS_DOCUMENTED).to_string(),
             format!("{worst:.1e}"),
         ])?;
     }
     Ok(table)
 }
 
-/// Whether a verdict is that of a run that did what it claims.
-pub fn honest(verdict: &str) -> bool {
-    solved(verdict) || verdict.starts_with("approximate")
-}
-
-/// Whether a verdict is that of a right answer.
-pub fn solved(verdict: &str) -> bool {
-    verdict.starts_with("solved")
+/// One line on the verdicts and expectations of all runs.
+pub fn summary(results: &Results) -> String {
+    let count = |kind| {
+        results
+            .runs
+            .iter()
+            .filter(|r| r.verdict.kind() == kind)
+            .count()
+    };
+    let stated = results.expectations.iter().filter(|e| e.as_stated());
+    format!(
+        "{} increments: {} solved, {} approximate, {} refused, {} failed; {} of {} expected numbers as stated",
+        results.runs.len(),
+        count(VerdictKind::Solved),
+        count(VerdictKind::Approximate),
+        count(VerdictKind::Refused),
+        results.failures(),
+        stated.count(),
+        results.expectations.len()
+    )
 }
 
 /// What identifies a run without its increment; the friction as printed, so that it can be compared.
@@ -271,7 +285,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     let right: BTreeSet<(RunName, usize)> = results
         .runs
         .iter()
-        .filter(|row| honest(&row.verdict))
+        .filter(|row| row.verdict.is_honest())
         .map(|row| (run_name(&row.key), row.key.increment))
         .collect();
     let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
@@ -279,7 +293,7 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
     type ByMethod<'a> = BTreeMap<(usize, &'a str), Vec<PointRow>>;
     let mut sweeps: BTreeMap<(String, usize), ByMethod<'_>> = BTreeMap::new();
     for row in &results.points {
-        let plane = row.force_unit == "N/m";
+        let plane = row.point.force_unit == "N/m";
         let wanted = plane && is_last(&last, &row.key);
         if wanted && right.contains(&(run_name(&row.key), row.key.increment)) {
             let RunKey {
@@ -290,11 +304,11 @@ fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportErro
                 ..
             } = &row.key;
             problems
-                .entry((problem_name(&row.key), row.crack))
+                .entry((problem_name(&row.key), row.point.crack))
                 .or_default()
                 .push(row.clone());
             let body = file_name(&[case, mesh, space]);
-            let methods = sweeps.entry((body, row.crack)).or_default();
+            let methods = sweeps.entry((body, row.point.crack)).or_default();
             let own = methods.entry((plot::method_rank(method), method));
             own.or_default().push(row.clone());
         }
@@ -372,5 +386,5 @@ fn add_fields(
         bundle.add(format!("figures/{stem}.contact.svg"), svg)?;
     }
     bundle.add(format!("figures/{stem}.displacement.svg"), displacement)?;
-    bundle.add(format!("figures/{stem}.von-mises.svg"), stress)
+    Ok(bundle.add(format!("figures/{stem}.von-mises.svg"), stress)?)
 }

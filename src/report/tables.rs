@@ -5,7 +5,7 @@
 
 mod latex;
 
-use super::ReportError;
+use super::{Bundle, ReportError};
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
 
 /// Alignment of a column.
@@ -198,4 +198,13 @@ fn escape_markdown(text: &str) -> String {
         }
     }
     out
+}
+
+/// Adds a table as `<stem>.md` and `<stem>.tex`, its LaTeX label `tab:<stem>`.
+///
+/// # Errors
+/// Those of [`Bundle::add`].
+pub fn add_readable(bundle: &mut Bundle, stem: &str, table: &Table) -> Result<(), ReportError> {
+    bundle.add(format!("{stem}.md"), table.markdown())?;
+    Ok(bundle.add(format!("{stem}.tex"), table.latex(&format!("tab:{stem}")))?)
 }

@@ -17,7 +17,8 @@ use serde::Deserialize;
 use super::csv::{self, Row};
 use super::number::{significant, time};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use super::{Bundle, ReportError, tables};
+use crate::run::verdict::Verdict;
 use crate::studies::sweep::statistics::Timing;
 
 /// Significant digits of the readable table: more is noise.
@@ -57,8 +58,8 @@ impl BenchmarkName {
 pub struct Expected {
     /// Its name.
     pub name: BenchmarkName,
-    /// What the judge said of the answer that was timed; empty where there is no answer.
-    pub verdict: String,
+    /// What the judge said of the answer that was timed; none where there is no answer.
+    pub verdict: Option<Verdict>,
     /// A result that is not newer is stale.
     pub newer_than: SystemTime,
 }
@@ -69,7 +70,7 @@ pub struct TimingRow {
     /// What was timed.
     pub name: BenchmarkName,
     /// As in [`Expected`].
-    pub verdict: String,
+    pub verdict: Option<Verdict>,
     /// Seconds per call.
     pub timing: Timing,
 }
@@ -213,6 +214,11 @@ fn read(path: &Path) -> Result<(BenchmarkName, Timing, SystemTime), String> {
     }
 }
 
+/// Nothing where nothing was judged.
+fn judged(verdict: Option<&Verdict>) -> String {
+    verdict.map_or_else(String::new, Verdict::to_string)
+}
+
 impl Row for TimingRow {
     const FILE: &'static str = "timings.csv";
     const COLUMNS: &'static [&'static str] = &[
@@ -242,7 +248,7 @@ impl Row for TimingRow {
             group.clone(),
             function.clone(),
             value.clone(),
-            verdict.clone(),
+            judged(verdict.as_ref()),
             samples.to_string(),
             time(*median_s),
             time(*low_s),
@@ -295,7 +301,7 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
             shown(timing.high_s),
             shown(timing.min_s),
             timing.samples.to_string(),
-            verdict.clone(),
+            judged(verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -307,5 +313,5 @@ pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`].
 pub fn add_to(bundle: &mut Bundle, rows: &[TimingRow]) -> Result<(), ReportError> {
     bundle.add(TimingRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "timings", &table(rows)?)
+    tables::add_readable(bundle, "timings", &table(rows)?)
 }

@@ -5,7 +5,8 @@
 //! comment, the time in a numeric `TimeValue`. Format: VTK file formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 
 use super::{Bundle, ReportError};
-use crate::run::record::{Picture, PictureShape, RunFields};
+use crate::model::field_mesh::{CellShape, FieldMesh};
+use crate::run::record::RunFields;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -21,8 +22,8 @@ const BLOCK: usize = 1 << 15;
 /// `comment` tells the origin (no `--` inside: it is replaced); `time` becomes `TimeValue`.
 ///
 /// # Errors
-/// [`ReportError::Picture`] where an array does not fit the points or cells.
-pub fn vtu(picture: &Picture, time: f64, comment: &str) -> Result<Vec<u8>, ReportError> {
+/// [`ReportError::FieldMesh`] where an array does not fit the points or cells.
+pub fn vtu(picture: &FieldMesh, time: f64, comment: &str) -> Result<Vec<u8>, ReportError> {
     check(picture)?;
     let mut xml = String::from("<?xml version=\"1.0\"?>\n");
     let comment = comment.replace("--", "- -");
@@ -136,7 +137,7 @@ pub fn add_fields(
             });
         }
     }
-    bundle.add(format!("{folder}/{stem}.pvd"), pvd(&collection, comment))
+    Ok(bundle.add(format!("{folder}/{stem}.pvd"), pvd(&collection, comment))?)
 }
 
 /// One data set of a `.pvd` collection.
@@ -168,7 +169,7 @@ pub fn pvd(entries: &[PvdEntry], comment: &str) -> String {
     xml
 }
 
-fn check(picture: &Picture) -> Result<(), ReportError> {
+fn check(picture: &FieldMesh) -> Result<(), ReportError> {
     let points = picture.points.len();
     let cells = picture.cells.len();
     let vectors = picture
@@ -185,7 +186,7 @@ fn check(picture: &Picture) -> Result<(), ReportError> {
         .map(|(n, v)| (n, v.len(), cells, "cells"));
     for (name, found, expected, what) in vectors.chain(scalars).chain(of_cells) {
         if found != expected {
-            return Err(ReportError::Picture {
+            return Err(ReportError::FieldMesh {
                 name: name.clone(),
                 reason: format!("{found} values for {expected} {what}"),
             });
@@ -203,7 +204,7 @@ fn check(picture: &Picture) -> Result<(), ReportError> {
             }
             None => continue,
         };
-        return Err(ReportError::Picture {
+        return Err(ReportError::FieldMesh {
             name: "cells".into(),
             reason,
         });
@@ -211,26 +212,26 @@ fn check(picture: &Picture) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn fits(shape: PictureShape, points: usize) -> bool {
+fn fits(shape: CellShape, points: usize) -> bool {
     match shape {
-        PictureShape::Vertex => points == 1,
-        PictureShape::Line => points == 2,
-        PictureShape::Triangle => points == 3,
-        PictureShape::Polygon => points >= 3,
-        PictureShape::Quad | PictureShape::Tetra => points == 4,
-        PictureShape::Hexahedron => points == 8,
+        CellShape::Vertex => points == 1,
+        CellShape::Line => points == 2,
+        CellShape::Triangle => points == 3,
+        CellShape::Polygon => points >= 3,
+        CellShape::Quad | CellShape::Tetra => points == 4,
+        CellShape::Hexahedron => points == 8,
     }
 }
 
-fn vtk_type(shape: PictureShape) -> u8 {
+fn vtk_type(shape: CellShape) -> u8 {
     match shape {
-        PictureShape::Vertex => 1,
-        PictureShape::Line => 3,
-        PictureShape::Triangle => 5,
-        PictureShape::Polygon => 7,
-        PictureShape::Quad => 9,
-        PictureShape::Tetra => 10,
-        PictureShape::Hexahedron => 12,
+        CellShape::Vertex => 1,
+        CellShape::Line => 3,
+        CellShape::Triangle => 5,
+        CellShape::Polygon => 7,
+        CellShape::Quad => 9,
+        CellShape::Tetra => 10,
+        CellShape::Hexahedron => 12,
     }
 }
 
@@ -242,7 +243,7 @@ fn data_array(
     bytes: &[u8],
 ) -> Result<(), ReportError> {
     let name = attribute(name);
-    let encoded = encode(bytes).map_err(|e| ReportError::Picture {
+    let encoded = encode(bytes).map_err(|e| ReportError::FieldMesh {
         name: name.clone(),
         reason: e.to_string(),
     })?;

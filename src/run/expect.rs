@@ -2,13 +2,8 @@
 
 use crate::case::{Case, CaseError, Expect, ExpectKind, Tolerance};
 use crate::model::boundary::region_name;
-use crate::run::record::{ExpectRow, QuantityRow, Results, RunKey};
-use crate::run::run_case::Choice;
-
-/// Verdict of a number within its tolerance.
-pub const MET: &str = "met";
-/// Verdict of a documented limitation.
-pub const MISSED_AS_DOCUMENTED: &str = "missed as documented";
+use crate::run::choice::Choice;
+use crate::run::record::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Results, RunKey};
 
 /// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
 ///
@@ -117,12 +112,12 @@ fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
         .iter()
         .find(|row| {
             row.key.increment == key.increment
-                && row.quantity == expect.quantity
-                && row.at == expect.at
-                && row.component == expect.component
-                && row.unit == expect.unit
+                && row.quantity.name == expect.quantity
+                && row.quantity.at == expect.at
+                && row.quantity.component == expect.component
+                && row.quantity.unit == expect.unit
         })
-        .map_or(f64::NAN, |row| row.value);
+        .map_or(f64::NAN, |row| row.quantity.value);
     let allowed = match expect.tolerance {
         Tolerance::Relative(t) => t * expect.value.abs(),
         Tolerance::Absolute(t) => t,

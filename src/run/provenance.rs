@@ -2,7 +2,6 @@
 //!
 //! No time of day and no host name; nothing of this appears in the files of numbers.
 
-use crate::report::{Bundle, ReportError};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -65,17 +64,9 @@ impl Provenance {
     /// The contents of `provenance.toml`.
     ///
     /// # Errors
-    /// [`ReportError::Provenance`] when the values have no TOML form.
-    pub fn to_toml(&self) -> Result<String, ReportError> {
-        Ok(toml::to_string(self)?)
-    }
-
-    /// Adds `provenance.toml`.
-    ///
-    /// # Errors
-    /// Those of [`Provenance::to_toml`] and [`Bundle::add`].
-    pub fn add_to(&self, bundle: &mut Bundle) -> Result<(), ReportError> {
-        bundle.add("provenance.toml", self.to_toml()?)
+    /// Values without a TOML form.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
     }
 }
 

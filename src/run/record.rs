@@ -1,11 +1,13 @@
 //! What a run leaves behind: the rows of the tables and the fields of the pictures.
 //!
-//! The harness fills these types, the report writes them; nothing else passes between the two. Every row type is one
-//! CSV file, its field names are the column names (`docs/schema.md`).
+//! Runs fill these types, the report writes them. Every row type is one CSV file, its field names are the column names
+//! (`docs/schema.md`).
 
 use serde::Serialize;
 
-use super::expect;
+use crate::model::field_mesh::FieldStep;
+use crate::model::quantities::{PointState, Quantity};
+use crate::run::verdict::Verdict;
 
 /// Version of the CSV schema, written in every `runs.csv` row.
 pub const SCHEMA: u32 = 2;
@@ -35,8 +37,8 @@ pub struct RunRow {
     pub key: RunKey,
     /// Requested tier: low, mid or high.
     pub tier: String,
-    /// Claim × check, e.g. `solved`, `false-claim`, `gave-up: max-iterations`, `refused: …`.
-    pub verdict: String,
+    /// Claim × check.
+    pub verdict: Verdict,
     /// Natural-map residual found by the judge [-].
     pub natural_map: f64,
     /// Iterations of the method.
@@ -96,22 +98,12 @@ impl RunRow {
 }
 
 /// One row of `quantities.csv`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct QuantityRow {
     /// Which run.
-    #[serde(flatten)]
     pub key: RunKey,
-    /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
-    /// max_penetration_sampled, max_slip, mean_slip, dissipation, strain_energy, …
-    pub quantity: String,
-    /// Place: a side, a probe, a crack (`crack-1`), or empty.
-    pub at: String,
-    /// x, y, z, n, a, b, or empty.
-    pub component: String,
-    /// Value, SI.
-    pub value: f64,
-    /// Unit of the value.
-    pub unit: String,
+    /// What was found.
+    pub quantity: Quantity,
 }
 
 /// Iterations up to this one are all recorded.
@@ -135,10 +127,9 @@ pub fn recorded_iterations(last: usize) -> Vec<usize> {
 }
 
 /// One row of `history.csv`: one iteration of one increment; see [`recorded_iterations`].
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct HistoryRow {
     /// Which run.
-    #[serde(flatten)]
     pub key: RunKey,
     /// Iteration, from 0 (the start).
     pub iteration: usize,
@@ -147,45 +138,16 @@ pub struct HistoryRow {
 }
 
 /// One row of `points.csv`: one contact point of one increment.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct PointRow {
     /// Which run.
-    #[serde(flatten)]
     pub key: RunKey,
-    /// Crack number, from 1.
-    pub crack: usize,
-    /// Point number within the crack, from 1, ordered along it.
-    pub point: usize,
-    /// Position [m].
-    pub x_m: f64,
-    /// Position [m].
-    pub y_m: f64,
-    /// Position [m]; 0 in 2D.
-    pub z_m: f64,
-    /// Distance along the crack from its first point (2D) [m]; 0 in 3D.
-    pub s_m: f64,
-    /// Tributary length [m] (2D) or area [m²] (3D).
-    pub weight: f64,
-    /// Normal gap, open > 0 [m].
-    pub gap_m: f64,
-    /// Tangential jump along a, total [m].
-    pub slip_a_m: f64,
-    /// Tangential jump along b, total [m]; 0 in 2D.
-    pub slip_b_m: f64,
-    /// Contact force along n on side 1, compression > 0 [`force_unit`].
-    pub p_n: f64,
-    /// Contact force along a on side 1 [`force_unit`].
-    pub p_a: f64,
-    /// Contact force along b on side 1; 0 in 2D [`force_unit`].
-    pub p_b: f64,
-    /// `N/m` in 2D (per metre of thickness), `N` in 3D.
-    pub force_unit: String,
-    /// open, stick or slip.
-    pub status: String,
+    /// What was found.
+    pub point: PointState,
 }
 
 /// One row of `exact.csv`: the closed form of a case at a place along its crack; 2D only.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ExactRow {
     /// Case name.
     pub case: String,
@@ -211,62 +173,6 @@ pub struct ExactRow {
     pub p_a_pa: f64,
 }
 
-/// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
-#[derive(Debug, Clone, Default)]
-pub struct Picture {
-    /// Space dimension of the body.
-    pub dim: usize,
-    /// Points, reference position [m]; third entry 0 in 2D.
-    pub points: Vec<[f64; 3]>,
-    /// Cells by point numbers.
-    pub cells: Vec<PictureCell>,
-    /// Point vectors, one per point: name with unit (e.g. `displacement_m`), values.
-    pub point_vectors: Vec<(String, Vec<[f64; 3]>)>,
-    /// Point scalars.
-    pub point_scalars: Vec<(String, Vec<f64>)>,
-    /// Cell scalars, e.g. `von_mises_pa`, `side`.
-    pub cell_scalars: Vec<(String, Vec<f64>)>,
-}
-
-/// Shape of a picture cell; numbering as in VTK.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PictureShape {
-    /// VTK 1.
-    Vertex,
-    /// VTK 3.
-    Line,
-    /// VTK 5.
-    Triangle,
-    /// VTK 7.
-    Polygon,
-    /// VTK 9.
-    Quad,
-    /// VTK 10.
-    Tetra,
-    /// VTK 12.
-    Hexahedron,
-}
-
-/// One cell of a picture.
-#[derive(Debug, Clone)]
-pub struct PictureCell {
-    /// Shape.
-    pub shape: PictureShape,
-    /// Point numbers.
-    pub points: Vec<usize>,
-}
-
-/// Body and crack faces of one increment.
-#[derive(Debug, Clone, Default)]
-pub struct FieldStep {
-    /// Time of the increment.
-    pub time: f64,
-    /// The body.
-    pub body: Picture,
-    /// The crack surfaces with gap_m, slip, p_n, p_t, status (0 open, 1 stick, 2 slip) as point data.
-    pub crack: Picture,
-}
-
 /// The fields of one run: last increment at least, all increments for `.pvd`.
 #[derive(Debug, Clone)]
 pub struct RunFields {
@@ -276,11 +182,15 @@ pub struct RunFields {
     pub steps: Vec<FieldStep>,
 }
 
+/// Verdict of a number within its tolerance.
+pub const MET: &str = "met";
+/// Verdict of a documented limitation.
+pub const MISSED_AS_DOCUMENTED: &str = "missed as documented";
+
 /// Outcome of one `[[expect]]` block for one run.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct ExpectRow {
     /// Which run.
-    #[serde(flatten)]
     pub key: RunKey,
     /// Quantity.
     pub quantity: String,
@@ -324,6 +234,20 @@ pub struct Results {
 }
 
 impl Results {
+    /// Adds what was found at the end of an increment.
+    pub fn add_found(&mut self, key: &RunKey, quantities: Vec<Quantity>, points: Vec<PointState>) {
+        let row = |quantity| QuantityRow {
+            key: key.clone(),
+            quantity,
+        };
+        self.quantities.extend(quantities.into_iter().map(row));
+        let row = |point| PointRow {
+            key: key.clone(),
+            point,
+        };
+        self.points.extend(points.into_iter().map(row));
+    }
+
     /// Adds the results of another run.
     pub fn append(&mut self, other: Results) {
         self.runs.extend(other.runs);
@@ -334,12 +258,22 @@ impl Results {
         self.expectations.extend(other.expectations);
         self.fields.extend(other.fields);
     }
+
+    /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
+    pub fn failures(&self) -> usize {
+        self.runs.iter().filter(|r| r.verdict.is_failure()).count()
+    }
+
+    /// True if no run failed and every expected number came out as stated: the exit code of what made these results.
+    pub fn as_expected(&self) -> bool {
+        self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
+    }
 }
 
 impl ExpectRow {
     /// True if the number came out as the case says it would.
     pub fn as_stated(&self) -> bool {
-        [expect::MET, expect::MISSED_AS_DOCUMENTED].contains(&self.verdict.as_str())
+        [MET, MISSED_AS_DOCUMENTED].contains(&self.verdict.as_str())
     }
 }
 

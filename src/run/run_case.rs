@@ -3,135 +3,19 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{ContactSystem, Method, OptionError, Options, Tier};
+use stickslip_methods::{ContactSystem, Tier};
 
-use crate::case::{Case, CaseError, MethodSpec};
+use crate::case::{Case, CaseError};
 use crate::model::body::{Body, BodyError, Needs};
+use crate::model::field_mesh::field_step;
 use crate::model::loading::Loading;
-use crate::model::picture::field_step;
-use crate::model::quantities::{point_rows, quantity_rows};
+use crate::model::quantities::{point_states, quantities};
+use crate::run::choice::{Choice, choices};
 use crate::run::exact_curve::exact_rows;
 use crate::run::expect::{self, expectation_rows};
-use crate::run::path::Path;
-use crate::run::record::{Results, RunFields, RunKey, RunRow};
+use crate::run::load_path::LoadPathRun;
+use crate::run::record::{Results, RunFields, RunRow};
 use crate::run::verdict::Accuracy;
-
-/// A method with its options.
-#[derive(Debug, Clone)]
-pub struct Choice {
-    /// Method.
-    pub method: &'static Method,
-    /// Options, defaults filled in.
-    pub options: Options,
-    /// Name in tables: registry name, changed options in brackets.
-    pub label: String,
-}
-
-impl Choice {
-    /// A method with some of its options changed.
-    pub fn new(method: &'static Method, given: &[(String, f64)]) -> Result<Self, OptionError> {
-        let options = Options::new(method.options, given)?;
-        let label = match changed(&options).as_str() {
-            "" => method.name.to_owned(),
-            list => format!("{}[{list}]", method.name),
-        };
-        Ok(Choice {
-            method,
-            options,
-            label,
-        })
-    }
-
-    /// A method as on the command line: `name` or `name:option=value,option=value`.
-    ///
-    /// # Errors
-    /// [`ChoiceError`].
-    pub fn parse(argument: &str) -> Result<Self, ChoiceError> {
-        let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
-        let method = crate::run::registry::method(name).ok_or_else(|| ChoiceError::Unknown {
-            name: name.into(),
-            known: method_names(),
-        })?;
-        let mut options = Vec::new();
-        for part in list.split(',').filter(|part| !part.is_empty()) {
-            let pair = part.split_once('=');
-            let Some((key, Ok(value))) = pair.map(|(k, v)| (k, v.parse::<f64>())) else {
-                return Err(ChoiceError::Syntax {
-                    argument: argument.into(),
-                    part: part.into(),
-                });
-            };
-            options.push((key.to_owned(), value));
-        }
-        Choice::new(method, &options).map_err(|source| ChoiceError::Option {
-            argument: argument.into(),
-            source,
-        })
-    }
-
-    /// As [`parse`](Self::parse) reads it, without options that have their defaults.
-    pub fn argument(&self) -> String {
-        match changed(&self.options).as_str() {
-            "" => self.method.name.to_owned(),
-            list => format!("{}:{list}", self.method.name),
-        }
-    }
-
-    /// Whether the method asks for the traction operator.
-    pub fn needs_traction(&self) -> bool {
-        (self.method.build)(&self.options).needs().traction
-    }
-
-    /// Every registered method with its defaults.
-    pub fn all() -> Result<Vec<Self>, OptionError> {
-        let all = crate::run::registry::methods().iter();
-        all.map(|method| Choice::new(method, &[])).collect()
-    }
-}
-
-/// The options that differ from their defaults, in the order of the method: the same settings give the same text.
-fn changed(options: &Options) -> String {
-    let changed = options.iter().filter(|(spec, v)| *v != spec.default());
-    let changed: Vec<String> = changed
-        .map(|(spec, value)| format!("{}={value:e}", spec.name()))
-        .collect();
-    changed.join(",")
-}
-
-/// Names of all methods, separated by commas.
-pub fn method_names() -> String {
-    let names = crate::run::registry::methods().iter().map(|m| m.name);
-    names.collect::<Vec<_>>().join(", ")
-}
-
-/// Why a text names no method with options.
-#[derive(Debug, thiserror::Error)]
-pub enum ChoiceError {
-    /// A name nobody knows.
-    #[error("unknown method `{name}`, known: {known}")]
-    Unknown {
-        /// As given.
-        name: String,
-        /// The choices.
-        known: String,
-    },
-    /// An option the method does not have or does not accept.
-    #[error("method {argument}: {source}")]
-    Option {
-        /// As given.
-        argument: String,
-        /// What is wrong.
-        source: OptionError,
-    },
-    /// An option that is no `key=value`.
-    #[error("method {argument}: `{part}` is not key=value with a number")]
-    Syntax {
-        /// As given.
-        argument: String,
-        /// The part in question.
-        part: String,
-    },
-}
 
 /// How to run cases.
 #[derive(Debug, Clone, Copy)]
@@ -186,40 +70,6 @@ impl From<CaseError> for RunError {
     fn from(error: CaseError) -> Self {
         RunError::Body(error.into())
     }
-}
-
-/// Methods a case runs: its own list, or the given ones, or all of the registry.
-pub fn choices(case: &Case, given: &[Choice]) -> Result<Vec<Choice>, CaseError> {
-    if !given.is_empty() {
-        return Ok(given.to_vec());
-    }
-    if case.methods.is_empty() {
-        return Choice::all().map_err(|e| {
-            let message = "a method refuses its own defaults";
-            case.error(&case.mesh.span, "methods", e, message)
-        });
-    }
-    case.methods
-        .iter()
-        .map(|spec| {
-            let Some(method) = crate::run::registry::method(&spec.name) else {
-                return Err(case.error(&spec.span, &spec.name, method_names(), "unknown method"));
-            };
-            Choice::new(method, &spec.options).map_err(|e| option_error(case, spec, &e))
-        })
-        .collect()
-}
-
-fn option_error(case: &Case, spec: &MethodSpec, error: &OptionError) -> CaseError {
-    let (name, allowed) = match error {
-        OptionError::Unknown { name, known, .. } => (name, known.clone()),
-        OptionError::OutOfRange { name, allowed, .. } => (name, allowed.clone()),
-        OptionError::Repeated { name, .. } => (name, "each option once".to_owned()),
-    };
-    // The last one of the name: a repeated option is wrong where it stands again.
-    let position = spec.options.iter().rposition(|(given, _)| given == name);
-    let span = position.map_or(&spec.span, |i| &spec.option_spans[i]);
-    case.error(span, case.text(span), allowed, error)
 }
 
 /// One run before it starts.
@@ -325,46 +175,30 @@ pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 
 /// The load path of one run.
 fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
-    let Cell {
-        body,
-        loading,
-        system,
-        choice,
-        ..
-    } = cell;
-    let mut results = Results::default();
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: cell.friction,
-        increment: 1,
-    };
-    let mut steps = Vec::new();
-    let path = Path {
+    let Cell { body, choice, .. } = *cell;
+    let path = LoadPathRun {
         case,
-        loading,
-        system,
+        loading: &cell.loading,
+        system: &cell.system,
+        friction: cell.friction,
         choice,
         accuracy,
     };
-    let started = path.follow(&mut key, &mut |key, ended| {
-        results.runs.push(ended.run);
-        results.history.extend(ended.history);
-        let Some(now) = ended.now else { return };
-        results
-            .quantities
-            .extend(quantity_rows(case, body, key, now));
-        results.points.extend(point_rows(body, key, now));
+    let (mut results, mut steps) = (Results::default(), Vec::new());
+    let end = path.follow(&mut |key, increment, now| {
+        results.runs.push(path.row(key, increment));
+        results.history.extend(increment.history_rows(key));
+        let Some(now) = now else { return };
+        results.add_found(key, quantities(case, body, now), point_states(body, now));
         if cell.fields {
             steps.push(field_step(body, now));
         }
     });
     // A run that could not start is held to nothing.
-    if !started {
+    if !end.started {
         return results;
     }
+    let key = end.key;
     results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
     if !steps.is_empty() {
         results.fields.push(RunFields { key, steps });

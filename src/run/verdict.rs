@@ -1,8 +1,14 @@
 //! Verdict = claim × check. Methods claim, [`residuals`](stickslip_methods::residuals) checks, nobody else judges.
 
+mod text;
+
+pub use text::NoVerdict;
+
+use std::cmp::Reverse;
 use std::fmt;
 
-use stickslip_methods::{Claim, Outcome, Residuals, Status, Tier};
+use serde::{Deserialize, Serialize};
+use stickslip_methods::{Claim, MethodError, Outcome, Residuals, Status, Tier};
 
 use crate::case::Case;
 
@@ -52,8 +58,9 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// What a run is worth.
-#[derive(Debug, Clone, PartialEq)]
+/// What a run is worth. Files hold it as the text that `Display` writes and `FromStr` reads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub enum Verdict {
     /// Claimed the contact laws and the judge agrees.
     Solved,
@@ -61,7 +68,7 @@ pub enum Verdict {
     Approximate(Option<Tier>),
     /// Claimed the contact laws and the judge disagrees.
     FalseClaim,
-    /// Ended without a claim.
+    /// Ended without a claim, with one of [`GIVE_UPS`].
     GaveUp(Status),
     /// Declined the system, with the reason.
     Refused(String),
@@ -69,9 +76,53 @@ pub enum Verdict {
     Crashed(String),
     /// Stopped from outside at the time limit.
     TimedOut,
-    /// Ended at the memory limit.
+    /// Was denied memory, by the system or by a limit.
     OutOfMemory,
 }
+
+/// Declares [`VerdictKind`] with its names, so that no list of all kinds can lack one.
+macro_rules! verdict_kinds {
+    ($($kind:ident = $name:literal,)*) => {
+        /// A [`Verdict`] without its details.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "as in `Verdict`")]
+        pub enum VerdictKind { $($kind,)* }
+
+        impl VerdictKind {
+            /// All kinds, as a reader meets them.
+            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
+
+            /// The text of a verdict up to its details.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$kind => $name,)* }
+            }
+        }
+    };
+}
+
+verdict_kinds! {
+    Solved = "solved",
+    Approximate = "approximate",
+    FalseClaim = "false-claim",
+    GaveUp = "gave-up",
+    Refused = "refused",
+    Crashed = "crashed",
+    TimedOut = "timed-out",
+    OutOfMemory = "out-of-memory",
+}
+
+/// How a method ends without a claim.
+pub const GIVE_UPS: [Status; 6] = [
+    Status::MaxIterations,
+    Status::Stalled,
+    Status::SingularTangent,
+    Status::Mechanism,
+    Status::Diverged,
+    Status::Stopped,
+];
+
+/// What tables say in place of a verdict where there is no such run.
+pub const NOT_RUN: &str = "not run";
 
 impl Verdict {
     /// Judges an outcome against the natural map accepted.
@@ -95,47 +146,128 @@ impl Verdict {
         }
     }
 
-    /// An error, or that it ran out of memory, which libraries tell in words only: "memory allocation of … failed" (the
-    /// runtime), "out of memory" and `OutOfMemory` (the sparse factorisation).
-    pub fn failed(error: String) -> Self {
-        let words = ["memory allocation of", "out of memory", "OutOfMemory"];
-        if words.iter().any(|words| error.contains(words)) {
-            Verdict::OutOfMemory
-        } else {
-            Verdict::Crashed(error)
+    /// The text in a table that has rows for missing runs too.
+    pub fn or_not_run(verdict: Option<&Self>) -> String {
+        verdict.map_or_else(|| NOT_RUN.to_owned(), Self::to_string)
+    }
+
+    /// Without details.
+    pub fn kind(&self) -> VerdictKind {
+        match self {
+            Verdict::Solved => VerdictKind::Solved,
+            Verdict::Approximate(_) => VerdictKind::Approximate,
+            Verdict::FalseClaim => VerdictKind::FalseClaim,
+            Verdict::GaveUp(_) => VerdictKind::GaveUp,
+            Verdict::Refused(_) => VerdictKind::Refused,
+            Verdict::Crashed(_) => VerdictKind::Crashed,
+            Verdict::TimedOut => VerdictKind::TimedOut,
+            Verdict::OutOfMemory => VerdictKind::OutOfMemory,
         }
+    }
+
+    /// Place from best to worst; verdicts that differ in words alone share one.
+    pub fn rank(&self) -> (usize, Reverse<Option<Tier>>) {
+        let (place, held) = match self {
+            Verdict::Solved => (0, None),
+            Verdict::Approximate(tier) => (1, *tier),
+            Verdict::Refused(_) => (2, None),
+            Verdict::GaveUp(_) => (3, None),
+            Verdict::TimedOut => (4, None),
+            Verdict::OutOfMemory => (5, None),
+            Verdict::Crashed(_) => (6, None),
+            // The only one that deceives.
+            Verdict::FalseClaim => (7, None),
+        };
+        (place, Reverse(held))
     }
 
     /// True if the run did what it said: its times may be published.
     pub fn is_honest(&self) -> bool {
-        matches!(self, Verdict::Solved | Verdict::Approximate(_))
+        match self.kind() {
+            VerdictKind::Solved | VerdictKind::Approximate => true,
+            VerdictKind::FalseClaim
+            | VerdictKind::GaveUp
+            | VerdictKind::Refused
+            | VerdictKind::Crashed
+            | VerdictKind::TimedOut
+            | VerdictKind::OutOfMemory => false,
+        }
     }
 
-    /// True if the command must report failure.
-    pub fn is_failure(&self) -> bool {
-        matches!(
-            self,
+    /// True if the method ended with a claim, right or wrong.
+    pub fn claims(&self) -> bool {
+        match self.kind() {
+            VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::FalseClaim => true,
+            VerdictKind::GaveUp
+            | VerdictKind::Refused
+            | VerdictKind::Crashed
+            | VerdictKind::TimedOut
+            | VerdictKind::OutOfMemory => false,
+        }
+    }
+
+    /// True if the laws claimed hold as claimed, and the contact laws to that tier as far as a verdict tells: that of a
+    /// solved run was asked for.
+    pub fn holds_to(&self, tier: Tier) -> bool {
+        match self {
+            Verdict::Solved => true,
+            Verdict::Approximate(reached) => reached.is_some_and(|reached| reached >= tier),
             Verdict::FalseClaim
-                | Verdict::GaveUp(_)
-                | Verdict::Crashed(_)
-                | Verdict::TimedOut
-                | Verdict::OutOfMemory
-        )
+            | Verdict::GaveUp(_)
+            | Verdict::Refused(_)
+            | Verdict::Crashed(_)
+            | Verdict::TimedOut
+            | Verdict::OutOfMemory => false,
+        }
+    }
+
+    /// True if the command must report failure where all methods were asked to solve a case.
+    pub fn is_failure(&self) -> bool {
+        match self.kind() {
+            VerdictKind::FalseClaim
+            | VerdictKind::GaveUp
+            | VerdictKind::Crashed
+            | VerdictKind::TimedOut
+            | VerdictKind::OutOfMemory => true,
+            VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::Refused => false,
+        }
+    }
+
+    /// True if the method or the program is wrong. Giving up is not, nor is a limit: where methods are compared both are
+    /// results.
+    pub fn is_wrong(&self) -> bool {
+        match self.kind() {
+            VerdictKind::FalseClaim | VerdictKind::Crashed => true,
+            VerdictKind::Solved
+            | VerdictKind::Approximate
+            | VerdictKind::GaveUp
+            | VerdictKind::Refused
+            | VerdictKind::TimedOut
+            | VerdictKind::OutOfMemory => false,
+        }
     }
 }
 
-impl fmt::Display for Verdict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl VerdictKind {
+    /// True if time or memory ended the run: it says something about these alone.
+    pub fn is_limit(self) -> bool {
         match self {
-            Verdict::Solved => write!(f, "solved"),
-            Verdict::Approximate(Some(tier)) => write!(f, "approximate: {tier}"),
-            Verdict::Approximate(None) => write!(f, "approximate: none"),
-            Verdict::FalseClaim => write!(f, "false-claim"),
-            Verdict::GaveUp(status) => write!(f, "gave-up: {status}"),
-            Verdict::Refused(reason) => write!(f, "refused: {reason}"),
-            Verdict::Crashed(error) => write!(f, "crashed: {error}"),
-            Verdict::TimedOut => write!(f, "timed-out"),
-            Verdict::OutOfMemory => write!(f, "out-of-memory"),
+            Self::TimedOut | Self::OutOfMemory => true,
+            Self::Solved
+            | Self::Approximate
+            | Self::FalseClaim
+            | Self::GaveUp
+            | Self::Refused
+            | Self::Crashed => false,
+        }
+    }
+}
+
+impl From<MethodError> for Verdict {
+    fn from(error: MethodError) -> Self {
+        match error {
+            MethodError::OutOfMemory { .. } => Verdict::OutOfMemory,
+            other => Verdict::Crashed(other.to_string()),
         }
     }
 }
@@ -144,6 +276,37 @@ impl fmt::Display for Verdict {
 mod tests {
     use super::*;
     use stickslip_methods::{ContactState, Counters};
+
+    #[test]
+    fn verdicts_have_an_order() {
+        let order = [
+            "solved",
+            "approximate: high",
+            "approximate: mid",
+            "approximate: low",
+            "approximate: none",
+            "refused: no friction",
+            "gave-up: stalled",
+            "timed-out",
+            "out-of-memory",
+            "crashed: why",
+            "false-claim",
+        ]
+        .map(|text| text.parse::<Verdict>().unwrap().rank());
+        assert!(order.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+
+    #[test]
+    fn an_error_of_memory_is_no_crash() {
+        let what = "sparse factorisation";
+        let denied = MethodError::OutOfMemory { what };
+        assert_eq!(Verdict::from(denied), Verdict::OutOfMemory);
+        // Words do not make one.
+        let reason = "out of memory".to_owned();
+        let words = MethodError::Kernel { what, reason };
+        let crashed = "crashed: sparse factorisation failed: out of memory";
+        assert_eq!(Verdict::from(words).to_string(), crashed);
+    }
 
     fn outcome(status: Status, claim: Claim) -> Outcome {
         Outcome {

@@ -22,11 +22,11 @@ use crate::case::{Case, ContactSpace, Tip};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
-use crate::model::quantities::{Snapshot, quantity_rows};
-use crate::run::path::Path;
-use crate::run::record::RunKey;
-use crate::run::run_case::{Choice, Progress, RunError, friction_values};
-use crate::run::verdict::{Accuracy, Verdict};
+use crate::model::quantities::{Snapshot, quantities};
+use crate::run::choice::Choice;
+use crate::run::load_path::LoadPathRun;
+use crate::run::run_case::{Progress, RunError, friction_values};
+use crate::run::verdict::Accuracy;
 
 /// Refinement factors where neither the study nor the case names several.
 const REFINE: [usize; 4] = [1, 2, 4, 8];
@@ -40,9 +40,9 @@ const FOLLOWED: [&str; 5] = [
     "max_gap",
 ];
 
-/// What to run. `None`: what the case says, see [`Study::meshes`], [`Study::spaces`], [`Study::tips`].
+/// What to run. `None`: what the case says, see [`ConvergencePlan::meshes`], [`ConvergencePlan::spaces`], [`ConvergencePlan::tips`].
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct ConvergencePlan {
     /// Refinement factors, increasing.
     pub refine: Option<Vec<usize>>,
     /// Contact spaces of all cracks.
@@ -53,7 +53,7 @@ pub struct Study {
     pub choice: Choice,
 }
 
-impl Study {
+impl ConvergencePlan {
     /// Refinement factors: those asked for, or those of the case if it has several, or 1, 2, 4, 8.
     pub fn meshes(&self, case: &Case) -> Vec<usize> {
         match &self.refine {
@@ -115,13 +115,13 @@ pub fn closed_form(
 /// Of the case or its discretisation; what the method does wrong is a verdict.
 pub fn run(
     case: &Case,
-    study: &Study,
+    plan: &ConvergencePlan,
     closed_form: &ClosedForm<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Sample>, RunError> {
-    let (meshes, tips) = (study.meshes(case), study.tips(case));
+    let (meshes, tips) = (plan.meshes(case), plan.tips(case));
     let frictions = friction_values(case);
-    let spaces = study.spaces(case);
+    let spaces = plan.spaces(case);
     let combinations = spaces
         .iter()
         .flat_map(|&space| tips.iter().map(move |&tip| (space, tip)));
@@ -130,7 +130,7 @@ pub fn run(
         .collect();
     let needs = Needs {
         frictionless: frictions.iter().flatten().all(|&mu| mu == 0.0),
-        traction: study.choice.needs_traction(),
+        traction: plan.choice.needs_traction(),
     };
     progress.plan(variants.len() * meshes.len() * frictions.len());
     // The first run of a program starts threads and fills caches: it is done twice, and timed once.
@@ -138,7 +138,7 @@ pub fn run(
         (variants.first(), meshes.first(), frictions.first())
     {
         let body = Body::new(first, refine, needs)?;
-        run_one(first, &body, refine, per_crack, &study.choice, closed_form)?;
+        run_one(first, &body, refine, per_crack, &plan.choice, closed_form)?;
     }
     let mut samples = Vec::new();
     // A crack along cell facets has the same pairs in every space.
@@ -150,14 +150,8 @@ pub fn run(
             let new = seen.insert((body.space.clone(), tip.clone(), refine));
             for per_crack in &frictions {
                 if new {
-                    let sample = run_one(
-                        variant,
-                        &body,
-                        refine,
-                        per_crack,
-                        &study.choice,
-                        closed_form,
-                    )?;
+                    let sample =
+                        run_one(variant, &body, refine, per_crack, &plan.choice, closed_form)?;
                     samples.push(sample);
                 }
                 let mu = per_crack.first().copied().unwrap_or(0.0);
@@ -190,38 +184,24 @@ fn run_one(
 ) -> Result<Sample, RunError> {
     let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
     let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction: per_crack.first().copied().unwrap_or(0.0),
-        increment: 1,
-    };
     let mu = per_crack.first().copied().unwrap_or(0.0);
     let loading = Loading::new(body, case, mu)?;
-    let path = Path {
+    let path = LoadPathRun {
         case,
         loading: &loading,
         system: &system,
+        friction: mu,
         choice,
         accuracy: Accuracy::of(case, case.tier),
     };
     let mut rows = Vec::new();
-    let mut last: Option<(Verdict, Option<Snapshot>)> = None;
-    path.follow(&mut key, &mut |_, ended| {
-        rows.push(ended.run);
-        last = Some((ended.verdict, ended.now.cloned()));
-    });
-    let (verdict, now) = last.ok_or_else(|| {
-        let message = "a load path without increments";
-        case.error(&case.mesh.span, case.path.increments, ">= 1", message)
-    })?;
-    let measured = match &now {
+    let end = path.follow(&mut |key, increment, _| rows.push(path.row(key, increment)));
+    let key = end.key;
+    let measured = match &end.now {
         None => Measured::Nothing,
         Some(now) => match closed_form(&loading, now)? {
             Some(deviations) => Measured::Exact(deviations),
-            None => Measured::Values(followed(case, body, &key, now)),
+            None => Measured::Values(followed(case, body, now)),
         },
     };
     Ok(Sample {
@@ -239,32 +219,32 @@ fn run_one(
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
-        seconds: if now.is_some() {
+        seconds: if end.now.is_some() {
             Seconds::of(&rows)
         } else {
             Seconds::NONE
         },
-        verdict,
+        verdict: end.verdict,
         measured,
     })
 }
 
 /// The quantities of interest that are followed under refinement.
-pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -> Vec<Value> {
-    let rows = quantity_rows(case, body, key, now);
+pub(crate) fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
+    let rows = quantities(case, body, now);
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     let displacement = largest(&mut now.u.iter().copied());
-    let reactions = || rows.iter().filter(|row| row.quantity == "reaction");
+    let reactions = || rows.iter().filter(|row| row.name == "reaction");
     let force = largest(&mut reactions().map(|row| row.value));
     let followed = rows
         .iter()
-        .filter(|row| FOLLOWED.contains(&row.quantity.as_str()))
+        .filter(|row| FOLLOWED.contains(&row.name.as_str()))
         // With one crack its own maximum is the maximum of all.
         .filter(|row| case.cracks.len() > 1 || !row.at.starts_with("crack-"));
     followed
         .map(|row| {
-            let (norm, scale) = match row.quantity.as_str() {
+            let (norm, scale) = match row.name.as_str() {
                 "reaction" => {
                     let own = reactions().filter(|other| other.at == row.at);
                     (own.map(|r| r.value.powi(2)).sum::<f64>().sqrt(), force)
@@ -274,7 +254,7 @@ pub(crate) fn followed(case: &Case, body: &Body, key: &RunKey, now: &Snapshot) -
             };
             Value {
                 at: format!("{} {}", row.at, row.component).trim().to_owned(),
-                quantity: row.quantity.clone(),
+                quantity: row.name.clone(),
                 value: row.value,
                 norm,
                 scale,

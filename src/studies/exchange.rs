@@ -6,14 +6,16 @@ pub mod problem_file;
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
+use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 use nalgebra::{DMatrix, DVector};
 use stickslip_methods::{
     ContactState, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError, SymmetricMatrix,
 };
 
-use crate::files::{GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix};
+use crate::files::interchange::{
+    GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix,
+};
 
 /// What a file gives a method.
 pub struct System {
@@ -175,16 +177,20 @@ pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
 /// Approximate minimum degree order: a file has no mesh to dissect (Amestoy, Davis, Duff 1996).
 fn minimum_degree(k: &SymmetricMatrix) -> Result<Vec<usize>, MethodError> {
     let n = k.size();
-    let failed = |reason: String| MethodError::Kernel {
-        what: "elimination order",
-        reason,
-    };
+    let what = "elimination order";
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, k.col_ptr(), None, k.row_idx());
     let request = amd::order_scratch::<usize>(n, k.row_idx().len());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| failed("out of memory".to_owned()))?;
+    let mut memory = MemBuffer::try_new(request).map_err(|_| MethodError::OutOfMemory { what })?;
     let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
     let stack = MemStack::new(&mut memory);
-    amd::order(&mut order, &mut inverse, pattern, Default::default(), stack)
-        .map_err(|e| failed(format!("{e:?}")))?;
+    amd::order(&mut order, &mut inverse, pattern, Default::default(), stack).map_err(
+        |e| match e {
+            FaerError::OutOfMemory => MethodError::OutOfMemory { what },
+            other => MethodError::Kernel {
+                what,
+                reason: format!("{other:?}"),
+            },
+        },
+    )?;
     Ok(order)
 }

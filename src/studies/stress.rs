@@ -15,11 +15,13 @@ use stickslip_methods::{
     contact_wise_margin,
 };
 
-use crate::case::{self, Case};
+use crate::case;
+use crate::case::Case;
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
-use crate::run::attempt::{Attempt, attempt, prepare};
-use crate::run::run_case::{Choice, Progress};
+use crate::run::choice::Choice;
+use crate::run::increment::{JudgedIncrement, Solver};
+use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::stress::random::{Kind, Specimen, Stream};
 
@@ -45,7 +47,7 @@ fn wanted(dim: usize) -> (Kind, RangeInclusive<usize>) {
 
 /// What to run.
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct StressPlan {
     /// Seed of all bodies and loads.
     pub seed: u64,
     /// Dimensions, 2 and 3.
@@ -101,16 +103,12 @@ pub fn as_expected(trials: &[Trial]) -> bool {
 impl Trial {
     /// Whether the run gave what its method is for: an exact one the contact laws, another one the laws it claims.
     pub fn succeeded(&self) -> bool {
-        match self.verdict {
-            Verdict::Solved => true,
-            Verdict::Approximate(_) => !self.exact,
-            _ => false,
-        }
+        self.verdict == Verdict::Solved || !self.exact && self.verdict.is_honest()
     }
 
-    /// A claim that does not hold, or an error.
+    /// A claim that does not hold, or an error. A trial has no limits, so that running into one is an error too.
     pub fn is_wrong(&self) -> bool {
-        matches!(self.verdict, Verdict::FalseClaim | Verdict::Crashed(_))
+        self.verdict.is_wrong() || self.verdict.kind().is_limit()
     }
 }
 
@@ -237,12 +235,12 @@ fn needs(choices: &[Choice]) -> Needs {
 /// # Errors
 /// Those of [`Sample::new`].
 pub fn case_of(
-    study: &Study,
+    plan: &StressPlan,
     choices: &[Choice],
     dim: usize,
     problem: usize,
 ) -> Result<String, StressError> {
-    case_numbered(study.seed, dim, problem, &study.friction, needs(choices))
+    case_numbered(plan.seed, dim, problem, &plan.friction, needs(choices))
 }
 
 /// The case file of a problem by its numbers alone.
@@ -265,26 +263,26 @@ pub fn case_numbered(
 /// # Errors
 /// [`StressError`]; what a method does wrong is a verdict.
 pub fn run(
-    study: &Study,
+    plan: &StressPlan,
     choices: &[Choice],
     progress: &dyn Progress,
 ) -> Result<Vec<Trial>, StressError> {
-    let numbers: Vec<usize> = match study.only {
+    let numbers: Vec<usize> = match plan.only {
         Some(problem) => vec![problem],
-        None => (0..study.problems).collect(),
+        None => (0..plan.problems).collect(),
     };
-    let bodies: Vec<(usize, &[usize])> = (study.dims.iter())
+    let bodies: Vec<(usize, &[usize])> = (plan.dims.iter())
         .flat_map(|&dim| {
             let same_body = |a: &usize, b: &usize| a / LOADS == b / LOADS;
             numbers.chunk_by(same_body).map(move |own| (dim, own))
         })
         .collect();
-    progress.plan(bodies.len() * study.friction.len() * choices.len());
+    progress.plan(bodies.len() * plan.friction.len() * choices.len());
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(study.jobs)
+        .num_threads(plan.jobs)
         .build()?;
     let of_body =
-        |&(dim, problems): &(usize, &[usize])| run_body(study, dim, problems, choices, progress);
+        |&(dim, problems): &(usize, &[usize])| run_body(plan, dim, problems, choices, progress);
     let parts: Vec<Vec<Trial>> =
         pool.install(|| bodies.par_iter().map(of_body).collect::<Result<_, _>>())?;
     Ok(parts.into_iter().flatten().collect())
@@ -292,14 +290,14 @@ pub fn run(
 
 /// Some problems of one body.
 fn run_body(
-    study: &Study,
+    plan: &StressPlan,
     dim: usize,
     problems: &[usize],
     choices: &[Choice],
     progress: &dyn Progress,
 ) -> Result<Vec<Trial>, StressError> {
     let number = problems.first().map_or(0, |problem| problem / LOADS);
-    let sample = Sample::new(study.seed, dim, number, needs(choices))?;
+    let sample = Sample::new(plan.seed, dim, number, needs(choices))?;
     let body = &sample.body;
     let loading = sample.loading()?;
     let loads: Vec<(usize, Load)> = problems
@@ -308,7 +306,7 @@ fn run_body(
         .collect();
     let rest = Load::zero(&body.elastic);
     let mut trials = Vec::new();
-    for &friction in &study.friction {
+    for &friction in &plan.friction {
         let system = Arc::new(ContactSystem::new(
             body.elastic.clone(),
             vec![friction; body.points.len()],
@@ -316,7 +314,7 @@ fn run_body(
         let unique = contact_wise_margin(&system)? > 0.0;
         let start = ContactState::zero(&system);
         for choice in choices {
-            let mut method = prepare(choice, &system);
+            let mut solver = Solver::new(choice, &system);
             for (problem, load) in &loads {
                 let increment = Increment {
                     system: &system,
@@ -324,11 +322,11 @@ fn run_body(
                     start_load: &rest,
                     start: &start,
                     index: 0,
-                    tolerance: study.tier.tolerance(),
+                    tolerance: plan.tier.tolerance(),
                 };
-                let tried = match &mut method {
-                    Ok((method, _)) => attempt(method.as_mut(), &increment, study.tier.tolerance()),
-                    Err(verdict) => Attempt::unsolved(verdict.clone()),
+                let tried = match &mut solver {
+                    Ok(solver) => solver.judge(&increment, plan.tier.tolerance()),
+                    Err(verdict) => JudgedIncrement::not_started(verdict.clone()),
                 };
                 let count = |of: PointStatus| {
                     let judged = tried.judged.iter().flat_map(|j| &j.status);
@@ -345,11 +343,8 @@ fn run_body(
                     iterations: outcome.map_or(0, |c| c.iterations),
                     factorisations: outcome
                         .map_or(0, |c| c.factorisations + c.global_factorisations),
-                    solve_s: if study.jobs == 1 {
-                        tried.solve_s
-                    } else {
-                        f64::NAN
-                    },
+                    solve_s: (tried.work.filter(|_| plan.jobs == 1))
+                        .map_or(f64::NAN, |work| work.solve_s),
                     unique,
                     points: body.points.len(),
                     statuses: [PointStatus::Open, PointStatus::Stick, PointStatus::Slip].map(count),

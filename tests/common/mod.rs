@@ -11,9 +11,10 @@ use std::sync::Arc;
 use stickslip::case::{self, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
+use stickslip::run::choice::Choice;
 use stickslip::run::record::Results;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Choice, Fields, Quiet, Settings, run_case};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status,
 };
@@ -193,8 +194,9 @@ pub fn value(
     let found: Vec<f64> = results
         .quantities
         .iter()
-        .filter(|q| q.quantity == quantity && q.at == at && q.component == component)
-        .filter(|q| keep(&q.key))
+        .filter(|row| keep(&row.key))
+        .map(|row| &row.quantity)
+        .filter(|q| q.name == quantity && q.at == at && q.component == component)
         .map(|q| q.value)
         .collect();
     assert_eq!(found.len(), 1, "{quantity} {at} {component}: {found:?}");

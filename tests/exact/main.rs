@@ -7,10 +7,12 @@ mod forms;
 use assert_cmd::Command;
 use common::*;
 use forms::{FORMS, K, Point, Smooth, map};
-use stickslip::case::{self, Amount, Case};
+use stickslip::case;
+use stickslip::case::{Amount, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::model::sides::Sides;
+use stickslip::run::verdict::Verdict;
 use stickslip_methods::Load;
 use stickslip_xfem::enrichment::cell_facets::region_at;
 use stickslip_xfem::exact::Field;
@@ -135,12 +137,15 @@ fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() 
     );
     assert_eq!(results.runs.len(), 6);
     for row in &results.runs {
-        assert_eq!((row.factorisations, row.verdict.as_str()), (1, "solved"));
+        assert_eq!((row.factorisations, &row.verdict), (1, &Verdict::Solved));
     }
     for point in &results.points {
-        let ratio = -point.p_a / point.p_n;
+        let ratio = -point.point.p_a / point.point.p_n;
         assert!((ratio / point.key.friction - 1.0).abs() < 1e-7, "{point:?}");
-        assert!((point.slip_a_m / 1e-3 - 1.0).abs() < 1e-7, "{point:?}");
+        assert!(
+            (point.point.slip_a_m / 1e-3 - 1.0).abs() < 1e-7,
+            "{point:?}"
+        );
     }
 }
 

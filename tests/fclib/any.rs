@@ -1,7 +1,7 @@
 //! Random problems.
 
 use proptest::prelude::*;
-use stickslip::files::{
+use stickslip::files::interchange::{
     GlobalEquality, GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix,
 };
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use hdf5_pure::FileBuilder;
 use proptest::prelude::*;
 use raw::Raw;
-use stickslip::files::{
+use stickslip::files::interchange::{
     GlobalEquality, GlobalProblem, Info, LocalProblem, Problem, Solution, SparseMatrix, fclib,
 };
 

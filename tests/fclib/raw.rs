@@ -1,7 +1,7 @@
 //! FCLIB files put together dataset by dataset, right or wrong.
 
 use hdf5_pure::FileBuilder;
-use stickslip::files::Problem;
+use stickslip::files::interchange::Problem;
 
 use crate::{W, read_bytes};
 

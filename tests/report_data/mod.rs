@@ -5,8 +5,11 @@
 
 pub mod figures;
 
+use stickslip::model::field_mesh::*;
+use stickslip::model::quantities::{PointState, Quantity};
 use stickslip::report::robustness::RobustnessRow;
 use stickslip::run::record::*;
+use stickslip::run::verdict::Verdict;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];
@@ -72,7 +75,7 @@ fn add_run(results: &mut Results, key: RunKey) {
     results.runs.push(RunRow {
         key: key.clone(),
         tier: "high".into(),
-        verdict: "solved".into(),
+        verdict: Verdict::Solved,
         natural_map: residual(iterations),
         iterations,
         factorisations: 1,
@@ -97,11 +100,13 @@ fn add_run(results: &mut Results, key: RunKey) {
     for (component, value) in [("y", -973_543_210.987_65), ("x", -0.0)] {
         results.quantities.push(QuantityRow {
             key: key.clone(),
-            quantity: "reaction".into(),
-            at: "top".into(),
-            component: component.into(),
-            value,
-            unit: "N/m".into(),
+            quantity: Quantity {
+                name: "reaction".into(),
+                at: "top".into(),
+                component: component.into(),
+                value,
+                unit: "N/m".into(),
+            },
         });
     }
     for iteration in (0..=iterations).rev() {
@@ -188,25 +193,27 @@ pub fn points(key: &RunKey) -> Vec<PointRow> {
         let sliding = if status == "stick" { 0.8 } else { 1.0 };
         PointRow {
             key: key.clone(),
-            crack: 1,
-            point: i + 1,
-            x_m: -CRACK + s / 2f64.sqrt(),
-            y_m: -CRACK + s / 2f64.sqrt(),
-            z_m: 0.0,
-            s_m: s,
-            weight: length / 11.0,
-            gap_m: if i < 2 { 2e-4 } else { 1e-19 },
-            slip_a_m: if status == "stick" {
-                0.0
-            } else {
-                0.07 * bump * (1.2 - key.friction / 2.0)
+            point: PointState {
+                crack: 1,
+                number: i + 1,
+                x_m: -CRACK + s / 2f64.sqrt(),
+                y_m: -CRACK + s / 2f64.sqrt(),
+                z_m: 0.0,
+                s_m: s,
+                weight: length / 11.0,
+                gap_m: if i < 2 { 2e-4 } else { 1e-19 },
+                slip_a_m: if status == "stick" {
+                    0.0
+                } else {
+                    0.07 * bump * (1.2 - key.friction / 2.0)
+                },
+                slip_b_m: 0.0,
+                p_n: pressure * length / 11.0,
+                p_a: -sliding * key.friction * pressure * length / 11.0,
+                p_b: 0.0,
+                force_unit: "N/m".into(),
+                status: status.into(),
             },
-            slip_b_m: 0.0,
-            p_n: pressure * length / 11.0,
-            p_a: -sliding * key.friction * pressure * length / 11.0,
-            p_b: 0.0,
-            force_unit: "N/m".into(),
-            status: status.into(),
         }
     };
     (0..11).rev().map(point).collect()
@@ -225,10 +232,10 @@ fn displacement(x: f64, y: f64, side: f64) -> [f64; 3] {
 }
 
 /// 22 × 22 squares, those on the crack split along the diagonal, nodes inside the crack doubled.
-pub fn plate() -> Picture {
-    let mut picture = Picture {
+pub fn plate() -> FieldMesh {
+    let mut picture = FieldMesh {
         dim: 2,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     let mut u = Vec::new();
     let mut stress = Vec::new();
@@ -259,19 +266,19 @@ pub fn plate() -> Picture {
     for j in 0..CELLS {
         for i in 0..CELLS {
             let mut add = |shape, points| {
-                picture.cells.push(PictureCell { shape, points });
+                picture.cells.push(FieldCell { shape, points });
                 stress.push(1e8 + 1e6 * (i * j) as f64);
             };
             let crossed = i == j && (cracked(i) || cracked(i + 1));
             if crossed {
                 let upper = vec![node(i, j), node(i + 1, j + 1), node(i, j + 1)];
                 let lower = vec![below(i, j), node(i + 1, j), below(i + 1, j + 1)];
-                add(PictureShape::Triangle, upper);
-                add(PictureShape::Triangle, lower);
+                add(CellShape::Triangle, upper);
+                add(CellShape::Triangle, lower);
             } else {
                 let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
                 let pick = |(a, b)| if i > j { below(a, b) } else { node(a, b) };
-                add(PictureShape::Quad, corners.map(pick).to_vec());
+                add(CellShape::Quad, corners.map(pick).to_vec());
             }
         }
     }
@@ -287,33 +294,33 @@ pub fn plate() -> Picture {
 }
 
 /// The crack as a line of segments with contact fields.
-pub fn crack_line() -> Picture {
+pub fn crack_line() -> FieldMesh {
     let rows = points(&key("b-newton", 0.1));
-    let mut picture = Picture {
+    let mut picture = FieldMesh {
         dim: 2,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     for row in rows.iter().rev() {
-        picture.points.push([row.x_m, row.y_m, 0.0]);
+        picture.points.push([row.point.x_m, row.point.y_m, 0.0]);
     }
     for i in 1..rows.len() {
-        picture.cells.push(PictureCell {
-            shape: PictureShape::Line,
+        picture.cells.push(FieldCell {
+            shape: CellShape::Line,
             points: vec![i - 1, i],
         });
     }
     let scalar = |of: &dyn Fn(&PointRow) -> f64| rows.iter().rev().map(of).collect::<Vec<f64>>();
-    let status = |row: &PointRow| match row.status.as_str() {
+    let status = |row: &PointRow| match row.point.status.as_str() {
         "open" => 0.0,
         "stick" => 1.0,
         _ => 2.0,
     };
     picture
         .point_scalars
-        .push(("gap_m".into(), scalar(&|row| row.gap_m)));
+        .push(("gap_m".into(), scalar(&|row| row.point.gap_m)));
     picture
         .point_scalars
-        .push(("p_n".into(), scalar(&|row| row.p_n)));
+        .push(("p_n".into(), scalar(&|row| row.point.p_n)));
     picture
         .point_scalars
         .push(("status".into(), scalar(&status)));
@@ -321,12 +328,12 @@ pub fn crack_line() -> Picture {
 }
 
 /// 6 × 18 × 10 bricks of a beam 2 × 6 × 3 m, the two halves apart at mid-height, bent downwards and twisted.
-pub fn beam() -> Picture {
+pub fn beam() -> FieldMesh {
     let cells = [6, 18, 10];
     let size = [2.0, 6.0, 3.0];
-    let mut picture = Picture {
+    let mut picture = FieldMesh {
         dim: 3,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     let mut u = Vec::new();
     let half = cells[2] / 2;
@@ -363,8 +370,8 @@ pub fn beam() -> Picture {
                     ]
                 };
                 let points = ring(level).into_iter().chain(ring(level + 1)).collect();
-                picture.cells.push(PictureCell {
-                    shape: PictureShape::Hexahedron,
+                picture.cells.push(FieldCell {
+                    shape: CellShape::Hexahedron,
                     points,
                 });
             }
@@ -385,9 +392,9 @@ pub fn beam() -> Picture {
 /// The beam with its crack at mid-height: open, sticking and sliding along y from end to end.
 pub fn beam_step() -> FieldStep {
     let cells = [6, 18];
-    let mut crack = Picture {
+    let mut crack = FieldMesh {
         dim: 3,
-        ..Picture::default()
+        ..FieldMesh::default()
     };
     let (mut jump, mut traction, mut status) = (Vec::new(), Vec::new(), Vec::new());
     for j in 0..=cells[1] {
@@ -404,8 +411,8 @@ pub fn beam_step() -> FieldStep {
     let node = |i: usize, j: usize| j * (cells[0] + 1) + i;
     for j in 0..cells[1] {
         for i in 0..cells[0] {
-            crack.cells.push(PictureCell {
-                shape: PictureShape::Polygon,
+            crack.cells.push(FieldCell {
+                shape: CellShape::Polygon,
                 points: vec![
                     node(i, j),
                     node(i + 1, j),
@@ -474,11 +481,13 @@ pub fn cycle() -> Vec<QuantityRow> {
             let mut push = |quantity: &str, value: f64, unit: &str| {
                 rows.push(QuantityRow {
                     key: key.clone(),
-                    quantity: quantity.into(),
-                    at: "crack-1".into(),
-                    component: "a".into(),
-                    value,
-                    unit: unit.into(),
+                    quantity: Quantity {
+                        name: quantity.into(),
+                        at: "crack-1".into(),
+                        component: "a".into(),
+                        value,
+                        unit: unit.into(),
+                    },
                 });
             };
             push("mean_slip", slip, "m");

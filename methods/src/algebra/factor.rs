@@ -3,9 +3,10 @@
 //! The scaling keeps the condition number bounded however small a cut cell is. Rows and columns of pinned unknowns
 //! (one per rigid motion) are replaced by those of the unit matrix.
 
+use std::fmt::Debug;
 use std::time::Instant;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -14,7 +15,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::{CreationError, FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side};
 
 use crate::algebra::dense::norm;
@@ -61,16 +62,21 @@ impl Factor {
                 ..Default::default()
             },
         )
-        .map_err(|e| kernel("symbolic factorisation", format!("{e:?}")))?;
+        .map_err(|e| sparse("symbolic factorisation", e))?;
         let analysis_s = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / k.diagonal(j).sqrt()).collect();
         let scaled = scaled_values(k, &scale, &pins);
-        let mut values = vec![0.0; symbolic.len_val()];
+        // The largest array of a run: where it does not fit, the run says so.
+        let denied = MethodError::OutOfMemory {
+            what: "sparse factorisation",
+        };
+        let mut values = Vec::new();
+        (values.try_reserve_exact(symbolic.len_val())).map_err(|_| denied.clone())?;
+        values.resize(symbolic.len_val(), 0.0);
         let req = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut memory = MemBuffer::try_new(req)
-            .map_err(|_| kernel("sparse factorisation", "out of memory".to_string()))?;
+        let mut memory = MemBuffer::try_new(req).map_err(|_| denied)?;
         symbolic
             .factorize_numeric_llt::<f64>(
                 &mut values,
@@ -122,8 +128,7 @@ impl Factor {
     pub fn solve(&self, k: &SymmetricMatrix, x: &mut [f64]) -> Result<(), MethodError> {
         let n = k.size();
         let req = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let mut memory = MemBuffer::try_new(req)
-            .map_err(|_| kernel("sparse solve", "out of memory".to_string()))?;
+        let mut memory = solve_memory(req)?;
         let mut f = x.to_vec();
         for &pin in &self.pins {
             f[pin] = 0.0;
@@ -163,8 +168,7 @@ impl Factor {
     /// Solves K X = F in place for all columns together, without refinement; pinned rows of F must be 0.
     pub fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
         let req = (self.symbolic).solve_in_place_scratch::<f64>(x.ncols(), Par::Seq);
-        let mut memory = MemBuffer::try_new(req)
-            .map_err(|_| kernel("sparse solve", "out of memory".to_string()))?;
+        let mut memory = solve_memory(req)?;
         self.solve_scaled(x.as_mut(), &mut memory);
         Ok(())
     }
@@ -237,6 +241,21 @@ fn scaled_values(k: &SymmetricMatrix, scale: &[f64], pins: &[usize]) -> Vec<f64>
 fn column(x: &mut [f64]) -> MatMut<'_, f64> {
     let n = x.len();
     MatMut::from_column_major_slice_mut(x, n, 1)
+}
+
+/// Memory of a solve.
+fn solve_memory(req: StackReq) -> Result<MemBuffer, MethodError> {
+    let what = "sparse solve";
+    MemBuffer::try_new(req).map_err(|_| MethodError::OutOfMemory { what })
+}
+
+/// An error of a sparse kernel.
+pub(crate) fn sparse(what: &'static str, error: impl Into<CreationError> + Debug) -> MethodError {
+    let reason = format!("{error:?}");
+    match error.into() {
+        CreationError::Generic(FaerError::OutOfMemory) => MethodError::OutOfMemory { what },
+        _ => kernel(what, reason),
+    }
 }
 
 pub(crate) fn kernel(what: &'static str, reason: String) -> MethodError {

@@ -18,7 +18,7 @@ use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{Argsort, Pair as Place, SparseColMat, SymbolicSparseColMat};
 
 use crate::algebra::dense::{along, norm};
-use crate::algebra::factor::kernel;
+use crate::algebra::factor::sparse;
 use crate::algebra::rows::RowSet;
 use crate::condensed::forces::Pair;
 use crate::condensed::point_row::PointRow;
@@ -127,9 +127,9 @@ impl WholeBody {
         }
         let size = if explicit { n } else { n + m };
         let (pattern, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &at)
-            .map_err(|e| kernel("pattern of the monolithic matrix", format!("{e:?}")))?;
+            .map_err(|e| sparse("pattern of the monolithic matrix", e))?;
         let symbolic = SymbolicLu::try_new(pattern.as_ref())
-            .map_err(|e| kernel("symbolic LU of the monolithic matrix", format!("{e:?}")))?;
+            .map_err(|e| sparse("symbolic LU of the monolithic matrix", e))?;
         Ok(Self {
             elastic: elastic.clone(),
             set: set.clone(),
@@ -169,7 +169,7 @@ impl WholeBody {
         rows: &[[PointRow; 3]],
     ) -> Result<Option<WholeBodyFactor<'_>>, MethodError> {
         problem.counters.global_factorisations += 1;
-        let failed = |e: FaerError| kernel("sparse LU of the monolithic matrix", format!("{e:?}"));
+        let failed = |e: FaerError| sparse("sparse LU of the monolithic matrix", e);
         // In scaled unknowns C becomes C/ρ: B carries √ρ, and so does P.
         let rho = self.sigma * self.sigma;
         let c = |point: usize, k: usize, l: usize| rows[point][k].c[l] / rho;

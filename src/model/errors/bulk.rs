@@ -10,7 +10,7 @@ use stickslip_xfem::stiffness::cell_matrix::CellError;
 
 use crate::model::body::Body;
 
-use super::{fronts, side_of};
+use super::deviation::{fronts, side_of};
 
 /// Integrals over the body, all of squares.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

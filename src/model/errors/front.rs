@@ -16,7 +16,7 @@ use stickslip_xfem::stiffness::cell_matrix::CellError;
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
 
-use super::{Deviation, RULE, Scales, fronts, side_of};
+use super::deviation::{Deviation, RULE, Scales, fronts, side_of};
 
 /// Reach of the jump fit behind the tip, in lengths of the crack. It must not shrink with the mesh: with branch functions on
 /// the tip's cell only, the jump at a given number of cells behind the tip keeps its relative error on every mesh.

@@ -18,7 +18,7 @@ use stickslip_xfem::exact::Field;
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
 
-use super::Deviation;
+use super::deviation::Deviation;
 
 /// Slipping points that the line of least squares reaches over; two where there are no more.
 const REACH: usize = 3;

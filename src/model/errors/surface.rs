@@ -15,7 +15,7 @@ use stickslip_xfem::geometry::{Point, add_scaled};
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
 
-use super::{Deviation, Scales, ZERO, norm_row};
+use super::deviation::{Deviation, Scales, ZERO, norm_row};
 
 /// Found and exact values at one place, in the local frame, with a weight.
 struct Sample {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::report::ReportError;
+use crate::files::bundle::FolderError;
 
 /// Failure to make a page.
 #[derive(Debug, thiserror::Error)]
@@ -42,5 +42,5 @@ pub enum PageError {
     },
     /// The file system refused.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Folder(#[from] FolderError),
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::{Drawing, Figure, Figures, Grid, Link, Origin, PageError, Sheet, Show};
-use crate::report::ReportError;
+use crate::files::bundle::FolderError;
 
 /// Folders inside folders that are looked into: `accuracy/figures`, one more for what users arrange.
 const DEPTH: usize = 3;
@@ -44,7 +44,7 @@ impl Folder {
     /// Looks into a folder and those below it.
     ///
     /// # Errors
-    /// [`ReportError::Io`] where one cannot be listed.
+    /// [`FolderError::Io`] where one cannot be listed.
     pub fn open(root: &Path) -> Result<Self, PageError> {
         let mut files = BTreeSet::new();
         list(root, "", DEPTH, &mut files)?;
@@ -79,7 +79,7 @@ impl Folder {
 
     fn bytes(&self, path: &str) -> Result<Vec<u8>, PageError> {
         let full = self.root.join(path);
-        fs::read(&full).map_err(|e| ReportError::io("read file", &full, e).into())
+        fs::read(&full).map_err(|e| FolderError::io("read file", &full, e).into())
     }
 
     fn text(&self, path: &str) -> Result<String, PageError> {
@@ -233,7 +233,7 @@ fn list(
     depth: usize,
     files: &mut BTreeSet<String>,
 ) -> Result<(), PageError> {
-    let fail = |e| ReportError::io("list folder", dir, e);
+    let fail = |e| FolderError::io("list folder", dir, e);
     for entry in fs::read_dir(dir).map_err(fail)? {
         let entry = entry.map_err(fail)?;
         let kind = entry.file_type().map_err(fail)?;

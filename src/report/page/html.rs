@@ -4,6 +4,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Block, Column, Figure, Figures, Grid, Kind, Link, Origin, Section};
 use crate::report::number::{fixed, significant};
+use crate::run::record::{MET, MISSED_AS_DOCUMENTED};
+use crate::run::verdict::{NOT_RUN, Verdict, VerdictKind};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -145,21 +147,17 @@ fn data(cell: &str, column: &Column) -> Markup {
     }
 }
 
-/// Colour of a verdict; the word stays, so nothing depends on the colour.
-fn verdict_class(verdict: &str) -> &'static str {
-    let begins = |words: &[&str]| words.iter().any(|word| verdict.starts_with(word));
-    if begins(&["solved", "met", "pass", "stable"]) {
-        // `met against the documentation` says that the documentation is wrong.
-        if verdict.contains("against") {
-            return "v bad";
-        }
-        "v good"
-    } else if begins(&["approximate", "missed as documented"]) {
-        "v fair"
-    } else if begins(&["refused", "not run"]) || verdict.is_empty() {
-        "v none"
-    } else {
-        "v bad"
+/// Colour of a verdict, on a run or on what a run found; the word stays, so nothing depends on the colour.
+fn verdict_class(text: &str) -> &'static str {
+    let run = text.parse::<Verdict>().map(|verdict| verdict.kind());
+    match (run, text) {
+        (Ok(VerdictKind::Solved), _) | (_, MET | "pass" | "stable") => "v good",
+        (Ok(VerdictKind::Approximate), _) | (_, MISSED_AS_DOCUMENTED) => "v fair",
+        (Ok(VerdictKind::Refused), _) | (_, NOT_RUN | "") => "v none",
+        (Ok(VerdictKind::FalseClaim | VerdictKind::GaveUp | VerdictKind::Crashed), _)
+        | (Ok(VerdictKind::TimedOut | VerdictKind::OutOfMemory), _) => "v bad",
+        // `missed`, `fail`, `not stable`; `met against the documentation` says that the documentation is wrong.
+        (Err(_), _) => "v bad",
     }
 }
 

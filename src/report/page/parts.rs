@@ -17,7 +17,7 @@ mod study;
 mod summary;
 
 use super::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
-use crate::report::standard::honest;
+use crate::run::verdict::{Verdict, VerdictKind};
 
 /// Reads what it knows in the folder; nothing where there is nothing.
 pub type Part = fn(&Folder, &mut Budget) -> Result<Option<Section>, PageError>;
@@ -60,14 +60,14 @@ fn tables(
     paths
         .map(|path| {
             let mut grid = folder.grid(path, title, shows)?;
-            hide_times(&mut grid, honest);
+            hide_times(&mut grid, Verdict::is_honest);
             Ok(Block::Table(grid))
         })
         .collect()
 }
 
 /// Times stand only in rows whose verdict satisfies `keep`.
-fn hide_times(grid: &mut Grid, keep: fn(&str) -> bool) {
+fn hide_times(grid: &mut Grid, keep: fn(&Verdict) -> bool) {
     let columns = grid.columns.iter();
     let Some(verdict) = columns.clone().position(|c| c.kind == Kind::Verdict) else {
         return;
@@ -77,9 +77,46 @@ fn hide_times(grid: &mut Grid, keep: fn(&str) -> bool) {
         .filter_map(|(k, column)| (column.unit == "s").then_some(k))
         .collect();
     for row in &mut grid.rows {
-        if !keep(&row[verdict]) {
+        if !row[verdict].parse().is_ok_and(|verdict| keep(&verdict)) {
             times.iter().for_each(|k| row[*k] = "NaN".into());
         }
+    }
+}
+
+/// Verdicts counted under [`Tally::NAMES`].
+#[derive(Clone, Copy, Default)]
+struct Tally([usize; Tally::NAMES.len()]);
+
+impl Tally {
+    const NAMES: [&str; 7] = [
+        "solved",
+        "approximate",
+        "refused",
+        "gave up or crashed",
+        "false claims",
+        "timed out",
+        "out of memory",
+    ];
+
+    /// Counts one more.
+    fn add(&mut self, kind: VerdictKind) {
+        let place = match kind {
+            VerdictKind::Solved => 0,
+            VerdictKind::Approximate => 1,
+            VerdictKind::Refused => 2,
+            VerdictKind::GaveUp | VerdictKind::Crashed => 3,
+            VerdictKind::FalseClaim => 4,
+            VerdictKind::TimedOut => 5,
+            VerdictKind::OutOfMemory => 6,
+        };
+        self.0[place] += 1;
+    }
+
+    /// Places and names of what is shown beside each other: ends at a limit only where one of the tallies has any.
+    fn shown(all: &[Self]) -> Vec<(usize, &'static str)> {
+        let places = Self::NAMES.into_iter().enumerate();
+        let wanted = |place: usize| place < 5 || all.iter().any(|tally| tally.0[place] > 0);
+        places.filter(|(place, _)| wanted(*place)).collect()
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::section::heading;
 use super::{Column, Kind, PageError};
+use crate::run::verdict::{NoVerdict, Verdict};
 
 /// A table with its header; every row as long as the header.
 #[derive(Debug, Clone)]
@@ -107,6 +108,24 @@ impl Sheet {
     pub fn texts(&self, column: &str) -> Result<Vec<&str>, PageError> {
         let index = self.index(column)?;
         Ok(self.rows.iter().map(|row| row.1[index].as_str()).collect())
+    }
+
+    /// The column `verdict` of a table of runs.
+    ///
+    /// # Errors
+    /// [`PageError::Column`] where it is missing, [`PageError::Row`] at text that is no verdict.
+    pub fn verdicts(&self) -> Result<Vec<Verdict>, PageError> {
+        let index = self.index("verdict")?;
+        let parse = |(line, row): &(u64, Vec<String>)| {
+            row[index]
+                .parse()
+                .map_err(|error: NoVerdict| PageError::Row {
+                    file: self.file.clone(),
+                    line: *line,
+                    reason: error.to_string(),
+                })
+        };
+        self.rows.iter().map(parse).collect()
     }
 
     /// Numbers of a column; NaN where a cell is empty.

@@ -5,8 +5,7 @@
 //! corners are pixels: cut points of a shared edge are computed in one order and agree exactly.
 
 use super::axis::{multiples, number};
-use super::canvas::{Anchor, Canvas};
-use super::chart::{LABEL_PT, SMALL_PT};
+use super::canvas::{Anchor, Canvas, LABEL_PT, SMALL_PT};
 use super::colour::{self, BLACK, Rgb};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,7 +3,7 @@
 //! The library draws on whole pixels and writes the size in pixels. So there are [`PX_PER_MM`] of them per millimetre, and
 //! the finished text gets its size in millimetres, a title, and subscripts, which the library does not have.
 
-use super::colour::{GREY, Rgb, WHITE};
+use super::colour::{BLACK, GREY, Rgb, WHITE};
 use crate::report::ReportError;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -13,6 +13,11 @@ pub const PX_PER_MM: f64 = 20.0;
 const MM_PER_PT: f64 = 25.4 / 72.0;
 /// The library divides font sizes by this.
 const FONT_DIVISOR: f64 = 1.24;
+/// Sizes of text [pt].
+pub const LABEL_PT: f64 = 8.0;
+pub const TICK_PT: f64 = 7.0;
+pub const SMALL_PT: f64 = 6.5;
+
 /// Size and line distance of captions.
 pub const CAPTION_PT: f64 = 6.5;
 const CAPTION_MM: f64 = 3.0;
@@ -247,6 +252,23 @@ impl Canvas {
             area.present().map_err(drawing)?;
         }
         Ok(finish_svg(&svg, self.size, title))
+    }
+
+    /// A line with a filled head.
+    pub fn arrow(&mut self, from: [f64; 2], to: [f64; 2]) {
+        const HEAD: [f64; 2] = [1.5, 0.5];
+        let d = [to[0] - from[0], to[1] - from[1]];
+        let length = d[0].hypot(d[1]);
+        if length <= 0.0 {
+            return;
+        }
+        let [x, y] = d.map(|c| c / length);
+        // A short arrow is all head.
+        let [long, half] = HEAD.map(|c| c * (length / HEAD[0]).min(1.0));
+        let neck = [to[0] - long * x, to[1] - long * y];
+        let side = |s: f64| [neck[0] - s * half * y, neck[1] + s * half * x];
+        self.line(&[from, neck], BLACK, 0.25);
+        self.fill(&[to, side(1.0), side(-1.0)], BLACK);
     }
 }
 

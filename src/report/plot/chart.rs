@@ -2,18 +2,14 @@
 
 use super::axis::Axis;
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitted, fitting_size, text_width, wrapped,
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, fitted,
+    fitting_size, text_width, wrapped,
 };
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::{Marker, Style, draw_mark, draw_marker};
-use super::{marks, route};
+use super::{curve_direction, marks};
 use crate::report::ReportError;
-
-/// Sizes of text [pt].
-pub const LABEL_PT: f64 = 8.0;
-pub const TICK_PT: f64 = 7.0;
-pub const SMALL_PT: f64 = 6.5;
 
 const FRAME_MM: f64 = 0.2;
 const TICK_MM: f64 = 1.2;
@@ -71,7 +67,7 @@ pub enum Markers {
     /// At every point, those of later curves on top.
     Every,
     /// At points that are not crowded; the first curve shows in which direction it is run through.
-    Route,
+    Direction,
 }
 
 /// A whole figure.
@@ -197,15 +193,16 @@ pub fn draw_panel(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
                 }
             }
         }
-        Markers::Sparse | Markers::Route => {
+        Markers::Sparse | Markers::Direction => {
             for (series, places) in panel.series.iter().zip(&places) {
                 draw_markers(canvas, series, places);
             }
         }
     }
-    if let (Markers::Route, Some(first)) = (panel.markers, places.first()) {
+    if let (Markers::Direction, Some(first)) = (panel.markers, places.first()) {
         let points: Vec<[f64; 2]> = first.iter().flatten().copied().collect();
-        route::draw(canvas, frame, &points);
+        let corners = [[frame.left, frame.top], [frame.right, frame.bottom]];
+        curve_direction::draw(canvas, corners, &points);
     }
 }
 

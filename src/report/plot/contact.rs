@@ -5,17 +5,18 @@
 
 use super::axis::prefixed;
 use super::bands::{Pixel, Region};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, pixel, wrapped};
-use super::chart::{SMALL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, SMALL_PT, TICK_PT, Width, caption_height, pixel, wrapped,
+};
 use super::colour::{BLACK, GREY, Rgb};
 use super::contour::{Box2, stroke};
-use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector, unfit};
-use super::parts::{Lookup, Parts, Plane, dot, sum};
+use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector};
+use super::opened_solid::{Lookup, OpenedSolid, Plane, dot, sum};
 use super::solid::{Deformed, Sheet, draw_triad, project};
 use super::style::{draw_marker, status_marker};
+use crate::model::field_mesh::{CellShape, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::significant;
-use crate::run::record::{FieldStep, Picture, PictureShape};
 
 /// Status by its value in the point scalar `status`, and its tint; in grey the tints are 1, 0.5 and 0.8.
 const STATUS: [(&str, Rgb); 3] = [
@@ -38,7 +39,7 @@ const LEGEND_MM: f64 = 5.0;
 /// on side 1 where nothing slips.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the body is not 3D, the crack has no facets, or either lacks a field.
+/// [`ReportError::FieldMesh`] when the body is not 3D, the crack has no facets, or either lacks a field.
 pub fn contact_status(
     step: &FieldStep,
     magnification: Magnification,
@@ -47,11 +48,12 @@ pub fn contact_status(
     let (body, crack) = (&step.body, &step.crack);
     let shape = Deformed::new(body, magnification)?;
     let displacement = point_vector(body, DISPLACEMENT)?;
-    let plane = Plane::of(crack).ok_or_else(|| unfit("crack", "no facets".into()))?;
-    let parts = Parts::new(body, displacement, &shape, &plane);
+    let plane =
+        Plane::of(crack).ok_or_else(|| ReportError::field_mesh("crack", "no facets".into()))?;
+    let parts = OpenedSolid::new(body, displacement, &shape, &plane);
     let face = Face::new(crack, &plane)?;
     let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| unfit(DISPLACEMENT, "no finite values".into()))?;
+        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
 
     let width = Width::Column.mm();
     let scale = ((width - 6.0) / shown.width()).min(75.0 / shown.height());
@@ -106,7 +108,7 @@ pub fn contact_status(
 
 /// The crack surface with what is drawn on it.
 struct Face<'a> {
-    crack: &'a Picture,
+    crack: &'a FieldMesh,
     /// Index in [`STATUS`] per point.
     status: Vec<usize>,
     /// Tangential vector per point.
@@ -118,12 +120,12 @@ struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
-    fn new(crack: &'a Picture, plane: &Plane) -> Result<Self, ReportError> {
+    fn new(crack: &'a FieldMesh, plane: &Plane) -> Result<Self, ReportError> {
         let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
         let status = status.map(|(_, values)| values.as_slice()).unwrap_or(&[]);
         if status.len() != crack.points.len() {
             let reason = format!("{} values for {} points", status.len(), crack.points.len());
-            return Err(unfit("status", reason));
+            return Err(ReportError::field_mesh("status", reason));
         }
         let tangential = |name: &str| -> Result<Vec<[f64; 3]>, ReportError> {
             let vectors = point_vector(crack, name)?.iter();
@@ -165,7 +167,7 @@ impl<'a> Face<'a> {
             .crack
             .cells
             .iter()
-            .filter(|c| c.shape == PictureShape::Polygon);
+            .filter(|c| c.shape == CellShape::Polygon);
         for facet in facets {
             let corners: Vec<[f64; 2]> = facet.points.iter().map(|p| at(*p)).collect();
             let n = corners.len();
@@ -209,7 +211,7 @@ impl<'a> Face<'a> {
             let (from, v) = (sheet.at(places[point]), self.arrows[point]);
             if dot(v, v).sqrt() >= SHORTEST * self.largest && self.largest > 0.0 {
                 let to = sheet.at(sum(places[point], unit, v));
-                draw_arrow(canvas, from, to);
+                canvas.arrow(from, to);
             }
             let (marker, filled) = status_marker(STATUS[self.status[point]].0);
             draw_marker(canvas, from, marker, filled, BLACK);
@@ -243,28 +245,11 @@ impl<'a> Face<'a> {
         }
         if self.legend_rows() > 1 {
             let y = top + LEGEND_MM;
-            draw_arrow(canvas, [left + 0.5, y], [left + 5.5, y]);
+            canvas.arrow([left + 0.5, y], [left + 5.5, y]);
             let at = [left + 7.5, y];
             canvas.text(&self.label, at, SMALL_PT, Anchor::Start, BLACK);
         }
     }
-}
-
-/// A line with a filled head.
-pub fn draw_arrow(canvas: &mut Canvas, from: [f64; 2], to: [f64; 2]) {
-    const HEAD: [f64; 2] = [1.5, 0.5];
-    let d = [to[0] - from[0], to[1] - from[1]];
-    let length = d[0].hypot(d[1]);
-    if length <= 0.0 {
-        return;
-    }
-    let [x, y] = d.map(|c| c / length);
-    // A short arrow is all head.
-    let [long, half] = HEAD.map(|c| c * (length / HEAD[0]).min(1.0));
-    let neck = [to[0] - long * x, to[1] - long * y];
-    let side = |s: f64| [neck[0] - s * half * y, neck[1] + s * half * x];
-    canvas.line(&[from, neck], BLACK, 0.25);
-    canvas.fill(&[to, side(1.0), side(-1.0)], BLACK);
 }
 
 /// Unit normal of a face on its deformed place.

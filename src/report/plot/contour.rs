@@ -2,14 +2,15 @@
 
 use super::axis::{Axis, range};
 use super::bands::{self, Pixel, Triangle, chains};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
-use super::chart::{LABEL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, TICK_PT, Width, caption_height, italic, pixel, wrapped,
+};
 use super::colour::{BLACK, LIGHT};
-use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector};
 use super::outline::{Face, Weld, cell_scalar, outline};
 use super::surface::SIDE;
+use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
-use crate::run::record::{Picture, PictureShape};
 use std::collections::BTreeSet;
 
 /// Faces below this size on paper are not refined [pixels].
@@ -23,9 +24,9 @@ const BAR_MM: [f64; 2] = [32.0, 60.0];
 /// the undeformed outline grey. `caption` is small text above the panels.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the picture is not 2D, has no area, or lacks the vector.
+/// [`ReportError::FieldMesh`] when the picture is not 2D, has no area, or lacks the vector.
 pub fn displacement_contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -40,7 +41,7 @@ pub fn displacement_contours(
 /// # Errors
 /// Those of [`displacement_contours`].
 pub fn von_mises_contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -51,7 +52,7 @@ pub fn von_mises_contours(
 
 /// One or two fields as panels.
 fn contours(
-    picture: &Picture,
+    picture: &FieldMesh,
     fields: &[Field],
     magnification: Magnification,
     title: &str,
@@ -59,11 +60,11 @@ fn contours(
 ) -> Result<String, ReportError> {
     if picture.dim != 2 {
         let reason = format!("{} dimensions, contours need 2", picture.dim);
-        return Err(unfit("picture", reason));
+        return Err(ReportError::field_mesh("picture", reason));
     }
     let displacement = point_vector(picture, DISPLACEMENT)?;
     let size = Box2::around(picture.points.iter().map(|p| [p[0], p[1]]))
-        .ok_or_else(|| unfit("points", "no finite points".into()))?;
+        .ok_or_else(|| ReportError::field_mesh("points", "no finite points".into()))?;
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
@@ -77,7 +78,10 @@ fn contours(
         .map(|(x, u)| [x[0] + factor * u[0], x[1] + factor * u[1]])
         .collect();
     let Some(deformed) = Box2::around(places.iter().copied()) else {
-        return Err(unfit(DISPLACEMENT, "no finite values".into()));
+        return Err(ReportError::field_mesh(
+            DISPLACEMENT,
+            "no finite values".into(),
+        ));
     };
     let shown = deformed.joined(&size);
     let faces = plane_faces(picture, &places)?;
@@ -105,7 +109,7 @@ fn contours(
 
 /// What is drawn, the same in all panels.
 struct Body<'a> {
-    picture: &'a Picture,
+    picture: &'a FieldMesh,
     /// Deformed positions [m].
     places: Vec<[f64; 2]>,
     faces: Vec<Face>,
@@ -262,18 +266,21 @@ fn draw_axes(canvas: &mut Canvas, origin: [f64; 2], shown: &Box2, scale: f64) {
 }
 
 /// All plane cells whose points have a finite place.
-fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
+fn plane_faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Face>, ReportError> {
     let sides = cell_scalar(picture, SIDE);
     let mut faces = Vec::new();
     for (cell, side) in picture.cells.iter().zip(sides) {
         if let Some(point) = cell.points.iter().find(|p| **p >= places.len()) {
-            return Err(unfit("cells", format!("point {point} of {}", places.len())));
+            return Err(ReportError::field_mesh(
+                "cells",
+                format!("point {point} of {}", places.len()),
+            ));
         }
         let drawn = cell
             .points
             .iter()
             .all(|p| places[*p].iter().all(|c| c.is_finite()));
-        if let PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad = cell.shape {
+        if let CellShape::Triangle | CellShape::Polygon | CellShape::Quad = cell.shape {
             faces.extend(drawn.then(|| Face {
                 points: cell.points.clone(),
                 side,
@@ -281,7 +288,7 @@ fn plane_faces(picture: &Picture, places: &[[f64; 2]]) -> Result<Vec<Face>, Repo
         }
     }
     if faces.is_empty() {
-        return Err(unfit(
+        return Err(ReportError::field_mesh(
             "cells",
             "no triangle, polygon or quad to draw".into(),
         ));

@@ -1,15 +1,15 @@
 //! What the methods cost: iterations and solve time on every case, one lane per case.
 
 use super::axis::{Axis, range};
-use super::canvas::{Anchor, Canvas, Width, caption_height, plain, text_width, wrapped};
-use super::chart::{LABEL_PT, SMALL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, plain, text_width, wrapped,
+};
 use super::colour::{BLACK, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::methods;
 use super::style::draw_marker;
 use crate::report::ReportError;
 use crate::report::comparison::ComparisonRow;
-use crate::report::standard::honest;
 
 const LANE_MM: f64 = 8.8;
 /// Heights in a lane over which methods in the order of the registry are spread in turn: equal costs stay apart [mm].
@@ -29,7 +29,7 @@ struct Column {
 /// # Errors
 /// [`ReportError::Figure`] without any run that did what it claims.
 pub fn method_cost(rows: &[ComparisonRow]) -> Result<String, ReportError> {
-    let rows: Vec<&ComparisonRow> = rows.iter().filter(|row| honest(&row.verdict)).collect();
+    let rows: Vec<&ComparisonRow> = rows.iter().filter(|row| row.verdict.is_honest()).collect();
     let mut cases: Vec<&str> = rows.iter().map(|row| row.case.as_str()).collect();
     cases.sort_unstable();
     cases.dedup();

@@ -5,10 +5,10 @@
 //! triangle on it: error ~ h^p is the slope p against the cell size h and −p/dim against the number N ~ h^−dim of unknowns.
 
 use super::axis::{self, Axis};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, fitting_size, wrapped};
-use super::chart::{
-    Frame, Markers, Panel, Series, SlopeTriangle, TICK_PT, draw_panel, room_for_labels,
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, TICK_PT, Width, caption_height, fitting_size, wrapped,
 };
+use super::chart::{Frame, Markers, Panel, Series, SlopeTriangle, draw_panel, room_for_labels};
 use super::colour::{BLACK, GREY};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::Style;

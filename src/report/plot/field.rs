@@ -4,8 +4,8 @@ use super::axis::{nice_step, prefixed, range};
 use super::bands::Levels;
 use super::canvas::{italic, plain, subscript};
 use super::outline::cell_scalar;
+use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh};
 use crate::report::ReportError;
-use crate::run::record::{Picture, PictureCell, PictureShape};
 
 /// Name of the point vector that deforms a body.
 pub const DISPLACEMENT: &str = "displacement_m";
@@ -73,13 +73,13 @@ impl Field {
     /// the body lies below, if the largest value is far above that.
     ///
     /// # Errors
-    /// [`ReportError::Picture`] when the picture has no such cell scalar, or not one value per cell.
-    pub fn von_mises(picture: &Picture) -> Result<Self, ReportError> {
+    /// [`ReportError::FieldMesh`] when the picture has no such cell scalar, or not one value per cell.
+    pub fn von_mises(picture: &FieldMesh) -> Result<Self, ReportError> {
         let given = picture.cell_scalars.iter().find(|(n, _)| n == VON_MISES);
         let count = given.map_or(0, |(_, values)| values.len());
         if count != picture.cells.len() {
             let reason = format!("{count} values for {} cells", picture.cells.len());
-            return Err(unfit(VON_MISES, reason));
+            return Err(ReportError::field_mesh(VON_MISES, reason));
         }
         let stress = cell_scalar(picture, VON_MISES);
         let mut sums = vec![(0.0, 0.0); picture.points.len()];
@@ -121,7 +121,7 @@ fn quantile(values: &[(f64, f64)], part: f64) -> f64 {
 }
 
 /// Area or volume of a cell; 0 for lines and vertices.
-fn measure(picture: &Picture, cell: &PictureCell) -> f64 {
+fn measure(picture: &FieldMesh, cell: &FieldCell) -> f64 {
     let x = |i: usize| cell.points.get(i).and_then(|p| picture.points.get(*p));
     let edge = |from: usize, to: usize| -> [f64; 3] {
         let (Some(a), Some(b)) = (x(from), x(to)) else {
@@ -138,8 +138,8 @@ fn measure(picture: &Picture, cell: &PictureCell) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| -> f64 { (0..3).map(|c| a[c] * b[c]).sum() };
     let tetrahedron = |a, b, c| dot(product(edge(0, a), edge(0, b)), edge(0, c)).abs() / 6.0;
     match cell.shape {
-        PictureShape::Vertex | PictureShape::Line => 0.0,
-        PictureShape::Triangle | PictureShape::Polygon | PictureShape::Quad => {
+        CellShape::Vertex | CellShape::Line => 0.0,
+        CellShape::Triangle | CellShape::Polygon | CellShape::Quad => {
             let fan = 2..cell.points.len().max(2);
             let sum = fan.fold([0.0; 3], |sum: [f64; 3], i| {
                 let part = product(edge(0, i - 1), edge(0, i));
@@ -147,9 +147,9 @@ fn measure(picture: &Picture, cell: &PictureCell) -> f64 {
             });
             dot(sum, sum).sqrt()
         }
-        PictureShape::Tetra => tetrahedron(1, 2, 3),
+        CellShape::Tetra => tetrahedron(1, 2, 3),
         // Around the diagonal from corner 0 to corner 6.
-        PictureShape::Hexahedron => {
+        CellShape::Hexahedron => {
             let ring = [1, 2, 3, 7, 4, 5];
             let part = |i: usize| tetrahedron(ring[i], ring[(i + 1) % 6], 6);
             (0..6).map(part).sum()
@@ -169,11 +169,14 @@ pub fn full_caption(caption: &str, factor: f64) -> String {
 /// The values of a point vector.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when it is missing or has not one value per point.
-pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
+/// [`ReportError::FieldMesh`] when it is missing or has not one value per point.
+pub fn point_vector<'a>(picture: &'a FieldMesh, name: &str) -> Result<&'a [[f64; 3]], ReportError> {
     let found = picture.point_vectors.iter().find(|(n, _)| n == name);
     let Some((_, values)) = found else {
-        return Err(unfit(name, "the picture has no such point vector".into()));
+        return Err(ReportError::field_mesh(
+            name,
+            "the picture has no such point vector".into(),
+        ));
     };
     if values.len() != picture.points.len() {
         let reason = format!(
@@ -181,43 +184,32 @@ pub fn point_vector<'a>(picture: &'a Picture, name: &str) -> Result<&'a [[f64; 3
             values.len(),
             picture.points.len()
         );
-        return Err(unfit(name, reason));
+        return Err(ReportError::field_mesh(name, reason));
     }
     Ok(values)
-}
-
-/// What a picture lacks for a figure.
-pub fn unfit(name: &str, reason: String) -> ReportError {
-    ReportError::Picture {
-        name: name.to_owned(),
-        reason,
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn picture(shape: PictureShape, points: Vec<[f64; 3]>) -> Picture {
-        let cell = PictureCell {
+    fn picture(shape: CellShape, points: Vec<[f64; 3]>) -> FieldMesh {
+        let cell = FieldCell {
             shape,
             points: (0..points.len()).collect(),
         };
-        Picture {
+        FieldMesh {
             dim: 3,
             points,
             cells: vec![cell],
-            ..Picture::default()
+            ..FieldMesh::default()
         }
     }
 
     #[test]
     fn cells_have_their_area_or_volume() {
         let plane = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [1.0, 2.0], [0.0, 1.0]];
-        let pentagon = picture(
-            PictureShape::Polygon,
-            plane.map(|[x, y]| [x, y, 0.0]).to_vec(),
-        );
+        let pentagon = picture(CellShape::Polygon, plane.map(|[x, y]| [x, y, 0.0]).to_vec());
         assert_eq!(measure(&pentagon, &pentagon.cells[0]), 5.5);
         let corner = |i: usize| {
             let one = |inside: bool| f64::from(u8::from(inside));
@@ -226,9 +218,9 @@ mod tests {
             let x = 2.0 * one([1, 2, 5, 6].contains(&i)) + 0.5 * z;
             [x, one([2, 3, 6, 7].contains(&i)), z]
         };
-        let brick = picture(PictureShape::Hexahedron, (0..8).map(corner).collect());
+        let brick = picture(CellShape::Hexahedron, (0..8).map(corner).collect());
         assert_eq!(measure(&brick, &brick.cells[0]), 6.0);
-        let tetra = picture(PictureShape::Tetra, [0, 1, 3, 4].map(corner).to_vec());
+        let tetra = picture(CellShape::Tetra, [0, 1, 3, 4].map(corner).to_vec());
         assert_eq!(measure(&tetra, &tetra.cells[0]), 1.0);
     }
 
@@ -236,12 +228,12 @@ mod tests {
     #[test]
     fn stress_at_a_point_is_the_mean_over_its_cells() {
         let mut picture = picture(
-            PictureShape::Quad,
+            CellShape::Quad,
             vec![[0.0; 3], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
         );
         picture.points.extend([[4.0, 0.0, 0.0], [4.0, 1.0, 0.0]]);
-        picture.cells.push(PictureCell {
-            shape: PictureShape::Quad,
+        picture.cells.push(FieldCell {
+            shape: CellShape::Quad,
             points: vec![1, 4, 5, 2],
         });
         assert!(Field::von_mises(&picture).is_err(), "no stress");

@@ -3,10 +3,10 @@
 use super::axis::{Axis, prefixed, range};
 use super::canvas::{Width, italic, plain, subscript};
 use super::chart::{Chart, Markers, Panel, Series};
+use super::curve_direction;
 use super::legend::Entry;
 use super::method_curves::method_curves;
 use super::names::by_run;
-use super::route;
 use super::style::Style;
 use crate::report::ReportError;
 use crate::report::number::value;
@@ -37,7 +37,7 @@ pub fn friction_loop(
     notes: &[String],
 ) -> Result<Option<String>, ReportError> {
     let runs = runs(rows, crack);
-    let back = |run: &Run<'_>| !route::turns(&run.path).is_empty();
+    let back = |run: &Run<'_>| !curve_direction::turns(&run.path).is_empty();
     let Some(first) = runs
         .first()
         .filter(|run| run.path.len() > LEAST && back(run))
@@ -96,7 +96,7 @@ pub fn friction_loop(
         series: series.collect(),
         levels: Vec::new(),
         slopes: Vec::new(),
-        markers: Markers::Route,
+        markers: Markers::Direction,
     };
     let RunKey {
         case,
@@ -141,7 +141,7 @@ fn runs(rows: &[QuantityRow], crack: usize) -> Vec<Run<'_>> {
     let at = format!("crack-{crack}");
     let plane: Vec<&QuantityRow> = rows
         .iter()
-        .filter(|row| row.at == at && row.component == "a")
+        .filter(|row| row.quantity.at == at && row.quantity.component == "a")
         .collect();
     // The increment is no part of the run here.
     let name = |key: &RunKey| RunKey {
@@ -155,9 +155,9 @@ fn runs(rows: &[QuantityRow], crack: usize) -> Vec<Run<'_>> {
         let mut values: BTreeMap<usize, [Option<f64>; 2]> = BTreeMap::new();
         for (_, row) in rows {
             let place = values.entry(row.key.increment).or_default();
-            match row.quantity.as_str() {
-                "mean_slip" => place[0] = Some(row.value),
-                "contact_force" => place[1] = Some(-row.value),
+            match row.quantity.name.as_str() {
+                "mean_slip" => place[0] = Some(row.quantity.value),
+                "contact_force" => place[1] = Some(-row.quantity.value),
                 _ => {}
             }
         }

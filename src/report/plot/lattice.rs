@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitting_size, plain, text_width, wrapped,
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, fitting_size,
+    plain, text_width, wrapped,
 };
-use super::chart::{LABEL_PT, SMALL_PT, TICK_PT};
 use super::colour::{BLACK, GREY, LIGHT};
 use super::legend::{self, Entry, LegendGrid};
 use super::style::{Style, draw_marker};

@@ -1,7 +1,6 @@
 //! Legends: samples and labels in rows below a chart.
 
-use super::canvas::{Anchor, Canvas, fitted, text_width};
-use super::chart::{SMALL_PT, TICK_PT};
+use super::canvas::{Anchor, Canvas, SMALL_PT, TICK_PT, fitted, text_width};
 use super::colour::BLACK;
 use super::style::{Style, draw_mark};
 

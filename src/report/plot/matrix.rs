@@ -1,9 +1,9 @@
 //! A square of numbers, row against column: the darker, the more.
 
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, plain, text_width, wrapped,
+    Anchor, CAPTION_PT, Canvas, SMALL_PT, TICK_PT, Width, caption_height, plain, text_width,
+    wrapped,
 };
-use super::chart::{SMALL_PT, TICK_PT};
 use super::colour::{BLACK, GREY, Rgb, WHITE};
 use crate::report::ReportError;
 use crate::report::number::fixed;

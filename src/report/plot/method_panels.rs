@@ -5,9 +5,9 @@
 
 use super::axis::{self, Axis};
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, fitting_size, plain, wrapped,
+    Anchor, CAPTION_PT, Canvas, TICK_PT, Width, caption_height, fitting_size, plain, wrapped,
 };
-use super::chart::{Frame, Markers, Panel, Series, TICK_PT, draw_panel, room_for_labels};
+use super::chart::{Frame, Markers, Panel, Series, draw_panel, room_for_labels};
 use super::colour::{BLACK, GREY};
 use super::errors::{Guide, Law, laws};
 use super::legend::{self, Entry, LegendGrid};

@@ -3,7 +3,7 @@
 //! Parts of a cut cell have points of their own, so neighbours are found by place. The two faces of a crack lie in the
 //! same place too; they stay apart because their cells are on opposite sides, or because their displacements differ.
 
-use crate::run::record::Picture;
+use crate::model::field_mesh::FieldMesh;
 use std::collections::BTreeMap;
 
 /// Points nearer than this fraction of the body's size are one place.
@@ -21,7 +21,7 @@ pub struct Weld<'a> {
 
 impl<'a> Weld<'a> {
     /// Finds the places; `displacement` has one vector per point.
-    pub fn new(picture: &Picture, displacement: &'a [[f64; 3]]) -> Self {
+    pub fn new(picture: &FieldMesh, displacement: &'a [[f64; 3]]) -> Self {
         let largest = |vectors: &[[f64; 3]]| {
             let values = vectors.iter().flatten().map(|c| c.abs());
             values
@@ -61,7 +61,7 @@ impl<'a> Weld<'a> {
 }
 
 /// Values of a cell scalar, 0 where the picture has none of that name.
-pub fn cell_scalar(picture: &Picture, name: &str) -> Vec<f64> {
+pub fn cell_scalar(picture: &FieldMesh, name: &str) -> Vec<f64> {
     let found = picture.cell_scalars.iter().find(|(n, _)| n == name);
     let mut values = found.map(|(_, values)| values.clone()).unwrap_or_default();
     values.resize(picture.cells.len(), 0.0);
@@ -75,7 +75,7 @@ pub struct Face {
 }
 
 /// Edges of the body's boundary and of crack faces.
-pub fn outline(picture: &Picture, faces: &[Face], weld: &Weld<'_>) -> Vec<[usize; 2]> {
+pub fn outline(picture: &FieldMesh, faces: &[Face], weld: &Weld<'_>) -> Vec<[usize; 2]> {
     let mut edges: Vec<([usize; 2], [usize; 2], f64)> = faces
         .iter()
         .flat_map(|face| {
@@ -108,7 +108,11 @@ pub fn outline(picture: &Picture, faces: &[Face], weld: &Weld<'_>) -> Vec<[usize
 }
 
 /// Without the edges where one long edge meets two short ones: beside the tip of a crack, which ends inside a cell.
-fn without_hanging(picture: &Picture, single: Vec<[usize; 2]>, weld: &Weld<'_>) -> Vec<[usize; 2]> {
+fn without_hanging(
+    picture: &FieldMesh,
+    single: Vec<[usize; 2]>,
+    weld: &Weld<'_>,
+) -> Vec<[usize; 2]> {
     let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, edge) in single.iter().enumerate() {
         for point in edge {
@@ -150,13 +154,13 @@ fn without_hanging(picture: &Picture, single: Vec<[usize; 2]>, weld: &Weld<'_>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::record::{PictureCell, PictureShape};
+    use crate::model::field_mesh::{CellShape, FieldCell};
 
     /// A square left of a square that is cut at half height, every part with points of its own.
-    fn cut_beside_whole(jump: f64) -> (Picture, Vec<Face>, Vec<[f64; 3]>) {
-        let mut picture = Picture {
+    fn cut_beside_whole(jump: f64) -> (FieldMesh, Vec<Face>, Vec<[f64; 3]>) {
+        let mut picture = FieldMesh {
             dim: 2,
-            ..Picture::default()
+            ..FieldMesh::default()
         };
         // The cells share their points, but for the faces of the crack from (1, 0.5) to (2, 0.5).
         let points = [
@@ -180,8 +184,8 @@ mod tests {
         ];
         let mut faces = Vec::new();
         for (side, points) in parts {
-            picture.cells.push(PictureCell {
-                shape: PictureShape::Quad,
+            picture.cells.push(FieldCell {
+                shape: CellShape::Quad,
                 points: points.clone(),
             });
             faces.push(Face { points, side });

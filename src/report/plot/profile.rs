@@ -34,8 +34,8 @@ pub fn contact_traction(
     exact: &[ExactRow],
     crack: usize,
 ) -> Result<String, ReportError> {
-    let normal = |row: &PointRow| row.p_n / row.weight;
-    let tangential = |row: &PointRow| row.p_a.hypot(row.p_b) / row.weight;
+    let normal = |row: &PointRow| row.point.p_n / row.point.weight;
+    let tangential = |row: &PointRow| row.point.p_a.hypot(row.point.p_b) / row.point.weight;
     let limit = |row: &PointRow| row.key.friction * normal(row).max(0.0);
     let figure = "contact traction";
     let profile = Profile::new(figure, (rows, exact), crack, "Pa", &[&normal, &tangential])?;
@@ -87,11 +87,11 @@ pub fn contact_slip(
     exact: &[ExactRow],
     crack: usize,
 ) -> Result<String, ReportError> {
-    let slip = |row: &PointRow| row.slip_a_m;
-    let gap = |row: &PointRow| row.gap_m;
+    let slip = |row: &PointRow| row.point.slip_a_m;
+    let gap = |row: &PointRow| row.point.gap_m;
     let profile = Profile::new("contact slip", (rows, exact), crack, "m", &[&slip, &gap])?;
     // Gaps of closed points are round-off; a panel of round-off says nothing.
-    let opens = profile.rows().any(|row| row.status == "open")
+    let opens = profile.rows().any(|row| row.point.status == "open")
         || profile.largest(&gap) > 1e-6 * profile.largest(&slip);
 
     let mut panels = vec![profile.panel("slip", &[&slip], &|row| row.slip_a_m)];
@@ -158,9 +158,13 @@ impl<'a> Profile<'a> {
         unit: &'static str,
         of: &[Of<'_>],
     ) -> Result<Self, ReportError> {
-        let mut runs = by_run(rows, |row| &row.key, |a, b| a.s_m.total_cmp(&b.s_m));
+        let mut runs = by_run(
+            rows,
+            |row| &row.key,
+            |a, b| a.point.s_m.total_cmp(&b.point.s_m),
+        );
         for run in &mut runs {
-            run.retain(|row| row.crack == crack);
+            run.retain(|row| row.point.crack == crack);
         }
         runs.retain(|run| !run.is_empty());
         if runs.is_empty() {
@@ -169,7 +173,11 @@ impl<'a> Profile<'a> {
                 format!("crack {crack} has no points"),
             ));
         }
-        if runs.iter().flatten().all(|row| row.force_unit != "N/m") {
+        if runs
+            .iter()
+            .flatten()
+            .all(|row| row.point.force_unit != "N/m")
+        {
             let reason = "points of a 3D crack have no distance along it";
             return Err(ReportError::figure(figure, reason));
         }
@@ -210,7 +218,7 @@ impl<'a> Profile<'a> {
         let methods: Vec<&str> = (self.runs.iter())
             .map(|run| run[0].key.method.as_str())
             .collect();
-        let statuses = |run: usize| self.runs[run].iter().map(|row| &row.status);
+        let statuses = |run: usize| self.runs[run].iter().map(|row| &row.point.status);
         let shared = if self.exact.is_empty() {
             Style::shared()
         } else {
@@ -235,7 +243,9 @@ impl<'a> Profile<'a> {
 
     /// Length of the crack as far as it has points [m].
     fn length(&self) -> f64 {
-        self.rows().map(|row| row.s_m.abs()).fold(0.0, f64::max)
+        self.rows()
+            .map(|row| row.point.s_m.abs())
+            .fold(0.0, f64::max)
     }
 
     /// Values of the functions along each run, divided by the largest or by what counts as round-off.
@@ -276,7 +286,7 @@ impl<'a> Profile<'a> {
         let values = (self.rows()).flat_map(|row| of.iter().map(|f| f(row) * factor));
         let shown = values.chain([0.0]).chain(closed().map(|v| v * factor));
         let ends = self.exact.iter().flatten().map(|row| row.s_m);
-        let along = self.rows().map(|row| row.s_m).chain(ends);
+        let along = self.rows().map(|row| row.point.s_m).chain(ends);
         let panel = Panel {
             x: Axis::linear("distance along the crack [m]", along, 6),
             y: Axis::linear(&format!("{name} [{unit}]"), shown, 4),
@@ -323,7 +333,7 @@ impl<'a> Profile<'a> {
             });
         }
         for status in ["stick", "slip", "open"] {
-            if self.rows().any(|row| row.status == status) {
+            if self.rows().any(|row| row.point.status == status) {
                 let (marker, filled) = status_marker(status);
                 marks.push(Entry {
                     label: status.to_owned(),
@@ -348,7 +358,7 @@ impl<'a> Profile<'a> {
 
 impl ProfilePanel {
     fn points(&self, curve: &ProfileCurve<'_>, of: Of<'_>) -> Vec<[f64; 2]> {
-        let point = |row: &&PointRow| [row.s_m, of(row) * self.factor];
+        let point = |row: &&PointRow| [row.point.s_m, of(row) * self.factor];
         curve.points.iter().map(point).collect()
     }
 
@@ -359,9 +369,11 @@ impl ProfilePanel {
         let first = &profile.curves[0].points;
         let hidden = |(n, row): (usize, &&PointRow)| {
             let below = first.get(n).filter(|_| index > 0 && profile.by_method);
-            below.is_some_and(|b| b.status == row.status && (of(b) - of(row)).abs() < seen)
+            below.is_some_and(|b| {
+                b.point.status == row.point.status && (of(b) - of(row)).abs() < seen
+            })
         };
-        let look = |(n, row)| (!hidden((n, row))).then(|| status_marker(&row.status));
+        let look = |(n, row)| (!hidden((n, row))).then(|| status_marker(&row.point.status));
         self.panel.series.push(Series {
             points: self.points(curve, of),
             style: curve.style.clone(),

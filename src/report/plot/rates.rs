@@ -1,8 +1,9 @@
 //! Success rates of the robustness study against friction: one column per dimension, one lane per method.
 
 use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Width, caption_height, text_width, wrapped};
-use super::chart::{LABEL_PT, SMALL_PT, TICK_PT};
+use super::canvas::{
+    Anchor, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, text_width, wrapped,
+};
 use super::colour::{BLACK, GREY, LIGHT};
 use super::methods;
 use super::style::{Style, draw_marker};

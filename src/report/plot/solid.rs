@@ -5,15 +5,16 @@
 
 use super::axis::range;
 use super::bands::{self, Triangle};
-use super::canvas::{Anchor, CAPTION_PT, Canvas, Width, caption_height, italic, pixel, wrapped};
-use super::chart::TICK_PT;
+use super::canvas::{
+    Anchor, CAPTION_PT, Canvas, TICK_PT, Width, caption_height, italic, pixel, wrapped,
+};
 use super::colour::BLACK;
 use super::contour::{Box2, split, stroke};
-use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector, unfit};
+use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector};
 use super::outline::Weld;
 use super::surface::{self, Patch};
+use crate::model::field_mesh::FieldMesh;
 use crate::report::ReportError;
-use crate::run::record::Picture;
 
 /// Component of a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,9 +47,9 @@ const TRIAD_MM: f64 = 16.0;
 /// One component of `displacement_m` of a 3D picture as filled bands on the deformed boundary.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when the picture is not 3D, has no solid cells, or lacks the vector.
+/// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks the vector.
 pub fn solid_displacement(
-    picture: &Picture,
+    picture: &FieldMesh,
     component: Axis3,
     magnification: Magnification,
     caption: &str,
@@ -65,7 +66,7 @@ pub fn solid_displacement(
 /// # Errors
 /// Those of [`solid_displacement`].
 pub fn solid_von_mises(
-    picture: &Picture,
+    picture: &FieldMesh,
     magnification: Magnification,
     caption: &str,
 ) -> Result<String, ReportError> {
@@ -76,7 +77,7 @@ pub fn solid_von_mises(
 
 /// A field on the deformed boundary.
 fn solid(
-    picture: &Picture,
+    picture: &FieldMesh,
     field: &Field,
     magnification: Magnification,
     title: &str,
@@ -84,7 +85,7 @@ fn solid(
 ) -> Result<String, ReportError> {
     let shape = Deformed::new(picture, magnification)?;
     let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| unfit(DISPLACEMENT, "no finite values".into()))?;
+        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
     let width = Width::Column.mm();
     let scale = ((width - 24.0) / shown.width()).min(70.0 / shown.height());
     let height = scale * shown.height();
@@ -129,11 +130,11 @@ pub struct Deformed {
 
 impl Deformed {
     /// # Errors
-    /// [`ReportError::Picture`] when the picture is not 3D, has no solid cells, or lacks `displacement_m`.
-    pub fn new(picture: &Picture, magnification: Magnification) -> Result<Self, ReportError> {
+    /// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks `displacement_m`.
+    pub fn new(picture: &FieldMesh, magnification: Magnification) -> Result<Self, ReportError> {
         if picture.dim != 3 {
             let reason = format!("{} dimensions, a solid needs 3", picture.dim);
-            return Err(unfit("picture", reason));
+            return Err(ReportError::field_mesh("picture", reason));
         }
         let displacement = point_vector(picture, DISPLACEMENT)?;
         let patches = surface::boundary(picture, &Weld::new(picture, displacement))?;

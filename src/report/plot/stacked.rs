@@ -3,9 +3,9 @@
 //! Parts differ in lightness and hatching, so they stay apart in grey; large ones have their share printed inside.
 
 use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, Width, caption_height, plain, text_width, wrapped,
+    Anchor, CAPTION_PT, Canvas, LABEL_PT, SMALL_PT, TICK_PT, Width, caption_height, plain,
+    text_width, wrapped,
 };
-use super::chart::{LABEL_PT, SMALL_PT, TICK_PT};
 use super::colour::{BLACK, Rgb, WHITE};
 use crate::report::ReportError;
 use crate::report::number::fixed;

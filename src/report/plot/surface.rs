@@ -3,10 +3,9 @@
 //! A cut cell comes as many tetrahedra; its faces are put together again, so that the picture shows the mesh and not the
 //! tetrahedra. Cells of one mesh cell have the same value of the cell scalar `cell`.
 
-use super::field::unfit;
 use super::outline::{Weld, cell_scalar};
+use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh};
 use crate::report::ReportError;
-use crate::run::record::{Picture, PictureCell, PictureShape};
 use std::collections::BTreeMap;
 
 /// Name of the cell scalar that holds the number of the mesh cell.
@@ -40,8 +39,8 @@ pub struct Patch {
 /// The patches that bound the solid, crack faces among them.
 ///
 /// # Errors
-/// [`ReportError::Picture`] when there is no solid cell, or one with the wrong points.
-pub fn boundary(picture: &Picture, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError> {
+/// [`ReportError::FieldMesh`] when there is no solid cell, or one with the wrong points.
+pub fn boundary(picture: &FieldMesh, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError> {
     // Patches in the same place have the same places of edges.
     let mut found: BTreeMap<Vec<[usize; 2]>, Vec<Patch>> = BTreeMap::new();
     for patch in patches(picture, weld)? {
@@ -64,7 +63,7 @@ pub fn boundary(picture: &Picture, weld: &Weld<'_>) -> Result<Vec<Patch>, Report
 }
 
 /// Faces of every mesh cell, those inside it dropped, those in one plane together.
-fn patches(picture: &Picture, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError> {
+fn patches(picture: &FieldMesh, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError> {
     let sides = cell_scalar(picture, SIDE);
     let numbered = picture
         .cell_scalars
@@ -89,7 +88,10 @@ fn patches(picture: &Picture, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError
         }
     }
     if cells.is_empty() {
-        return Err(unfit("cells", "no hexahedron or tetrahedron".into()));
+        return Err(ReportError::field_mesh(
+            "cells",
+            "no hexahedron or tetrahedron".into(),
+        ));
     }
     let mut patches = Vec::new();
     for members in cells.values() {
@@ -126,27 +128,30 @@ fn patches(picture: &Picture, weld: &Weld<'_>) -> Result<Vec<Patch>, ReportError
 }
 
 /// Whether a cell is solid.
-fn check(picture: &Picture, index: usize, cell: &PictureCell) -> Result<bool, ReportError> {
+fn check(picture: &FieldMesh, index: usize, cell: &FieldCell) -> Result<bool, ReportError> {
     let needed = match cell.shape {
-        PictureShape::Hexahedron => 8,
-        PictureShape::Tetra => 4,
+        CellShape::Hexahedron => 8,
+        CellShape::Tetra => 4,
         _ => return Ok(false),
     };
     let known = cell.points.iter().all(|p| *p < picture.points.len());
     if cell.points.len() != needed || !known {
-        return Err(unfit("cells", format!("cell {index} has wrong points")));
+        return Err(ReportError::field_mesh(
+            "cells",
+            format!("cell {index} has wrong points"),
+        ));
     }
     Ok(true)
 }
 
 /// Faces of a cell with outward normals; the points of a tetrahedron may come in either orientation.
-fn cell_faces(picture: &Picture, cell: &PictureCell) -> Vec<Vec<usize>> {
+fn cell_faces(picture: &FieldMesh, cell: &FieldCell) -> Vec<Vec<usize>> {
     let faces: &[&[usize]] = match cell.shape {
-        PictureShape::Hexahedron => &HEXAHEDRON,
-        PictureShape::Tetra => &TETRA,
+        CellShape::Hexahedron => &HEXAHEDRON,
+        CellShape::Tetra => &TETRA,
         _ => &[],
     };
-    let mirrored = cell.shape == PictureShape::Tetra && {
+    let mirrored = cell.shape == CellShape::Tetra && {
         let x = |i: usize| picture.points[cell.points[i]];
         let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|c| x(i)[c] - x(0)[c]) };
         let [a, b, c] = [edge(1), edge(2), edge(3)];
@@ -167,7 +172,7 @@ fn cell_faces(picture: &Picture, cell: &PictureCell) -> Vec<Vec<usize>> {
 /// Outward normal of a face, rounded; none for a face without area.
 ///
 /// A part of a mesh cell is convex, so its faces with one normal lie in one plane.
-fn normal(picture: &Picture, face: &[usize]) -> Option<[i64; 3]> {
+fn normal(picture: &FieldMesh, face: &[usize]) -> Option<[i64; 3]> {
     // Newell's sum serves quads that are not quite plane.
     let mut normal = [0.0; 3];
     for (i, point) in face.iter().enumerate() {
@@ -205,7 +210,7 @@ mod tests {
     use super::*;
 
     /// A unit cube beside one that comes as six tetrahedra with points of their own.
-    fn cubes(numbered: bool) -> Picture {
+    fn cubes(numbered: bool) -> FieldMesh {
         let corner = |i: usize, x: f64| {
             [
                 x + f64::from(u8::from(matches!(i, 1 | 2 | 5 | 6))),
@@ -213,14 +218,14 @@ mod tests {
                 f64::from(u8::from(i > 3)),
             ]
         };
-        let mut picture = Picture {
+        let mut picture = FieldMesh {
             dim: 3,
-            ..Picture::default()
+            ..FieldMesh::default()
         };
         picture.points.extend((0..8).map(|i| corner(i, 0.0)));
         let points = (0..8).collect();
-        picture.cells.push(PictureCell {
-            shape: PictureShape::Hexahedron,
+        picture.cells.push(FieldCell {
+            shape: CellShape::Hexahedron,
             points,
         });
         let around = [1, 2, 3, 7, 4, 5];
@@ -235,8 +240,8 @@ mod tests {
             };
             picture.points.extend(tetra.map(|c| corner(c, 1.0)));
             let points = (first..first + 4).collect();
-            picture.cells.push(PictureCell {
-                shape: PictureShape::Tetra,
+            picture.cells.push(FieldCell {
+                shape: CellShape::Tetra,
                 points,
             });
         }
@@ -249,7 +254,7 @@ mod tests {
         picture
     }
 
-    fn patches_of(picture: &Picture) -> Vec<Patch> {
+    fn patches_of(picture: &FieldMesh) -> Vec<Patch> {
         let displacement = vec![[0.0; 3]; picture.points.len()];
         boundary(picture, &Weld::new(picture, &displacement)).expect("solid cells")
     }

@@ -1,6 +1,6 @@
 //! Time to accuracy: the error of the discretisation beside what it takes to have the answer, mesh by mesh.
 
-use super::Study;
+use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::value;
 use crate::report::plot::{Guide, MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
@@ -16,20 +16,20 @@ use crate::studies::sweep::cell::Problem;
 const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Adds `time_to_accuracy.csv` and a figure per case, contact space and friction.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let all = refinements(study.records);
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let all = refinements(sweep.records);
     let coarsest: Vec<Problem> = all.iter().map(|one| one.coarsest.clone()).collect();
     let mut rows = Vec::new();
     for (one, name) in all.iter().zip(problem_names(&coarsest)) {
         // The name tells everything but the mesh.
         let name = name.replacen(&format!(".r{}.", one.coarsest.refine), ".", 1);
-        if let Some(svg) = method_panels(&figure(one, &study.caveat()))? {
+        if let Some(svg) = method_panels(&figure(one, &sweep.caveat()))? {
             let stem = file_name(&["time_to_accuracy", &name]);
             bundle.add(format!("figures/{stem}.svg"), svg)?;
         }
         rows.extend(one.errors.iter().map(AccuracyRow));
     }
-    bundle.add(AccuracyRow::FILE, csv::file(&rows)?)
+    Ok(bundle.add(AccuracyRow::FILE, csv::file(&rows)?)?)
 }
 
 /// A row of `convergence.csv` without the enrichment of the tips, which the records do not know.

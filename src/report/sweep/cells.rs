@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
+use super::records::{CELL_COLUMNS, SweepRecords, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
@@ -17,8 +17,8 @@ const ERROR_DIGITS: usize = 4;
 const EXACT: &str = "exact";
 
 /// Adds `cells.csv`, `increments.csv` and `deviations.csv`.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let records = study.sorted();
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let records = sweep.sorted();
     let cells: Vec<CellRow> = records.iter().map(|record| CellRow(record)).collect();
     bundle.add(CellRow::FILE, csv::file(&cells)?)?;
     let increments = records.iter().flat_map(|record| {
@@ -32,14 +32,14 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
     let increments: Vec<IncrementRow> = increments.collect();
     bundle.add(IncrementRow::FILE, csv::file(&increments)?)?;
     // A quantity without exact value says something only beside that of another mesh.
-    let refined: Vec<Problem> = sequences(study.records).into_iter().flatten().collect();
+    let refined: Vec<Problem> = sequences(sweep.records).into_iter().flatten().collect();
     let deviations = records.iter().flat_map(|record| {
         let several = refined.contains(&record.cell.problem());
         let rows = DeviationRow::all(record).into_iter();
         rows.filter(move |row| several || row.kind == EXACT)
     });
     let deviations: Vec<DeviationRow> = deviations.collect();
-    bundle.add(DeviationRow::FILE, csv::file(&deviations)?)
+    Ok(bundle.add(DeviationRow::FILE, csv::file(&deviations)?)?)
 }
 
 fn optional(number: Option<f64>, text: impl Fn(f64) -> String) -> String {
@@ -111,7 +111,7 @@ impl Row for CellRow<'_> {
         cells.extend([
             record.cell.digest.clone(),
             found.exact.to_string(),
-            found.verdict.clone(),
+            found.verdict.to_string(),
             residual(natural_map),
             optional(error.map(|e| e.energy), residual),
             optional(error.map(|e| e.force), residual),
@@ -170,7 +170,7 @@ impl Row for IncrementRow<'_> {
         let mut cells = Vec::new();
         cells.extend([
             self.number.to_string(),
-            self.found.verdict.clone(),
+            self.found.verdict.to_string(),
             optional(self.found.natural_map, residual),
         ]);
         cells.extend(counters(|counter| counter(self.found)));

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use stickslip_methods::Tier;
 
-use super::{Study, tier_heading};
+use super::records::{SweepRecords, tier_heading};
 use crate::report::csv::{self, Row};
 use crate::report::number::significant;
 use crate::report::plot::{
@@ -21,15 +21,15 @@ use crate::studies::sweep::analysis::ranking::ranking;
 const DIGITS: usize = 6;
 
 /// Adds `pairwise.csv`, `pairwise_profiles.csv` and their figures, of times.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
     let (mut rows, mut duel_rows) = (Vec::new(), Vec::new());
-    for set in &study.sets {
+    for set in &sweep.sets {
         let costs = Costs::new(set, Measure::Time);
         let own = pairs(&costs);
         if costs.problems() == 0 || own.is_empty() {
             continue;
         }
-        let figure = wins(&own, &costs, set.tier, &study.caveat());
+        let figure = wins(&own, &costs, set.tier, &sweep.caveat());
         bundle.add(
             format!("figures/pairwise.{}.svg", set.tier),
             matrix(&figure)?,
@@ -42,14 +42,14 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
         });
         let Some(best) = best else { continue };
         let duels = duels(&costs, best);
-        let figure = duel_figure(&duels, costs.problems(), set.tier, &study.caveat());
+        let figure = duel_figure(&duels, costs.problems(), set.tier, &sweep.caveat());
         if let Some(svg) = method_panels(&figure)? {
             bundle.add(format!("figures/pairwise_profiles.{tier}.svg"), svg)?;
         }
         duel_rows.extend(duels.iter().flat_map(|duel| DuelRow::all(duel, tier)));
     }
     bundle.add(PairRow::FILE, csv::file(&rows)?)?;
-    bundle.add(DuelRow::FILE, csv::file(&duel_rows)?)
+    Ok(bundle.add(DuelRow::FILE, csv::file(&duel_rows)?)?)
 }
 
 struct PairRow<'a> {

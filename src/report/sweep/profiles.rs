@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use stickslip_methods::Tier;
 
-use super::{Study, tier_heading};
+use super::records::{SweepRecords, tier_heading};
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, method_panels, stairs};
@@ -20,15 +20,15 @@ const DIGITS: usize = 6;
 const HEIGHT_MM: f64 = 66.0;
 
 /// Adds `profiles.csv`, `time_profiles.csv`, `data_profiles.csv`, `time_data_profiles.csv` and their figures.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
     let mut counters = Vec::new();
     for measure in Measure::COUNTERS {
-        let tiers = tiers(study, measure, performance);
-        add_performance(bundle, study, measure, &tiers)?;
+        let tiers = tiers(sweep, measure, performance);
+        add_performance(bundle, sweep, measure, &tiers)?;
         counters.extend(profile_rows(measure.name(), &tiers));
     }
-    let times = tiers(study, Measure::Time, performance);
-    add_performance(bundle, study, Measure::Time, &times)?;
+    let times = tiers(sweep, Measure::Time, performance);
+    add_performance(bundle, sweep, Measure::Time, &times)?;
     bundle.add(ProfileRow::FILE, csv::file(&counters)?)?;
     let times = profile_rows(Measure::Time.name(), &times);
     bundle.add("time_profiles.csv", csv::file(&times)?)?;
@@ -36,8 +36,8 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
         (Budget::Passes, "data_profiles.csv"),
         (Budget::Factorisations, "time_data_profiles.csv"),
     ] {
-        let tiers = tiers(study, budget.measure(), |costs| data(costs, budget));
-        add_data(bundle, study, budget, &tiers)?;
+        let tiers = tiers(sweep, budget.measure(), |costs| data(costs, budget));
+        add_data(bundle, sweep, budget, &tiers)?;
         let rows: Vec<DataRow> = profile_rows(budget.name(), &tiers)
             .into_iter()
             .map(DataRow)
@@ -58,7 +58,7 @@ struct TierCurves<'a> {
 }
 
 fn tiers<'a>(
-    study: &Study<'a>,
+    sweep: &SweepRecords<'a>,
     measure: Measure,
     curves: impl Fn(&Costs<'a>) -> Vec<Curve<'a>>,
 ) -> Vec<TierCurves<'a>> {
@@ -72,7 +72,7 @@ fn tiers<'a>(
             curves: curves(&costs),
         }
     };
-    study.sets.iter().map(of).collect()
+    sweep.sets.iter().map(of).collect()
 }
 
 /// A step of a profile.
@@ -150,7 +150,7 @@ impl Row for DataRow {
 
 fn add_performance(
     bundle: &mut Bundle,
-    study: &Study<'_>,
+    sweep: &SweepRecords<'_>,
     measure: Measure,
     tiers: &[TierCurves<'_>],
 ) -> Result<(), ReportError> {
@@ -163,7 +163,7 @@ fn add_performance(
     };
     let figure = figure(
         format!("Performance profiles: {}", measure.words()),
-        format!("{}\n{note}", told(study, tiers)),
+        format!("{}\n{note}", told(sweep, tiers)),
         format!("{} / least of all methods [-]", measure.words()),
         tiers,
     );
@@ -175,7 +175,7 @@ fn add_performance(
 
 fn add_data(
     bundle: &mut Bundle,
-    study: &Study<'_>,
+    sweep: &SweepRecords<'_>,
     budget: Budget,
     tiers: &[TierCurves<'_>],
 ) -> Result<(), ReportError> {
@@ -185,7 +185,7 @@ fn add_data(
     };
     let figure = figure(
         format!("Data profiles: {x_label}"),
-        told(study, tiers),
+        told(sweep, tiers),
         x_label.into(),
         tiers,
     );
@@ -196,7 +196,7 @@ fn add_data(
 }
 
 /// How many problems stand behind the panels.
-fn told(study: &Study<'_>, tiers: &[TierCurves<'_>]) -> String {
+fn told(sweep: &SweepRecords<'_>, tiers: &[TierCurves<'_>]) -> String {
     let of = |tier: &TierCurves<'_>| {
         let unsolved = match tier.unsolved {
             0 => String::new(),
@@ -205,7 +205,7 @@ fn told(study: &Study<'_>, tiers: &[TierCurves<'_>]) -> String {
         format!("{}{unsolved}", tier.problems)
     };
     let counts: Vec<String> = tiers.iter().map(of).collect();
-    format!("problems: {}{}", counts.join(" / "), study.caveat())
+    format!("problems: {}{}", counts.join(" / "), sweep.caveat())
 }
 
 fn widths(tiers: &[TierCurves<'_>]) -> String {

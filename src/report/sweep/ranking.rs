@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use stickslip_methods::Tier;
 
-use super::Study;
+use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant, time};
-use crate::report::paper::add_readable;
+use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::compare_methods;
@@ -15,15 +15,15 @@ use crate::studies::sweep::analysis::costs::{Costs, Measure};
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
 
 /// Adds `ranking.csv`, `.md` and `.tex`.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
     let mut rows = Vec::new();
-    for set in &study.sets {
+    for set in &sweep.sets {
         if let Some(own) = ranking(&Costs::new(set, Measure::Time)) {
             rows.extend(RankingRow::all(set.tier, &own));
         }
     }
     bundle.add(RankingRow::FILE, csv::file(&rows)?)?;
-    add_readable(bundle, "ranking", &table(&rows, &study.caveat())?)
+    add_readable(bundle, "ranking", &table(&rows, &sweep.caveat())?)
 }
 
 struct RankingRow {

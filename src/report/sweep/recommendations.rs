@@ -2,10 +2,10 @@
 
 use std::cmp::Ordering;
 
-use super::Study;
+use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::significant;
-use crate::report::paper::add_readable;
+use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::recommendation::{Recommendation, recommendations};
@@ -14,10 +14,10 @@ use crate::studies::sweep::analysis::recommendation::{Recommendation, recommenda
 const ANY: &str = "any";
 
 /// Adds `recommendations.csv`, `.md` and `.tex`.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let rows = recommendations(study.records);
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let rows = recommendations(sweep.records);
     bundle.add(Recommendation::FILE, csv::file(&rows)?)?;
-    add_readable(bundle, "recommendations", &table(&rows, &study.caveat())?)
+    add_readable(bundle, "recommendations", &table(&rows, &sweep.caveat())?)
 }
 
 /// The class in words.

@@ -4,20 +4,20 @@ use std::cmp::Ordering;
 
 use stickslip_methods::Tier;
 
-use super::Study;
+use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, significant};
-use crate::report::paper::add_readable;
+use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::compare_methods;
 use crate::studies::sweep::analysis::success::{FAILURES, SuccessRow, success};
 
 /// Adds `success.csv`, `.md` and `.tex`.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let rows = success(study.records);
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let rows = success(sweep.records);
     bundle.add(SuccessRow::FILE, csv::file(&rows)?)?;
-    add_readable(bundle, "success", &table(&rows, &study.caveat())?)
+    add_readable(bundle, "success", &table(&rows, &sweep.caveat())?)
 }
 
 impl Row for SuccessRow {

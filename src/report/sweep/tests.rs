@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use crate::run::registry::methods;
 
 use crate::report::sweep::*;
-use crate::studies::sweep::analysis::support::{lying, record, timed};
+use crate::studies::sweep::analysis::support::{end_with, lying, record, timed};
 use crate::studies::sweep::record::{DeviationFound, ValueFound};
 
 /// Files that must not depend on times.
@@ -19,7 +19,7 @@ const TIMELESS: [&str; 7] = [
 
 /// Three meshes of a plate with closed form and two of a beam without, with and without friction, by all methods at five
 /// tolerances; nsgs fails on the finest plate, barrier is refused on the beam.
-pub fn study() -> Vec<Record> {
+pub fn records_of_a_sweep() -> Vec<Record> {
     let problems = [("plate", [1, 2, 4].as_slice(), 2), ("beam", &[1, 2, 3], 3)];
     let mut records = Vec::new();
     for (case, meshes, dim) in problems {
@@ -138,15 +138,14 @@ fn approximate(cell: &mut Record, map: f64) {
     };
     for increment in &mut cell.found.increments {
         increment.natural_map = Some(map);
-        increment.verdict = verdict.into();
+        increment.verdict = verdict.parse().unwrap();
     }
-    cell.found.verdict = verdict.into();
+    cell.found.verdict = verdict.parse().unwrap();
     cell.found.solver_error.as_mut().unwrap().energy = 0.1 * map;
 }
 
 fn fail(cell: &mut Record, verdict: &str) {
-    cell.found.verdict = verdict.into();
-    cell.found.increments[0].verdict = verdict.into();
+    end_with(cell, verdict);
     cell.found.solver_error = None;
     cell.found.deviations.clear();
     cell.found.values.clear();
@@ -160,12 +159,14 @@ fn files(records: &[Record]) -> BTreeMap<String, Vec<u8>> {
 
 #[test]
 fn a_liar_leaves_no_time_in_any_file() {
-    let mut records = study();
+    let mut records = records_of_a_sweep();
     let verdicts = [
         "false-claim",
         "gave-up: stalled",
+        "refused: no",
         "crashed: no",
         "timed-out",
+        "out-of-memory",
     ];
     for (record, verdict) in records
         .iter_mut()
@@ -181,13 +182,9 @@ fn a_liar_leaves_no_time_in_any_file() {
         *record = liar;
     }
     let with = files(&records);
-    let honest = ["solved", "approximate"];
     let mut stripped = 0;
     for record in &mut records {
-        if !honest
-            .iter()
-            .any(|start| record.found.verdict.starts_with(start))
-        {
+        if !record.found.verdict.is_honest() {
             assert!(record.spent.take().is_some());
             stripped += 1;
         }
@@ -204,7 +201,7 @@ fn a_liar_leaves_no_time_in_any_file() {
 
 #[test]
 fn counters_and_errors_stand_in_files_without_times() {
-    let mut records = study();
+    let mut records = records_of_a_sweep();
     let before = files(&records);
     for (index, record) in records.iter_mut().enumerate() {
         *record = timed(record.clone(), 1.0 + (index % 7) as f64);
@@ -226,7 +223,7 @@ fn counters_and_errors_stand_in_files_without_times() {
 
 #[test]
 fn the_order_of_the_records_does_not_matter() {
-    let mut records = study();
+    let mut records = records_of_a_sweep();
     let before = files(&records);
     records.reverse();
     let after = files(&records);
@@ -238,7 +235,7 @@ fn the_order_of_the_records_does_not_matter() {
 
 #[test]
 fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
-    let records = study();
+    let records = records_of_a_sweep();
     let files = files(&records);
     let lines = |path: &str| {
         let text = String::from_utf8(files[path].clone()).unwrap();
@@ -258,7 +255,7 @@ fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
 
 #[test]
 fn without_times_there_are_no_rankings_and_no_errors() {
-    let mut records = study();
+    let mut records = records_of_a_sweep();
     records.iter_mut().for_each(|record| record.spent = None);
     let files = files(&records);
     assert!(!files.contains_key("figures/profile.time.svg"));
@@ -275,7 +272,7 @@ fn without_times_there_are_no_rankings_and_no_errors() {
 
 #[test]
 fn an_incomplete_sweep_says_so() {
-    let records = study();
+    let records = records_of_a_sweep();
     let text = |total: usize| {
         let bundle = bundle(&records, total, &Provenance::collect(1)).unwrap();
         String::from_utf8(bundle.get("success.md").unwrap().to_vec()).unwrap()
@@ -288,9 +285,9 @@ fn an_incomplete_sweep_says_so() {
 
 #[test]
 fn a_comparison_lists_what_changed() {
-    let a = study();
+    let a = records_of_a_sweep();
     let mut b = a.clone();
-    b[0].found.verdict = "false-claim".into();
+    b[0].found.verdict = "false-claim".parse().unwrap();
     let comparison = crate::studies::sweep::compare::compare(&a, &b);
     assert!(comparison.worse());
     let bundle = comparison_bundle(&comparison).unwrap();
@@ -322,7 +319,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
 
 #[test]
 fn headers_are_those_of_the_documentation() {
-    let mut found = files(&study());
+    let mut found = files(&records_of_a_sweep());
     let changes = crate::studies::sweep::compare::compare(&[], &[]);
     let changes = comparison_bundle(&changes).unwrap();
     let table = changes.get("compare.csv").unwrap().to_vec();

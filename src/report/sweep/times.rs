@@ -2,12 +2,13 @@
 
 use std::cmp::Ordering;
 
-use super::{CELL_COLUMNS, Study, cell_columns, compare_cells};
+use super::records::{CELL_COLUMNS, SweepRecords, cell_columns, compare_cells};
 use crate::report::csv::{self, Row};
 use crate::report::number::{significant, time, value};
 use crate::report::plot::{Bar, Stacked, italic, stacked};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
+use crate::run::verdict::Verdict;
 use crate::studies::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
@@ -27,10 +28,10 @@ const STAGES: [&str; 7] = [
 ];
 
 /// Adds `times.csv` and the figures of the stages.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let rows: Vec<TimeRow> = study.sorted().into_iter().filter_map(TimeRow::of).collect();
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let rows: Vec<TimeRow> = sweep.sorted().into_iter().filter_map(TimeRow::of).collect();
     bundle.add(TimeRow::FILE, csv::file(&rows)?)?;
-    add_figures(bundle, &rows, study)
+    add_figures(bundle, &rows, sweep)
 }
 
 struct TimeRow<'a> {
@@ -122,7 +123,7 @@ impl Row for TimeRow<'_> {
         let Spent { prepare, solve, .. } = self.spent;
         let method = method_time(self.spent);
         let mut cells = Vec::new();
-        cells.push(self.record.found.verdict.clone());
+        cells.push(self.record.found.verdict.to_string());
         cells.extend(self.stages()[..4].iter().map(|t| time(*t)));
         cells.extend(timing_cells(prepare));
         cells.extend(timing_cells(solve));
@@ -144,10 +145,11 @@ impl Row for TimeRow<'_> {
 fn add_figures(
     bundle: &mut Bundle,
     rows: &[TimeRow<'_>],
-    study: &Study<'_>,
+    sweep: &SweepRecords<'_>,
 ) -> Result<(), ReportError> {
-    let solved =
-        |row: &&TimeRow| row.record.found.verdict == "solved" && has_defaults(&row.record.cell);
+    let solved = |row: &&TimeRow| {
+        row.record.found.verdict == Verdict::Solved && has_defaults(&row.record.cell)
+    };
     let mut own: Vec<&TimeRow> = rows.iter().filter(solved).collect();
     let problem = |row: &TimeRow| row.record.cell.problem().without_mesh();
     own.sort_by(|a, b| {
@@ -176,13 +178,13 @@ fn add_figures(
             stem = format!("{stem}-{}", names.len());
         }
         names.push(stem.clone());
-        let svg = stacked(&figure(&group, study))?;
+        let svg = stacked(&figure(&group, sweep))?;
         bundle.add(format!("figures/{stem}.svg"), svg)?;
     }
     Ok(())
 }
 
-fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
+fn figure(group: &[&TimeRow<'_>], sweep: &SweepRecords<'_>) -> Stacked {
     let cell = &group[0].record.cell;
     let same_mesh =
         |a: &&TimeRow<'_>, b: &&TimeRow<'_>| a.record.cell.refine == b.record.cell.refine;
@@ -192,7 +194,7 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
         let best = rows.iter().min_by(|a, b| own(a).total_cmp(&own(b)))?;
         let mesh = best.record.found.problem.as_ref().map(|p| p.mesh.as_str());
         let label = format!("{}, {}", mesh.unwrap_or("?"), best.record.found.method);
-        Some(bar(best, label, study))
+        Some(bar(best, label, sweep))
     });
     let mut groups = vec![(
         "each mesh, least median of all methods".to_owned(),
@@ -201,7 +203,7 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
     if let Some(finest) = meshes.last() {
         let bars = finest
             .iter()
-            .map(|row| bar(row, row.record.found.method.clone(), study));
+            .map(|row| bar(row, row.record.found.method.clone(), sweep));
         groups.push(("finest mesh, each method".to_owned(), bars.collect()));
     }
     let space = group[0].record.found.problem.as_ref();
@@ -214,7 +216,7 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
             italic("μ"),
             value(cell.mu()),
             value(cell.tolerance),
-            study.caveat(),
+            sweep.caveat(),
         ),
         scale: "share of the total time [%]".into(),
         parts: STAGES.map(str::to_owned).into(),
@@ -222,9 +224,9 @@ fn figure(group: &[&TimeRow<'_>], study: &Study<'_>) -> Stacked {
     }
 }
 
-fn bar(row: &TimeRow<'_>, label: String, study: &Study<'_>) -> Bar {
+fn bar(row: &TimeRow<'_>, label: String, sweep: &SweepRecords<'_>) -> Bar {
     let mut values = row.stages();
-    if let Some(body) = body_times(row.record, study.records) {
+    if let Some(body) = body_times(row.record, sweep.records) {
         values[..3].copy_from_slice(&body);
     }
     Bar {

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::Study;
+use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::{RESIDUAL_FLOOR, residual, time, value};
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
@@ -16,13 +16,13 @@ use crate::studies::sweep::cell::Problem;
 const CURVE: usize = 4;
 
 /// Adds `work_precision.csv` and a figure per problem with a curve.
-pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
-    let all = problems(study.records);
+pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
+    let all = problems(sweep.records);
     let mut rows = Vec::new();
     for (problem, name) in all.iter().zip(problem_names(&all)) {
-        let series = series(study.records, problem);
+        let series = series(sweep.records, problem);
         let drawn = series.iter().any(|own| own.points.len() >= CURVE);
-        let figure = figure(problem, &series, &study.caveat());
+        let figure = figure(problem, &series, &sweep.caveat());
         if let (true, Some(svg)) = (drawn, method_panels(&figure)?) {
             let stem = file_name(&["work_precision", &name]);
             bundle.add(format!("figures/{stem}.svg"), svg)?;
@@ -38,7 +38,7 @@ pub fn add(bundle: &mut Bundle, study: &Study<'_>) -> Result<(), ReportError> {
             }));
         }
     }
-    bundle.add(PointRow::FILE, csv::file(&rows)?)
+    Ok(bundle.add(PointRow::FILE, csv::file(&rows)?)?)
 }
 
 struct PointRow<'a> {
@@ -85,7 +85,7 @@ impl Row for PointRow<'_> {
             value(*swept_value),
             self.exact.to_string(),
             record.id.clone(),
-            found.verdict.clone(),
+            found.verdict.to_string(),
             residual(*error),
             found.sum(|i| i.iterations).to_string(),
             found.sum(|i| i.local_solves).to_string(),

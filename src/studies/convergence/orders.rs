@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use super::limit::{limit, slope};
 use super::{Measured, Regularity, Sample, Seconds, Variant};
+use crate::run::verdict::Verdict;
 
 /// Differences of a quantity below this fraction of its size are the tolerance of the runs, not the discretisation.
 const RESOLVED: f64 = 1e-8;
@@ -53,7 +54,7 @@ pub struct ErrorRow {
     /// Contact points.
     pub points: usize,
     /// Claim × check.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// Quantity; empty where the verdict is not honest.
     pub quantity: String,
     /// Place and component; empty: the whole body.
@@ -279,7 +280,7 @@ fn unmeasured_row(sample: &Sample) -> ErrorRow {
         h: sample.h,
         dofs: sample.dofs,
         points: sample.points,
-        verdict: sample.verdict.to_string(),
+        verdict: sample.verdict.clone(),
         quantity: String::new(),
         at: String::new(),
         found: f64::NAN,
@@ -296,7 +297,6 @@ fn unmeasured_row(sample: &Sample) -> ErrorRow {
 mod tests {
     use super::super::{Deviation, Value};
     use super::*;
-    use crate::run::verdict::Verdict;
     use stickslip_methods::Status;
 
     fn sample(refine: usize, regularity: Regularity, measured: Measured) -> Sample {
@@ -357,7 +357,7 @@ mod tests {
         assert_eq!((errors.len(), orders.len()), (5, 1));
         let failed: Vec<&ErrorRow> = errors.iter().filter(|r| r.kind.is_none()).collect();
         assert_eq!((failed.len(), failed[0].refine), (1, 16));
-        assert!(failed[0].error.is_nan() && failed[0].verdict.starts_with("gave-up"));
+        assert!(failed[0].error.is_nan() && failed[0].verdict == Verdict::GaveUp(Status::Stalled));
         let solved: Vec<&ErrorRow> = errors.iter().filter(|r| r.kind.is_some()).collect();
         assert_eq!(
             solved.iter().map(|r| r.refine).collect::<Vec<_>>(),

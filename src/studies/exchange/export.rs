@@ -5,15 +5,13 @@ use stickslip_methods::{
 };
 
 use crate::case::Case;
-use crate::files::{Info, InterchangeError, matrix_market};
+use crate::files::interchange::{Info, InterchangeError, matrix_market};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
-use crate::report::standard::problem_name;
-use crate::report::{Bundle, ReportError};
-use crate::run::attempt::Judged;
+use crate::run::choice::Choice;
+use crate::run::increment::{Judged, Solver};
 use crate::run::record::RunKey;
-use crate::run::run_case::{Choice, RunError, friction_values};
-use crate::run::step::Solver;
+use crate::run::run_case::{RunError, friction_values};
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::exchange::{global_problem, local_problem};
 
@@ -30,6 +28,14 @@ pub struct Request {
     pub choice: Choice,
 }
 
+/// One increment as files.
+pub struct ExportedIncrement {
+    /// Which one, and who solved the increments up to it.
+    pub key: RunKey,
+    /// Ends of the names of the files, e.g. `W.mtx`, and their contents.
+    pub files: Vec<(&'static str, Vec<u8>)>,
+}
+
 /// Why there is nothing to export.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -39,9 +45,6 @@ pub enum ExportError {
     /// Writing.
     #[error(transparent)]
     Interchange(#[from] InterchangeError),
-    /// Names of files.
-    #[error(transparent)]
-    Report(#[from] ReportError),
     /// No such increment.
     #[error("--increment {asked}: `{case}` has the increments 1 to {last}")]
     Increment {
@@ -84,11 +87,11 @@ impl From<MethodError> for ExportError {
     }
 }
 
-/// Solves the increments up to the one asked for and puts that one into files; says their common name.
+/// Solves the increments up to the one asked for and puts that one into files.
 ///
 /// # Errors
 /// [`ExportError`]. Only solved increments are exported.
-pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), ExportError> {
+pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, ExportError> {
     let last = case.path.increments;
     let wanted = request.increment.unwrap_or(last);
     if !(1..=last).contains(&wanted) {
@@ -124,8 +127,8 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
         verdict,
     };
     let accuracy = Accuracy::of(case, Tier::High);
-    let mut solver = Solver::prepare(&request.choice, &system, body.setup(), accuracy, &key)
-        .map_err(|step| unsolved(1, step.verdict))?;
+    let mut solver =
+        Solver::new(&request.choice, &system).map_err(|verdict| unsolved(1, verdict))?;
     let mut state = ContactState::zero(&system);
     let mut start_load = Load::zero(&body.elastic);
     loop {
@@ -138,16 +141,15 @@ pub fn export(case: &Case, request: &Request) -> Result<(String, Bundle), Export
             index: key.increment - 1,
             tolerance: accuracy.asked,
         };
-        let step = solver.solve(&key, &increment);
-        let solved = step.answer.filter(|_| step.verdict == Verdict::Solved);
+        let tried = solver.judge(&increment, accuracy.accepted);
+        let solved = tried.judged.filter(|_| tried.verdict == Verdict::Solved);
         let Some(Judged { outcome, .. }) = solved else {
-            return Err(unsolved(key.increment, step.verdict));
+            return Err(unsolved(key.increment, tried.verdict));
         };
         if key.increment == wanted {
-            let name = format!("{}.increment-{wanted}", problem_name(&key));
             let info = info(case, &key, &increment);
-            let bundle = files(&name, &increment, &outcome.state, info)?;
-            return Ok((name, bundle));
+            let files = files(&increment, &outcome.state, info)?;
+            return Ok(ExportedIncrement { key, files });
         }
         state = outcome.state;
         start_load = load;
@@ -202,29 +204,33 @@ fn info(case: &Case, key: &RunKey, increment: &Increment<'_>) -> Info {
 
 /// Everything as files.
 fn files(
-    name: &str,
     increment: &Increment<'_>,
     solution: &ContactState,
     info: Info,
-) -> Result<Bundle, ExportError> {
+) -> Result<Vec<(&'static str, Vec<u8>)>, ExportError> {
     let form: LocalForm = increment.local_form()?;
     let local = local_problem(increment, &form, solution, info.clone());
-    let mut bundle = Bundle::new();
-    bundle.add(format!("{name}.local.hdf5"), local.to_bytes()?)?;
-    let mut text = |part: &str, text: String| bundle.add(format!("{name}.{part}.mtx"), text);
-    text("W", matrix_market::symmetric(&local.w))?;
-    text("q", matrix_market::vector(&local.q))?;
-    text("mu", matrix_market::vector(&local.mu))?;
+    let mut files = vec![
+        ("local.hdf5", local.to_bytes()?),
+        ("W.mtx", matrix_market::symmetric(&local.w).into()),
+        ("q.mtx", matrix_market::vector(&local.q).into()),
+        ("mu.mtx", matrix_market::vector(&local.mu).into()),
+    ];
     if let Some(equality) = &local.equality {
-        text("V", matrix_market::general(&equality.v))?;
-        text("s", matrix_market::vector(&equality.s))?;
+        files.push(("V.mtx", matrix_market::general(&equality.v).into()));
+        files.push(("s.mtx", matrix_market::vector(&equality.s).into()));
     }
     if let Some(global) = global_problem(increment, solution, info) {
-        text("K", matrix_market::symmetric(&global.m))?;
-        text("B", matrix_market::general(&global.h.transposed()))?;
-        text("f", matrix_market::vector(&global.f))?;
-        text("offset", matrix_market::vector(&global.w))?;
-        bundle.add(format!("{name}.global.hdf5"), global.to_bytes()?)?;
+        files.extend([
+            ("K.mtx", matrix_market::symmetric(&global.m).into()),
+            (
+                "B.mtx",
+                matrix_market::general(&global.h.transposed()).into(),
+            ),
+            ("f.mtx", matrix_market::vector(&global.f).into()),
+            ("offset.mtx", matrix_market::vector(&global.w).into()),
+            ("global.hdf5", global.to_bytes()?),
+        ]);
     }
-    Ok(bundle)
+    Ok(files)
 }

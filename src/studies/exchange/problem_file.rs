@@ -7,11 +7,12 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
 };
 
-use crate::files::{InterchangeError, Problem, fclib, matrix_market};
-use crate::report::{Bundle, ReportError, standard};
+use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market};
+use crate::model::body::Setup;
+use crate::run::choice::Choice;
+use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::record::{Results, RunKey};
-use crate::run::run_case::{Choice, Progress};
-use crate::run::step::{Setup, Solver};
+use crate::run::run_case::Progress;
 use crate::run::verdict::Accuracy;
 use crate::studies::exchange::{System, global_system, local_system, local_velocity};
 
@@ -30,6 +31,25 @@ pub struct ProblemFile {
     rest: Load,
     start: ContactState,
     setup: Setup,
+}
+
+/// What methods made of a problem.
+#[derive(Default)]
+pub struct Solved {
+    /// Rows of the tables.
+    pub results: Results,
+    /// Of the methods that solved it.
+    pub solutions: Vec<ProblemSolution>,
+}
+
+/// A solution in the words of the file.
+pub struct ProblemSolution {
+    /// Which run.
+    pub key: RunKey,
+    /// r.
+    pub reaction: Vec<f64>,
+    /// Local velocity u.
+    pub velocity: Vec<f64>,
 }
 
 /// Why a file cannot be run.
@@ -163,18 +183,9 @@ impl ProblemFile {
         })
     }
 
-    /// Runs methods on the problem, from rest; solved ones leave their reaction r and local velocity u in `solutions/`.
-    ///
-    /// # Errors
-    /// Two methods of one name.
-    pub fn run(
-        &self,
-        choices: &[Choice],
-        tier: Tier,
-        progress: &dyn Progress,
-        solutions: &mut Bundle,
-    ) -> Result<Results, ReportError> {
-        let mut results = Results::default();
+    /// Runs methods on the problem, from rest.
+    pub fn run(&self, choices: &[Choice], tier: Tier, progress: &dyn Progress) -> Solved {
+        let mut solved = Solved::default();
         let accuracy = Accuracy::exactly(tier.tolerance());
         let increment = self.increment(accuracy.asked);
         for choice in choices {
@@ -186,24 +197,23 @@ impl ProblemFile {
                 friction: self.system.friction().first().copied().unwrap_or(0.0),
                 increment: 1,
             };
-            let prepared = Solver::prepare(choice, &self.system, self.setup, accuracy, &key);
-            let step = match prepared {
-                Ok(mut solver) => solver.solve(&key, &increment),
-                Err(refused) => *refused,
+            let tried = match Solver::new(choice, &self.system) {
+                Ok(mut solver) => solver.judge(&increment, accuracy.accepted),
+                Err(verdict) => JudgedIncrement::not_started(verdict),
             };
             progress.done(&format!("{} {}", self.name, choice.label));
-            results.runs.push(step.run);
-            results.history.extend(step.history);
-            if let Some(judged) = step.answer.filter(|_| step.verdict.is_honest()) {
-                let stem = standard::stem(&key);
-                let velocity = local_velocity(&increment, &judged.outcome.state);
-                for (part, values) in [("r", &judged.outcome.state.p), ("u", &velocity)] {
-                    let text = matrix_market::vector(values);
-                    solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
-                }
+            let row = tried.run_row(&key, &self.system, self.setup, accuracy);
+            solved.results.runs.push(row);
+            solved.results.history.extend(tried.history_rows(&key));
+            if let Some(judged) = tried.honest() {
+                solved.solutions.push(ProblemSolution {
+                    velocity: local_velocity(&increment, &judged.outcome.state),
+                    reaction: judged.outcome.state.p.clone(),
+                    key,
+                });
             }
         }
-        Ok(results)
+        solved
     }
 }
 
@@ -253,7 +263,7 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::{Info, LocalEquality, LocalProblem, SparseMatrix};
+    use crate::files::interchange::{Info, LocalEquality, LocalProblem, SparseMatrix};
 
     #[test]
     fn more_rigid_motions_than_bodies_have_are_refused_before_they_are_expanded() {

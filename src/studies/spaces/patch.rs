@@ -26,10 +26,10 @@ use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
 use crate::model::quantities::Snapshot;
 use crate::model::sides::Sides;
-use crate::run::path::Path;
-use crate::run::record::RunKey;
-use crate::run::run_case::{Choice, Progress, RunError};
-use crate::run::verdict::Accuracy;
+use crate::run::choice::Choice;
+use crate::run::load_path::LoadPathRun;
+use crate::run::run_case::{Progress, RunError};
+use crate::run::verdict::{Accuracy, Verdict};
 
 /// Largest errors of a patch test that counts as passed.
 pub const PASSED: f64 = 1e-10;
@@ -53,8 +53,8 @@ pub struct PatchRow {
     pub space: String,
     /// Contact points; 0 if the body was refused.
     pub points: usize,
-    /// Verdict on the run, or why there is no body to run.
-    pub verdict: String,
+    /// Verdict on the run; refused where there is no body to run.
+    pub verdict: Verdict,
     /// Traction error; NaN without an honest verdict.
     pub traction: f64,
     /// Displacement error; NaN without an honest verdict.
@@ -104,16 +104,16 @@ fn run_one(
     space: ContactSpace,
     choice: &Choice,
 ) -> Result<PatchRow, RunError> {
-    let mut row = PatchRow {
+    let row = |space: &str, points, verdict| PatchRow {
         state: patch.state,
         loaded: patch.loaded,
         dimension: case.model.dim(),
         crack: patch.crack.clone(),
         mesh: patch.mesh.clone(),
         distance: patch.distance,
-        space: space.name().to_owned(),
-        points: 0,
-        verdict: String::new(),
+        space: space.to_owned(),
+        points,
+        verdict,
         traction: f64::NAN,
         displacement: f64::NAN,
     };
@@ -124,37 +124,22 @@ fn run_one(
     };
     let body = match Body::new(case, 1, needs) {
         Ok(body) => body,
-        Err(refused) => {
-            row.verdict = format!("refused: {refused}");
-            return Ok(row);
-        }
+        Err(refused) => return Ok(row(space.name(), 0, Verdict::Refused(refused.to_string()))),
     };
-    row.space.clone_from(&body.space);
-    row.points = body.points.len();
     let own = vec![friction; body.points.len()];
     let system = ContactSystem::new(body.elastic.clone(), own).map_err(BodyError::from)?;
     let loading = Loading::new(&body, case, friction)?;
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: choice.label.clone(),
-        friction,
-        increment: 1,
-    };
-    let path = Path {
+    let path = LoadPathRun {
         case,
         loading: &loading,
         system: &system,
+        friction,
         choice,
         accuracy: Accuracy::of(case, Tier::High),
     };
-    let mut last = None;
-    path.follow(&mut key, &mut |_, ended| {
-        row.verdict = ended.verdict.to_string();
-        last = ended.now.cloned();
-    });
-    let Some(now) = last else { return Ok(row) };
+    let end = path.follow(&mut |_, _, _| ());
+    let mut row = row(&body.space, body.points.len(), end.verdict);
+    let Some(now) = end.now else { return Ok(row) };
     let hydrostatic;
     let field = match loading.exact(loading.increments()) {
         Some(field) => field,

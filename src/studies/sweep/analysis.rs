@@ -25,6 +25,7 @@ use stickslip_methods::Tier;
 use super::cell::{Cell, Problem};
 use super::record::{Record, Spent};
 use super::statistics::Timing;
+use crate::run::verdict::Verdict;
 
 /// Times of a cell, if they may be shown: beside an honest verdict on every increment, and a natural map that agrees with it.
 pub fn published_times(record: &Record) -> Option<&Spent> {
@@ -34,34 +35,27 @@ pub fn published_times(record: &Record) -> Option<&Spent> {
 /// Whether the method did what it claims, on every increment and as far as the record itself can tell.
 pub fn is_honest(record: &Record) -> bool {
     let found = &record.found;
-    let verdicts = found.increments.iter().map(|i| i.verdict.as_str());
-    let mut all = verdicts.chain([found.verdict.as_str()]);
+    let verdicts = found.increments.iter().map(|i| &i.verdict);
+    let mut all = verdicts.chain([&found.verdict]);
     // NaN passes no comparison.
-    let agrees = |verdict: &str| match grade(verdict) {
-        Some(Grade::Solved) => found.natural_map() <= record.cell.tolerance,
-        Some(_) => found.natural_map().is_finite(),
-        None => false,
+    let agrees = |verdict: &Verdict| match verdict {
+        Verdict::Solved => found.natural_map() <= record.cell.tolerance,
+        other => other.is_honest() && found.natural_map().is_finite(),
     };
     !found.increments.is_empty() && all.all(agrees)
 }
 
 /// Whether the method says of itself that it succeeded: it ended with a claim, right or wrong.
 pub fn claims(record: &Record) -> bool {
-    let verdict = record.found.verdict.as_str();
-    grade(verdict).is_some() || verdict == "false-claim"
+    record.found.verdict.claims()
 }
 
 /// Whether the answer is right to a tier: an honest verdict, contact laws that hold to the tier on every increment, and for
 /// methods with laws of their own equilibrium too, which their grade says.
 pub fn is_correct(record: &Record, tier: Tier) -> bool {
-    let graded = |verdict: &str| match grade(verdict) {
-        Some(Grade::Solved) => true,
-        Some(Grade::Approximate(Some(reached))) => reached.tolerance() <= tier.tolerance(),
-        Some(Grade::Approximate(None)) | None => false,
-    };
     let found = &record.found;
     is_honest(record)
-        && found.increments.iter().all(|i| graded(&i.verdict))
+        && found.increments.iter().all(|i| i.verdict.holds_to(tier))
         && found.natural_map() <= tier.tolerance()
 }
 
@@ -96,21 +90,6 @@ pub fn body_times(record: &Record, records: &[Record]) -> Option<[f64; 3]> {
     Some(all.fold(own, |least, other| {
         std::array::from_fn(|k| least[k].min(other[k]))
     }))
-}
-
-/// Honest verdicts.
-enum Grade {
-    Solved,
-    Approximate(Option<Tier>),
-}
-
-fn grade(verdict: &str) -> Option<Grade> {
-    if verdict == "solved" {
-        return Some(Grade::Solved);
-    }
-    let reached = verdict.strip_prefix("approximate: ")?;
-    let tier = Tier::ALL.into_iter().find(|tier| tier.as_str() == reached);
-    Some(Grade::Approximate(tier))
 }
 
 /// Whether the options of a cell's method are the defaults.
@@ -197,8 +176,8 @@ mod tests {
     fn only_honest_verdicts_have_times() {
         for verdict in ["solved", "approximate: low", "approximate: none"] {
             let mut kept = timed(record("plate", "latin", 1e-3), 1.0);
-            kept.found.verdict = verdict.into();
-            kept.found.increments[0].verdict = verdict.into();
+            kept.found.verdict = verdict.parse().unwrap();
+            kept.found.increments[0].verdict = verdict.parse().unwrap();
             assert!(published_times(&kept).is_some(), "{verdict}");
         }
         for verdict in [
@@ -208,7 +187,6 @@ mod tests {
             "crashed: no",
             "timed-out",
             "out-of-memory",
-            "",
         ] {
             let record = lying(verdict);
             assert!(record.spent.is_some(), "it does carry times");
@@ -220,7 +198,7 @@ mod tests {
     fn a_record_that_contradicts_itself_has_no_times() {
         let good = || timed(record("plate", "latin", 1e-6), 1.0);
         let spoilt: [fn(&mut Record); 4] = [
-            |r| r.found.increments[0].verdict = "false-claim".into(),
+            |r| r.found.increments[0].verdict = Verdict::FalseClaim,
             |r| r.found.increments[0].natural_map = Some(1e-3),
             |r| r.found.increments[0].natural_map = None,
             |r| r.found.increments.clear(),
@@ -238,7 +216,7 @@ mod tests {
     fn success_is_a_claim_and_correct_is_its_proof() {
         let mut wrong = lying("false-claim");
         assert!(claims(&wrong) && !is_correct(&wrong, Tier::Low));
-        wrong.found.verdict = "gave-up: stalled".into();
+        wrong.found.verdict = "gave-up: stalled".parse().unwrap();
         assert!(!claims(&wrong));
         let solved = record("plate", "latin", 1e-6);
         assert!(is_correct(&solved, Tier::Low) && is_correct(&solved, Tier::Mid));
@@ -251,10 +229,10 @@ mod tests {
         let mut path = record("plate", "nitsche", 1e-9);
         path.found.increments.push(path.found.increments[0].clone());
         for (verdict, map) in [("approximate: mid", 1e-7), ("approximate: low", 1e-8)] {
-            path.found.increments[0].verdict = "approximate: mid".into();
-            path.found.increments[1].verdict = verdict.into();
+            path.found.increments[0].verdict = "approximate: mid".parse().unwrap();
+            path.found.increments[1].verdict = verdict.parse().unwrap();
             path.found.increments[1].natural_map = Some(map);
-            path.found.verdict = verdict.into();
+            path.found.verdict = verdict.parse().unwrap();
             assert_eq!(is_correct(&path, Tier::Mid), verdict.ends_with("mid"));
             assert!(is_correct(&path, Tier::Low) && !is_correct(&path, Tier::High));
         }
@@ -284,7 +262,7 @@ mod tests {
             cold("nsgs", 0.1, "two"),
         ];
         let mut liar = records[1].clone();
-        liar.found.verdict = "false-claim".into();
+        liar.found.verdict = Verdict::FalseClaim;
         let setup = |records: &[Record]| body_times(&records[0], records).map(|t| t[0]);
         assert_eq!(setup(&records), Some(0.2));
         assert_eq!(setup(&[records[0].clone(), liar.clone()]), Some(0.5));

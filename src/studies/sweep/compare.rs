@@ -12,8 +12,6 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_methods::Tier;
-
 use super::analysis::{method_time, published_times};
 use super::record::{IncrementFound, Record};
 use super::statistics::{Timing, median};
@@ -191,10 +189,10 @@ fn change(
 }
 
 fn lonely(record: &Record, what: What) -> Change {
-    let verdict = record.found.verdict.as_str();
+    let verdict = record.found.verdict.to_string();
     let texts = match what {
-        What::OnlyA => [verdict, ""],
-        _ => ["", verdict],
+        What::OnlyA => [verdict.as_str(), ""],
+        _ => ["", &verdict],
     };
     change(record, what, Direction::Other, texts, f64::NAN)
 }
@@ -202,28 +200,6 @@ fn lonely(record: &Record, what: What) -> Change {
 /// The found part as it is written: equal text, equal bits.
 fn bits(record: &Record) -> Option<String> {
     serde_json::to_string(&record.found).ok()
-}
-
-/// Place of a verdict from best to worst.
-fn badness(verdict: &str) -> usize {
-    let graded = |tier: Tier| verdict == format!("approximate: {tier}");
-    let tiers = Tier::ALL.into_iter().rev();
-    if verdict == "solved" {
-        return 0;
-    }
-    if let Some(place) = tiers.into_iter().position(graded) {
-        return 1 + place;
-    }
-    match verdict.split(':').next().unwrap_or(verdict) {
-        "approximate" => 4,
-        "refused" => 5,
-        "gave-up" => 6,
-        "timed-out" => 7,
-        "out-of-memory" => 8,
-        "crashed" => 9,
-        // The only one that deceives.
-        _ => 10,
-    }
 }
 
 /// B against A where less is better.
@@ -253,11 +229,12 @@ const COUNTERS: [Counter; 7] = [
 /// Changes of what was found.
 fn found_changes([a, b]: [&Record; 2]) -> Vec<Change> {
     let mut changes = Vec::new();
-    let verdicts = [a, b].map(|r| r.found.verdict.as_str());
-    if verdicts[0] != verdicts[1] {
-        let [x, y] = verdicts.map(badness);
-        let direction = towards_less(x, y);
-        changes.push(change(a, What::Verdict, direction, verdicts, f64::NAN));
+    let [x, y] = [a, b].map(|r| &r.found.verdict);
+    if x != y {
+        let direction = towards_less(x.rank(), y.rank());
+        let texts = [x, y].map(|verdict| verdict.to_string());
+        let texts = texts.each_ref().map(String::as_str);
+        changes.push(change(a, What::Verdict, direction, texts, f64::NAN));
     }
     for (name, of) in COUNTERS {
         let [x, y] = [a, b].map(|r| r.found.sum(of));
@@ -350,6 +327,7 @@ fn drift_and_noise(timed: &[Timed<'_>]) -> [f64; 2] {
 mod tests {
     use super::super::analysis::support::{lying, record, timed};
     use super::*;
+    use crate::run::verdict::Verdict;
 
     fn cells(times: &[f64]) -> Vec<Record> {
         let cell = |(i, t): (usize, &f64)| timed(record(&format!("case-{i}"), "latin", 1e-6), *t);
@@ -435,8 +413,8 @@ mod tests {
             compare(&a, &b)
         };
         let verdict = changed(|r| {
-            r.found.verdict = "false-claim".into();
-            r.found.increments[0].verdict = "false-claim".into();
+            r.found.verdict = Verdict::FalseClaim;
+            r.found.increments[0].verdict = Verdict::FalseClaim;
         });
         assert_eq!(told(&verdict), [("verdict", Direction::Worse)]);
         assert!(verdict.worse());
@@ -453,28 +431,6 @@ mod tests {
         for same in [&verdict, &counter, &error] {
             assert!(!same.changes.iter().any(|c| c.what == What::Bits));
         }
-    }
-
-    #[test]
-    fn verdicts_have_an_order() {
-        let order = [
-            "solved",
-            "approximate: high",
-            "approximate: mid",
-            "approximate: low",
-            "approximate: none",
-            "refused: no friction",
-            "gave-up: stalled",
-            "timed-out",
-            "out-of-memory",
-            "crashed: why",
-            "false-claim",
-        ];
-        assert!(
-            order
-                .windows(2)
-                .all(|pair| badness(pair[0]) < badness(pair[1]))
-        );
     }
 
     #[test]

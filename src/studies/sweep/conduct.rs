@@ -10,8 +10,8 @@ use super::plan::Task;
 use super::record::{Found, Origin, Record, SCHEMA};
 use super::store::{Store, StoreError};
 use super::worker::{Answer, Limits, Request, Worker, WorkerError};
-use crate::run::run_case::{Choice, Progress};
-use crate::run::verdict::Verdict;
+use crate::run::choice::Choice;
+use crate::run::run_case::Progress;
 
 /// How the cells are measured.
 #[derive(Debug, Clone, Copy)]
@@ -179,7 +179,7 @@ fn one(
         text: task.text.to_string(),
         repeats,
     };
-    Ok(match worker.ask(&request)? {
+    let mut record = match worker.ask(&request)? {
         Answer::Measured(record) => *record,
         Answer::Ended(verdict) => {
             let choice = Choice::parse(&task.cell.method).ok();
@@ -190,13 +190,14 @@ fn one(
                 id: task.id.clone(),
                 cell: task.cell.clone(),
                 origin: origin.clone(),
-                limits: matches!(verdict, Verdict::TimedOut | Verdict::OutOfMemory)
-                    .then_some(limits),
-                found: Found::only(verdict.to_string(), label.clone(), exact),
+                limits: None,
+                found: Found::only(verdict, label.clone(), exact),
                 spent: None,
             }
         }
-    })
+    };
+    record.limits = record.found.verdict.kind().is_limit().then_some(limits);
+    Ok(record)
 }
 
 /// One line on a cell: id, verdict, and what it took.

@@ -17,12 +17,14 @@ use super::record::{
 use super::reference::solver_error;
 use super::setup::{Bench, Scene};
 use super::statistics::Timing;
-use crate::model::picture::field_step;
-use crate::model::quantities::{Snapshot, point_rows, quantity_rows};
-use crate::run::attempt::{prepare, solve};
-use crate::run::path::{Ended, Path};
-use crate::run::record::{RunKey, RunRow};
-use crate::run::run_case::{Choice, ChoiceError, RunError};
+use crate::model::body::BodyError;
+use crate::model::field_mesh::field_step;
+use crate::model::quantities::{Snapshot, point_states, quantities};
+use crate::run::choice::{Choice, ChoiceError};
+use crate::run::increment::{JudgedIncrement, Solver};
+use crate::run::load_path::{LoadPathRun, PathEnd};
+use crate::run::record::RunRow;
+use crate::run::run_case::RunError;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::convergence::{cell_size, closed_form, followed};
 
@@ -76,6 +78,15 @@ pub enum MeasureError {
     Space(String),
 }
 
+impl From<MeasureError> for Verdict {
+    fn from(error: MeasureError) -> Self {
+        match error {
+            MeasureError::Run(RunError::Body(BodyError::Method(error))) => error.into(),
+            other => Verdict::Crashed(other.to_string()),
+        }
+    }
+}
+
 /// Measures a cell. `text`: its case file.
 ///
 /// # Errors
@@ -89,9 +100,8 @@ pub fn measure(
 ) -> Result<Record, MeasureError> {
     let mut scene = bench.scene(cell, text, choice.needs_traction())?;
     let pass = first_pass(&scene, cell, choice);
-    let mut verdict = pass.verdict.clone();
-    let honest = verdict.is_honest();
-    let timed = if honest && repeats.most > 0 {
+    let mut verdict = pass.end.verdict.clone();
+    let timed = if verdict.is_honest() && repeats.most > 0 {
         repeat(&scene, &pass, choice, repeats)
     } else {
         Ok(None)
@@ -100,28 +110,26 @@ pub fn measure(
         verdict = broken.clone();
     }
     let mut found = Found {
-        verdict: verdict.to_string(),
-        method: choice.label.clone(),
-        exact: choice.method.exact,
         problem: Some(size(&scene)),
         increments: pass.increments.clone(),
-        ..Found::default()
+        ..Found::only(verdict, choice.label.clone(), choice.method.exact)
     };
+    let honest = found.verdict.is_honest();
     let mut output_s = f64::NAN;
-    if let (true, Some(now)) = (verdict.is_honest(), pass.snapshots.last()) {
-        output_s = output(&scene, &pass.key, now);
+    if let (true, Some(now)) = (honest, pass.snapshots.last()) {
+        output_s = output(&scene, now);
         let exact = closed_form(&scene.loading, now)?;
         if let Some(deviations) = &exact {
             found.deviations = deviations.iter().map(DeviationFound::of).collect();
         } else {
-            let values = followed(scene.case, scene.body, &pass.key, now);
+            let values = followed(scene.case, scene.body, now);
             found.values = values.iter().map(ValueFound::of).collect();
         }
     }
     // Before the reference, which is no part of the cell.
     let peaks = [scene.peak_mb, memory::peak_mb()].into_iter().flatten();
     let peak_mb = peaks.reduce(f64::max);
-    if verdict.is_honest() {
+    if honest {
         found.solver_error = solver_error(&mut scene, &pass.snapshots, choice.method.name);
     }
     let spent = timed.ok().flatten().zip(pass.rows.last());
@@ -148,9 +156,7 @@ pub fn measure(
 
 /// The load path, followed once.
 struct Pass {
-    key: RunKey,
-    /// Of the last increment.
-    verdict: Verdict,
+    end: PathEnd,
     rows: Vec<RunRow>,
     increments: Vec<IncrementFound>,
     /// Of honest increments.
@@ -160,67 +166,54 @@ struct Pass {
 }
 
 fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
-    let accuracy = Accuracy::exactly(cell.tolerance);
-    let mut pass = Pass {
-        key: RunKey {
-            case: cell.case.clone(),
-            mesh: scene.body.label.clone(),
-            space: scene.body.space.clone(),
-            method: choice.label.clone(),
-            friction: cell.mu(),
-            increment: 1,
-        },
-        verdict: Verdict::Crashed("a load path without increments".into()),
-        rows: Vec::new(),
-        increments: Vec::new(),
-        states: Vec::new(),
-        snapshots: Vec::new(),
-        accuracy,
-    };
-    let path = Path {
+    let path = LoadPathRun {
         case: scene.case,
         loading: &scene.loading,
         system: scene.system,
+        friction: cell.mu(),
         choice,
-        accuracy,
+        accuracy: Accuracy::exactly(cell.tolerance),
     };
-    let mut key = pass.key.clone();
+    let (mut rows, mut increments) = (Vec::new(), Vec::new());
+    let (mut states, mut snapshots) = (Vec::new(), Vec::new());
     let mut status: Option<Vec<PointStatus>> = None;
-    path.follow(&mut key, &mut |_, ended| {
-        pass.increments.push(increment(&ended, status.as_deref()));
-        if let (Some(judged), Some(now)) = (ended.answer, ended.now) {
+    let end = path.follow(&mut |key, increment, now| {
+        rows.push(path.row(key, increment));
+        increments.push(found_of(increment, status.as_deref()));
+        if let (Some(judged), Some(now)) = (&increment.judged, now) {
             status = Some(judged.status.clone());
-            pass.states.push(judged.outcome.state.clone());
-            pass.snapshots.push(now.clone());
+            states.push(judged.outcome.state.clone());
+            snapshots.push(now.clone());
         }
-        pass.verdict = ended.verdict;
-        pass.rows.push(ended.run);
     });
-    pass.key = key;
-    pass
+    Pass {
+        end,
+        rows,
+        increments,
+        states,
+        snapshots,
+        accuracy: path.accuracy,
+    }
 }
 
 /// `before`: states of the points at the start; without one all are open.
-fn increment(ended: &Ended<'_>, before: Option<&[PointStatus]>) -> IncrementFound {
-    let mut row = IncrementFound {
-        verdict: ended.verdict.to_string(),
-        ..IncrementFound::default()
-    };
-    let Some(judged) = ended.answer else {
-        return row;
-    };
+fn found_of(increment: &JudgedIncrement, before: Option<&[PointStatus]>) -> IncrementFound {
+    let judged = increment.judged.as_ref();
+    let counters = judged.map(|j| j.outcome.counters).unwrap_or_default();
     let began = |point: usize| before.map_or(PointStatus::Open, |before| before[point]);
-    let status = judged.status.iter().enumerate();
-    let counters = &judged.outcome.counters;
-    row.natural_map = Some(judged.found.natural_map).filter(|map| map.is_finite());
-    row.iterations = counters.iterations;
-    row.solves = counters.solves;
-    row.tangent_factorisations = counters.factorisations;
-    row.global_factorisations = counters.global_factorisations;
-    row.local_solves = counters.local_solves;
-    row.state_changes = judged.outcome.history.iter().map(|i| i.changes).sum();
-    row.final_changes = status.filter(|(i, now)| **now != began(*i)).count();
-    row
+    let status = judged.map_or(&[][..], |j| &j.status).iter().enumerate();
+    let history = judged.map_or(&[][..], |j| &j.outcome.history);
+    IncrementFound {
+        verdict: increment.verdict.clone(),
+        natural_map: (judged.map(|j| j.found.natural_map)).filter(|map| map.is_finite()),
+        iterations: counters.iterations,
+        solves: counters.solves,
+        tangent_factorisations: counters.factorisations,
+        global_factorisations: counters.global_factorisations,
+        local_solves: counters.local_solves,
+        state_changes: history.iter().map(|i| i.changes).sum(),
+        final_changes: status.filter(|(i, now)| **now != began(*i)).count(),
+    }
 }
 
 /// Preparation and solution of all increments, repeated.
@@ -244,7 +237,7 @@ fn repeat(
     let (mut preparing, mut solving) = (Vec::new(), Vec::new());
     let clock = Instant::now();
     while !repeats.enough(solving.len(), clock.elapsed().as_secs_f64()) {
-        let (mut method, prepare_s) = prepare(choice, system)?;
+        let mut solver = Solver::new(choice, system)?;
         let mut total_s = 0.0;
         for (index, first) in pass.states.iter().enumerate() {
             let problem = Increment {
@@ -255,25 +248,25 @@ fn repeat(
                 index,
                 tolerance: pass.accuracy.asked,
             };
-            let (outcome, solve_s) = solve(method.as_mut(), &problem);
+            let (outcome, solve_s) = solver.solve(&problem);
             total_s += solve_s;
-            let again = outcome.map_err(|e| Verdict::failed(e.to_string()))?.state;
+            let again = outcome?.state;
             if again != *first {
                 let message = "the same increment gave other bits when it was solved again";
                 return Err(Verdict::Crashed(message.into()));
             }
         }
-        preparing.push(prepare_s);
+        preparing.push(solver.prepare_s);
         solving.push(total_s);
     }
     Ok(Timing::of(&preparing).zip(Timing::of(&solving)))
 }
 
 /// Seconds to gather the tables and fields of an increment.
-fn output(scene: &Scene<'_>, key: &RunKey, now: &Snapshot) -> f64 {
+fn output(scene: &Scene<'_>, now: &Snapshot) -> f64 {
     let clock = Instant::now();
-    let rows = quantity_rows(scene.case, scene.body, key, now);
-    let points = point_rows(scene.body, key, now);
+    let rows = quantities(scene.case, scene.body, now);
+    let points = point_states(scene.body, now);
     let fields = field_step(scene.body, now);
     std::hint::black_box((rows, points, fields));
     clock.elapsed().as_secs_f64()

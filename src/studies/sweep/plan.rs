@@ -30,7 +30,8 @@ use crate::case::reader::{Table, Value};
 use crate::case::shipped;
 use crate::case::{self, Case, ContactSpace};
 use crate::model::body::Needs;
-use crate::run::run_case::{Choice, friction_values};
+use crate::run::choice::Choice;
+use crate::run::run_case::friction_values;
 use crate::studies::stress::{StressError, case_numbered};
 
 /// A sweep: its cells, sorted by id.

@@ -12,7 +12,8 @@ use super::cell::Cell;
 use super::statistics::Timing;
 use super::worker::Limits;
 use crate::model::errors::Deviation;
-use crate::report::Provenance;
+use crate::run::provenance::Provenance;
+use crate::run::verdict::Verdict;
 use crate::studies::convergence::Value;
 
 /// Version of the record files and of the tables made from them.
@@ -124,11 +125,10 @@ impl fmt::Display for Origin {
 }
 
 /// What came out of a cell. Numbers that do not exist are absent, in a file `null`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// Claim × check over the whole load path: that of the last increment, which is the first that is not honest.
-    /// As in `runs.csv`, and `timed-out`, `out-of-memory`.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// Label of the method in tables.
     pub method: String,
     /// Whether the limit of the method are the contact laws.
@@ -165,10 +165,10 @@ pub struct ProblemSize {
 }
 
 /// One increment.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IncrementFound {
     /// Its verdict.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// Natural map found by the judge [-].
     pub natural_map: Option<f64>,
     /// Iterations of the method.
@@ -256,12 +256,16 @@ pub struct Spent {
 
 impl Found {
     /// A cell of which only the verdict is known.
-    pub fn only(verdict: String, method: String, exact: bool) -> Self {
+    pub fn only(verdict: Verdict, method: String, exact: bool) -> Self {
         Self {
             verdict,
             method,
             exact,
-            ..Self::default()
+            problem: None,
+            increments: Vec::new(),
+            solver_error: None,
+            deviations: Vec::new(),
+            values: Vec::new(),
         }
     }
 

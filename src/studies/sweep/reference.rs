@@ -14,9 +14,8 @@
 use super::record::SolverError;
 use super::setup::Scene;
 use crate::model::quantities::Snapshot;
-use crate::run::path::Path;
-use crate::run::record::RunKey;
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
+use crate::run::load_path::LoadPathRun;
 use crate::run::verdict::{Accuracy, Verdict};
 
 /// Natural map of the converged solution, three decades below the highest tier.
@@ -114,26 +113,20 @@ fn converge(scene: &mut Scene<'_>, name: &'static str) -> bool {
 
 fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
     let choice = Choice::parse(name).ok()?;
-    let path = Path {
+    let path = LoadPathRun {
         case: scene.case,
         loading: &scene.loading,
         system: scene.system,
+        friction: 0.0,
         choice: &choice,
         accuracy: Accuracy::exactly(TOLERANCE),
     };
-    let mut key = RunKey {
-        case: scene.case.name.clone(),
-        mesh: scene.body.label.clone(),
-        space: scene.body.space.clone(),
-        method: choice.label.clone(),
-        friction: 0.0,
-        increment: 1,
-    };
     let (mut snapshots, mut natural_map) = (Vec::new(), 0.0_f64);
-    path.follow(&mut key, &mut |_, ended| {
-        if ended.verdict == Verdict::Solved {
-            natural_map = natural_map.max(ended.run.natural_map);
-            snapshots.extend(ended.now.cloned());
+    path.follow(&mut |_, increment, now| {
+        let solved = (increment.judged.as_ref()).filter(|_| increment.verdict == Verdict::Solved);
+        if let Some(judged) = solved {
+            natural_map = natural_map.max(judged.found.natural_map);
+            snapshots.extend(now.cloned());
         }
     });
     let complete = snapshots.len() == scene.case.path.increments;

@@ -17,8 +17,12 @@ use super::measure::{Repeats, measure};
 use super::memory;
 use super::record::Record;
 use super::setup::Bench;
-use crate::run::run_case::Choice;
+use crate::run::choice::Choice;
 use crate::run::verdict::Verdict;
+
+/// What a process says that an allocation ended: the runtime, and libraries that panic. Errors are told by type, but a dead
+/// worker left words only.
+const DENIED: [&str; 3] = ["memory allocation of", "out of memory", "OutOfMemory"];
 
 /// One cell to measure.
 #[derive(Debug, Serialize, Deserialize)]
@@ -37,7 +41,7 @@ pub enum Reply {
     /// The cell was measured.
     Measured(Box<Record>),
     /// The case, its discretisation or its method cannot be used.
-    Failed(String),
+    Ended(Verdict),
 }
 
 /// Limits on one cell.
@@ -95,7 +99,7 @@ pub fn serve(
             .and_then(|choice| measure(&mut bench, &cell, &text, &choice, repeats));
         let reply = match measured {
             Ok(record) => Reply::Measured(Box::new(record)),
-            Err(error) => Reply::Failed(error.to_string()),
+            Err(error) => Reply::Ended(error.into()),
         };
         let mut json = serde_json::to_vec(&reply)?;
         json.push(b'\n');
@@ -166,7 +170,7 @@ impl<'a> Worker<'a> {
                 self.running = Some(running);
                 Ok(match reply {
                     Reply::Measured(record) => Answer::Measured(record),
-                    Reply::Failed(reason) => Answer::Ended(Verdict::failed(reason)),
+                    Reply::Ended(verdict) => Answer::Ended(verdict),
                 })
             }
             Err(RecvTimeoutError::Timeout) => {
@@ -242,9 +246,11 @@ impl Running {
         let complaints = self.complaints.join().unwrap_or_default();
         let status = status.map_or_else(|e| e.to_string(), |status| status.to_string());
         let first = complaints.lines().find(|line| !line.is_empty());
-        Verdict::failed(match first {
-            Some(line) => format!("{status}: {line}"),
-            None => status,
-        })
+        let denied = |line: &&str| DENIED.iter().any(|words| line.contains(words));
+        match first {
+            Some(line) if denied(&line) => Verdict::OutOfMemory,
+            Some(line) => Verdict::Crashed(format!("{status}: {line}")),
+            None => Verdict::Crashed(status),
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{columns, made};
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
-use crate::run::expect::{MET, MISSED_AS_DOCUMENTED};
+use crate::run::record::{MET, MISSED_AS_DOCUMENTED};
 
 const MISSED: [Show; 12] = [
     Show::new("case", Kind::Text),

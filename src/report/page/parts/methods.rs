@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{columns, figures, made, tables};
+use super::{Tally, columns, figures, made, tables};
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
 use crate::report::plot::method_rank;
 
@@ -58,37 +58,22 @@ pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, 
 fn by_method(folder: &Folder, path: &str) -> Result<Grid, PageError> {
     let sheet = folder.sheet(path)?;
     let methods = sheet.texts("method")?;
-    let verdicts = sheet.texts("verdict")?;
-    // solved, approximate, refused, gave up or crashed, false claims
-    let mut counts: BTreeMap<(usize, &str), [usize; 5]> = BTreeMap::new();
-    for (method, verdict) in methods.iter().zip(verdicts) {
-        let place = match verdict.split(':').next().unwrap_or_default() {
-            "solved" => 0,
-            "approximate" => 1,
-            "refused" => 2,
-            "false-claim" => 4,
-            _ => 3,
-        };
-        let own = counts.entry((method_rank(method), method)).or_default();
-        own[place] += 1;
+    let mut tallies: BTreeMap<(usize, &str), Tally> = BTreeMap::new();
+    for (method, verdict) in methods.iter().zip(sheet.verdicts()?) {
+        let own = tallies.entry((method_rank(method), method)).or_default();
+        own.add(verdict.kind());
     }
+    let all: Vec<Tally> = tallies.values().copied().collect();
+    let counts = Tally::shown(&all);
     let mut grid = folder.empty_grid(path, "Cases by method, each by the worst of its increments");
     grid.id += "-methods";
-    columns(
-        &mut grid,
-        &[
-            ("method", "", Kind::Text),
-            ("solved", "", Kind::Number),
-            ("approximate", "", Kind::Number),
-            ("refused", "", Kind::Number),
-            ("gave up or crashed", "", Kind::Number),
-            ("false claims", "", Kind::Number),
-        ],
-    );
-    grid.rows = counts
+    let mut headings = vec![("method", "", Kind::Text)];
+    headings.extend(counts.iter().map(|(_, name)| (*name, "", Kind::Number)));
+    columns(&mut grid, &headings);
+    grid.rows = tallies
         .into_iter()
-        .map(|((_, method), counts)| {
-            let counts = counts.map(|count| count.to_string());
+        .map(|((_, method), tally)| {
+            let counts = counts.iter().map(|(place, _)| tally.0[*place].to_string());
             std::iter::once(method.to_owned()).chain(counts).collect()
         })
         .collect();

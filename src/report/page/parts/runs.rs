@@ -2,7 +2,7 @@
 
 use super::{hide_times, made, tables};
 use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Show};
-use crate::report::standard::solved;
+use crate::run::verdict::Verdict;
 
 /// Longest table inside the page; of longer ones the beginning is shown.
 const ROWS: usize = 2000;
@@ -31,7 +31,7 @@ pub fn section(folder: &Folder, _: &mut Budget) -> Result<Option<Section>, PageE
     let mut blocks = tables(folder, "runs.csv", "Runs, every increment", &RUNS)?;
     for block in &mut blocks {
         if let Block::Table(grid) = block {
-            hide_times(grid, solved);
+            hide_times(grid, |verdict| *verdict == Verdict::Solved);
             if grid.rows.len() > ROWS {
                 grid.title += &format!(": the first {ROWS} of {}", grid.rows.len());
                 grid.rows.truncate(ROWS);

@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn a_false_claim_has_no_place_on_a_curve() {
         let mut wrong = timed(record("a", "latin", 1e-9), 3.0);
-        wrong.found.verdict = "false-claim".into();
+        wrong.found.verdict = crate::run::verdict::Verdict::FalseClaim;
         let records = [wrong];
         assert!(series(&records, &records[0].cell.problem()).is_empty());
     }

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_methods::{Status, Tier};
+use stickslip_methods::Tier;
 
 use super::proportion::wilson;
 use super::{claims, compare_methods, has_defaults, is_correct};
+use crate::run::verdict::{GIVE_UPS, Verdict};
 use crate::studies::sweep::record::Record;
 
 /// How a cell missed the tier: in the order of [`FAILURES`].
@@ -104,26 +105,25 @@ fn row(own: &[&Record], tier: Tier) -> Option<SuccessRow> {
 }
 
 /// Place in [`FAILURES`] of a verdict that is not right to the tier.
-fn failure(verdict: &str) -> usize {
-    let status = |s: Status| s.as_str().replace('-', "_");
-    let name = match verdict.split_once(": ").unwrap_or((verdict, "")) {
-        ("gave-up", why) => why.replace('-', "_"),
-        ("refused", _) => "refused".into(),
-        ("crashed", _) => "crashed".into(),
-        ("false-claim", _) => "false_claim".into(),
-        ("timed-out", _) => "timed_out".into(),
-        ("out-of-memory", _) => "out_of_memory".into(),
-        _ => "inaccurate".into(),
-    };
-    let found = FAILURES.iter().position(|f| *f == name);
-    // A status that is not known here ended without a claim, like one that was stopped.
-    let other = FAILURES.iter().position(|f| *f == status(Status::Stopped));
-    found.or(other).unwrap_or(0)
+fn failure(verdict: &Verdict) -> usize {
+    match verdict {
+        Verdict::Solved | Verdict::Approximate(_) => 0,
+        Verdict::FalseClaim => 1,
+        // A status that is not known here ended without a claim, like the last, one that was stopped.
+        Verdict::GaveUp(status) => {
+            let known = GIVE_UPS.iter().position(|own| own == status);
+            2 + known.unwrap_or(GIVE_UPS.len() - 1)
+        }
+        Verdict::Refused(_) => 8,
+        Verdict::Crashed(_) => 9,
+        Verdict::TimedOut => 10,
+        Verdict::OutOfMemory => 11,
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::support::{lying, of_case, record};
+    use super::super::support::{end_with, lying, of_case, record};
     use super::*;
 
     #[test]
@@ -163,8 +163,7 @@ mod tests {
             } else {
                 "approximate: low"
             };
-            record.found.increments[0].verdict = verdict.into();
-            record.found.verdict = verdict.into();
+            end_with(&mut record, verdict);
             records.push(record);
         }
         let rows = success(&records);
@@ -177,17 +176,26 @@ mod tests {
     }
 
     #[test]
-    fn every_way_to_give_up_has_a_column() {
-        for status in [
-            Status::MaxIterations,
-            Status::Stalled,
-            Status::SingularTangent,
-            Status::Mechanism,
-            Status::Diverged,
-            Status::Stopped,
+    fn every_end_has_the_column_of_its_name() {
+        for text in [
+            "false-claim",
+            "gave-up: max-iterations",
+            "gave-up: stalled",
+            "gave-up: singular-tangent",
+            "gave-up: mechanism",
+            "gave-up: diverged",
+            "gave-up: stopped",
+            "refused: why",
+            "crashed: why",
+            "timed-out",
+            "out-of-memory",
         ] {
-            let place = failure(&format!("gave-up: {status}"));
-            assert_eq!(FAILURES[place], status.as_str().replace('-', "_"));
+            let verdict: Verdict = text.parse().unwrap();
+            let name = match &verdict {
+                Verdict::GaveUp(status) => status.as_str(),
+                other => other.kind().name(),
+            };
+            assert_eq!(FAILURES[failure(&verdict)], name.replace('-', "_"));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Records made by hand, for tests.
 
+use crate::run::verdict::Verdict;
 use crate::studies::sweep::cell::Cell;
 use crate::studies::sweep::record::{
     Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, SolverError, Spent,
@@ -49,7 +50,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
             machine: "linux, one".into(),
         },
         found: Found {
-            verdict: "solved".into(),
+            verdict: Verdict::Solved,
             method: label,
             exact,
             problem: Some(ProblemSize {
@@ -62,7 +63,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
                 unknowns: 22,
             }),
             increments: vec![IncrementFound {
-                verdict: "solved".into(),
+                verdict: Verdict::Solved,
                 natural_map: Some(0.5 * tolerance),
                 iterations: 10,
                 solves: 1,
@@ -106,9 +107,14 @@ pub fn timed(mut record: Record, seconds: f64) -> Record {
 /// A record with this verdict that carries times all the same.
 pub fn lying(verdict: &str) -> Record {
     let mut record = timed(record("plate", "latin", 1e-6), 123.4567);
-    record.found.verdict = verdict.into();
-    record.found.increments[0].verdict = verdict.into();
+    end_with(&mut record, verdict);
     record
+}
+
+/// Gives a cell of one increment another verdict.
+pub fn end_with(record: &mut Record, verdict: &str) {
+    record.found.verdict = verdict.parse().expect("a verdict");
+    record.found.increments[0].verdict = record.found.verdict.clone();
 }
 
 /// Another problem: the record with another case, and the id that belongs to it.

@@ -1,13 +1,39 @@
-//! The tables of a case file, one function each; `docs/case-format.md` says the same in words.
+//! What a case says in a few words each: quadrature, material, load path, methods.
 
-use super::error::CaseError;
+use stickslip_xfem::material::Material;
+use stickslip_xfem::quadrature::Quadrature;
+
+use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
-use super::{Material, MethodSpec, PathSpec, Quadrature};
 
-pub(super) use super::crack::crack;
-pub(super) use super::exact::exact;
-pub(super) use super::load::{Scene, load, side_names, support};
-pub(super) use super::mesh::{mesh, sweep};
+/// Load path: times t_k = end · k / increments, k = 1..=increments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathSpec {
+    /// Number of increments >= 1.
+    pub increments: usize,
+    /// Final time > 0 (no physical meaning: quasi-static).
+    pub end: f64,
+}
+
+impl PathSpec {
+    /// Time at the end of an increment, counted from 1.
+    pub fn time(&self, increment: usize) -> f64 {
+        self.end * increment as f64 / self.increments as f64
+    }
+}
+
+/// A method with options.
+#[derive(Debug, Clone)]
+pub struct MethodSpec {
+    /// Where it stands in the file.
+    pub span: Span,
+    /// Registry name.
+    pub name: String,
+    /// Options by name, in file order.
+    pub options: Vec<(String, f64)>,
+    /// Where the value of each option stands in the file, in the same order.
+    pub option_spans: Vec<Span>,
+}
 
 /// Largest number of load increments; more is a slip of the finger.
 const MAX_INCREMENTS: usize = 10_000;
@@ -42,11 +68,6 @@ pub(super) fn material(root: &Table<'_>) -> Result<Material, CaseError> {
             .required("poisson")?
             .number_if("0 <= poisson < 0.5", |nu| (0.0..0.5).contains(&nu))?,
     })
-}
-
-/// A friction coefficient.
-pub(super) fn friction(value: Value<'_>) -> Result<f64, CaseError> {
-    value.number_if("friction >= 0", |mu| mu >= 0.0)
 }
 
 /// `[path]`.

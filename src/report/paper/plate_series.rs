@@ -1,31 +1,14 @@
-//! Tables and figures of the two studies beside the paper's tables: penalty error and mesh refinement.
+//! The plate over one parameter: penalty error against the stiffness, reaction against the cell width.
 
 use std::cmp::Ordering;
 
-use super::csv::{self, Row};
-use super::number::{fixed, residual, significant, value};
-use super::plot::{Curve, CurvePlot, error_plot};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
-
-/// Error of the penalty method for one parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PenaltyRow {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// k_n/ρ = k_t/ρ, stiffness in multiples of the natural scale [-].
-    pub parameter: f64,
-    /// Reaction at the top [MN/m].
-    pub reaction_mn_per_m: f64,
-    /// |reaction − exact| / |exact|, exact by the reference method on the same mesh [-].
-    pub relative_error: f64,
-    /// Largest penetration [m].
-    pub max_penetration_m: f64,
-    /// Natural map found by the judge [-].
-    pub natural_map: f64,
-    /// Claim × check.
-    pub verdict: String,
-}
+use crate::report::csv::{self, Row};
+use crate::report::number::{fixed, residual, significant, value};
+use crate::report::plot::{Curve, CurvePlot, error_plot};
+use crate::report::tables::{self, Align, Column, Table};
+use crate::report::{Bundle, ReportError};
+use crate::run::verdict::Verdict;
+use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 
 impl Row for PenaltyRow {
     const FILE: &'static str = "penalty.csv";
@@ -48,7 +31,7 @@ impl Row for PenaltyRow {
             significant(self.relative_error, 3),
             significant(self.max_penetration_m, 3),
             residual(self.natural_map),
-            self.verdict.clone(),
+            Verdict::or_not_run(self.verdict.as_ref()),
         ]
     }
 
@@ -56,25 +39,6 @@ impl Row for PenaltyRow {
         let friction = self.friction.total_cmp(&other.friction);
         friction.then(self.parameter.total_cmp(&other.parameter))
     }
-}
-
-/// Reaction of the plate on one mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RefinementRow {
-    /// Mesh of the paper: `I` or `II`.
-    pub family: String,
-    /// Mesh label.
-    pub mesh: String,
-    /// Cell width [m].
-    pub h_m: f64,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Free unknowns.
-    pub dofs: usize,
-    /// Reaction at the top [MN/m].
-    pub reaction_mn_per_m: f64,
-    /// Claim × check.
-    pub verdict: String,
 }
 
 impl Row for RefinementRow {
@@ -98,7 +62,7 @@ impl Row for RefinementRow {
             value(self.friction),
             self.dofs.to_string(),
             value(self.reaction_mn_per_m),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -107,32 +71,6 @@ impl Row for RefinementRow {
         family
             .then(self.friction.total_cmp(&other.friction))
             .then(other.h_m.total_cmp(&self.h_m))
-    }
-}
-
-/// Limits of the reaction for h → 0.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitRow {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Limit of Mesh I [MN/m].
-    pub mesh_1_mn_per_m: f64,
-    /// Limit of Mesh II [MN/m].
-    pub mesh_2_mn_per_m: f64,
-    /// |difference| / mean [-].
-    pub relative_gap: f64,
-}
-
-impl LimitRow {
-    /// A line with its gap computed.
-    pub fn new(friction: f64, mesh_1_mn_per_m: f64, mesh_2_mn_per_m: f64) -> Self {
-        let mean = 0.5 * (mesh_1_mn_per_m + mesh_2_mn_per_m);
-        LimitRow {
-            friction,
-            mesh_1_mn_per_m,
-            mesh_2_mn_per_m,
-            relative_gap: ((mesh_1_mn_per_m - mesh_2_mn_per_m) / mean).abs(),
-        }
     }
 }
 
@@ -185,7 +123,7 @@ pub fn penalty_table(rows: &[PenaltyRow]) -> Result<Table, ReportError> {
             significant(row.relative_error, 2),
             significant(row.max_penetration_m, 2),
             residual(row.natural_map),
-            row.verdict.clone(),
+            Verdict::or_not_run(row.verdict.as_ref()),
         ])?;
     }
     Ok(table)
@@ -216,7 +154,7 @@ pub fn refinement_table(rows: &[RefinementRow]) -> Result<Table, ReportError> {
             row.dofs.to_string(),
             value(row.friction),
             fixed(row.reaction_mn_per_m, 3),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)
@@ -253,7 +191,7 @@ pub fn limit_table(rows: &[LimitRow]) -> Result<Table, ReportError> {
 /// Those of [`Bundle::add`] and of the figure.
 pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), ReportError> {
     bundle.add(PenaltyRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
+    tables::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
     let plot = CurvePlot {
         caption: "plate, Mesh I, penalty method".into(),
         x_label: "penalty stiffness / natural scale".into(),
@@ -264,7 +202,7 @@ pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), Repor
             |r| [r.parameter, r.relative_error],
         ),
     };
-    bundle.add("figures/penalty.svg", error_plot(&plot, Some(-1.0))?)
+    Ok(bundle.add("figures/penalty.svg", error_plot(&plot, Some(-1.0))?)?)
 }
 
 /// Adds `refinement.*`, `limits.*` and the figure of the distance from the common limit.
@@ -277,9 +215,9 @@ pub fn add_refinement(
     limits: &[LimitRow],
 ) -> Result<(), ReportError> {
     bundle.add(RefinementRow::FILE, csv::file(rows)?)?;
-    paper::add_readable(bundle, "refinement", &refinement_table(rows)?)?;
+    tables::add_readable(bundle, "refinement", &refinement_table(rows)?)?;
     bundle.add(LimitRow::FILE, csv::file(limits)?)?;
-    paper::add_readable(bundle, "limits", &limit_table(limits)?)?;
+    tables::add_readable(bundle, "limits", &limit_table(limits)?)?;
     let distance = |r: &RefinementRow| {
         let limit = limits.iter().find(|l| l.friction == r.friction);
         let mean = limit.map_or(f64::NAN, |l| 0.5 * (l.mesh_1_mn_per_m + l.mesh_2_mn_per_m));
@@ -295,7 +233,7 @@ pub fn add_refinement(
             distance,
         ),
     };
-    bundle.add("figures/refinement.svg", error_plot(&plot, Some(1.0))?)
+    Ok(bundle.add("figures/refinement.svg", error_plot(&plot, Some(1.0))?)?)
 }
 
 /// One curve per friction value and prefix, in order of appearance.

@@ -2,12 +2,15 @@
 
 use std::cmp::Ordering;
 
-use super::csv::{self, Row};
-use super::number::{fixed, significant, value};
-use super::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
-use super::study::RefinementRow;
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, paper};
+use crate::report::csv::Row;
+use crate::report::number::{fixed, significant, value};
+use crate::report::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
+use crate::report::tables::{Align, Column, Table};
+use crate::report::{Bundle, ReportError, csv, tables};
+use crate::studies::paper::converged_reactions::{
+    Agreement, ConvergedRow, SequenceRow, agreements,
+};
+use crate::studies::paper::plate_series::RefinementRow;
 
 /// Digits of orders, error bars and differences: they are estimates.
 const ORDER_DIGITS: usize = 3;
@@ -15,29 +18,6 @@ const BAR_DIGITS: usize = 2;
 
 /// Order that the corners of the plate allow, drawn as a triangle.
 const CORNER_ORDER: f64 = 1.4;
-
-/// Reaction of the plate on one mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SequenceRow {
-    /// Mesh: `I`, `II` or `I turned`.
-    pub mesh: String,
-    /// Mesh label.
-    pub cells: String,
-    /// Largest distance of neighbouring grid lines [m].
-    pub h_m: f64,
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Free displacement unknowns.
-    pub dofs: usize,
-    /// Contact points.
-    pub points: usize,
-    /// Reaction at the top [MN/m]; NaN where the run is not solved.
-    pub reaction_mn_per_m: f64,
-    /// Observed order over the last two halvings; NaN where there is none.
-    pub order: f64,
-    /// Claim × check.
-    pub verdict: String,
-}
 
 impl Row for SequenceRow {
     const FILE: &'static str = "converged_meshes.csv";
@@ -64,7 +44,7 @@ impl Row for SequenceRow {
             self.points.to_string(),
             value(self.reaction_mn_per_m),
             significant(self.order, ORDER_DIGITS),
-            self.verdict.clone(),
+            self.verdict.to_string(),
         ]
     }
 
@@ -73,33 +53,6 @@ impl Row for SequenceRow {
         friction
             .then_with(|| self.mesh.cmp(&other.mesh))
             .then(other.h_m.total_cmp(&self.h_m))
-    }
-}
-
-/// Limit of the reaction on one kind of mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ConvergedRow {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Mesh: `I`, `II` or `I turned`.
-    pub mesh: String,
-    /// Cell size of the finest mesh [m].
-    pub finest_h_m: f64,
-    /// Observed order; NaN without a limit.
-    pub order: f64,
-    /// Limit for h → 0 [MN/m]; NaN where the meshes show none.
-    pub limit_mn_per_m: f64,
-    /// Its uncertainty [MN/m].
-    pub error_bar_mn_per_m: f64,
-    /// Reaction that Table 1 prints for this mesh [MN/m]; none where it has none.
-    pub printed_mn_per_m: Option<f64>,
-}
-
-impl ConvergedRow {
-    /// (printed − limit) / limit [-].
-    pub fn printed_difference(&self) -> Option<f64> {
-        self.printed_mn_per_m
-            .map(|printed| (printed - self.limit_mn_per_m) / self.limit_mn_per_m)
     }
 }
 
@@ -138,56 +91,6 @@ impl Row for ConvergedRow {
         let friction = self.friction.total_cmp(&other.friction);
         friction.then_with(|| self.mesh.cmp(&other.mesh))
     }
-}
-
-/// What the limits of all meshes say for one friction coefficient.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Agreement {
-    /// Friction coefficient [-].
-    pub friction: f64,
-    /// Number of meshes.
-    pub meshes: usize,
-    /// Mean of the limits [MN/m].
-    pub mean_mn_per_m: f64,
-    /// Largest distance of two limits [MN/m].
-    pub spread_mn_per_m: f64,
-    /// Smallest error bar [MN/m].
-    pub smallest_bar_mn_per_m: f64,
-}
-
-impl Agreement {
-    /// Whether every limit lies within the error bar of every other.
-    pub fn holds(&self) -> bool {
-        self.spread_mn_per_m <= self.smallest_bar_mn_per_m
-    }
-}
-
-/// Agreement of the meshes, by rising friction coefficient. A limit that is missing makes all numbers NaN.
-pub fn agreements(rows: &[ConvergedRow]) -> Vec<Agreement> {
-    let mut frictions: Vec<f64> = rows.iter().map(|row| row.friction).collect();
-    frictions.sort_by(f64::total_cmp);
-    frictions.dedup();
-    let agreement = |friction: f64| {
-        let own: Vec<&ConvergedRow> = rows.iter().filter(|r| r.friction == friction).collect();
-        let limits = || own.iter().map(|row| row.limit_mn_per_m);
-        let bars = || own.iter().map(|row| row.error_bar_mn_per_m);
-        // `min` and `max` would drop a NaN.
-        let known = if limits().chain(bars()).all(f64::is_finite) {
-            1.0
-        } else {
-            f64::NAN
-        };
-        let highest = limits().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = limits().fold(f64::INFINITY, f64::min);
-        Agreement {
-            friction,
-            meshes: own.len(),
-            mean_mn_per_m: limits().sum::<f64>() / own.len() as f64,
-            spread_mn_per_m: known * (highest - lowest),
-            smallest_bar_mn_per_m: known * bars().fold(f64::INFINITY, f64::min),
-        }
-    };
-    frictions.into_iter().map(agreement).collect()
 }
 
 /// One paragraph on the agreement of the meshes.
@@ -279,7 +182,7 @@ pub fn sequence_table(rows: &[SequenceRow]) -> Result<Table, ReportError> {
             row.points.to_string(),
             shown(row.reaction_mn_per_m, |r| fixed(r, 3)),
             shown(row.order, |p| fixed(p, 2)),
-            row.verdict.clone(),
+            row.verdict.to_string(),
         ])?;
     }
     Ok(table)
@@ -297,9 +200,9 @@ pub fn add(
     edge_pairs: &[RefinementRow],
 ) -> Result<(), ReportError> {
     bundle.add(SequenceRow::FILE, csv::file(sequences)?)?;
-    paper::add_readable(bundle, "converged_meshes", &sequence_table(sequences)?)?;
+    tables::add_readable(bundle, "converged_meshes", &sequence_table(sequences)?)?;
     bundle.add(ConvergedRow::FILE, csv::file(limits)?)?;
-    paper::add_readable(bundle, "converged", &converged_table(limits)?)?;
+    tables::add_readable(bundle, "converged", &converged_table(limits)?)?;
     let mut sorted: Vec<&SequenceRow> = sequences.iter().collect();
     sorted.sort_by(|a, b| Row::order(*a, *b));
     for Agreement {

@@ -15,13 +15,13 @@
 
 use stickslip_xfem::mesh::grid_motion::Twist;
 
-use super::{PaperError, case, choice};
 use crate::case::{Case, ContactSpace, Tip};
-use crate::report::converged::{ConvergedRow, SequenceRow};
-use crate::report::paper::Table1Row;
 use crate::run::run_case::Progress;
+use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, Kind};
-use crate::studies::convergence::{self, Study};
+use crate::studies::convergence::{self, ConvergencePlan};
+use crate::studies::paper::lookup::{PaperError, case, choice};
+use crate::studies::paper::printed_tables::Table1Row;
 
 /// Radius of the tip enrichment [m].
 const RADIUS: f64 = 1.5;
@@ -36,8 +36,108 @@ const MESHES: [(&str, &str, bool, &[usize]); 3] = [
     ("plate_mesh1", "I turned", true, &[1, 2, 4, 8, 16]),
 ];
 
+/// Reaction of the plate on one mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SequenceRow {
+    /// Mesh: `I`, `II` or `I turned`.
+    pub mesh: String,
+    /// Mesh label.
+    pub cells: String,
+    /// Largest distance of neighbouring grid lines [m].
+    pub h_m: f64,
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Free displacement unknowns.
+    pub dofs: usize,
+    /// Contact points.
+    pub points: usize,
+    /// Reaction at the top [MN/m]; NaN where the run is not solved.
+    pub reaction_mn_per_m: f64,
+    /// Observed order over the last two halvings; NaN where there is none.
+    pub order: f64,
+    /// Claim × check.
+    pub verdict: Verdict,
+}
+
+/// Limit of the reaction on one kind of mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvergedRow {
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Mesh: `I`, `II` or `I turned`.
+    pub mesh: String,
+    /// Cell size of the finest mesh [m].
+    pub finest_h_m: f64,
+    /// Observed order; NaN without a limit.
+    pub order: f64,
+    /// Limit for h → 0 [MN/m]; NaN where the meshes show none.
+    pub limit_mn_per_m: f64,
+    /// Its uncertainty [MN/m].
+    pub error_bar_mn_per_m: f64,
+    /// Reaction that Table 1 prints for this mesh [MN/m]; none where it has none.
+    pub printed_mn_per_m: Option<f64>,
+}
+
+impl ConvergedRow {
+    /// (printed − limit) / limit [-].
+    pub fn printed_difference(&self) -> Option<f64> {
+        self.printed_mn_per_m
+            .map(|printed| (printed - self.limit_mn_per_m) / self.limit_mn_per_m)
+    }
+}
+
+/// What the limits of all meshes say for one friction coefficient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// Friction coefficient [-].
+    pub friction: f64,
+    /// Number of meshes.
+    pub meshes: usize,
+    /// Mean of the limits [MN/m].
+    pub mean_mn_per_m: f64,
+    /// Largest distance of two limits [MN/m].
+    pub spread_mn_per_m: f64,
+    /// Smallest error bar [MN/m].
+    pub smallest_bar_mn_per_m: f64,
+}
+
+impl Agreement {
+    /// Whether every limit lies within the error bar of every other.
+    pub fn holds(&self) -> bool {
+        self.spread_mn_per_m <= self.smallest_bar_mn_per_m
+    }
+}
+
+/// Agreement of the meshes, by rising friction coefficient. A limit that is missing makes all numbers NaN.
+pub fn agreements(rows: &[ConvergedRow]) -> Vec<Agreement> {
+    let mut frictions: Vec<f64> = rows.iter().map(|row| row.friction).collect();
+    frictions.sort_by(f64::total_cmp);
+    frictions.dedup();
+    let agreement = |friction: f64| {
+        let own: Vec<&ConvergedRow> = rows.iter().filter(|r| r.friction == friction).collect();
+        let limits = || own.iter().map(|row| row.limit_mn_per_m);
+        let bars = || own.iter().map(|row| row.error_bar_mn_per_m);
+        // `min` and `max` would drop a NaN.
+        let known = if limits().chain(bars()).all(f64::is_finite) {
+            1.0
+        } else {
+            f64::NAN
+        };
+        let highest = limits().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = limits().fold(f64::INFINITY, f64::min);
+        Agreement {
+            friction,
+            meshes: own.len(),
+            mean_mn_per_m: limits().sum::<f64>() / own.len() as f64,
+            spread_mn_per_m: known * (highest - lowest),
+            smallest_bar_mn_per_m: known * bars().fold(f64::INFINITY, f64::min),
+        }
+    };
+    frictions.into_iter().map(agreement).collect()
+}
+
 /// Reactions on every mesh, and their limits beside the printed numbers of Table 1.
-pub fn rows(
+pub fn converged_reactions(
     printed: &[Table1Row],
     progress: &dyn Progress,
 ) -> Result<(Vec<SequenceRow>, Vec<ConvergedRow>), PaperError> {
@@ -45,13 +145,13 @@ pub fn rows(
     let mut limits = Vec::new();
     for (name, mesh, turned, factors) in MESHES {
         let plate = plate(name, turned)?;
-        let study = Study {
+        let plan = ConvergencePlan {
             refine: Some(factors.to_vec()),
             spaces: Some(vec![ContactSpace::Star]),
             tips: Some(vec![Tip::Radius(RADIUS)]),
             choice: choice(METHOD, &[])?,
         };
-        let samples = convergence::run(&plate, &study, &convergence::closed_form, progress)?;
+        let samples = convergence::run(&plate, &plan, &convergence::closed_form, progress)?;
         let (errors, orders) = orders::rows(&samples);
         // A mesh that is not solved has a row without quantity.
         let wanted = |quantity: &str, at: &str| (quantity, at) == ("reaction", "top y");

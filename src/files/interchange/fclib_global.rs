@@ -6,11 +6,11 @@
 //! G and b stand together or not at all.
 
 use super::error::InterchangeError;
-use super::fclib::{
+use super::fclib_matrix::{check_matrix, put_matrix, read_matrix, read_symmetric};
+use super::fclib_parts::{
     Info, Lengths, Solution, check_size, check_solutions, points, put_info, put_solutions,
     read_dim, read_friction, read_info, read_solutions, unwritable,
 };
-use super::fclib_matrix::{check_matrix, put_matrix, read_matrix, read_symmetric};
 use super::hdf5::{Tree, Writer, put_integers, put_reals, subgroup};
 use super::sparse::SparseMatrix;
 

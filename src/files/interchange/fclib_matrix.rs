@@ -11,7 +11,7 @@
 use hdf5_pure::GroupBuilder;
 
 use super::error::InterchangeError;
-use super::fclib::{check_size, unwritable};
+use super::fclib_parts::{check_size, unwritable};
 use super::hdf5::{Tree, put_integers, put_reals, subgroup};
 use super::sparse::SparseMatrix;
 

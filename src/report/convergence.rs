@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use super::csv::{self, Row};
 use super::number::{fixed, significant, time, value};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, error_figures, paper};
+use super::tables::{self, Align, Column, Table};
+use super::{Bundle, Provenance, ReportError, error_figures};
 use crate::studies::convergence::Variant;
 use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
@@ -94,7 +94,7 @@ impl Row for ErrorRow {
             value(*h),
             dofs.to_string(),
             points.to_string(),
-            verdict.clone(),
+            verdict.to_string(),
             quantity.clone(),
             at.clone(),
             value(*found),
@@ -250,7 +250,7 @@ pub fn error_table(rows: &[ErrorRow]) -> Result<Table, ReportError> {
             significant(row.h, 4),
             row.dofs.to_string(),
             row.points.to_string(),
-            row.verdict.clone(),
+            row.verdict.to_string(),
             shown(above_round_off(row.error), scientific),
             shown(row.order, |p| fixed(p, 2)),
             row.kind.map_or("–", Kind::name).into(),
@@ -314,9 +314,9 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     bundle.add(ErrorRow::FILE, csv::file(errors)?)?;
     bundle.add(OrderRow::FILE, csv::file(orders)?)?;
-    paper::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
-    paper::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
+    tables::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
+    tables::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
     error_figures::add(&mut bundle, errors, orders)?;
-    provenance.add_to(&mut bundle)?;
+    super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

@@ -3,7 +3,7 @@
 use super::outline::Weld;
 use super::solid::{Deformed, VIEW};
 use super::surface::Patch;
-use crate::run::record::{Picture, PictureShape};
+use crate::model::field_mesh::{CellShape, FieldMesh};
 use std::collections::BTreeMap;
 
 /// Patches whose normals make an angle with a larger cosine meet in no edge.
@@ -19,12 +19,9 @@ pub struct Plane {
 
 impl Plane {
     /// Mean plane of the facets of a crack; none without area.
-    pub fn of(crack: &Picture) -> Option<Self> {
+    pub fn of(crack: &FieldMesh) -> Option<Self> {
         let (mut normal, mut point, mut count) = ([0.0; 3], [0.0; 3], 0.0);
-        let polygons = crack
-            .cells
-            .iter()
-            .filter(|c| c.shape == PictureShape::Polygon);
+        let polygons = crack.cells.iter().filter(|c| c.shape == CellShape::Polygon);
         for polygon in polygons {
             let own = newell(crack, &polygon.points);
             // Facets may run either way round.
@@ -55,7 +52,7 @@ impl Plane {
 }
 
 /// A solid as it is drawn around a crack.
-pub struct Parts<'a> {
+pub struct OpenedSolid<'a> {
     /// Patches behind the crack that look at the viewer, from back to front; none where the crack parts nothing.
     pub body: Vec<&'a Patch>,
     /// Edges of the rest: ends, and whether they are in sight.
@@ -64,10 +61,10 @@ pub struct Parts<'a> {
     pub behind: Vec<bool>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> OpenedSolid<'a> {
     /// Parts a solid at a crack.
     pub fn new(
-        picture: &Picture,
+        picture: &FieldMesh,
         displacement: &[[f64; 3]],
         shape: &'a Deformed,
         crack: &Plane,
@@ -101,7 +98,7 @@ impl<'a> Parts<'a> {
 
 /// Edges of patches that meet under an angle, and whether one of the two looks at the viewer.
 fn edges(
-    picture: &Picture,
+    picture: &FieldMesh,
     patches: &[&Patch],
     shape: &Deformed,
     weld: &Weld<'_>,
@@ -130,7 +127,7 @@ fn edges(
 }
 
 /// Number of the connected part of every point: cells that share a point belong together.
-fn components(picture: &Picture) -> Vec<usize> {
+fn components(picture: &FieldMesh) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..picture.points.len()).collect();
     fn root(parent: &mut [usize], mut p: usize) -> usize {
         while parent[p] != p {
@@ -156,7 +153,7 @@ struct Outer {
 }
 
 impl Outer {
-    fn of(picture: &Picture) -> Self {
+    fn of(picture: &FieldMesh) -> Self {
         let values = |c: usize| picture.points.iter().map(move |p| p[c]);
         let low: [f64; 3] = std::array::from_fn(|c| values(c).fold(f64::INFINITY, f64::min));
         let high: [f64; 3] = std::array::from_fn(|c| values(c).fold(f64::NEG_INFINITY, f64::max));
@@ -169,7 +166,7 @@ impl Outer {
     }
 
     /// Whether a patch lies on a side of the box: crack faces do not, nor does what the cells at a front leave open.
-    fn holds(&self, picture: &Picture, patch: &Patch) -> bool {
+    fn holds(&self, picture: &FieldMesh, patch: &Patch) -> bool {
         let points = || patch.faces.iter().flatten().map(|p| picture.points[*p]);
         let on = |c: usize, end: f64| points().all(|x| (x[c] - end).abs() <= self.slack);
         (0..3).any(|c| on(c, self.low[c]) || on(c, self.high[c]))
@@ -185,7 +182,7 @@ pub struct Lookup<'a> {
 
 impl<'a> Lookup<'a> {
     /// Of the points that `wanted` marks.
-    pub fn new(picture: &Picture, displacement: &'a [[f64; 3]], wanted: &[bool]) -> Self {
+    pub fn new(picture: &FieldMesh, displacement: &'a [[f64; 3]], wanted: &[bool]) -> Self {
         let outer = Outer::of(picture);
         let mut lookup = Self {
             points: Vec::new(),
@@ -226,7 +223,7 @@ impl<'a> Lookup<'a> {
 }
 
 /// Normal of a polygon, twice as long as its area.
-fn newell(picture: &Picture, polygon: &[usize]) -> [f64; 3] {
+fn newell(picture: &FieldMesh, polygon: &[usize]) -> [f64; 3] {
     let mut normal = [0.0; 3];
     for (i, point) in polygon.iter().enumerate() {
         let next = polygon[(i + 1) % polygon.len()];

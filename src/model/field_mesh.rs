@@ -1,4 +1,4 @@
-//! Pictures of a body: cells with the displacement on them, cut cells split so that the jump is visible.
+//! Fields on a mesh made for pictures: cut cells are split and nodes on crack faces are doubled, so that the jump is visible.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,62 @@ use stickslip_xfem::mesh::cell::CellKind;
 
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
-use crate::run::record::{FieldStep, Picture, PictureCell, PictureShape};
+
+/// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
+#[derive(Debug, Clone, Default)]
+pub struct FieldMesh {
+    /// Space dimension of the body.
+    pub dim: usize,
+    /// Points, reference position [m]; third entry 0 in 2D.
+    pub points: Vec<[f64; 3]>,
+    /// Cells by point numbers.
+    pub cells: Vec<FieldCell>,
+    /// Point vectors, one per point: name with unit (e.g. `displacement_m`), values.
+    pub point_vectors: Vec<(String, Vec<[f64; 3]>)>,
+    /// Point scalars.
+    pub point_scalars: Vec<(String, Vec<f64>)>,
+    /// Cell scalars, e.g. `von_mises_pa`, `side`.
+    pub cell_scalars: Vec<(String, Vec<f64>)>,
+}
+
+/// Shape of a picture cell; numbering as in VTK.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CellShape {
+    /// VTK 1.
+    Vertex,
+    /// VTK 3.
+    Line,
+    /// VTK 5.
+    Triangle,
+    /// VTK 7.
+    Polygon,
+    /// VTK 9.
+    Quad,
+    /// VTK 10.
+    Tetra,
+    /// VTK 12.
+    Hexahedron,
+}
+
+/// One cell of a picture.
+#[derive(Debug, Clone)]
+pub struct FieldCell {
+    /// Shape.
+    pub shape: CellShape,
+    /// Point numbers.
+    pub points: Vec<usize>,
+}
+
+/// Body and crack faces of one increment.
+#[derive(Debug, Clone, Default)]
+pub struct FieldStep {
+    /// Time of the increment.
+    pub time: f64,
+    /// The body.
+    pub body: FieldMesh,
+    /// The crack surfaces with gap_m, slip, p_n, p_t, status (0 open, 1 stick, 2 slip) as point data.
+    pub crack: FieldMesh,
+}
 
 /// Body and crack faces at one increment.
 pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
@@ -24,21 +79,21 @@ pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
 }
 
 /// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
-fn body_picture(body: &Body, now: &Snapshot) -> Picture {
+fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
     let integrator = body.integrator();
     let mut cells = Vec::new();
     let mut vertices = Vertices::new(body, now);
     let (mut stress, mut sides) = (Vec::new(), Vec::new());
     let whole = match mesh.kind {
-        CellKind::Quad4 => PictureShape::Quad,
-        CellKind::Hex8 => PictureShape::Hexahedron,
+        CellKind::Quad4 => CellShape::Quad,
+        CellKind::Hex8 => CellShape::Hexahedron,
     };
     for cell in 0..mesh.cell_count() {
         let corners = mesh.corners(cell);
         let corners = &corners[..mesh.kind.nodes()];
         let Some(partition) = body.enrichment.partition(cell) else {
-            cells.push(PictureCell {
+            cells.push(FieldCell {
                 shape: whole,
                 points: corners
                     .iter()
@@ -52,7 +107,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
         };
         for (region, part) in partition.parts.iter().enumerate() {
             for (shape, part) in pieces_of(body, cell, corners, partition, part) {
-                cells.push(PictureCell {
+                cells.push(FieldCell {
                     shape,
                     points: part
                         .iter()
@@ -70,7 +125,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> Picture {
             }
         }
     }
-    Picture {
+    FieldMesh {
         dim,
         points: vertices.points,
         cells,
@@ -181,7 +236,7 @@ fn pieces_of(
     corners: &[Point],
     partition: &Partition,
     part: &Part,
-) -> Vec<(PictureShape, Vec<Point>)> {
+) -> Vec<(CellShape, Vec<Point>)> {
     let kind = body.mesh.kind;
     if kind == CellKind::Quad4 {
         let mut polygon = part.polygon.clone();
@@ -189,21 +244,21 @@ fn pieces_of(
             insert_on_border(&mut polygon, &body.enrichment.tips[tip].position);
         }
         if polygon::is_convex(&polygon) {
-            return vec![(PictureShape::Polygon, polygon)];
+            return vec![(CellShape::Polygon, polygon)];
         }
         let triangles = polygon::triangles(&polygon).into_iter();
         return triangles
-            .map(|t| (PictureShape::Polygon, t.to_vec()))
+            .map(|t| (CellShape::Polygon, t.to_vec()))
             .collect();
     }
     if let (&[(crack, side)], 2) = (part.sides.as_slice(), partition.parts.len()) {
         let phi = body.cracks[crack].cell_phi(&body.mesh, cell);
         if let Some(hexahedron) = hexahedron(kind, corners, &phi, side) {
-            return vec![(PictureShape::Hexahedron, hexahedron)];
+            return vec![(CellShape::Hexahedron, hexahedron)];
         }
     }
     let parts = part.tetrahedra.iter();
-    parts.map(|t| (PictureShape::Tetra, t.to_vec())).collect()
+    parts.map(|t| (CellShape::Tetra, t.to_vec())).collect()
 }
 
 /// One side of a cell of which a crack parts two opposite faces.
@@ -240,7 +295,7 @@ fn insert_on_border(polygon: &mut Vec<Point>, x: &Point) {
 }
 
 /// The crack faces with their fields; every corner shows what the contact points that speak for it say.
-fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
+fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let dim = body.mesh.dim();
     let corners = &body.surface.corners;
     // Σ share · value of the point, component by component in space.
@@ -288,16 +343,16 @@ fn crack_picture(body: &Body, now: &Snapshot) -> Picture {
         .facets
         .iter()
         .filter(|facet| facet.len() >= dim)
-        .map(|facet| PictureCell {
+        .map(|facet| FieldCell {
             shape: if dim == 2 {
-                PictureShape::Line
+                CellShape::Line
             } else {
-                PictureShape::Polygon
+                CellShape::Polygon
             },
             points: facet.clone(),
         })
         .collect();
-    Picture {
+    FieldMesh {
         dim,
         points: corners.iter().map(|corner| corner.x).collect(),
         cells,

@@ -1,9 +1,7 @@
 //! The direction in which a curve is run through: arrowheads on it, and the numbers of the points where it turns.
 
-use super::canvas::{Anchor, Canvas, text_width};
-use super::chart::{Frame, SMALL_PT};
+use super::canvas::{Anchor, Canvas, SMALL_PT, text_width};
 use super::colour::{BLACK, WHITE};
-use super::contact::draw_arrow;
 
 /// Pieces shorter than this get no arrowhead [mm].
 const LONG_MM: f64 = 5.0;
@@ -42,14 +40,14 @@ pub fn turns(points: &[[f64; 2]]) -> Vec<usize> {
     turns
 }
 
-/// Draws them for a curve on paper, whose points are numbered from 0.
-pub fn draw(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]]) {
+/// Draws them for a curve on paper, whose points are numbered from 0; `low` and `high` are corners of the frame.
+pub fn draw(canvas: &mut Canvas, [low, high]: [[f64; 2]; 2], points: &[[f64; 2]]) {
     for pair in points.windows(2) {
         let d = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
         let length = d[0].hypot(d[1]);
         if length >= LONG_MM {
             let at = |mm: f64| [0, 1].map(|c| pair[0][c] + (0.5 + mm / length) * d[c]);
-            draw_arrow(canvas, at(-1.1), at(1.1));
+            canvas.arrow(at(-1.1), at(1.1));
         }
     }
     let mut numbered = match points.len() {
@@ -78,8 +76,6 @@ pub fn draw(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]]) {
         let away = [at[0] - middle[0], at[1] - middle[1]];
         let length = away[0].hypot(away[1]).max(f64::MIN_POSITIVE);
         let wanted = [0, 1].map(|c| at[c] + (OFF_MM + half[c] - 1.1) * away[c] / length);
-        let low = [frame.left, frame.top];
-        let high = [frame.right, frame.bottom];
         let place = [0, 1].map(|c| {
             let inside = [low[c] + half[c] + CLEAR_MM, high[c] - half[c] - CLEAR_MM];
             // On the other side of the point where the frame leaves no room.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::CliError;
+use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, page, prepare_output, sweep};
@@ -238,10 +238,7 @@ fn end_with_parent() -> std::io::Result<()> {
 
 /// Writes the report beside the records.
 fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
-    let wrong = |r: &&Record| {
-        let verdict = r.found.verdict.as_str();
-        verdict == "false-claim" || verdict.starts_with("crashed")
-    };
+    let wrong = |r: &&Record| r.found.verdict.is_wrong();
     for record in records.iter().filter(wrong) {
         warn(format_args!("{}: {}", record.found.verdict, record.id));
     }

@@ -1,0 +1,71 @@
+//! What several verbs ask of their arguments: cases and methods by name, no two of one name.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::error::CliError;
+use crate::case::{self, Case, shipped};
+use crate::run::choice::Choice;
+use crate::run::provenance::Provenance;
+use crate::run::registry::methods;
+use crate::run::run_case::Settings;
+
+/// A case by file, or by the name of a shipped one.
+pub fn find_case(name: &str) -> Result<Case, CliError> {
+    if !Path::new(name).exists() {
+        if let Some(case) = shipped::find(name) {
+            return Ok(case?);
+        }
+        if !name.ends_with(".toml") {
+            return Err(CliError::Unknown {
+                what: "case",
+                name: name.into(),
+                known: shipped::CASES
+                    .iter()
+                    .map(|c| c.0)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            });
+        }
+    }
+    Ok(case::read(name)?)
+}
+
+/// The methods named, or all of them with their defaults.
+pub fn methods_or_all(named: &[String]) -> Result<Vec<Choice>, CliError> {
+    if named.is_empty() {
+        let all = methods().iter().map(|method| Choice::parse(method.name));
+        return Ok(all.collect::<Result<_, _>>()?);
+    }
+    let chosen = named.iter().map(|argument| Choice::parse(argument));
+    let chosen = chosen.collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+    Ok(chosen)
+}
+
+/// Two runs of one name would write the same files.
+pub fn refuse_twins<'a>(
+    what: &'static str,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), CliError> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(name) {
+            return Err(CliError::Twice {
+                what,
+                name: name.into(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The program, this machine and these settings.
+pub fn provenance(settings: Settings) -> Provenance {
+    let tier = settings
+        .tier
+        .map_or_else(|| "of each case".to_owned(), |t| t.to_string());
+    Provenance::collect(settings.jobs.max(rayon::current_num_threads()))
+        .with_option("jobs", settings.jobs.to_string())
+        .with_option("tier", tier)
+}

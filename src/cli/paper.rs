@@ -1,0 +1,74 @@
+//! `stickslip paper`: the main job.
+
+use std::path::PathBuf;
+
+use super::arguments::provenance;
+use super::error::CliError;
+use super::output::{say, warn};
+use super::progress::Bar;
+use crate::report::{page, paper as report, prepare_output};
+use crate::run::record::Results;
+use crate::run::run_case::{Fields, Settings};
+use crate::studies::paper;
+
+/// Arguments of `stickslip paper`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Folder for the report
+    #[arg(long, default_value = "reports")]
+    out: PathBuf,
+    /// Runs at the same time; times are recorded for 1 only
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self {
+            out: "reports".into(),
+            jobs: 1,
+        }
+    }
+}
+
+/// Runs everything, writes the report and prints its tables.
+pub fn run(Arguments { out, jobs }: Arguments) -> Result<bool, CliError> {
+    prepare_output(&out)?;
+    let settings = Settings {
+        tier: None,
+        jobs: usize::from(jobs),
+        fields: Fields::First,
+    };
+    let bar = Bar::new();
+    let paper = paper::run(settings, &bar)?;
+    bar.finish();
+    report::bundle(&paper, &provenance(settings))?.commit(&out)?;
+    page::write(&out)?;
+    say(format_args!("{}", report::text(&paper)?));
+    say(format_args!("Report: {}", out.display()));
+    print_missed(&paper.results);
+    Ok(paper.results.as_expected())
+}
+
+/// Expected numbers that were missed, on standard error.
+fn print_missed(results: &Results) {
+    for e in results.expectations.iter().filter(|e| !e.as_stated()) {
+        let k = &e.key;
+        warn(format_args!(
+            "{}: {} {} {} mu={} increment {}: {} {} {} is {:e}, expected {:e} ± {:e} {}",
+            e.verdict,
+            k.case,
+            k.mesh,
+            k.method,
+            k.friction,
+            k.increment,
+            e.quantity,
+            e.at,
+            e.component,
+            e.found,
+            e.expected,
+            e.allowed,
+            e.unit
+        ));
+    }
+}

@@ -1,0 +1,138 @@
+//! `stickslip run` and `stickslip check`: cases, run or only read.
+
+use std::path::PathBuf;
+
+use stickslip_methods::Tier;
+
+use super::arguments::{find_case, provenance, refuse_twins};
+use super::error::CliError;
+use super::output::say;
+use super::progress::Bar;
+use crate::case;
+use crate::model::body::{Body, Needs};
+use crate::model::loading::Loading;
+use crate::report::{page, prepare_output, standard};
+use crate::run::choice::{Choice, choices};
+use crate::run::expect;
+use crate::run::record::Results;
+use crate::run::run_case::{Fields, RunError, Settings, friction_values, run_case};
+
+/// Arguments of `stickslip run`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Case files or names
+    #[arg(required = true)]
+    cases: Vec<String>,
+    /// Method with options, NAME or NAME:key=value,key=value; may be repeated
+    #[arg(long, short)]
+    method: Vec<String>,
+    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9); the case's own by default
+    #[arg(long)]
+    tier: Option<Tier>,
+    /// Methods whose fields are written for pictures: none, first (the first exact method) or all
+    #[arg(long, value_enum, default_value = "first")]
+    fields: FieldsOf,
+    /// Folder for the results
+    #[arg(long, default_value = "results")]
+    out: PathBuf,
+    /// Runs at the same time; times are recorded for 1 only
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+}
+
+/// Arguments of `stickslip check`.
+#[derive(Debug, clap::Args)]
+pub struct CheckArguments {
+    /// Case files
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+}
+
+/// Values of `--fields`.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum FieldsOf {
+    None,
+    First,
+    All,
+}
+
+/// Runs cases, writes their report and prints what became of them.
+pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+    let out = &arguments.out;
+    let settings = Settings {
+        tier: arguments.tier,
+        jobs: usize::from(arguments.jobs),
+        fields: match arguments.fields {
+            FieldsOf::None => Fields::None,
+            FieldsOf::First => Fields::First,
+            FieldsOf::All => Fields::All,
+        },
+    };
+    let cases = arguments
+        .cases
+        .iter()
+        .map(|name| find_case(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let given = arguments
+        .method
+        .iter()
+        .map(|m| Choice::parse(m))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
+    for case in &cases {
+        let chosen = choices(case, &given)?;
+        refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
+        expect::check(case)?;
+    }
+    prepare_output(out)?;
+    let bar = Bar::new();
+    let mut results = Results::default();
+    for case in &cases {
+        results.append(run_case(case, &given, settings, &bar)?);
+    }
+    bar.finish();
+    standard::write(out, &results, &provenance(settings))?;
+    page::write(out)?;
+    say(format_args!(
+        "{}",
+        standard::runs_table(&results.runs)?.terminal()
+    ));
+    if !results.expectations.is_empty() {
+        say(format_args!(
+            "{}",
+            standard::expectations_table(&results.expectations)?.terminal()
+        ));
+    }
+    say(format_args!(
+        "{}\nResults: {}",
+        standard::summary(&results),
+        out.display()
+    ));
+    Ok(results.as_expected())
+}
+
+/// Reads and discretises cases.
+pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliError> {
+    for file in files {
+        let case = case::read(&file)?;
+        choices(&case, &[])?;
+        expect::check(&case)?;
+        for &refine in &case.sweep.refine {
+            let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
+            for per_crack in friction_values(&case) {
+                let friction = per_crack.first().copied().unwrap_or(0.0);
+                Loading::new(&body, &case, friction).map_err(RunError::from)?;
+            }
+            say(format_args!(
+                "{}: {}, {} cells, {} unknowns, {} contact points ({})",
+                file.display(),
+                body.label,
+                body.mesh.cell_count(),
+                body.elastic.unknowns(),
+                body.points.len(),
+                body.space
+            ));
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,98 @@
+//! One quantity, found and exact, and what the errors of all of them are measured with.
+
+use stickslip_xfem::cut::placement;
+use stickslip_xfem::geometry::tip_frame::TipFrame;
+use stickslip_xfem::geometry::{Point, dot, sub};
+
+use crate::model::body::Body;
+
+/// Points per direction of the rule for the bulk: doubling it changes the errors by less than 1e-3 of themselves.
+pub const RULE: usize = 4;
+
+/// An exact value below this, in units of its natural scale, is zero.
+pub const ZERO: f64 = 1e-9;
+
+/// One quantity, found and exact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviation {
+    /// Name, see [`errors`](super).
+    pub quantity: &'static str,
+    /// `crack-1 tip-2` for a tip; empty for the whole body.
+    pub at: String,
+    /// Discrete value; for a field its norm. NaN: the mesh leaves no room to find it.
+    pub found: f64,
+    /// Exact value; for a field its norm.
+    pub exact: f64,
+    /// Relative error; where the exact value is zero, relative to the natural scale; of a direction the angle [rad].
+    pub error: f64,
+}
+
+/// Natural scales of the exact field.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales {
+    /// Root mean square of the displacement [m].
+    pub displacement: f64,
+    /// Root mean square of the stress [Pa].
+    pub stress: f64,
+    /// Elastic energy [J, in 2D J/m].
+    pub energy: f64,
+}
+
+impl Deviation {
+    /// A deviation whose difference is measured against the exact size, or the natural scale if that is zero.
+    pub fn new(
+        quantity: &'static str,
+        at: String,
+        [found, exact]: [f64; 2],
+        difference: f64,
+        size: f64,
+        scale: f64,
+    ) -> Self {
+        let unit = if size > ZERO * scale { size } else { scale };
+        Deviation {
+            quantity,
+            at,
+            found,
+            exact,
+            // A field that is zero everywhere has no scale: the difference itself, in SI units.
+            error: if unit > 0.0 {
+                difference / unit
+            } else {
+                difference
+            },
+        }
+    }
+}
+
+/// A row of a norm from the squares of the found one, the exact one and that of the difference.
+pub fn norm_row(quantity: &'static str, squares: [f64; 3], scale: f64) -> Deviation {
+    let [found, exact, difference] = squares.map(f64::sqrt);
+    Deviation::new(
+        quantity,
+        String::new(),
+        [found, exact],
+        difference,
+        exact,
+        scale,
+    )
+}
+
+/// Side of the crack that a point off the crack lies on; 1 in a body without cracks. A closed form belongs to one crack.
+pub fn side_of(body: &Body, x: &Point) -> f64 {
+    let distance = match (body.cracks.first(), body.points.first()) {
+        (Some(crack), _) => crack.distance(x),
+        // A crack along cell edges has no level set, but points.
+        (None, Some(point)) => dot(&point.frame[0], &sub(x, &point.x)),
+        (None, None) => 0.0,
+    };
+    if distance < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// Tips of all cracks, whether they carry branch functions or not.
+pub fn fronts(body: &Body) -> Vec<TipFrame> {
+    let cracks = body.cracks.iter().enumerate();
+    cracks
+        .flat_map(|(index, crack)| placement::fronts(&body.mesh, index, crack))
+        .map(|(tip, _)| tip)
+        .collect()
+}

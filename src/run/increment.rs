@@ -1,0 +1,205 @@
+//! One method on one increment: prepared, solved, timed, judged, and written into the rows of the tables. Cases, files and
+//! random studies go through here alike.
+
+use std::time::Instant;
+
+use stickslip_methods::{
+    ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
+    consistency, point_status, residuals_of,
+};
+
+use crate::model::body::Setup;
+use crate::run::choice::Choice;
+use crate::run::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
+use crate::run::verdict::{Accuracy, Verdict};
+
+/// What came of an increment.
+pub struct JudgedIncrement {
+    /// Claim × check.
+    pub verdict: Verdict,
+    /// Work up to its end; `None` if the method never started.
+    pub work: Option<Work>,
+    /// What was judged; `None` if the method never started or failed with an error.
+    pub judged: Option<Judged>,
+}
+
+/// Work that led to an answer. The first three are shared by all runs on a body.
+#[derive(Debug, Clone, Copy)]
+pub struct Work {
+    /// Factorisations of K so far.
+    pub factorisations: usize,
+    /// Analysis and factorisation of K [s].
+    pub factorisation_s: f64,
+    /// Condensation, for methods that need it with that of the traction operator [s].
+    pub condensation_s: f64,
+    /// Preparation of the method, counted with the first increment [s].
+    pub prepare_s: f64,
+    /// What the method took, without what it shares with others [s].
+    pub solve_s: f64,
+}
+
+/// An outcome with what the judge found.
+pub struct Judged {
+    /// As the method returned it.
+    pub outcome: Outcome,
+    /// Residuals of equilibrium, of the contact laws, and of the laws claimed.
+    pub found: Residuals,
+    /// Open, stick or slip, by point.
+    pub status: Vec<PointStatus>,
+    /// See [`consistency`].
+    pub consistency: Option<Vec<f64>>,
+}
+
+/// A method prepared for one system.
+pub struct Solver<'a> {
+    system: &'a ContactSystem,
+    method: Box<dyn Enforcement>,
+    /// Time the preparation took, until an increment counted it [s].
+    pub prepare_s: f64,
+}
+
+impl<'a> Solver<'a> {
+    /// Builds and prepares a method.
+    ///
+    /// # Errors
+    /// The verdict on one that declines the system, or fails.
+    pub fn new(choice: &Choice, system: &'a ContactSystem) -> Result<Self, Verdict> {
+        let mut method = (choice.method.build)(&choice.options);
+        if let Some(reason) = method.refuses(system) {
+            return Err(Verdict::Refused(reason));
+        }
+        let (prepared, prepare_s) = timed(system, || method.prepare(system));
+        prepared?;
+        Ok(Self {
+            system,
+            method,
+            prepare_s,
+        })
+    }
+
+    /// Solves an increment, unjudged: what the method returned and its seconds.
+    pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, f64) {
+        timed(self.system, || self.method.solve(increment, &mut Silent))
+    }
+
+    /// Solves an increment and judges the outcome against the natural map accepted.
+    pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
+        let (solved, solve_s) = self.solve(increment);
+        let judged = solved.and_then(|outcome| {
+            Ok(Judged {
+                found: residuals_of(increment, &outcome.state, outcome.claim)?,
+                status: point_status(increment, &outcome.state)?,
+                consistency: consistency(increment, &outcome.state, outcome.claim)?,
+                outcome,
+            })
+        });
+        let (verdict, judged) = match judged {
+            Ok(own) => (Verdict::of(&own.outcome, &own.found, accepted), Some(own)),
+            Err(error) => (error.into(), None),
+        };
+        let elastic = self.system.elastic();
+        let shared = elastic.timings();
+        let traction_s = if self.method.needs().traction {
+            shared.traction_s
+        } else {
+            0.0
+        };
+        JudgedIncrement {
+            verdict,
+            work: Some(Work {
+                factorisations: elastic.counters().factorisations,
+                factorisation_s: shared.analysis_s + shared.factorisation_s,
+                condensation_s: shared.condensation_s + traction_s,
+                prepare_s: std::mem::take(&mut self.prepare_s),
+                solve_s,
+            }),
+            judged,
+        }
+    }
+}
+
+impl JudgedIncrement {
+    /// The method declined the system or could not be prepared.
+    pub fn not_started(verdict: Verdict) -> Self {
+        Self {
+            verdict,
+            work: None,
+            judged: None,
+        }
+    }
+
+    /// The answer, if it is what the method claims.
+    pub fn honest(&self) -> Option<&Judged> {
+        self.judged.as_ref().filter(|_| self.verdict.is_honest())
+    }
+
+    /// Row of `runs.csv`. Times of a run that started stand there beside an honest verdict only.
+    pub fn run_row(
+        &self,
+        key: &RunKey,
+        system: &ContactSystem,
+        setup: Setup,
+        accuracy: Accuracy,
+    ) -> RunRow {
+        let judged = self.judged.as_ref();
+        let found =
+            |residual: fn(&Residuals) -> f64| judged.map_or(f64::NAN, |j| residual(&j.found));
+        let counters = judged.map(|j| j.outcome.counters).unwrap_or_default();
+        let time = |of: fn(&Work) -> f64| self.work.as_ref().map_or(f64::NAN, of);
+        let mut row = RunRow {
+            key: key.clone(),
+            tier: accuracy.to_string(),
+            verdict: self.verdict.clone(),
+            natural_map: found(|f| f.natural_map),
+            iterations: counters.iterations,
+            factorisations: self.work.map_or(0, |work| work.factorisations),
+            solves: counters.solves,
+            unknowns: system.rows(),
+            points: system.points(),
+            dofs: system.elastic().unknowns(),
+            setup_s: setup.setup_s,
+            assembly_s: setup.assembly_s,
+            factorisation_s: time(|work| work.factorisation_s),
+            condensation_s: time(|work| work.condensation_s),
+            prepare_s: time(|work| work.prepare_s),
+            solve_s: time(|work| work.solve_s),
+            equilibrium: found(|f| f.equilibrium),
+            claimed_equilibrium: found(|f| f.claimed_equilibrium),
+            claimed: found(|f| f.claimed),
+            tangent_factorisations: counters.factorisations,
+            global_factorisations: counters.global_factorisations,
+            local_solves: counters.local_solves,
+            schema: SCHEMA,
+        };
+        if self.work.is_some() && !self.verdict.is_honest() {
+            row.forget_times();
+        }
+        row
+    }
+
+    /// Rows of `history.csv`, a long history thinned.
+    pub fn history_rows(&self, key: &RunKey) -> Vec<HistoryRow> {
+        let history = self.judged.as_ref().map_or(&[][..], |j| &j.outcome.history);
+        let Some(last) = history.len().checked_sub(1) else {
+            return Vec::new();
+        };
+        let row = |iteration: usize| HistoryRow {
+            key: key.clone(),
+            iteration,
+            natural_map: history[iteration].natural_map,
+        };
+        recorded_iterations(last).into_iter().map(row).collect()
+    }
+}
+
+/// Seconds a call took, less the time the shared factorisation and condensation took inside it.
+fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
+    let shared = || {
+        let t = system.elastic().timings();
+        t.analysis_s + t.factorisation_s + t.condensation_s + t.traction_s
+    };
+    let (before, clock) = (shared(), Instant::now());
+    let value = call();
+    let seconds = clock.elapsed().as_secs_f64() - (shared() - before);
+    (value, seconds.max(0.0))
+}

@@ -1,0 +1,131 @@
+//! The load path of one run: increment after increment, each from the state in which the one before ended.
+
+use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
+
+use crate::case::Case;
+use crate::model::loading::Loading;
+use crate::model::quantities::Snapshot;
+use crate::run::choice::Choice;
+use crate::run::increment::{JudgedIncrement, Solver};
+use crate::run::record::{RunKey, RunRow};
+use crate::run::verdict::{Accuracy, Verdict};
+
+/// One run before it starts.
+#[derive(Clone, Copy)]
+pub struct LoadPathRun<'a> {
+    /// What is run.
+    pub case: &'a Case,
+    /// Its discretisation, and what acts on it at this friction.
+    pub loading: &'a Loading<'a>,
+    /// The contact system on it, with the friction coefficients.
+    pub system: &'a ContactSystem,
+    /// Friction coefficient that names the run.
+    pub friction: f64,
+    /// Method.
+    pub choice: &'a Choice,
+    /// Accuracy asked for.
+    pub accuracy: Accuracy,
+}
+
+/// How a load path ended.
+pub struct PathEnd {
+    /// The last increment that was tried.
+    pub key: RunKey,
+    /// False if the method declined the system or failed before the first increment.
+    pub started: bool,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// The mechanics at its end, of an honest verdict only.
+    pub now: Option<Snapshot>,
+}
+
+impl LoadPathRun<'_> {
+    /// Names an increment.
+    pub fn key(&self, increment: usize) -> RunKey {
+        let body = self.loading.body();
+        RunKey {
+            case: self.case.name.clone(),
+            mesh: body.label.clone(),
+            space: body.space.clone(),
+            method: self.choice.label.clone(),
+            friction: self.friction,
+            increment,
+        }
+    }
+
+    /// Row of `runs.csv`.
+    pub fn row(&self, key: &RunKey, increment: &JudgedIncrement) -> RunRow {
+        let setup = self.loading.body().setup;
+        increment.run_row(key, self.system, setup, self.accuracy)
+    }
+
+    /// Follows the path, up to the first increment without an honest verdict: what came after would start from a state
+    /// nobody vouches for. `each` is shown every increment, with the mechanics at its end where the verdict is honest.
+    pub fn follow(
+        &self,
+        each: &mut dyn FnMut(&RunKey, &JudgedIncrement, Option<&Snapshot>),
+    ) -> PathEnd {
+        let Self {
+            case,
+            loading,
+            system,
+            choice,
+            accuracy,
+            ..
+        } = *self;
+        let body = loading.body();
+        let mut end = PathEnd {
+            key: self.key(1),
+            started: true,
+            verdict: Verdict::Crashed("a load path without increments".into()),
+            now: None,
+        };
+        let mut solver = match Solver::new(choice, system) {
+            Ok(solver) => solver,
+            Err(verdict) => {
+                let only = JudgedIncrement::not_started(verdict);
+                each(&end.key, &only, None);
+                (end.started, end.verdict) = (false, only.verdict);
+                return end;
+            }
+        };
+        let mut state = ContactState::zero(system);
+        let mut before = Snapshot::virgin(body);
+        // Nothing acts before the first increment, whatever the histories say at t = 0.
+        let mut start_load = Load::zero(&body.elastic);
+        for increment in 1..=case.path.increments {
+            end.key.increment = increment;
+            if let Some(now) = end.now.take() {
+                before = now;
+            }
+            let load = loading.at(increment);
+            let problem = Increment {
+                system,
+                load: &load,
+                start_load: &start_load,
+                start: &state,
+                index: increment - 1,
+                tolerance: accuracy.asked,
+            };
+            let solved = solver.judge(&problem, accuracy.accepted);
+            end.now = solved.honest().map(|judged| {
+                Snapshot::new(
+                    loading,
+                    increment,
+                    &judged.outcome.state,
+                    judged.consistency.as_deref(),
+                    judged.status.clone(),
+                    &before,
+                )
+            });
+            each(&end.key, &solved, end.now.as_ref());
+            end.verdict = solved.verdict;
+            match solved.judged.filter(|_| end.now.is_some()) {
+                Some(judged) => state = judged.outcome.state,
+                None => break,
+            }
+            start_load = load;
+        }
+        end
+    }
+}
