@@ -18,7 +18,7 @@ use super::reference::solver_error;
 use super::setup::{Bench, Scene};
 use super::statistics::Timing;
 use crate::harness::attempt::{prepare, solve};
-use crate::harness::converge::{cell_size, closed_form, followed};
+use crate::harness::converge::{closed_form, followed};
 use crate::harness::path::{Ended, Path};
 use crate::harness::picture::field_step;
 use crate::harness::quantities::{Snapshot, point_rows, quantity_rows};
@@ -286,7 +286,7 @@ fn size(scene: &Scene<'_>) -> ProblemSize {
     ProblemSize {
         mesh: body.label.clone(),
         space: body.space.clone(),
-        h_m: cell_size(&case.mesh.grid.refined(scene.refine)),
+        h_m: case.mesh.grid.refined(scene.refine).cell_size(),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),

@@ -55,6 +55,26 @@ pub struct ParameterSpec {
     pub default: Option<f64>,
 }
 
+impl ParameterSpec {
+    /// A number that the case must give.
+    const fn required(name: &'static str, summary: &'static str) -> Self {
+        ParameterSpec {
+            name,
+            summary,
+            default: None,
+        }
+    }
+
+    /// A number with a default.
+    const fn optional(name: &'static str, summary: &'static str, default: f64) -> Self {
+        ParameterSpec {
+            name,
+            summary,
+            default: Some(default),
+        }
+    }
+}
+
 /// Builds a solution; the values stand in the order of its parameters. The error says what the setting or a value violates.
 pub type Build = fn(&Setting<'_>, &[f64]) -> Result<Box<dyn Solution>, String>;
 
@@ -113,6 +133,21 @@ pub trait Field: Send + Sync {
     fn dissipation(&self) -> Option<f64> {
         None
     }
+}
+
+/// Visits the increments of a path whose slip would reverse if the load fell: the factor, and the one before.
+fn growing(factors: &[f64], mut increment: impl FnMut(f64, f64)) -> Result<(), String> {
+    let mut before = 0.0;
+    for &factor in factors {
+        if factor < before {
+            return Err(format!(
+                "the load factor falls from {before} to {factor}: slip would reverse"
+            ));
+        }
+        increment(factor, before);
+        before = factor;
+    }
+    Ok(())
 }
 
 /// All solutions, in the order of the documentation.
