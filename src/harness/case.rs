@@ -22,7 +22,7 @@ pub use load::{Amount, CrackSide, History, Linear, LoadKind, LoadSpec, Region, S
 pub use parse::{parse, parse_with, read};
 pub use stickslip_xfem::contact::ContactSpace;
 pub use stickslip_xfem::cut::crack::Tip;
-pub use stickslip_xfem::geometry::CrackShape;
+pub use stickslip_xfem::geometry::crack_shape::CrackShape;
 pub use stickslip_xfem::material::{Material, Model};
 pub use stickslip_xfem::quadrature::Quadrature;
 

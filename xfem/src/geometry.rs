@@ -7,8 +7,6 @@ pub mod ellipse;
 pub mod polygon;
 pub mod tip_frame;
 
-pub use crack_shape::CrackShape;
-
 /// A point or vector in space; the third entry is 0 in 2D.
 pub type Point = [f64; 3];
 

@@ -10,10 +10,11 @@
 //! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
 use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
+use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{CrackShape, Point, bisect, dot, sub};
+use crate::geometry::{Point, bisect, dot, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
 

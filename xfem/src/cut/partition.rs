@@ -336,8 +336,8 @@ fn cut_at(face: Face, at: &[FaceCorner]) -> Vec<Face> {
 mod tests {
     use super::*;
     use crate::cut::crack::Tip;
-    use crate::geometry::CrackShape;
     use crate::geometry::clip::fan;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::mesh::box_mesh::{GridSpec, box_mesh};
 
     /// The corners of the face of a crack through the cell [−1, 1]^dim.

@@ -1,10 +1,11 @@
 //! Checks shared by the tests of all closed forms: Hooke's law, equilibrium, consistency of the faces, contact laws.
 
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, resolve, sub, unit};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, resolve, sub, unit};
 use crate::material::{Lame, Material, Model};
 
-use super::line_crack::{LineCrack, apply, axes};
-use super::{Field, Setting, Solution};
+use super::parts::line_crack::{LineCrack, apply, axes};
+use super::solution::{Field, Setting, Solution};
 
 /// A setting for tests: E = 2, ν = 0.3, plane strain, μ = 0.5, body [−1, 1]².
 pub fn setting(crack: &CrackShape) -> Setting<'_> {

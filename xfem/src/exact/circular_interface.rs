@@ -19,11 +19,12 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use crate::geometry::{CrackShape, Point, add_scaled, norm, resolve, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, norm, resolve, sub};
 
-use super::line_crack::{apply, axes};
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::{apply, axes};
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
 const ON_CIRCLE: f64 = 1e-10;

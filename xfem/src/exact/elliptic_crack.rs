@@ -4,25 +4,26 @@
 //! ```text
 //!   remote traction on side 1:   p = −n σ n (pressure),  τ = σ n − (n σ n) n
 //!   jump = D √(1 − x²/a² − y²/b²),  D uniform;  the stress drop is uniform over the crack
-//!   open (p < 0): D = (C_n |p|, C_a τ_a, C_b τ_b);   stick (|τ| <= μ p): D = 0;   slip: [`super::elliptic_slip`]
+//!   open (p < 0): D = (C_n |p|, C_a τ_a, C_b τ_b);   stick (|τ| <= μ p): D = 0;   slip: [`super::parts::elliptic_slip`]
 //! ```
 //!
 //! The slip has one direction everywhere, so Coulomb's law holds at every point and not only on average. Mode I: Green and
 //! Sneddon (1950); shear: Kassir and Sih (1966); a disc: Segedin (1950). The field off the crack is that of the jump
-//! ([`super::elliptic_disc::DiscPotential`]) and the uniform remote field: relative error 1e-15, 1e-16 a/r at a distance r from the front, where
+//! ([`super::parts::elliptic_disc::DiscPotential`]) and the uniform remote field: relative error 1e-15, 1e-16 a/r at a distance r from the front, where
 //! stresses are singular. The uniform part of the displacement vanishes with its rotation at the centre of the crack.
 //!
 //! Load factors scale the remote stress. With friction and slip they may not fall; the slip then keeps its direction.
 
 use std::f64::consts::PI;
 
+use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, sub};
 use crate::material::{Material, Model};
 
-use super::elliptic_disc::disc_potential;
-use super::elliptic_slip::{compliance, slip};
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
+use super::parts::elliptic_disc::disc_potential;
+use super::parts::elliptic_slip::{compliance, slip};
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
 /// A component of stress.
 const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {

@@ -25,10 +25,10 @@ use std::f64::consts::{PI, TAU};
 use crate::geometry::Point;
 use crate::material::Lame;
 
-use super::jet::hump;
-use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
+use super::parts::jet::hump;
+use super::parts::line_crack::LineCrack;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -254,7 +254,7 @@ impl Field for ManufacturedSlip {
 mod tests {
     use super::*;
     use crate::exact::check::{check_elasticity, check_path, setting};
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Model;
 
     const VALUES: [f64; 5] = [1.0, 0.4, 0.03, 0.9, 1.3];

@@ -25,13 +25,14 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::geometry::clip::{clip, crossing};
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::material::{Lame, Model};
 use crate::quadrature::gauss;
 
-use super::jet::{Jet, Separable, cosine, hump, product, times};
-use super::line_crack::axes;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
+use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
+use super::parts::line_crack::axes;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
 /// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
 const ON_PLANE: f64 = 1e-10;

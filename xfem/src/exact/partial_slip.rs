@@ -17,12 +17,12 @@
 //!
 //! Rigid motion: the crack line keeps its direction, its midpoint does not move in the uncracked field.
 
-use super::contact_zone::released;
-use super::crack_field::{Background, CrackField};
-use super::face_load::{FaceLoad, Mode};
-use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::contact_zone::released;
+use super::parts::crack_field::{Background, CrackField};
+use super::parts::face_load::{FaceLoad, Mode};
+use super::parts::line_crack::LineCrack;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -166,7 +166,7 @@ impl Solution for PartialSlip {
 mod tests {
     use super::*;
     use crate::exact::check::{along, check_elasticity, check_intensity, check_path, setting};
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
     use std::f64::consts::PI;
 

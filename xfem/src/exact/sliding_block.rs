@@ -20,10 +20,10 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Point, add_scaled};
 
-use super::line_crack::LineCrack;
-use super::one_dof::FrictionSpring;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::LineCrack;
+use super::parts::one_dof::FrictionSpring;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -197,7 +197,7 @@ impl Field for Block {
 mod tests {
     use super::*;
     use crate::exact::check::{check_elasticity, check_path, setting};
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
 
     const PATH: [f64; 16] = [

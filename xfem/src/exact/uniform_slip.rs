@@ -20,12 +20,12 @@
 
 use std::f64::consts::PI;
 
-use super::crack_field::{Background, CrackField};
-use super::face_load::{FaceLoad, Mode};
-use super::line_crack::LineCrack;
-use super::one_dof::FrictionSpring;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::crack_field::{Background, CrackField};
+use super::parts::face_load::{FaceLoad, Mode};
+use super::parts::line_crack::LineCrack;
+use super::parts::one_dof::FrictionSpring;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -99,7 +99,8 @@ mod tests {
     use crate::exact::check::{
         check_contact, check_elasticity, check_intensity, check_path, setting,
     };
-    use crate::geometry::{CrackShape, Point};
+    use crate::geometry::Point;
+    use crate::geometry::crack_shape::CrackShape;
 
     fn along(crack: &LineCrack) -> Vec<Point> {
         (0..=20)

@@ -16,12 +16,13 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, resolve, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, resolve, sub};
 use crate::material::Model;
 
-use super::line_crack::{apply, axes};
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::{apply, axes};
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;

@@ -5,11 +5,12 @@
 //!   m = n · (x − centre)    from side 2 to side 1; n = t turned by +90°
 //! ```
 
+use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::turned;
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, dot, norm, sub, unit};
 
-use super::Setting;
+use crate::exact::solution::Setting;
 
 /// A point closer to the crack line than this, in half lengths, lies on it: its side is the one asked for.
 const ON_LINE: f64 = 1e-10;
