@@ -27,6 +27,6 @@ pub use parse::{Case, parse, parse_with, read};
 pub use settings::{MethodSpec, PathSpec};
 pub use stickslip_xfem::contact::ContactSpace;
 pub use stickslip_xfem::cut::crack::Tip;
-pub use stickslip_xfem::geometry::CrackShape;
+pub use stickslip_xfem::geometry::crack_shape::CrackShape;
 pub use stickslip_xfem::material::{Material, Model};
 pub use stickslip_xfem::quadrature::Quadrature;

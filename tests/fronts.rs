@@ -189,16 +189,15 @@ fn the_stiffness_near_a_front_is_integrated_far_below_the_error_of_the_mesh() {
         if seen[kind] % [6, 4, 40][kind] != 0 {
             continue;
         }
-        let corners = body.mesh.corners(cell);
-        let whole = Partition::whole(body.mesh.kind, &corners);
+        let whole = Partition::whole(&body.mesh.map(cell));
         let parts = &body.enrichment.partition(cell).unwrap_or(&whole).parts;
         let gram = |effort: Effort| {
-            let points = integrator
-                .near_front_points(cell, &corners, parts, effort)
-                .unwrap();
+            let points = integrator.near_front_points(cell, parts, effort).unwrap();
+            let mut functions = integrator.functions(cell);
             let mut sums: Vec<f64> = Vec::new();
             for p in points {
-                let g = integrator.gradients(cell, &p.xi, &p.x, p.region);
+                functions.evaluate(&p.xi, &p.x, p.region);
+                let g = &functions.gradients;
                 sums.resize(g.len() * g.len(), 0.0);
                 for (i, gi) in g.iter().enumerate() {
                     for (j, gj) in g.iter().enumerate() {

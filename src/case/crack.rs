@@ -2,7 +2,8 @@
 
 use stickslip_xfem::contact::ContactSpace;
 use stickslip_xfem::cut::crack::Tip;
-use stickslip_xfem::geometry::CrackShape;
+use stickslip_xfem::geometry::crack_shape::CrackShape;
+use stickslip_xfem::geometry::ellipse::Ellipse;
 
 use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
@@ -241,12 +242,12 @@ fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     }
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
-    Ok(CrackShape::Ellipse {
+    Ok(CrackShape::Ellipse(Ellipse {
         centre: [centre[0], centre[1], centre[2]],
         normal,
         axis: normalised(perpendicular(axis, normal)),
         half_axes: [radius; 2],
-    })
+    }))
 }
 
 /// `ellipse`.
@@ -267,12 +268,12 @@ fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
     for (half, entry) in half_axes.iter_mut().zip(entries) {
         *half = entry.number_if("half_axes_m > 0, each", |a| a > 0.0)?;
     }
-    Ok(CrackShape::Ellipse {
+    Ok(CrackShape::Ellipse(Ellipse {
         centre: [centre[0], centre[1], centre[2]],
         normal,
         axis: normalised(axis),
         half_axes,
-    })
+    }))
 }
 
 /// The unit vector along a given one.

@@ -1,5 +1,7 @@
 //! Supports and loads of a case file: where they act, what they prescribe, how they evolve.
 
+use stickslip_xfem::mesh::box_mesh;
+
 use super::condition::Condition;
 use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
@@ -135,18 +137,10 @@ pub(super) struct Scene {
 }
 
 /// Axis and name of the sides of a box.
-fn sides(dim: usize) -> &'static [(&'static str, usize)] {
-    match dim {
-        2 => &[("left", 0), ("right", 0), ("bottom", 1), ("top", 1)],
-        _ => &[
-            ("left", 0),
-            ("right", 0),
-            ("front", 1),
-            ("back", 1),
-            ("bottom", 2),
-            ("top", 2),
-        ],
-    }
+fn sides(dim: usize) -> Vec<(&'static str, usize)> {
+    let axes = box_mesh::side_names(dim).iter().enumerate();
+    axes.flat_map(|(axis, names)| names.map(|name| (name, axis)))
+        .collect()
 }
 
 /// Names of the sides of a box.

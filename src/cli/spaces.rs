@@ -43,7 +43,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let choice = Choice::parse("hybrid")?;
     let distances = usize::from(arguments.distances);
     let patches = patch::catalogue(&patch::DISTANCES[..distances])?;
-    let rows = patch::run(&patches, &SPACES, &choice, &bar)?;
+    let rows = patch::run(&patches, &ContactSpace::stable_first(), &choice, &bar)?;
     bar.finish();
 
     let mut bundle = Bundle::new();
@@ -98,11 +98,3 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     }
     Ok(failed().next().is_none() && missed.is_empty())
 }
-
-/// All spaces.
-const SPACES: [ContactSpace; 4] = [
-    ContactSpace::Star,
-    ContactSpace::Facet,
-    ContactSpace::P0,
-    ContactSpace::EdgePairs,
-];

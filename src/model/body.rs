@@ -1,32 +1,28 @@
 //! From a case to the contact system: mesh, cracks, enrichment, unknowns, stiffness, jump operator.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rayon::prelude::*;
 use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
-use stickslip_xfem::contact::conforming;
-use stickslip_xfem::contact::edge_pairs::edge_pairs;
 use stickslip_xfem::contact::facet_samples::facet_samples;
-use stickslip_xfem::contact::integrated::integrated_surface;
 use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
+use stickslip_xfem::contact::{self, conforming};
 use stickslip_xfem::cut::crack::{Crack, arms};
-use stickslip_xfem::enrichment::orthonormal::SolverBasis;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::material::Lame;
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
-use stickslip_xfem::mesh::ordering::nested_dissection;
-use stickslip_xfem::stiffness::assembly::{Cells, Scatter};
+use stickslip_xfem::stiffness::assembly::{Assembly, elimination_order};
 use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
+use stickslip_xfem::stiffness::cell_matrices::CellMatrices;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
-use stickslip_xfem::stiffness::elasticity::CellMatrix;
+use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
-use crate::case::{Case, CaseError, ContactSpace, Quadrature};
+use crate::case::{Case, CaseError, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 pub use crate::model::refusals::BodyError;
@@ -96,39 +92,6 @@ pub struct Needs {
     pub traction: bool,
 }
 
-/// Cell matrices, shared among cells of one shape.
-struct Matrices<'a> {
-    enrichment: &'a Enrichment,
-    users: &'a [Vec<u32>],
-    distinct: Vec<CellMatrix>,
-    of_cell: Vec<u32>,
-}
-
-impl Matrices<'_> {
-    /// Goes over to the basis of the solver.
-    fn transform(&mut self, basis: &SolverBasis, dim: usize) {
-        for cell in 0..self.of_cell.len() {
-            let functions = self.enrichment.cell(cell);
-            if let Some(k) = basis.matrix(dim, functions, self.matrix(cell)) {
-                // Cells with enriched functions have a matrix of their own.
-                self.distinct[self.of_cell[cell] as usize] = k;
-            }
-        }
-    }
-}
-
-impl Cells for Matrices<'_> {
-    fn functions(&self, cell: usize) -> &[u32] {
-        self.enrichment.cell(cell)
-    }
-    fn users(&self, function: usize) -> &[u32] {
-        &self.users[function]
-    }
-    fn matrix(&self, cell: usize) -> &CellMatrix {
-        &self.distinct[self.of_cell[cell] as usize]
-    }
-}
-
 impl Body {
     /// Discretises a case on its mesh refined by a factor.
     pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
@@ -176,12 +139,8 @@ impl Body {
             // The arms of a crack one after the other.
             let arms = (0..cracks.len()).filter(|&index| cracks[index].number == number);
             for index in arms {
-                surface.append(match case.cracks[number].contact {
-                    ContactSpace::EdgePairs => edge_pairs(&integrator, index, held)?,
-                    space => integrated_surface(&integrator, index, space, |f| {
-                        (0..dim).any(|a| held(f as usize * dim + a))
-                    })?,
-                });
+                let space = case.cracks[number].contact;
+                surface.append(contact::surface(&integrator, index, space, held)?);
             }
         }
         for number in 0..case.cracks.len() {
@@ -195,7 +154,7 @@ impl Body {
         let integrated: Vec<bool> = (case.cracks.iter().enumerate())
             .map(|(number, spec)| {
                 let through = cracks.iter().any(|c| c.number == number);
-                through && spec.contact != ContactSpace::EdgePairs
+                through && spec.contact.is_integrated()
             })
             .collect();
         let traction = if needs.traction {
@@ -205,25 +164,17 @@ impl Body {
         };
         let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
             .map_err(|e| motion_error(case, &e))?;
-        let users = enrichment.users();
-        let mut stiffness = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
-        let mut matrices = Matrices {
-            enrichment: &enrichment,
-            users: &users,
-            distinct: Vec::new(),
-            of_cell: Vec::new(),
-        };
-        let scatter = Scatter::new(&stiffness, &matrices, mesh.cell_count());
+        let assembly = Assembly::new(dim, &enrichment);
         let setup_s = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        (matrices.distinct, matrices.of_cell) = cell_matrices(&integrator)?;
-        scatter.assemble(&mut stiffness, &matrices);
+        let mut matrices = CellMatrices::new(&integrator)?;
+        let stiffness = assembly.sum(|cell| matrices.of(cell));
         let basis = SolverBasis::new(
             &mesh,
             &enrichment,
-            &users,
-            |cell| matrices.matrix(cell),
+            &assembly.users,
+            |cell| matrices.of(cell),
             |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
         );
         let mut free = 0;
@@ -238,9 +189,8 @@ impl Body {
         let (col_ptr, row_idx, values) = if basis.is_identity() {
             stiffness.restrict(&solver_numbers)
         } else {
-            matrices.transform(&basis, dim);
-            let mut transformed = stiffness.clone();
-            scatter.assemble(&mut transformed, &matrices);
+            matrices.transform(&integrator, &basis);
+            let transformed = assembly.sum(|cell| matrices.of(cell));
             transformed.restrict(&solver_numbers)
         };
         let order = elimination_order(&mesh, &enrichment, &solver_numbers);
@@ -423,66 +373,4 @@ pub(crate) fn free_rows(
         row_ptr.push(col_idx.len());
     }
     JumpOperator::new(rows.len(), free, row_ptr, col_idx, values)
-}
-
-/// Nested dissection of the nodes, expanded to their free unknowns.
-pub(crate) fn elimination_order(
-    mesh: &Mesh,
-    enrichment: &Enrichment,
-    numbers: &[Option<u32>],
-) -> Vec<usize> {
-    let dim = mesh.dim();
-    let mut order = Vec::new();
-    for node in nested_dissection(&mesh.grid) {
-        for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
-            order.extend(
-                (0..dim)
-                    .filter_map(|a| numbers[f * dim + a])
-                    .map(|n| n as usize),
-            );
-        }
-    }
-    order
-}
-
-/// Matrices of all cells: one per shape of plain cell, one per enriched cell.
-fn cell_matrices(
-    integrator: &CellIntegrator<'_>,
-) -> Result<(Vec<CellMatrix>, Vec<u32>), CellError> {
-    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-    // Coordinates of a body 10⁴ cells wide carry rounding of 1e-12 of a cell.
-    let smallest = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
-    let keys: Vec<[i64; 21]> = (0..mesh.cell_count())
-        .into_par_iter()
-        .map(|cell| integrator.shape_key(cell, 1e-10 * smallest))
-        .collect();
-    let mut shapes: HashMap<&[i64; 21], u32> = HashMap::new();
-    let mut first = Vec::new();
-    let shape: Vec<u32> = keys
-        .iter()
-        .enumerate()
-        .map(|(cell, key)| {
-            *shapes.entry(key).or_insert_with(|| {
-                first.push(cell);
-                first.len() as u32 - 1
-            })
-        })
-        .collect();
-    let mut distinct: Vec<CellMatrix> = first
-        .par_iter()
-        .map(|&cell| integrator.plain(cell))
-        .collect();
-    let enriched: Vec<usize> = (0..mesh.cell_count())
-        .filter(|&c| !enrichment.is_plain(mesh, c))
-        .collect();
-    let own: Vec<CellMatrix> = enriched
-        .par_iter()
-        .map(|&cell| integrator.stiffness(cell, &distinct[shape[cell] as usize]))
-        .collect::<Result<_, _>>()?;
-    let mut of_cell = shape;
-    for (position, &cell) in enriched.iter().enumerate() {
-        of_cell[cell] = (distinct.len() + position) as u32;
-    }
-    distinct.extend(own);
-    Ok((distinct, of_cell))
 }

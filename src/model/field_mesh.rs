@@ -5,10 +5,11 @@ use std::collections::HashMap;
 use stickslip_methods::PointStatus;
 use stickslip_xfem::contact::pairs::SurfaceCorner;
 use stickslip_xfem::cut::crack::Parent;
-use stickslip_xfem::cut::partition::{Part, Partition};
+use stickslip_xfem::cut::part::Part;
+use stickslip_xfem::cut::partition::Partition;
 use stickslip_xfem::geometry::clip::{Side, crossing};
-use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, norm, polygon, sub};
-use stickslip_xfem::mesh::cell::CellKind;
+use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, mean, norm, polygon, sub};
+use stickslip_xfem::mesh::cell::{CellKind, CellMap};
 
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
@@ -90,15 +91,11 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         CellKind::Hex8 => CellShape::Hexahedron,
     };
     for cell in 0..mesh.cell_count() {
-        let corners = mesh.corners(cell);
-        let corners = &corners[..mesh.kind.nodes()];
+        let map = mesh.map(cell);
         let Some(partition) = body.enrichment.partition(cell) else {
             cells.push(FieldCell {
                 shape: whole,
-                points: corners
-                    .iter()
-                    .map(|x| vertices.of(cell, x, 0, now))
-                    .collect(),
+                points: map.iter().map(|x| vertices.of(cell, x, 0, now)).collect(),
             });
             let h = integrator.displacement_gradient(cell, &[0.0; 3], 0, &now.u);
             stress.push(body.lame.von_mises(&h, dim));
@@ -106,7 +103,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
             continue;
         };
         for (region, part) in partition.parts.iter().enumerate() {
-            for (shape, part) in pieces_of(body, cell, corners, partition, part) {
+            for (shape, part) in pieces_of(body, cell, &map, partition, part) {
                 cells.push(FieldCell {
                     shape,
                     points: part
@@ -114,11 +111,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
                         .map(|x| vertices.of(cell, x, region, now))
                         .collect(),
                 });
-                let mut centre = [0.0; 3];
-                for x in &part {
-                    centre = add_scaled(&centre, 1.0 / part.len() as f64, x);
-                }
-                let xi = mesh.kind.inverse_map(corners, &centre).unwrap_or_default();
+                let xi = map.inverse(&mean(&part)).unwrap_or_default();
                 let h = integrator.displacement_gradient(cell, &xi, region, &now.u);
                 stress.push(body.lame.von_mises(&h, dim));
                 sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
@@ -233,12 +226,11 @@ impl<'a> Vertices<'a> {
 fn pieces_of(
     body: &Body,
     cell: usize,
-    corners: &[Point],
+    map: &CellMap,
     partition: &Partition,
     part: &Part,
 ) -> Vec<(CellShape, Vec<Point>)> {
-    let kind = body.mesh.kind;
-    if kind == CellKind::Quad4 {
+    if body.mesh.dim() == 2 {
         let mut polygon = part.polygon.clone();
         for &(_, tip) in body.enrichment.tip_cells.iter().filter(|(c, _)| *c == cell) {
             insert_on_border(&mut polygon, &body.enrichment.tips[tip].position);
@@ -253,7 +245,7 @@ fn pieces_of(
     }
     if let (&[(crack, side)], 2) = (part.sides.as_slice(), partition.parts.len()) {
         let phi = body.cracks[crack].cell_phi(&body.mesh, cell);
-        if let Some(hexahedron) = hexahedron(kind, corners, &phi, side) {
+        if let Some(hexahedron) = hexahedron(map, &phi, side) {
             return vec![(CellShape::Hexahedron, hexahedron)];
         }
     }
@@ -262,7 +254,8 @@ fn pieces_of(
 }
 
 /// One side of a cell of which a crack parts two opposite faces.
-fn hexahedron(kind: CellKind, corners: &[Point], phi: &[f64; 8], side: Side) -> Option<Vec<Point>> {
+fn hexahedron(map: &CellMap, phi: &[f64], side: Side) -> Option<Vec<Point>> {
+    let kind = map.kind;
     (0..3).find_map(|axis| {
         let level = phi[0].signum() * kind.corner(0)[axis];
         if !(0..8).all(|i| phi[i] * level * kind.corner(i)[axis] > 0.0) {
@@ -273,8 +266,8 @@ fn hexahedron(kind: CellKind, corners: &[Point], phi: &[f64; 8], side: Side) -> 
                 .find(|&j| (0..3).all(|a| (kind.corner(i)[a] != kind.corner(j)[a]) == (a == axis)))
         };
         let part = (0..8).map(|i| match opposite(i) {
-            Some(j) if phi[i] * side < 0.0 => crossing(&corners[i], phi[i], &corners[j], phi[j]),
-            _ => corners[i],
+            Some(j) if phi[i] * side < 0.0 => crossing(&map[i], phi[i], &map[j], phi[j]),
+            _ => map[i],
         });
         Some(part.collect())
     })

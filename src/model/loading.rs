@@ -56,19 +56,12 @@ impl<'a> Loading<'a> {
         let (Some(spec), Some(crack)) = (&case.exact, case.cracks.first()) else {
             return Ok(loading);
         };
-        let ends = |end: fn(&Vec<f64>) -> Option<&f64>| {
-            let mut corner = [0.0; 3];
-            for (x, line) in corner.iter_mut().zip(&case.mesh.grid.lines) {
-                *x = end(line).copied().unwrap_or_default();
-            }
-            corner
-        };
         let setting = Setting {
             material: case.material,
             model: case.model,
             friction,
             crack: &crack.geometry,
-            body: [ends(|line| line.first()), ends(|line| line.last())],
+            body: body.mesh.extents(),
         };
         let refuse = |message: String| exact_error(case, spec, friction, &message);
         let solution = (spec.solution.build)(&setting, &spec.values).map_err(refuse)?;

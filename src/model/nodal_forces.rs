@@ -11,9 +11,7 @@ use stickslip_xfem::enrichment::cell_facets::{Piece, pieces};
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::geometry::clip::fan;
 use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
-use stickslip_xfem::quadrature::{
-    WeightedPoint, gauss_cell, segment, triangle, triangle_collapsed,
-};
+use stickslip_xfem::quadrature::{WeightedPoint, gauss_map, segment, triangle, triangle_collapsed};
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 
 use crate::case::{LoadKind, Region};
@@ -145,22 +143,18 @@ fn add_points(
     density: Density<'_>,
     force: &mut [f64],
 ) -> Result<(), LoadError> {
-    let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
-    let functions = integrator.enrichment.cell_basis(mesh, cell);
-    let corners = mesh.corners(cell);
-    let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
-    let mut values = vec![0.0; functions.len()];
-    let mut gradients = vec![[0.0; 3]; functions.len()];
+    let dim = integrator.mesh.dim();
+    let mut functions = integrator.functions(cell);
     for (p, region) in points {
-        let Some(xi) = mesh.kind.inverse_map(basis.corners, &p.x) else {
+        let Some(xi) = functions.map.inverse(&p.x) else {
             return Err(LoadError::Cell(CellError {
-                at: mesh.centre(cell),
+                at: functions.map.centre(),
                 reason: "a loaded point has no reference position".into(),
             }));
         };
         let t = density(cell, &p.x, *region);
-        basis.evaluate(&xi, &p.x, *region, &mut values, &mut gradients);
-        for (&f, n) in integrator.enrichment.cell(cell).iter().zip(&values) {
+        functions.evaluate(&xi, &p.x, *region);
+        for (&f, n) in functions.numbers.iter().zip(&functions.values) {
             for a in 0..dim {
                 force[f as usize * dim + a] += p.weight * n * t[a];
             }
@@ -189,16 +183,8 @@ fn body_points(
     rule: Rule,
 ) -> Result<Vec<(WeightedPoint, CellRegion)>, LoadError> {
     let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-    let corners = mesh.corners(cell);
-    let corners = &corners[..mesh.kind.nodes()];
-    let whole = |n: usize| {
-        let points = gauss_cell(mesh.dim(), n).into_iter().map(|(xi, w)| {
-            let weight = w * mesh.kind.gradients(corners, &xi).1;
-            let x = mesh.kind.map(corners, &xi);
-            (WeightedPoint { x, weight }, 0)
-        });
-        points.collect()
-    };
+    let map = mesh.map(cell);
+    let whole = |n: usize| gauss_map(&map, n).map(|(_, p)| (p, 0)).collect();
     if enrichment.is_plain(mesh, cell) {
         return Ok(whole(if rule == Rule::Exact { EXACT_CELL } else { 2 }));
     }
@@ -211,7 +197,7 @@ fn body_points(
             .iter()
             .enumerate()
             .flat_map(|(region, part)| {
-                let points = part.sub_cells().fine_points(mesh.kind, corners);
+                let points = part.fine_points(&map);
                 points.into_iter().map(move |p| (p, region))
             });
         return Ok(parts.collect());
@@ -231,16 +217,12 @@ fn initial_stress(
     stress: &[Point; 3],
     force: &mut [f64],
 ) -> Result<(), LoadError> {
-    let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
-    for cell in 0..mesh.cell_count() {
-        let functions = integrator.enrichment.cell_basis(mesh, cell);
-        let corners = mesh.corners(cell);
-        let basis = integrator.basis(cell, &corners[..mesh.kind.nodes()], &functions);
-        let mut values = vec![0.0; functions.len()];
-        let mut gradients = vec![[0.0; 3]; functions.len()];
+    let dim = integrator.mesh.dim();
+    for cell in 0..integrator.mesh.cell_count() {
+        let mut functions = integrator.functions(cell);
         for p in integrator.points(cell)? {
-            basis.evaluate(&p.xi, &p.x, p.region, &mut values, &mut gradients);
-            for (&f, g) in integrator.enrichment.cell(cell).iter().zip(&gradients) {
+            functions.evaluate(&p.xi, &p.x, p.region);
+            for (&f, g) in functions.numbers.iter().zip(&functions.gradients) {
                 for a in 0..dim {
                     force[f as usize * dim + a] -= p.weight * dot(&stress[a], g);
                 }

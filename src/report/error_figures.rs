@@ -230,15 +230,10 @@ fn guides(rows: &[&OrderRow], dim: usize) -> Vec<Guide> {
 
 /// Contact spaces look the same in every figure.
 fn look(space: &str) -> usize {
-    const SPACES: [ContactSpace; 4] = [
-        ContactSpace::Star,
-        ContactSpace::Facet,
-        ContactSpace::P0,
-        ContactSpace::EdgePairs,
-    ];
     // With its marks a space is still that space.
-    let own = SPACES.iter().position(|own| space.starts_with(own.name()));
-    own.unwrap_or(SPACES.len())
+    let mut spaces = ContactSpace::stable_first().into_iter();
+    let own = spaces.position(|own| space.starts_with(own.name()));
+    own.unwrap_or(ContactSpace::ALL.len())
 }
 
 /// Enrichments in the order of what they add.

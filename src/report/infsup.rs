@@ -9,9 +9,7 @@ use super::plot::{Lattice, SmallPanel, italic, lattice};
 use super::tables::{self, Align, Column, Table};
 use super::{Bundle, ReportError};
 use crate::case::ContactSpace;
-use crate::studies::spaces::infsup::{
-    LARGEST_SLOPE, LEAST_SHARE, SCENES, SPACES, Sample, Sequence,
-};
+use crate::studies::spaces::infsup::{LARGEST_SLOPE, LEAST_SHARE, SCENES, Sample, Sequence};
 
 /// Significant digits of β: some of its square is rounding.
 const BETA_DIGITS: usize = 4;
@@ -206,7 +204,9 @@ pub fn figure(sequences: &[Sequence]) -> Result<String, ReportError> {
         scenes
             .map(|scene| SmallPanel {
                 heading: heading(scene.name),
-                curves: SPACES.map(|space| curve(scene.name, space)).to_vec(),
+                curves: ContactSpace::ALL
+                    .map(|space| curve(scene.name, space))
+                    .to_vec(),
                 bound: bounds.get(&dim).cloned().unwrap_or_default(),
             })
             .collect()
@@ -218,7 +218,9 @@ pub fn figure(sequences: &[Sequence]) -> Result<String, ReportError> {
             "Unit square and cube, tied crack; a stable space keeps {beta} above a constant, whatever the mesh; on the lower edge: {beta} < {FLOOR:e} or 0"
         ),
         columns: 5,
-        curves: SPACES.map(|space| space.name().to_owned()).to_vec(),
+        curves: ContactSpace::ALL
+            .map(|space| space.name().to_owned())
+            .to_vec(),
         bound: format!("{LEAST_SHARE} of star, crack along the grid"),
         x_label: "cell size h [m]".into(),
         y_label: format!("inf-sup number {beta} [-]"),

@@ -16,7 +16,6 @@ pub use tips::{Regularity, regularity};
 use std::collections::BTreeSet;
 
 use stickslip_methods::ContactSystem;
-use stickslip_xfem::mesh::box_mesh::GridSpec;
 
 use crate::case::{Case, ContactSpace, Tip};
 use crate::model::body::{Body, BodyError, Needs};
@@ -215,7 +214,7 @@ fn run_one(
         regularity: regularity(case),
         mesh: key.mesh,
         refine,
-        h: cell_size(&case.mesh.grid.refined(refine)),
+        h: case.mesh.grid.refined(refine).cell_size(),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
@@ -261,10 +260,4 @@ pub(crate) fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
             }
         })
         .collect()
-}
-
-/// Largest distance of neighbouring grid lines [m].
-pub(crate) fn cell_size(mesh: &GridSpec) -> f64 {
-    let lines = mesh.lines.iter().flat_map(|line| line.windows(2));
-    lines.map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
 }

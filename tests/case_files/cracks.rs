@@ -1,6 +1,7 @@
 //! Shapes, tips and contact spaces of cracks: what is accepted arrives as stated, what is not is refused at its place.
 
 use stickslip::case::{ContactSpace, CrackShape, Tip};
+use stickslip_xfem::geometry::ellipse::Ellipse;
 
 use super::refusals::assert_refused;
 use super::{PLANE, SOLID, accepted};
@@ -93,21 +94,21 @@ fn flat_cracks_in_solids_get_orthonormal_frames() {
     let disc = "disc = { centre_m = [0, 1, 0.5], normal = [0, 0, 2], radius_m = 0.3 }";
     assert_eq!(
         shape(SOLID, PLANE_CRACK, disc),
-        CrackShape::Ellipse {
+        CrackShape::Ellipse(Ellipse {
             centre: [0.0, 1.0, 0.5],
             normal: [0.0, 0.0, 1.0],
             axis: [1.0, 0.0, 0.0],
             half_axes: [0.3, 0.3],
-        }
+        })
     );
     let ellipse = "ellipse = { centre_m = [0, 1, 0.5], normal = [0, 3, 4], axis = [5, 0, 7], half_axes_m = [0.3, 0.1] }";
     let found = shape(SOLID, PLANE_CRACK, ellipse);
-    let CrackShape::Ellipse {
+    let CrackShape::Ellipse(Ellipse {
         normal,
         axis,
         half_axes,
         ..
-    } = found
+    }) = found
     else {
         panic!("{found:?}")
     };

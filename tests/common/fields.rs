@@ -190,7 +190,6 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
     for (cell, partition) in body.enrichment.cut_cells() {
         let crack = &body.cracks[partition.faces[0].crack];
         let length = crack.range[1];
-        let corners = mesh.corners(cell);
         let vertices = &partition.faces[0].corners;
         let mut ends: Vec<f64> = vertices.iter().map(|v| crack.abscissa(&v.0)).collect();
         ends.sort_by(f64::total_cmp);
@@ -221,7 +220,7 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
             points.push(SurfacePoint {
                 crack: crack.number,
                 cell,
-                xi: mesh.kind.inverse_map(&corners[..4], &x).unwrap(),
+                xi: mesh.map(cell).inverse(&x).unwrap(),
                 x,
                 weight: w * (to - from),
                 regions: partition.faces[0].parts,

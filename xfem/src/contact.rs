@@ -1,15 +1,90 @@
 //! Contact on the crack faces: contact spaces, their points, traction, samples of the faces.
+//!
+//! A space is a file of its own, a variant of [`ContactSpace`] with its name, and a line of [`surface`].
 
 pub mod conforming;
 pub mod edge_pairs;
 pub mod facet_rule;
 pub mod facet_samples;
+pub mod free_jumps;
 pub mod integrated;
 pub mod multipliers;
 pub mod pairs;
-pub mod space;
 pub mod star_forest;
 pub mod surface_point;
 pub mod traction;
 
-pub use space::ContactSpace;
+use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
+
+use self::edge_pairs::edge_pairs;
+use self::integrated::integrated;
+use self::multipliers::{constant_space, facet_space, star_space};
+use self::pairs::ContactSurface;
+
+/// Contact space of a crack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactSpace {
+    /// One point pair per crossed mesh edge, point forces (the founding paper's).
+    EdgePairs,
+    /// One multiplier per crossed mesh edge, linear in between, integrated over the crack.
+    Facet,
+    /// One multiplier per star of crossed edges, integrated over the crack: stable.
+    Star,
+    /// One constant multiplier per cut cell.
+    P0,
+}
+
+impl ContactSpace {
+    /// All spaces, in the order of their definition.
+    pub const ALL: [Self; 4] = [Self::EdgePairs, Self::Facet, Self::Star, Self::P0];
+
+    /// All spaces, the stable one first: the order in which others are compared with it.
+    pub fn stable_first() -> [Self; 4] {
+        let mut spaces = Self::ALL;
+        spaces.sort_by_key(|space| match space {
+            ContactSpace::Star => 0,
+            ContactSpace::Facet => 1,
+            ContactSpace::P0 => 2,
+            ContactSpace::EdgePairs => 3,
+        });
+        spaces
+    }
+
+    /// The space of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|space| space.name() == name)
+    }
+
+    /// Name in case files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            ContactSpace::EdgePairs => "edge-pairs",
+            ContactSpace::Facet => "facet",
+            ContactSpace::Star => "star",
+            ContactSpace::P0 => "p0",
+        }
+    }
+
+    /// Whether contact points are means over multiplier functions, not places.
+    pub fn is_integrated(self) -> bool {
+        self != ContactSpace::EdgePairs
+    }
+}
+
+/// Contact surface of the `index`-th crack. `held` tells the prescribed unknowns.
+///
+/// # Errors
+/// A point of the crack without a place in its cell.
+pub fn surface(
+    integrator: &CellIntegrator<'_>,
+    index: usize,
+    space: ContactSpace,
+    held: impl Fn(usize) -> bool,
+) -> Result<ContactSurface, CellError> {
+    match space {
+        ContactSpace::EdgePairs => edge_pairs(integrator, index, held),
+        ContactSpace::Facet => integrated(integrator, index, held, facet_space),
+        ContactSpace::Star => integrated(integrator, index, held, star_space),
+        ContactSpace::P0 => integrated(integrator, index, held, constant_space),
+    }
+}

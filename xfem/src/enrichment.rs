@@ -2,30 +2,24 @@
 
 pub mod basis;
 pub mod cell_facets;
+pub mod cell_functions;
 pub mod facets;
-pub mod orthonormal;
 pub mod pieces;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::{Crack, Parent, Tip};
 use crate::cut::is_split;
-use crate::cut::partition::{Part, Partition, PartitionError};
+use crate::cut::part::Part;
+use crate::cut::partition::{Partition, PartitionError};
 use crate::cut::placement::{Along, along, fronts, undisturbed};
-use crate::enrichment::basis::{CellFunction, FunctionKind, Region};
 use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
+use crate::mesh::cell::MOST_NODES;
 
-/// A scalar function of the whole body: a node and a kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Function {
-    /// Node number.
-    pub node: u32,
-    /// Kind.
-    pub kind: FunctionKind,
-}
+use self::basis::{Function, FunctionKind, Region};
 
 /// What is wrong with a crack in a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -161,7 +155,7 @@ impl Enrichment {
                     core.extend(cells.iter().flat_map(|&c| mesh.cell(c)));
                 }
                 for &cell in &cells {
-                    if is_split(mesh.kind, &crack.cell_phi(mesh, cell)) {
+                    if is_split(&crack.cell_phi(mesh, cell)) {
                         let list = inside.entry(cell).or_default();
                         if !list.contains(&index) {
                             list.push(index);
@@ -326,7 +320,7 @@ impl Enrichment {
                         // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
                             let crack = &cracks[self.tips[tip as usize].crack];
-                            let cut = is_split(mesh.kind, &crack.cell_phi(mesh, cell));
+                            let cut = is_split(&crack.cell_phi(mesh, cell));
                             let side = |part: &Option<&Part>| match part
                                 .and_then(|p| p.side(self.tips[tip as usize].crack))
                             {
@@ -375,9 +369,10 @@ impl Enrichment {
         self.partition(cell)?.parts[region].side(crack)
     }
 
-    /// Step constants of a cell, see [`super::basis::CellBasis::steps`].
+    /// Constants of the functions of a cell, region by region and function by function: H − H(x_j) of a Heaviside
+    /// function, the side of its crack for a branch function (0: by position), 1 for a standard one.
     pub fn steps(&self, cell: usize) -> &[f64] {
-        const STANDARD: [f64; 8] = [1.0; 8];
+        const STANDARD: [f64; MOST_NODES] = [1.0; MOST_NODES];
         let own = &self.steps[self.step_ptr[cell]..self.step_ptr[cell + 1]];
         if own.is_empty() { &STANDARD } else { own }
     }
@@ -397,26 +392,9 @@ impl Enrichment {
         &self.cell_functions[self.cell_ptr[cell]..self.cell_ptr[cell + 1]]
     }
 
-    /// Functions of a cell with their local nodes and shifts.
-    pub fn cell_basis(&self, mesh: &Mesh, cell: usize) -> Vec<CellFunction> {
-        let nodes = mesh.cell(cell);
-        let of = |&f: &u32| {
-            let function = self.functions[f as usize];
-            CellFunction {
-                // Every function of the cell belongs to one of its nodes.
-                local: nodes
-                    .iter()
-                    .position(|&n| n == function.node)
-                    .unwrap_or_default(),
-                kind: function.kind,
-                shift: self.shifts[f as usize],
-                ramp: match function.kind {
-                    FunctionKind::Branch { tip, .. } => self.ramp(tip as usize, nodes),
-                    _ => u8::MAX,
-                },
-            }
-        };
-        self.cell(cell).iter().map(of).collect()
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.cell_ptr.len() - 1
     }
 
     /// Number of nodes.
@@ -459,7 +437,7 @@ impl Enrichment {
     /// Cells that carry each function.
     pub fn users(&self) -> Vec<Vec<u32>> {
         let mut users = vec![Vec::new(); self.functions.len()];
-        for cell in 0..self.cell_ptr.len() - 1 {
+        for cell in 0..self.cells() {
             for &f in self.cell(cell) {
                 users[f as usize].push(cell as u32);
             }

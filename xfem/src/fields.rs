@@ -1,4 +1,4 @@
-//! Fields over the body: displacement, stress and strain of a solution, mass.
+//! Integrals of fields over the body: points at which solutions are compared, mass.
 
 pub mod mass;
 pub mod sampling;

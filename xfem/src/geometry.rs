@@ -7,8 +7,6 @@ pub mod ellipse;
 pub mod polygon;
 pub mod tip_frame;
 
-pub use crack_shape::CrackShape;
-
 /// A point or vector in space; the third entry is 0 in 2D.
 pub type Point = [f64; 3];
 
@@ -39,6 +37,43 @@ pub fn cross(a: &Point, b: &Point) -> Point {
 /// |a|
 pub fn norm(a: &Point) -> f64 {
     dot(a, a).sqrt()
+}
+
+/// Mean of points.
+pub fn mean<'a>(points: impl IntoIterator<Item = &'a Point, IntoIter: ExactSizeIterator>) -> Point {
+    let points = points.into_iter();
+    let share = 1.0 / points.len() as f64;
+    points.fold([0.0; 3], |sum, x| add_scaled(&sum, share, x))
+}
+
+/// Largest distance between two of some points [m].
+pub fn diameter(points: &[Point]) -> f64 {
+    let mut largest: f64 = 0.0;
+    for (i, p) in points.iter().enumerate() {
+        for q in &points[..i] {
+            largest = largest.max(norm(&sub(p, q)));
+        }
+    }
+    largest
+}
+
+/// Components of a vector along unit vectors.
+pub fn resolve<const N: usize>(axes: &[Point; N], v: &Point) -> [f64; N] {
+    axes.map(|axis| dot(&axis, v))
+}
+
+/// Where a condition ends that holds at `holding` and not at `failing`, by bisection.
+pub fn bisect(mut holding: f64, mut failing: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    // Halvings down to rounding.
+    for _ in 0..60 {
+        let middle = 0.5 * (holding + failing);
+        if holds(middle) {
+            holding = middle;
+        } else {
+            failing = middle;
+        }
+    }
+    0.5 * (holding + failing)
 }
 
 /// a / |a|; the argument must not vanish.

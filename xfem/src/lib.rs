@@ -5,13 +5,13 @@
 //!
 //! ```text
 //!   geometry    points, curves, convex parts, crack shapes, coordinates of crack tips
-//!   material    Young's modulus and Poisson's ratio, plane strain, plane stress or solid
-//!   mesh        cells, meshes of boxes, elimination order
+//!   material    Hooke's law in plane strain, plane stress or a solid
+//!   mesh        cells and their maps, meshes of boxes, elimination order
 //!   quadrature  Gauss rules, rules for parts of cells, rules around tips and fronts
 //!   cut         cracks in a mesh: level sets, parts of cut cells, where cracks end
 //!   enrichment  functions of nodes and cells, pieces of the body, facets of cracks
-//!   stiffness   elasticity of enriched cells, block matrices, assembly
-//!   fields      displacement, stress and strain of a solution, mass
+//!   stiffness   stiffness of enriched cells, assembly, the basis of the solver
+//!   fields      points at which solutions are compared over the body, mass
 //!   contact     contact spaces and points, traction, samples of the faces
 //!   intensity   stress intensity factors: Williams' fields, fit of the jump, interaction integral
 //!   exact       closed forms

@@ -9,7 +9,8 @@ pub mod stream;
 use std::collections::BTreeMap;
 
 use crate::geometry::{Point, norm, sub};
-use crate::mesh::cell::CellKind;
+
+use self::cell::{CellKind, CellMap};
 
 /// A facet (edge in 2D, face in 3D) of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,25 +76,15 @@ impl Mesh {
         &mut self.cells[n * cell..n * (cell + 1)]
     }
 
-    /// Node positions of a cell; quad4 uses the first four entries.
-    pub fn corners(&self, cell: usize) -> [Point; 8] {
-        let mut x = [[0.0; 3]; 8];
-        for (corner, &node) in x.iter_mut().zip(self.cell(cell)) {
-            *corner = self.nodes[node as usize];
-        }
-        x
+    /// The map from the reference cell to a cell.
+    pub fn map(&self, cell: usize) -> CellMap {
+        let nodes = self.cell(cell);
+        CellMap::new(self.kind, |i| self.nodes[nodes[i] as usize])
     }
 
     /// Mean of the node positions of a cell.
     pub fn centre(&self, cell: usize) -> Point {
-        let n = self.kind.nodes();
-        let mut c = [0.0; 3];
-        for x in &self.corners(cell)[..n] {
-            for a in 0..3 {
-                c[a] += x[a] / n as f64;
-            }
-        }
-        c
+        self.map(cell).centre()
     }
 
     /// Node numbers of a facet.
@@ -153,17 +144,20 @@ impl Mesh {
         size
     }
 
+    /// Lowest and highest coordinates [m].
+    pub fn extents(&self) -> [Point; 2] {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for x in &self.nodes {
+            low = [0, 1, 2].map(|a| low[a].min(x[a]));
+            high = [0, 1, 2].map(|a| high[a].max(x[a]));
+        }
+        [low, high]
+    }
+
     /// Half the diagonal of the bounding box [m], and its centre.
     pub fn extent(&self) -> (f64, Point) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for x in &self.nodes {
-            for a in 0..3 {
-                low[a] = low[a].min(x[a]);
-                high[a] = high[a].max(x[a]);
-            }
-        }
-        let half = [0, 1, 2].map(|a| 0.5 * (high[a] - low[a]));
-        (norm(&half), [0, 1, 2].map(|a| 0.5 * (high[a] + low[a])))
+        let [low, high] = self.extents();
+        let half = |sign: f64| [0, 1, 2].map(|a| 0.5 * (high[a] + sign * low[a]));
+        (norm(&half(-1.0)), half(1.0))
     }
 }

@@ -8,6 +8,7 @@ pub mod slice;
 
 use crate::geometry::clip::tetrahedron_volume;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
+use crate::mesh::cell::CellMap;
 
 /// Quadrature of cut cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,6 +71,20 @@ pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
         }
     }
     points
+}
+
+/// Gauss points of a cell, n per direction: reference position, and position with weight.
+pub fn gauss_map(map: &CellMap, n: usize) -> impl Iterator<Item = (Point, WeightedPoint)> + '_ {
+    gauss_cell(map.kind.dim(), n).into_iter().map(|(xi, w)| {
+        let x = map.at(&xi);
+        let weight = w * map.determinant(&xi);
+        (xi, WeightedPoint { x, weight })
+    })
+}
+
+/// Length, area or volume of a cell, exact for the maps of all kinds.
+pub fn measure(map: &CellMap) -> f64 {
+    gauss_map(map, 2).map(|(_, p)| p.weight).sum()
 }
 
 /// Gauss points on the segment a b.
@@ -238,17 +253,20 @@ pub fn fan_triangle(tip: &Point, a: &Point, b: &Point, rule: FanRule) -> Vec<Wei
     points
 }
 
-/// Points of a counter-clockwise polygon with a tip in its closure: the fan of [`tip_triangle`]s, negative where the
-/// outline turns its back on the tip.
-pub fn tip_points(part: &[Point], tip: &Point, affine: bool) -> Vec<WeightedPoint> {
+/// Points of a counter-clockwise polygon, given by its edges, with a tip in its closure: the fan of [`tip_triangle`]s,
+/// negative where the outline turns its back on the tip.
+pub fn tip_points(
+    edges: impl IntoIterator<Item = (Point, Point)>,
+    tip: &Point,
+    affine: bool,
+) -> Vec<WeightedPoint> {
     let mut points = Vec::new();
-    for i in 0..part.len() {
-        let (a, b) = (&part[i], &part[(i + 1) % part.len()]);
-        let sign = 1.0f64.copysign(cross(&sub(a, tip), &sub(b, tip))[2]);
-        let triangle = tip_triangle(tip, a, b, affine).into_iter();
-        points.extend(triangle.map(|p| WeightedPoint {
-            weight: sign * p.weight,
-            ..p
+    for (a, b) in edges {
+        let sign = 1.0f64.copysign(cross(&sub(&a, tip), &sub(&b, tip))[2]);
+        let triangle = tip_triangle(tip, &a, &b, affine).into_iter();
+        points.extend(triangle.map(|WeightedPoint { x, weight }| WeightedPoint {
+            x,
+            weight: sign * weight,
         }));
     }
     points

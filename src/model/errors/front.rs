@@ -6,7 +6,7 @@ use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
 use stickslip_xfem::cut::crack::{Crack, Geometry};
 use stickslip_xfem::cut::placement::{self, cells_at};
 use stickslip_xfem::exact::Field;
-use stickslip_xfem::fields::sampling::{CellField, ComparisonPoint};
+use stickslip_xfem::fields::sampling::ComparisonPoint;
 use stickslip_xfem::geometry::tip_frame::{FrontShape, TipFrame};
 use stickslip_xfem::geometry::{Point, add_scaled, norm, sub};
 use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
@@ -97,10 +97,7 @@ pub fn tip_intensities(
     let crack = &body.cracks[tip.crack];
     let mut size: f64 = 0.0;
     for cell in cells_at(mesh, &tip.position) {
-        let corners = mesh.corners(cell);
-        for &[i, j] in mesh.kind.edges() {
-            size = size.max(norm(&sub(&corners[i], &corners[j])));
-        }
+        size = size.max(mesh.map(cell).longest_edge());
     }
     let to = FIT_REACH * crack_size(crack);
     let range = FitRange {
@@ -135,10 +132,10 @@ pub fn tip_intensities(
         })
         .collect();
     let gradients = |cell: usize, points: &[ComparisonPoint]| {
-        let mut field = CellField::new(&integrator, cell);
+        let mut functions = integrator.functions(cell);
         let at = |p: &ComparisonPoint| {
             let p = &p.point;
-            field.at(&p.xi, &p.x, p.region, &now.u).1
+            functions.field(&p.xi, &p.x, p.region, &now.u).1
         };
         points.iter().map(at).collect::<Vec<_>>()
     };

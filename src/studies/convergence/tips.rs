@@ -56,12 +56,12 @@ pub fn regularity(case: &Case) -> Regularity {
 
 /// Whether a crack has a tip or front inside the body.
 fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
+    let [low, high] = case.mesh.grid.extents();
     let inside = |x: [f64; 2]| {
-        case.mesh.grid.lines.iter().zip(x).all(|(line, x)| {
-            let [low, high] = [line.first(), line.last()].map(|end| end.copied().unwrap_or(0.0));
+        (0..case.model.dim()).all(|a| {
             // An end on the border is none, whatever the rounding.
-            let border = 1e-9 * (high - low);
-            low + border < x && x < high - border
+            let border = 1e-9 * (high[a] - low[a]);
+            low[a] + border < x[a] && x[a] < high[a] - border
         })
     };
     match shape {
@@ -84,7 +84,7 @@ fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
             };
             !closed && [from, to].into_iter().any(|angle| inside(end(angle)))
         }
-        CrackShape::Ellipse { .. } => true,
+        CrackShape::Ellipse(_) => true,
         CrackShape::Plane { .. } => false,
     }
 }

@@ -27,22 +27,15 @@ use rayon::prelude::*;
 use stickslip_methods::{Elastic, ElasticParts, MethodError, SymmetricMatrix};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::fields::mass::mass;
+use stickslip_xfem::stiffness::assembly::elimination_order;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
 
 use crate::case::{CaseError, ContactSpace};
-use crate::model::body::{Body, BodyError, Needs, elimination_order, free_rows};
+use crate::model::body::{Body, BodyError, Needs, free_rows};
 use crate::run::run_case::Progress;
 
 pub use pencil::{PencilError, eigenvalues};
 pub use scene::{LENGTH, SCENES, Scene, YOUNG};
-
-/// The contact spaces in the order of tables and figures.
-pub const SPACES: [ContactSpace; 4] = [
-    ContactSpace::EdgePairs,
-    ContactSpace::Facet,
-    ContactSpace::Star,
-    ContactSpace::P0,
-];
 
 /// Largest d log β / d log h of a space that passes.
 pub const LARGEST_SLOPE: f64 = 0.25;
@@ -144,7 +137,7 @@ pub fn run(
 ) -> Result<Vec<Sequence>, InfSupError> {
     let mut jobs = Vec::new();
     for scene in &SCENES {
-        for space in SPACES {
+        for space in ContactSpace::ALL {
             jobs.extend(cells(scene).into_iter().map(|n| (scene, space, n)));
         }
     }
@@ -345,7 +338,7 @@ pub fn multiplier_norm(body: &Body, space: ContactSpace, h: f64) -> Vec<f64> {
             gram[(k as usize * dim + a) * m + l as usize * dim + a] += h * value;
         }
     };
-    if space == ContactSpace::EdgePairs {
+    if !space.is_integrated() {
         // Point forces: the quadrature of the surface, which is there to draw their tractions, has no part in this space.
         for (k, point) in body.points.iter().enumerate() {
             add(k as u32, k as u32, point.weight);

@@ -26,7 +26,7 @@ use crate::run::load_path::{LoadPathRun, PathEnd};
 use crate::run::record::RunRow;
 use crate::run::run_case::RunError;
 use crate::run::verdict::{Accuracy, Verdict};
-use crate::studies::convergence::{cell_size, closed_form, followed};
+use crate::studies::convergence::{closed_form, followed};
 
 /// How often a cell is repeated for its times.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -279,7 +279,7 @@ fn size(scene: &Scene<'_>) -> ProblemSize {
     ProblemSize {
         mesh: body.label.clone(),
         space: body.space.clone(),
-        h_m: cell_size(&case.mesh.grid.refined(scene.refine)),
+        h_m: case.mesh.grid.refined(scene.refine).cell_size(),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),

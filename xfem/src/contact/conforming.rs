@@ -4,13 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::{Crack, Tip};
 use crate::cut::is_split;
-use crate::cut::partition::crossings;
 use crate::cut::placement::ends_inside;
 use crate::enrichment::EnrichmentError;
-use crate::geometry::{Point, add_scaled, norm, sub};
+use crate::geometry::{Point, mean};
 use crate::mesh::{Facet, Mesh};
 
-use super::pairs::{ContactPoint, ContactSurface, scalar_terms, vertex_weights};
+use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
 
 /// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
 /// through cells. Side 1 gets the new nodes.
@@ -22,7 +21,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
         return Ok(None);
     }
     for cell in 0..mesh.cell_count() {
-        if is_split(mesh.kind, &crack.cell_phi(mesh, cell)) && centre_on(mesh, crack, cell) {
+        if is_split(&crack.cell_phi(mesh, cell)) && centre_on(mesh, crack, cell) {
             return Err(EnrichmentError::Mixed {
                 crack: crack.number,
                 at: mesh.centre(cell),
@@ -60,20 +59,8 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
         mesh.grid.push(mesh.grid[node]);
         twin.insert(node as u32, new as u32);
         let x = mesh.nodes[node];
-        let frame = crack.frame(&x);
-        let point = ContactPoint {
-            crack: crack.number,
-            x,
-            s: if mesh.dim() == 2 {
-                crack.abscissa(&x)
-            } else {
-                0.0
-            },
-            frame,
-            weight: weight[&node],
-            terms: scalar_terms(&frame, &[(new as u32, 1.0), (node as u32, -1.0)]),
-        };
-        points.push((node, point));
+        let terms = [(new as u32, 1.0), (node as u32, -1.0)];
+        points.push((node, ContactPoint::of(crack, x, weight[&node], &terms)));
     }
     let faces = facets
         .iter()
@@ -94,12 +81,11 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
 
 /// Facets of side-2 cells on the crack that a side-1 cell shares.
 fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
-    let count = mesh.kind.nodes();
     let mut upper: BTreeSet<Vec<usize>> = BTreeSet::new();
     let mut lower: Vec<(Vec<usize>, Facet)> = Vec::new();
     for cell in 0..mesh.cell_count() {
         let phi = crack.cell_phi(mesh, cell);
-        if phi[..count].iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
+        if phi.iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
             continue;
         }
         for (local, nodes) in mesh.kind.facets().iter().enumerate() {
@@ -122,24 +108,16 @@ fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
 
 /// True if a facet on the crack's curve or plane lies between its ends.
 fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
-    let corners = mesh.corners(facet.cell);
-    let tolerance = 1e-9 * norm(&sub(&corners[0], &corners[2]));
+    let tolerance = 1e-9 * mesh.map(facet.cell).diagonal();
     mesh.facet_nodes(facet)
         .all(|node| crack.jumps_at(&mesh.nodes[node], -tolerance))
 }
 
 /// True if the crack inside a split cell has its middle between the ends of the crack.
 fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
-    let corners = mesh.corners(cell);
-    let corners = &corners[..mesh.kind.nodes()];
-    let facet = crossings(mesh.kind, corners, &crack.cell_phi(mesh, cell), crack);
-    let size = norm(&sub(&corners[0], &corners[2]));
-    let near = facet
-        .iter()
-        .all(|v| crack.distance(&v.0).abs() < 1e-6 * size);
-    let scale = 1.0 / facet.len() as f64;
-    let middle = facet
-        .iter()
-        .fold([0.0; 3], |sum, v| add_scaled(&sum, scale, &v.0));
-    near && crack.jumps_at(&middle, 0.0)
+    let map = mesh.map(cell);
+    let facet = crack.crossings(&map, &crack.cell_phi(mesh, cell));
+    let off = |x: &Point| crack.distance(x).abs() >= 1e-6 * map.diagonal();
+    let middle = mean(facet.iter().map(|v| &v.0));
+    !facet.iter().any(|v| off(&v.0)) && crack.jumps_at(&middle, 0.0)
 }

@@ -11,13 +11,9 @@ use crate::enrichment::facets::CrackFacets;
 use crate::geometry::Point;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use super::integrated::surface_points;
+use super::facet_rule::surface_points;
 use super::multipliers::pair_space;
-use super::pairs::{ContactPoint, ContactSurface, scalar_terms, vertex_weights};
-
-/// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
-/// by 2 √r there, and a force that has to act through a jump this small grows like r^−½ without meaning anything.
-pub const AT_TIP: f64 = 1e-3;
+use super::pairs::{AT_TIP, ContactPoint, ContactSurface, vertex_weights};
 
 /// Contact surface of the `index`-th crack. `held` tells the prescribed unknowns: a pair whose normal jump is prescribed
 /// has no contact left to enforce.
@@ -37,19 +33,7 @@ pub fn edge_pairs(
             let nodes = corner.nodes?;
             let at_tip = AT_TIP * sizes[nodes[0] as usize].min(sizes[nodes[1] as usize]);
             let terms = jump_terms(integrator, index, nodes, &corner.x, at_tip);
-            let frame = crack.frame(&corner.x);
-            (!terms.is_empty()).then(|| ContactPoint {
-                crack: crack.number,
-                x: corner.x,
-                s: if dim == 2 {
-                    crack.abscissa(&corner.x)
-                } else {
-                    0.0
-                },
-                frame,
-                weight: 0.0,
-                terms: scalar_terms(&frame, &terms),
-            })
+            (!terms.is_empty()).then(|| ContactPoint::of(crack, corner.x, 0.0, &terms))
         })
         .collect();
     for facet in &facets.facets {

@@ -1,28 +1,99 @@
 //! Quadrature on the facets of a crack, with the linear functions of their corners.
 
-use crate::enrichment::facets::FrontCut;
+use std::collections::BTreeMap;
+
+use crate::cut::crack::Geometry;
+use crate::enrichment::facets::{CrackFacets, Facet, FrontCut};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::quadrature::front::FrontPiece;
 use crate::quadrature::front_facet::front_facet_points;
 use crate::quadrature::graded::graded_triangles;
+use crate::quadrature::rational::rational_order;
 use crate::quadrature::{WeightedPoint, gauss, triangle, triangle_collapsed};
+use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
+
+use super::multipliers::Multipliers;
+use super::surface_point::SurfacePoint;
 
 /// A quadrature point of a facet.
 #[derive(Debug, Clone)]
-pub struct FacetPoint {
+struct FacetPoint {
     /// Position [m].
-    pub x: Point,
+    x: Point,
     /// Length [m] or area [m²].
-    pub weight: f64,
+    weight: f64,
     /// Values of the corners' functions: linear along a segment; in a polygon linear on each triangle of its centroid and
     /// an edge, the centroid taking the mean. They sum to one.
-    pub hats: Vec<f64>,
+    hats: Vec<f64>,
+}
+
+/// Quadrature points of the facets that carry a multiplier.
+pub fn surface_points(
+    integrator: &CellIntegrator<'_>,
+    index: usize,
+    facets: &CrackFacets,
+    multipliers: &Multipliers,
+) -> Result<Vec<SurfacePoint>, CellError> {
+    let mut points = Vec::new();
+    for (facet, shares) in facets.facets.iter().zip(&multipliers.shares) {
+        if shares.iter().any(Vec::is_empty) {
+            continue;
+        }
+        for point in facet_points(integrator, index, facets, facet) {
+            let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
+            for (hat, own) in point.hats.iter().zip(shares) {
+                for &(k, share) in own {
+                    *sum.entry(k).or_default() += hat * share;
+                }
+            }
+            points.push(SurfacePoint {
+                weight: point.weight,
+                shares: sum.into_iter().filter(|(_, share)| *share != 0.0).collect(),
+                ..SurfacePoint::on_facet(integrator, index, facet, point.x)?
+            });
+        }
+    }
+    Ok(points)
+}
+
+/// Rule of one facet by what lives in its cell.
+fn facet_points(
+    integrator: &CellIntegrator<'_>,
+    index: usize,
+    facets: &CrackFacets,
+    facet: &Facet,
+) -> Vec<FacetPoint> {
+    let CellIntegrator {
+        mesh, enrichment, ..
+    } = integrator;
+    let map = mesh.map(facet.cell);
+    let polygon = facets.polygon(facet);
+    let affine = map.is_affine();
+    let branch = enrichment.has_branch(facet.cell);
+    if let &[p, q] = polygon.as_slice() {
+        let own = enrichment.tips.iter().filter(|tip| tip.crack == index);
+        let tips: Vec<Point> = own.map(|tip| tip.position).collect();
+        let integrand = match (branch, affine) {
+            (true, _) => Integrand::Root(&tips),
+            (false, true) => Integrand::Polynomial,
+            (false, false) => Integrand::Rational(rational_order(&map, [&p, &q])),
+        };
+        return segment_points(&[p, q], integrand);
+    }
+    match (&integrator.cracks[index].geometry, branch, &facet.front) {
+        (Geometry::Ellipse(ellipse), true, Some(cut)) => front_facet(ellipse, cut, &polygon),
+        (Geometry::Ellipse(ellipse), true, None) => {
+            let distance = |x: &Point| ellipse.nearest(x).psi.abs();
+            graded_facet(&polygon, distance)
+        }
+        _ => polygon_points(&polygon, affine),
+    }
 }
 
 /// How the jump varies on a facet.
 #[derive(Debug, Clone, Copy)]
-pub enum Integrand<'a> {
+enum Integrand<'a> {
     /// Polynomial: the cell is affine and carries no branch function.
     Polynomial,
     /// Rational, the cell is distorted: takes so many points.
@@ -36,7 +107,7 @@ pub enum Integrand<'a> {
 /// ```text
 ///   jump × hat is cubic on an affine cell: 2 points;    with branch functions: x = tip + ρ² e, a polynomial in ρ
 /// ```
-pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
+fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
     /// Points in ρ: exact for √r × quartics, and with slack for the √r of the other tip.
     const ROOT: usize = 10;
     let d = sub(&ends[1], &ends[0]);
@@ -51,20 +122,17 @@ pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetP
             .into_iter()
             .map(|(t, w)| (0.5 * (1.0 + t), 0.5 * w))
     };
+    let plain = |n: usize| unit(n).map(|(t, w)| point(t, w * length)).collect();
     let nearest = match integrand {
-        Integrand::Polynomial => return unit(2).map(|(t, w)| point(t, w * length)).collect(),
-        Integrand::Rational(n) => return unit(n).map(|(t, w)| point(t, w * length)).collect(),
+        Integrand::Polynomial => return plain(2),
+        Integrand::Rational(n) => return plain(n),
         Integrand::Root(tips) => tips.iter().min_by(|a, b| {
-            let distance = |x: &Point| {
-                (0..2)
-                    .map(|i| norm(&sub(&ends[i], x)))
-                    .fold(f64::INFINITY, f64::min)
-            };
+            let distance = |x: &Point| norm(&sub(&ends[0], x)).min(norm(&sub(&ends[1], x)));
             distance(a).total_cmp(&distance(b))
         }),
     };
     let Some(tip) = nearest else {
-        return unit(ROOT).map(|(t, w)| point(t, w * length)).collect();
+        return plain(ROOT);
     };
     // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
     let r = [0, 1].map(|i| dot(&sub(&ends[i], tip), &d).abs() / length);
@@ -80,14 +148,28 @@ pub fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetP
 }
 
 /// Points of a convex polygon in space.
-pub fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
-    let rule = |t: &[Point; 3]| {
-        if affine {
-            triangle(t)
-        } else {
-            triangle_collapsed(t, 6)
-        }
-    };
+fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
+    fan_points(polygon, |t| match affine {
+        true => triangle(t),
+        false => triangle_collapsed(t, 6),
+    })
+}
+
+/// Points of a convex polygon whose jump varies like the root of a distance from a front outside of it.
+fn graded_facet(polygon: &[Point], distance: impl Fn(&Point) -> f64) -> Vec<FacetPoint> {
+    /// Points per direction and halvings: relative error of √distance below 1e-6.
+    const POINTS: usize = 5;
+    const DEPTH: usize = 8;
+    fan_points(polygon, |t| {
+        graded_triangles(&[*t], &distance, POINTS, DEPTH)
+    })
+}
+
+/// Points of the triangles of a polygon's fan by a rule.
+fn fan_points(
+    polygon: &[Point],
+    rule: impl Fn(&[Point; 3]) -> Vec<WeightedPoint>,
+) -> Vec<FacetPoint> {
     let mut points = Vec::new();
     for (t, corners) in fans(polygon) {
         for p in rule(&t) {
@@ -97,32 +179,14 @@ pub fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
     points
 }
 
-/// Points of a convex polygon whose jump varies like the root of a distance from a front outside of it.
-pub fn graded_facet(polygon: &[Point], distance: impl Fn(&Point) -> f64) -> Vec<FacetPoint> {
-    /// Points per direction and halvings: relative error of √distance below 1e-6.
-    const POINTS: usize = 5;
-    const DEPTH: usize = 8;
-    let mut points = Vec::new();
-    for (t, corners) in fans(polygon) {
-        for p in graded_triangles(&[t], &distance, POINTS, DEPTH) {
-            points.extend(with_hats(p, &t, &corners, polygon.len()));
-        }
-    }
-    points
-}
-
 /// Points of a convex polygon cut from a face by the front of an elliptic crack, up to the front itself.
-pub fn front_facet(ellipse: &Ellipse, cut: &FrontCut, polygon: &[Point]) -> Vec<FacetPoint> {
+fn front_facet(ellipse: &Ellipse, cut: &FrontCut, polygon: &[Point]) -> Vec<FacetPoint> {
     /// Points along the chord between two corners.
     const ALONG: usize = 5;
     let chord = cut.chord;
     let along = unit(&sub(&chord[1], &chord[0]));
-    let mut centre = [0.0; 3];
-    for x in polygon {
-        centre = add_scaled(&centre, 1.0 / polygon.len() as f64, x);
-    }
     let ahead = cross(&along, &ellipse.normal);
-    let away = dot(&ahead, &sub(&centre, &chord[0]));
+    let away = dot(&ahead, &sub(&mean(polygon), &chord[0]));
     let behind = ahead.map(|v| v * away.signum());
     let piece = FrontPiece {
         chord,
@@ -156,18 +220,11 @@ type FanTriangle = ([Point; 3], [Option<usize>; 3]);
 
 /// Triangles of the centroid and the edges; a triangle is one itself.
 fn fans(polygon: &[Point]) -> Vec<FanTriangle> {
-    let count = polygon.len();
-    let mut centre = [0.0; 3];
-    for x in polygon {
-        centre = add_scaled(&centre, 1.0 / count as f64, x);
-    }
     // A triangle needs no centroid: its hats are linear throughout.
-    if count == 3 {
-        return vec![(
-            [polygon[0], polygon[1], polygon[2]],
-            [Some(0), Some(1), Some(2)],
-        )];
+    if let &[a, b, c] = polygon {
+        return vec![([a, b, c], [Some(0), Some(1), Some(2)])];
     }
+    let (count, centre) = (polygon.len(), mean(polygon));
     (0..count)
         .map(|i| {
             let j = (i + 1) % count;

@@ -34,25 +34,8 @@ pub fn facet_samples(integrator: &CellIntegrator<'_>) -> Result<Vec<SurfacePoint
     for (index, crack) in cracks.iter().enumerate() {
         let facets = CrackFacets::new(mesh, index, crack, enrichment);
         for facet in &facets.facets {
-            let corners = mesh.corners(facet.cell);
             for x in places(&facets.polygon(facet)) {
-                let xi = mesh
-                    .kind
-                    .inverse_map(&corners[..mesh.kind.nodes()], &x)
-                    .ok_or_else(|| CellError {
-                        at: x,
-                        reason: "a point of the crack has no reference position".into(),
-                    })?;
-                samples.push(SurfacePoint {
-                    crack: crack.number,
-                    cell: facet.cell,
-                    x,
-                    xi,
-                    weight: 0.0,
-                    regions: facet.regions,
-                    frame: facet.frame,
-                    shares: Vec::new(),
-                });
+                samples.push(SurfacePoint::on_facet(integrator, index, facet, x)?);
             }
         }
     }

@@ -7,48 +7,31 @@
 //! φ_k are the functions of the multiplier space. To the methods a multiplier is a contact point like any other: the mean
 //! jump of its function in, the force of its function out.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use crate::cut::crack::{Crack, Geometry};
-use crate::enrichment::basis::FunctionKind;
-use crate::enrichment::facets::{CrackFacets, Facet};
+use crate::cut::crack::Crack;
+use crate::enrichment::facets::CrackFacets;
 use crate::geometry::{Point, add_scaled, cross, dot, unit};
-use crate::quadrature::rational::rational_order;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use super::edge_pairs::AT_TIP;
-use super::facet_rule::{
-    FacetPoint, Integrand, front_facet, graded_facet, polygon_points, segment_points,
-};
-use super::multipliers::{Crossing, Multipliers, constant_space, facet_space, star_space};
+use super::facet_rule::surface_points;
+use super::free_jumps::FreeJumps;
+use super::multipliers::Multipliers;
 use super::pairs::{ContactPoint, ContactSurface, CrackSurface, SurfaceCorner};
-use super::space::ContactSpace;
 use super::surface_point::SurfacePoint;
 
-/// A facet smaller than this, in units of its cell's size to the power of its dimension, has no multiplier of its own.
-const SLIVER: f64 = 1e-10;
-
-/// Contact surface of the `index`-th crack in an integrated space. `held` tells the functions with a prescribed component.
-pub fn integrated_surface(
+/// Contact surface of the `index`-th crack in a multiplier space. `held` tells the prescribed unknowns.
+pub fn integrated(
     integrator: &CellIntegrator<'_>,
     index: usize,
-    space: ContactSpace,
-    held: impl Fn(u32) -> bool,
+    held: impl Fn(usize) -> bool,
+    space: impl Fn(&FreeJumps<'_>) -> Multipliers,
 ) -> Result<ContactSurface, CellError> {
-    let CellIntegrator {
-        mesh, enrichment, ..
-    } = integrator;
     let crack = &integrator.cracks[index];
-    let facets = CrackFacets::new(mesh, index, crack, enrichment);
     let free = FreeJumps::new(integrator, index, held);
-    let multipliers = match space {
-        ContactSpace::P0 => constant_space(&facets, |f| free.carries(&facets, f)),
-        ContactSpace::Facet => facet_space(&facets, &free.crossings(&facets)),
-        ContactSpace::Star | ContactSpace::EdgePairs => {
-            star_space(&facets, &free.crossings(&facets))
-        }
-    };
-    let quadrature = surface_points(integrator, index, &facets, &multipliers)?;
+    let multipliers = space(&free);
+    let facets = &free.facets;
+    let quadrature = surface_points(integrator, index, facets, &multipliers)?;
     let mut points = vec![Moments::default(); multipliers.count];
     for q in &quadrature {
         let terms = jump_terms(integrator, q);
@@ -56,176 +39,21 @@ pub fn integrated_surface(
             points[k as usize].add(q, share * q.weight, &terms);
         }
     }
-    let points = points
-        .into_iter()
-        .map(|m| m.point(mesh.dim(), crack))
-        .collect();
-    Ok(assemble(points, &facets, &multipliers, quadrature))
-}
-
-/// Nodes whose displacement jumps across a crack and is free to do so.
-struct FreeJumps<'a> {
-    integrator: &'a CellIntegrator<'a>,
-    crack: &'a Crack,
-    nodes: BTreeSet<u32>,
-    sizes: Vec<f64>,
-}
-
-impl<'a> FreeJumps<'a> {
-    fn new(integrator: &'a CellIntegrator<'a>, index: usize, held: impl Fn(u32) -> bool) -> Self {
-        let enrichment = integrator.enrichment;
-        let jumps = |kind: FunctionKind| match kind {
-            FunctionKind::Heaviside { crack } => crack as usize == index,
-            FunctionKind::Branch { tip, order: 0 } => enrichment.tips[tip as usize].crack == index,
-            _ => false,
-        };
-        FreeJumps {
-            integrator,
-            crack: &integrator.cracks[index],
-            nodes: (0..enrichment.functions.len() as u32)
-                .filter(|&f| jumps(enrichment.functions[f as usize].kind) && !held(f))
-                .map(|f| enrichment.functions[f as usize].node)
-                .collect(),
-            sizes: integrator.mesh.node_sizes(),
-        }
-    }
-
-    /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
-    fn crossings(&self, facets: &CrackFacets) -> Vec<Option<Crossing>> {
-        let tips = &self.integrator.enrichment.tips;
-        facets
-            .corners
-            .iter()
-            .map(|corner| {
-                let [i, j] = corner.nodes?;
-                let size = self.sizes[i as usize].min(self.sizes[j as usize]);
-                if tips
-                    .iter()
-                    .any(|tip| tip.distance(&corner.x) <= AT_TIP * size)
-                {
-                    return None;
-                }
-                let free = |node: u32| self.nodes.contains(&node).then_some(node);
-                let ends = [free(i), if i == j { None } else { free(j) }];
-                let (fi, fj) = (
-                    self.crack.phi[i as usize].abs(),
-                    self.crack.phi[j as usize].abs(),
-                );
-                ends.iter().any(Option::is_some).then_some(Crossing {
-                    ends,
-                    fraction: if i == j { 0.0 } else { fi / (fi + fj) },
-                })
-            })
-            .collect()
-    }
-
-    /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.
-    fn carries(&self, facets: &CrackFacets, facet: usize) -> bool {
-        let mesh = self.integrator.mesh;
-        let cell = facets.facets[facet].cell;
-        let area: f64 = super::pairs::vertex_weights(&facets.polygon(&facets.facets[facet]))
-            .iter()
-            .sum();
-        let size = mesh
-            .cell(cell)
-            .iter()
-            .map(|&n| self.sizes[n as usize])
-            .fold(f64::INFINITY, f64::min);
-        area > SLIVER * size.powi(mesh.dim() as i32 - 1)
-            && mesh.cell(cell).iter().any(|n| self.nodes.contains(n))
-    }
-}
-
-/// Quadrature points of the facets that carry a multiplier.
-pub fn surface_points(
-    integrator: &CellIntegrator<'_>,
-    index: usize,
-    facets: &CrackFacets,
-    multipliers: &Multipliers,
-) -> Result<Vec<SurfacePoint>, CellError> {
-    let crack = &integrator.cracks[index];
-    let kind = integrator.mesh.kind;
-    let mut points = Vec::new();
-    for (facet, shares) in facets.facets.iter().zip(&multipliers.shares) {
-        if shares.iter().any(Vec::is_empty) {
-            continue;
-        }
-        let corners = integrator.mesh.corners(facet.cell);
-        for point in facet_points(integrator, index, facets, facet) {
-            let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
-            for (hat, own) in point.hats.iter().zip(shares) {
-                for &(k, share) in own {
-                    *sum.entry(k).or_default() += hat * share;
-                }
-            }
-            let Some(xi) = kind.inverse_map(&corners[..kind.nodes()], &point.x) else {
-                return Err(CellError {
-                    at: point.x,
-                    reason: "a point of the crack has no reference position".into(),
-                });
-            };
-            points.push(SurfacePoint {
-                crack: crack.number,
-                cell: facet.cell,
-                x: point.x,
-                xi,
-                weight: point.weight,
-                regions: facet.regions,
-                frame: facet.frame,
-                shares: sum.into_iter().filter(|(_, share)| *share != 0.0).collect(),
-            });
-        }
-    }
-    Ok(points)
-}
-
-/// Rule of one facet by what lives in its cell.
-fn facet_points(
-    integrator: &CellIntegrator<'_>,
-    index: usize,
-    facets: &CrackFacets,
-    facet: &Facet,
-) -> Vec<FacetPoint> {
-    let CellIntegrator {
-        mesh, enrichment, ..
-    } = integrator;
-    let corners = mesh.corners(facet.cell);
-    let polygon = facets.polygon(facet);
-    let affine = mesh.kind.is_affine(&corners[..mesh.kind.nodes()]);
-    let branch = enrichment.has_branch(facet.cell);
-    if let &[p, q] = polygon.as_slice() {
-        let own = enrichment.tips.iter().filter(|tip| tip.crack == index);
-        let tips: Vec<Point> = own.map(|tip| tip.position).collect();
-        let integrand = match (branch, affine) {
-            (true, _) => Integrand::Root(&tips),
-            (false, true) => Integrand::Polynomial,
-            (false, false) => {
-                let corners = &corners[..mesh.kind.nodes()];
-                Integrand::Rational(rational_order(mesh.kind, corners, [&p, &q]))
-            }
-        };
-        return segment_points(&[p, q], integrand);
-    }
-    match (&integrator.cracks[index].geometry, branch, &facet.front) {
-        (Geometry::Ellipse(ellipse), true, Some(cut)) => front_facet(ellipse, cut, &polygon),
-        (Geometry::Ellipse(ellipse), true, None) => {
-            let distance = |x: &Point| ellipse.nearest(x).psi.abs();
-            graded_facet(&polygon, distance)
-        }
-        _ => polygon_points(&polygon, affine),
-    }
+    let points: Vec<ContactPoint> = points.into_iter().map(|m| m.point(crack)).collect();
+    Ok(assemble(&points, facets, &multipliers, quadrature))
 }
 
 /// [[φ_f]] of the functions of a cell at a point of the crack.
-pub fn jump_terms(integrator: &CellIntegrator<'_>, q: &SurfacePoint) -> Vec<(u32, f64)> {
-    let values = q
-        .regions
-        .map(|region| integrator.values(q.cell, &q.xi, &q.x, region));
-    let functions = integrator.enrichment.cell(q.cell);
-    functions
-        .iter()
-        .enumerate()
-        .map(|(i, &f)| (f, values[0][i] - values[1][i]))
+fn jump_terms(integrator: &CellIntegrator<'_>, q: &SurfacePoint) -> Vec<(u32, f64)> {
+    let mut functions = integrator.functions(q.cell);
+    let [one, two] = q.regions.map(|region| {
+        functions.evaluate(&q.xi, &q.x, region);
+        functions.values.clone()
+    });
+    let numbers = functions.numbers.iter();
+    let jumps = numbers.zip(one.iter().zip(&two));
+    jumps
+        .map(|(&f, (one, two))| (f, one - two))
         .filter(|(_, jump)| *jump != 0.0)
         .collect()
 }
@@ -254,13 +82,13 @@ impl Moments {
         }
     }
 
-    fn point(self, dim: usize, crack: &Crack) -> ContactPoint {
+    fn point(self, crack: &Crack) -> ContactPoint {
         let scale = |v: &Point| v.map(|c| c / self.weight);
         let x = scale(&self.x);
         ContactPoint {
             crack: crack.number,
             x,
-            s: if dim == 2 { crack.abscissa(&x) } else { 0.0 },
+            s: crack.abscissa(&x),
             frame: mean_frame(&self.frame),
             weight: self.weight,
             terms: self
@@ -281,7 +109,7 @@ fn mean_frame(sums: &[Point; 3]) -> [Point; 3] {
 
 /// Numbers the points along the crack and gathers the surface.
 fn assemble(
-    points: Vec<ContactPoint>,
+    points: &[ContactPoint],
     facets: &CrackFacets,
     multipliers: &Multipliers,
     mut quadrature: Vec<SurfacePoint>,
@@ -326,12 +154,8 @@ fn assemble(
         });
         faces.push(face.collect());
     }
-    let mut slots: Vec<Option<ContactPoint>> = points.into_iter().map(Some).collect();
     ContactSurface {
-        points: order
-            .into_iter()
-            .filter_map(|old| slots[old].take())
-            .collect(),
+        points: order.into_iter().map(|old| points[old].clone()).collect(),
         surface: CrackSurface {
             corners,
             facets: faces,

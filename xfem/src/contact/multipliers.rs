@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 use crate::enrichment::facets::CrackFacets;
 
+use super::free_jumps::{Crossing, FreeJumps};
 use super::star_forest::star_forest;
 
 /// Contact points and their part in a value, summing to one.
@@ -30,15 +31,6 @@ pub struct Multipliers {
     pub shares: Vec<Vec<Shares>>,
 }
 
-/// What the displacement does at a crossed mesh edge or node.
-#[derive(Debug, Clone, Copy)]
-pub struct Crossing {
-    /// Ends of the edge, where they carry a free jump; both ends equal at a node, the second then `None`.
-    pub ends: [Option<u32>; 2],
-    /// Fraction w of the edge between its first end and the crack.
-    pub fraction: f64,
-}
-
 /// The given multiplier of every corner.
 pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
     let own = number.iter().map(|k| k.map(|k| vec![(k, 1.0)])).collect();
@@ -47,22 +39,15 @@ pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
 }
 
 /// One multiplier per crossing.
-pub fn facet_space(facets: &CrackFacets, crossings: &[Option<Crossing>]) -> Multipliers {
-    let mut count = 0;
-    let own = crossings
-        .iter()
-        .map(|crossing| {
-            crossing.map(|_| {
-                count += 1;
-                vec![(count - 1, 1.0)]
-            })
-        })
-        .collect();
-    by_corner(facets, own, count as usize)
+pub fn facet_space(free: &FreeJumps<'_>) -> Multipliers {
+    let crossings = free.crossings().into_iter();
+    let (own, count) = numbered(crossings.map(|crossing| crossing.is_some()));
+    by_corner(&free.facets, own, count)
 }
 
 /// One multiplier per star of crossings.
-pub fn star_space(facets: &CrackFacets, crossings: &[Option<Crossing>]) -> Multipliers {
+pub fn star_space(free: &FreeJumps<'_>) -> Multipliers {
+    let crossings = free.crossings();
     let edges: Vec<(usize, Crossing)> = crossings
         .iter()
         .enumerate()
@@ -91,36 +76,40 @@ pub fn star_space(facets: &CrackFacets, crossings: &[Option<Crossing>]) -> Multi
         });
     }
     let count = stars.iter().flatten().max().map_or(0, |s| s + 1);
-    by_corner(facets, own, count)
+    by_corner(&free.facets, own, count)
 }
 
-/// One multiplier per facet for which `carries` holds.
-pub fn constant_space(facets: &CrackFacets, carries: impl Fn(usize) -> bool) -> Multipliers {
-    let mut count = 0;
-    let mut own: Vec<Option<Shares>> = (0..facets.facets.len())
-        .map(|facet| {
-            carries(facet).then(|| {
-                count += 1;
-                vec![(count - 1, 1.0)]
-            })
-        })
-        .collect();
+/// One multiplier per facet that can carry one.
+pub fn constant_space(free: &FreeJumps<'_>) -> Multipliers {
+    let facets = &free.facets.facets;
+    let (mut own, count) = numbered(facets.iter().map(|facet| free.carries(facet)));
     // Facets are neighbours if they share a corner.
-    let corners: Vec<Vec<usize>> = facets.facets.iter().map(|f| f.corners.clone()).collect();
-    let mut facets_at = vec![Vec::new(); facets.corners.len()];
-    for (facet, list) in corners.iter().enumerate() {
-        list.iter().for_each(|&c| facets_at[c].push(facet));
+    let mut facets_at = vec![Vec::new(); free.facets.corners.len()];
+    for (number, facet) in facets.iter().enumerate() {
+        facet
+            .corners
+            .iter()
+            .for_each(|&c| facets_at[c].push(number));
     }
     extend(&mut own, &facets_at);
-    let shares = corners
+    let shares = facets
         .iter()
         .zip(own)
-        .map(|(list, share)| vec![share.unwrap_or_default(); list.len()])
+        .map(|(facet, share)| vec![share.unwrap_or_default(); facet.corners.len()])
         .collect();
-    Multipliers {
-        count: count as usize,
-        shares,
-    }
+    Multipliers { count, shares }
+}
+
+/// A multiplier of its own for everything that carries one, and their number.
+fn numbered(carries: impl Iterator<Item = bool>) -> (Vec<Option<Shares>>, usize) {
+    let mut count = 0;
+    let own = carries.map(|carries| {
+        carries.then(|| {
+            count += 1;
+            vec![(count - 1, 1.0)]
+        })
+    });
+    (own.collect(), count as usize)
 }
 
 /// Extends the shares of some corners to all of them.

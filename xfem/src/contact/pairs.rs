@@ -7,9 +7,14 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::geometry::{Point, add_scaled, cross, norm, sub};
+use crate::cut::crack::Crack;
+use crate::geometry::{Point, cross, mean, norm, sub};
 
 use super::surface_point::SurfacePoint;
+
+/// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
+/// by 2 √r there, and a force that has to act through a jump this small grows like r^−½ without meaning anything.
+pub const AT_TIP: f64 = 1e-3;
 
 /// A contact point.
 #[derive(Debug, Clone)]
@@ -29,6 +34,20 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// A place on a crack where the jump is a sum of functions times coefficients.
+    pub fn of(crack: &Crack, x: Point, weight: f64, jump: &[(u32, f64)]) -> Self {
+        let frame = crack.frame(&x);
+        let rows = |c: f64| frame.map(|axis| axis.map(|v| c * v));
+        ContactPoint {
+            crack: crack.number,
+            x,
+            s: crack.abscissa(&x),
+            frame,
+            weight,
+            terms: jump.iter().map(|&(f, c)| (f, rows(c))).collect(),
+        }
+    }
+
     /// True if the normal jump depends on an unknown that is not prescribed; otherwise there is no contact to enforce.
     pub fn acts(&self, dim: usize, held: impl Fn(usize) -> bool) -> bool {
         let free = |f: u32, a: usize| !held(f as usize * dim + a);
@@ -46,34 +65,36 @@ impl ContactPoint {
     }
 }
 
-/// Rows of scalar jumps: coefficient times frame.
-pub fn scalar_terms(frame: &[Point; 3], terms: &[(u32, f64)]) -> Vec<(u32, [Point; 3])> {
-    let rows = |c: f64| frame.map(|axis| axis.map(|v| c * v));
-    terms.iter().map(|&(f, c)| (f, rows(c))).collect()
-}
-
 /// Splits the measure of a facet among its vertices: half of each triangle (centroid, v_i, v_{i+1}) to either vertex.
 pub fn vertex_weights(vertices: &[Point]) -> Vec<f64> {
     let n = vertices.len();
     if n == 2 {
         return vec![0.5 * norm(&sub(&vertices[1], &vertices[0])); 2];
     }
-    let mut centre = [0.0; 3];
-    for v in vertices {
-        centre = add_scaled(&centre, 1.0 / n as f64, v);
-    }
+    let centre = mean(vertices);
     let mut weights = vec![0.0; n];
     for i in 0..n {
         let j = (i + 1) % n;
-        let area = 0.5
-            * norm(&cross(
-                &sub(&vertices[i], &centre),
-                &sub(&vertices[j], &centre),
-            ));
+        let [p, q] = [i, j].map(|k| sub(&vertices[k], &centre));
+        let area = 0.5 * norm(&cross(&p, &q));
         weights[i] += 0.5 * area;
         weights[j] += 0.5 * area;
     }
     weights
+}
+
+impl SurfacePoint {
+    /// Contact traction λ_h on side 1 in the local frame [Pa]; `p`: contact forces, `dim` per point.
+    pub fn traction(&self, dim: usize, points: &[ContactPoint], p: &[f64]) -> [f64; 3] {
+        let mut traction = [0.0; 3];
+        for &(point, share) in &self.shares {
+            let i = point as usize;
+            for (t, force) in traction.iter_mut().zip(&p[i * dim..(i + 1) * dim]) {
+                *t += share * force / points[i].weight;
+            }
+        }
+        traction
+    }
 }
 
 /// A corner of the facets of a crack, with the contact points that speak for it.
@@ -109,19 +130,12 @@ impl ContactSurface {
     /// A surface from points and facets whose vertices have keys; vertices without a point are left out.
     pub fn new<K: Ord>(mut points: Vec<(K, ContactPoint)>, facets: Vec<Vec<K>>) -> Self {
         points.sort_by(|(_, p), (_, q)| p.compare(q));
-        let number: BTreeMap<&K, usize> = points
-            .iter()
-            .enumerate()
-            .map(|(i, (key, _))| (key, i))
-            .collect();
+        let numbers = points.iter().enumerate().map(|(i, (key, _))| (key, i));
+        let number: BTreeMap<&K, usize> = numbers.collect();
+        let known = |key: &K| number.get(key).copied();
         let facets = facets
             .iter()
-            .map(|facet| {
-                facet
-                    .iter()
-                    .filter_map(|key| number.get(key).copied())
-                    .collect()
-            })
+            .map(|facet| facet.iter().filter_map(known).collect())
             .collect();
         let points: Vec<ContactPoint> = points.into_iter().map(|(_, point)| point).collect();
         let corners = points
@@ -146,14 +160,9 @@ impl ContactSurface {
     /// point.
     pub fn retain(self, keep: impl Fn(&ContactPoint) -> bool) -> Self {
         let faces = self.surface.facets;
-        let kept = |(i, point): (usize, ContactPoint)| keep(&point).then_some((i, point));
-        let points = self
-            .points
-            .into_iter()
-            .enumerate()
-            .filter_map(kept)
-            .collect();
-        ContactSurface::new(points, faces)
+        let points = self.points.into_iter().enumerate();
+        let kept = points.filter(|(_, point)| keep(point)).collect();
+        ContactSurface::new(kept, faces)
     }
 
     /// Adds another surface behind this one.

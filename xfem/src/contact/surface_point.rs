@@ -1,13 +1,11 @@
 //! Quadrature points of the crack surface: where they lie, what jumps there, how far the faces overlap.
 
-use crate::cut::partition::Face;
+use crate::cut::part::Face;
 use crate::cut::placement::cells_at;
 use crate::enrichment::basis::Region;
-use crate::fields::sampling::CellField;
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
-use crate::stiffness::cell_matrix::CellIntegrator;
-
-use super::pairs::ContactPoint;
+use crate::enrichment::facets::Facet;
+use crate::geometry::{Point, norm, resolve, sub};
+use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 /// A quadrature point of the crack surface.
 #[derive(Debug, Clone)]
@@ -32,30 +30,41 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A point of a facet of the `index`-th crack that stands for a place only: no weight, no shares.
+    ///
+    /// # Errors
+    /// A point without a reference position in the cell.
+    pub fn on_facet(
+        integrator: &CellIntegrator<'_>,
+        index: usize,
+        facet: &Facet,
+        x: Point,
+    ) -> Result<Self, CellError> {
+        let xi = integrator.mesh.map(facet.cell).inverse(&x);
+        Ok(SurfacePoint {
+            crack: integrator.cracks[index].number,
+            cell: facet.cell,
+            x,
+            xi: xi.ok_or_else(|| CellError {
+                at: x,
+                reason: "a point of the crack has no reference position".into(),
+            })?,
+            weight: 0.0,
+            regions: facet.regions,
+            frame: facet.frame,
+            shares: Vec::new(),
+        })
+    }
+
     /// Jump u₁ − u₂ in space [m], from all unknowns.
     pub fn jump(&self, integrator: &CellIntegrator<'_>, u: &[f64]) -> Point {
-        let mut field = CellField::new(integrator, self.cell);
-        let [one, two] = self
-            .regions
-            .map(|region| field.displacement(&self.xi, &self.x, region, u));
-        sub(&one, &two)
+        let mut functions = integrator.functions(self.cell);
+        functions.jump(&self.xi, &self.x, self.regions, u)
     }
 
     /// A vector in the local frame (n, a, b).
     pub fn local(&self, v: &Point) -> [f64; 3] {
-        [0, 1, 2].map(|k| dot(v, &self.frame[k]))
-    }
-
-    /// Contact traction λ_h on side 1 in the local frame [Pa]; `p`: contact forces, `dim` per point.
-    pub fn traction(&self, dim: usize, points: &[ContactPoint], p: &[f64]) -> [f64; 3] {
-        let mut traction = [0.0; 3];
-        for &(point, share) in &self.shares {
-            let i = point as usize;
-            for (t, force) in traction.iter_mut().zip(&p[i * dim..(i + 1) * dim]) {
-                *t += share * force / points[i].weight;
-            }
-        }
-        traction
+        resolve(&self.frame, v)
     }
 }
 
@@ -75,31 +84,18 @@ pub fn jump_at(
         return None;
     }
     cells_at(mesh, x).into_iter().find_map(|cell| {
-        let corners = mesh.corners(cell);
-        let near = 1e-6 * norm(&sub(&corners[0], &corners[2]));
-        if shape.distance(x).abs() > near {
+        let mut functions = integrator.functions(cell);
+        if shape.distance(x).abs() > 1e-6 * functions.map.diagonal() {
             return None;
         }
         // The piece of the crack in this cell that is nearest to the point.
-        let faces = enrichment
-            .partition(cell)?
-            .faces
-            .iter()
-            .filter(|f| f.crack == crack);
-        let middle = |face: &Face| {
-            let scale = 1.0 / face.corners.len() as f64;
-            face.corners
-                .iter()
-                .fold([0.0; 3], |sum, c| add_scaled(&sum, scale, &c.0))
-        };
-        let away = |face: &Face| norm(&sub(&middle(face), x));
-        let face = faces.min_by(|a, b| away(a).total_cmp(&away(b)))?;
-        let xi = mesh.kind.inverse_map(&corners[..mesh.kind.nodes()], x)?;
-        let mut field = CellField::new(integrator, cell);
-        let [one, two] = face
-            .parts
-            .map(|region| field.displacement(&xi, x, region, u));
-        Some(sub(&one, &two))
+        let faces = enrichment.partition(cell)?.faces.iter();
+        let away = |face: &Face| norm(&sub(&face.middle(), x));
+        let face = faces
+            .filter(|face| face.crack == crack)
+            .min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        let xi = functions.map.inverse(x)?;
+        Some(functions.jump(&xi, x, face.parts, u))
     })
 }
 

@@ -20,7 +20,7 @@ use crate::cut::crack::ON_CRACK;
 use crate::cut::placement::reference_position;
 use crate::enrichment::basis::Region;
 use crate::geometry::{Point, dot};
-use crate::quadrature::gauss_cell;
+use crate::quadrature;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::pairs::ContactPoint;
@@ -142,20 +142,12 @@ fn parts(
 
 /// Measure of a whole cell, or of one region of a cut one.
 fn measure(integrator: &CellIntegrator<'_>, cell: usize, region: Region) -> f64 {
-    let kind = integrator.mesh.kind;
     match integrator.enrichment.partition(cell) {
         Some(partition) => {
-            let points = partition.parts[region].sub_cells().points();
+            let points = partition.parts[region].points();
             points.iter().map(|p| p.weight).sum()
         }
-        None => {
-            let corners = integrator.mesh.corners(cell);
-            let corners = &corners[..kind.nodes()];
-            gauss_cell(kind.dim(), 2)
-                .iter()
-                .map(|(xi, w)| w * kind.gradients(corners, xi).1)
-                .sum()
-        }
+        None => quadrature::measure(&integrator.mesh.map(cell)),
     }
 }
 
@@ -192,9 +184,9 @@ fn add_stress(
     let dim = integrator.mesh.dim();
     let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
     let n = &frame[0];
-    let functions = integrator.enrichment.cell(part.cell);
-    let gradients = integrator.gradients(part.cell, &part.xi, x, part.region);
-    for (&f, g) in functions.iter().zip(&gradients) {
+    let mut functions = integrator.functions(part.cell);
+    functions.evaluate(&part.xi, x, part.region);
+    for (&f, g) in functions.numbers.iter().zip(&functions.gradients) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let (normal, tangential) = (dot(g, n), dot(g, e));
             for a in 0..dim {

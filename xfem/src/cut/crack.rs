@@ -9,11 +9,14 @@
 //! A crack that meets an earlier one ends there: it is an arm whose step is 0 beyond its parent (Daux, Moës, Dolbow,
 //! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
-use crate::geometry::clip::{Side, crossing};
+use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::{Point, bisect, dot, sub};
 use crate::mesh::Mesh;
+use crate::mesh::cell::{CellMap, Nodal};
 
 use super::is_split;
 
@@ -101,17 +104,7 @@ impl Crack {
                 origin: *point,
                 frame: plane_frame(normal),
             },
-            CrackShape::Ellipse {
-                centre,
-                normal,
-                axis,
-                half_axes,
-            } => Geometry::Ellipse(Ellipse {
-                centre: *centre,
-                normal: *normal,
-                axis: *axis,
-                half_axes: *half_axes,
-            }),
+            CrackShape::Ellipse(ellipse) => Geometry::Ellipse(*ellipse),
         };
         let range = match &geometry {
             Geometry::Curve(curve) => [0.0, curve.length()],
@@ -130,10 +123,7 @@ impl Crack {
             .nodes
             .iter()
             .zip(mesh.node_sizes())
-            .map(|(x, h)| {
-                let phi = crack.distance(x);
-                if phi.abs() <= ON_CRACK * h { 0.0 } else { phi }
-            })
+            .map(|(x, h)| snapped(crack.distance(x), ON_CRACK * h))
             .collect();
         crack
     }
@@ -163,38 +153,34 @@ impl Crack {
                 [turned(&a), a, [0.0, 0.0, 1.0]]
             }
             Geometry::Plane { frame, .. } => *frame,
-            Geometry::Ellipse(e) => [e.normal, e.axis, cross(&e.normal, &e.axis)],
+            Geometry::Ellipse(e) => e.frame(),
         }
     }
 
     /// Level set at the nodes of a cell.
-    pub fn cell_phi(&self, mesh: &Mesh, cell: usize) -> [f64; 8] {
-        let mut phi = [0.0; 8];
-        for (value, &node) in phi.iter_mut().zip(mesh.cell(cell)) {
-            *value = self.phi[node as usize];
-        }
-        phi
+    pub fn cell_phi(&self, mesh: &Mesh, cell: usize) -> Nodal<f64> {
+        let nodes = mesh.cell(cell);
+        Nodal::new(nodes.len(), |i| self.phi[nodes[i] as usize])
     }
 
-    /// Crossing of an edge from `p` (φ = `f`) to `q` (φ = `g`), f g < 0.
-    pub fn crossing(&self, p: &Point, f: f64, q: &Point, g: f64) -> Point {
-        match &self.geometry {
-            Geometry::Curve(curve) if !curve.is_straight() => {
-                // φ is monotone enough for bisection; 60 halvings reach rounding.
-                let d = sub(q, p);
-                let (mut low, mut high) = (0.0, 1.0);
-                for _ in 0..60 {
-                    let middle = 0.5 * (low + high);
-                    if self.distance(&add_scaled(p, middle, &d)) * f > 0.0 {
-                        low = middle;
-                    } else {
-                        high = middle;
+    /// Nodes on the crack and crossed edges of a cell with levels φ: the place, and the local nodes it lies between
+    /// (equal at a node).
+    pub fn crossings(&self, map: &CellMap, phi: &[f64]) -> Vec<(Point, [usize; 2])> {
+        let nodes = (0..map.len()).filter(|&i| phi[i] == 0.0);
+        let mut found: Vec<_> = nodes.map(|i| (map[i], [i, i])).collect();
+        for &[i, j] in map.kind.edges() {
+            if phi[i] * phi[j] < 0.0 {
+                let x = match &self.geometry {
+                    // φ is monotone enough for bisection.
+                    Geometry::Curve(curve) if !curve.is_straight() => {
+                        bent_crossing(&map[i], phi[i], &map[j], |x| self.distance(x))
                     }
-                }
-                add_scaled(p, 0.5 * (low + high), &d)
+                    _ => crossing(&map[i], phi[i], &map[j], phi[j]),
+                };
+                found.push((x, [i, j]));
             }
-            _ => crossing(p, f, q, g),
         }
+        found
     }
 
     /// Side of a node: +1 on side 1 and on the crack, −1 on side 2.
@@ -235,21 +221,6 @@ impl Crack {
         }
         ends
     }
-}
-
-/// n, a, b of a plane: a from the axis least along n, the first of equals, so that n = e_z gives a = e_x, b = e_y.
-fn plane_frame(normal: &Point) -> [Point; 3] {
-    let n = unit(normal);
-    let mut axis = 0;
-    for k in 1..3 {
-        if n[k].abs() < n[axis].abs() - 1e-12 {
-            axis = k;
-        }
-    }
-    let mut e = [0.0; 3];
-    e[axis] = 1.0;
-    let a = unit(&add_scaled(&e, -n[axis], &n));
-    [n, a, cross(&n, &a)]
 }
 
 /// Cuts cracks at the earlier ones they meet. A crack keeps its index if nothing crosses it; arms follow in order.
@@ -329,17 +300,9 @@ fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
     };
     // Zero is a side too: a meeting at a sample must not fall between two intervals.
     let above = |s: f64| distance(s) >= 0.0;
-    let root = |mut low: f64, mut high: f64| {
+    let root = |low: f64, high: f64| {
         let start = above(low);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if above(middle) == start {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        bisect(low, high, |s| above(s) == start)
     };
     // An end on the other crack, whichever side rounding puts it on: the curve is followed to where they meet.
     let ends = [0.0, length].into_iter().filter(|&s| on(s)).map(|s| {
@@ -381,12 +344,8 @@ fn plane_arms(crack: &Crack, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
 /// True if some cell is cut by both planes.
 fn meet(crack: &Crack, other: &Crack, mesh: &Mesh) -> bool {
     (0..mesh.cell_count()).any(|cell| {
-        let inside = |c: &Crack| is_split(mesh.kind, &c.cell_phi(mesh, cell));
-        inside(crack)
-            && inside(other)
-            && crack.jumps_at(
-                &mesh.centre(cell),
-                -norm(&sub(&mesh.corners(cell)[0], &mesh.corners(cell)[6])),
-            )
+        let inside = |c: &Crack| is_split(&c.cell_phi(mesh, cell));
+        let map = mesh.map(cell);
+        inside(crack) && inside(other) && crack.jumps_at(&map.centre(), -map.diagonal())
     })
 }

@@ -9,75 +9,14 @@
 //! cut along chains of segments, in 3D tetrahedra clipped by planes; nothing is rounded to a grid, slivers keep their
 //! relative size.
 
-use crate::geometry::clip::{Side, clip_tetrahedron, crossing, tetrahedra_of};
+use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, snapped};
 use crate::geometry::polygon::{self, Polygon};
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub};
 use crate::mesh::Mesh;
-use crate::mesh::cell::CellKind;
+use crate::mesh::cell::CellMap;
 
-use super::SubCells;
 use super::crack::{Crack, Geometry};
-
-/// A corner of a face: position, and the local nodes of the mesh edge it lies on (equal at a node; `None` inside the cell).
-pub type FaceCorner = (Point, Option<[usize; 2]>);
-
-/// A part of a cell.
-#[derive(Debug, Clone, Default)]
-pub struct Part {
-    /// Sides of the cracks that divide it from other parts, in crack order.
-    pub sides: Vec<(usize, Side)>,
-    /// 2D: its outline, counter-clockwise.
-    pub polygon: Polygon,
-    /// 3D: tetrahedra that fill it.
-    pub tetrahedra: Vec<[Point; 4]>,
-}
-
-impl Part {
-    /// Side of a crack, if the crack cuts the cell here.
-    pub fn side(&self, crack: usize) -> Option<Side> {
-        self.sides.iter().find(|s| s.0 == crack).map(|s| s.1)
-    }
-
-    /// A point well inside: the centroid of the largest simplex.
-    pub fn middle(&self) -> Point {
-        let mean = |corners: &[Point]| {
-            corners.iter().fold([0.0; 3], |sum, x| {
-                add_scaled(&sum, 1.0 / corners.len() as f64, x)
-            })
-        };
-        let triangles = polygon::triangles(&self.polygon);
-        let flat = triangles.iter().map(|t| {
-            let size = norm(&cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0])));
-            (size, mean(t))
-        });
-        let solid = self.tetrahedra.iter().map(|t| {
-            let size = crate::geometry::clip::tetrahedron_volume(t);
-            (size, mean(t))
-        });
-        flat.chain(solid)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or([f64::NAN; 3], |found| found.1)
-    }
-
-    /// Simplices that fill it.
-    pub fn sub_cells(&self) -> SubCells {
-        SubCells {
-            triangles: polygon::triangles(&self.polygon),
-            tetrahedra: self.tetrahedra.clone(),
-        }
-    }
-}
-
-/// A piece of a crack between two parts.
-#[derive(Debug, Clone)]
-pub struct Face {
-    /// Crack.
-    pub crack: usize,
-    /// Two corners along the crack (2D), or a convex polygon in cyclic order.
-    pub corners: Vec<FaceCorner>,
-    /// Parts on side 1 and side 2.
-    pub parts: [usize; 2],
-}
+use super::part::{Face, FaceCorner, Part};
 
 /// A divided cell.
 #[derive(Debug, Clone, Default)]
@@ -109,40 +48,24 @@ impl Partition {
         cracks: &[Crack],
         inside: &[usize],
     ) -> Result<Self, PartitionError> {
-        let corners = mesh.corners(cell);
-        let corners = &corners[..mesh.kind.nodes()];
-        let mut whole = Partition::whole(mesh.kind, corners);
-        match mesh.kind {
-            CellKind::Quad4 => {
-                for &index in inside {
-                    let phi = cracks[index].cell_phi(mesh, cell);
-                    let chain = chain_in(mesh, corners, &phi, cracks, index)?;
-                    whole.divide_flat(index, &cracks[index], &chain)?;
-                }
-            }
-            CellKind::Hex8 => {
-                for &index in inside {
-                    let phi = cracks[index].cell_phi(mesh, cell);
-                    whole.divide_solid(index, cracks, corners, &phi)?;
-                }
+        let map = mesh.map(cell);
+        let mut whole = Partition::whole(&map);
+        for &index in inside {
+            let phi = cracks[index].cell_phi(mesh, cell);
+            if mesh.dim() == 2 {
+                let chain = chain_in(&map, &phi, &cracks[index])?;
+                whole.divide_flat(index, &cracks[index], &chain)?;
+            } else {
+                whole.divide_solid(index, cracks, &map, &phi);
             }
         }
         Ok(whole)
     }
 
     /// An undivided cell.
-    pub fn whole(kind: CellKind, corners: &[Point]) -> Self {
-        let (polygon, tetrahedra) = match kind {
-            CellKind::Quad4 => (corners.to_vec(), Vec::new()),
-            CellKind::Hex8 => (Vec::new(), tetrahedra_of(corners).to_vec()),
-        };
-        let part = Part {
-            sides: Vec::new(),
-            polygon,
-            tetrahedra,
-        };
+    pub fn whole(map: &CellMap) -> Self {
         Partition {
-            parts: vec![part],
+            parts: vec![Part::whole(map)],
             faces: Vec::new(),
         }
     }
@@ -158,23 +81,15 @@ impl Partition {
         let middle = add_scaled(&points[0], 0.5, &sub(&points[1], &points[0]));
         let host = (0..self.parts.len())
             .find(|&i| {
-                let lives = crack
-                    .parents
-                    .iter()
-                    .all(|p| self.parts[i].side(p.crack).is_none_or(|s| s == p.side));
-                lives && polygon::contains(&self.parts[i].polygon, &middle)
+                let part = &self.parts[i];
+                lives(crack, part) && polygon::contains(&part.polygon, &middle)
             })
             .ok_or(PartitionError::Muddle)?;
         let [left, right] =
             polygon::split(&self.parts[host].polygon, &points).ok_or(PartitionError::Muddle)?;
-        let new = self.parts.len();
-        let mut other = self.parts[host].clone();
         // The left of a curve is its side 1.
-        self.parts[host].polygon = left;
-        self.parts[host].sides.push((index, 1.0));
-        other.polygon = right;
-        other.sides.push((index, -1.0));
-        self.parts.push(other);
+        let halves = [left, right].map(|polygon| (polygon, Vec::new()));
+        let new = self.divide(host, index, halves);
         // Earlier faces of the host now border on either part; one that an end of the chain touches is cut there.
         let mut faces = Vec::new();
         for face in std::mem::take(&mut self.faces) {
@@ -191,15 +106,24 @@ impl Partition {
         Ok(())
     }
 
+    /// Divides a part by a crack into its halves on side 1 and side 2; the number of the latter.
+    fn divide(&mut self, host: usize, crack: usize, halves: [Half; 2]) -> usize {
+        let mut other = self.parts[host].clone();
+        let [upper, lower] = halves;
+        for (part, half, side) in [
+            (&mut self.parts[host], upper, 1.0),
+            (&mut other, lower, -1.0),
+        ] {
+            (part.polygon, part.tetrahedra) = half;
+            part.sides.push((crack, side));
+        }
+        self.parts.push(other);
+        self.parts.len() - 1
+    }
+
     /// A face of a part that was divided, with the half it belongs to.
     fn reassigned(&self, mut face: Face, host: usize, new: usize) -> Face {
-        let middle = |face: &Face| {
-            let scale = 1.0 / face.corners.len() as f64;
-            face.corners
-                .iter()
-                .fold([0.0; 3], |sum, c| add_scaled(&sum, scale, &c.0))
-        };
-        let x = middle(&face);
+        let x = face.middle();
         for part in &mut face.parts {
             if *part == host {
                 let distance = |i: usize| polygon::border_distance(&self.parts[i].polygon, &x);
@@ -212,41 +136,22 @@ impl Partition {
     }
 
     /// Cuts the tetrahedra on which a planar crack lives.
-    fn divide_solid(
-        &mut self,
-        index: usize,
-        cracks: &[Crack],
-        corners: &[Point],
-        phi: &[f64],
-    ) -> Result<(), PartitionError> {
+    fn divide_solid(&mut self, index: usize, cracks: &[Crack], map: &CellMap, phi: &[f64]) {
         let crack = &cracks[index];
-        let lives = |part: &Part| {
-            crack
-                .parents
-                .iter()
-                .all(|p| part.side(p.crack).is_none_or(|s| s == p.side))
-        };
         let level = |x: &Point| {
             // The nodes' own values, so that a node on the crack stays on it.
-            let node = corners.iter().position(|c| c == x);
+            let node = map.iter().position(|c| c == x);
             node.map_or_else(|| crack.distance(x), |i| phi[i])
         };
-        let size = norm(&sub(&corners[6], &corners[0]));
+        let size = map.diagonal();
         let mut halves: Vec<Option<usize>> = vec![None; self.parts.len()];
         for host in 0..self.parts.len() {
-            if !lives(&self.parts[host]) {
+            if !lives(crack, &self.parts[host]) {
                 continue;
             }
             let mut sides = [Vec::new(), Vec::new()];
             for t in &self.parts[host].tetrahedra {
-                let values = t.map(|x| {
-                    let value = level(&x);
-                    if value.abs() <= 1e-14 * size {
-                        0.0
-                    } else {
-                        value
-                    }
-                });
+                let values = t.map(|x| snapped(level(&x), 1e-14 * size));
                 for (part, side) in sides.iter_mut().zip([1.0, -1.0]) {
                     clip_tetrahedron(t, &values, side, part);
                 }
@@ -258,50 +163,40 @@ impl Partition {
                 self.parts[host].sides.push((index, side));
                 continue;
             }
-            let mut other = self.parts[host].clone();
-            self.parts[host].tetrahedra = upper;
-            self.parts[host].sides.push((index, 1.0));
-            other.tetrahedra = lower;
-            other.sides.push((index, -1.0));
-            halves[host] = Some(self.parts.len());
-            self.parts.push(other);
+            let tetrahedra = [upper, lower].map(|tetrahedra| (Vec::new(), tetrahedra));
+            halves[host] = Some(self.divide(host, index, tetrahedra));
         }
         // Earlier faces are clipped by this plane where it lives.
+        let lower = |part: usize| halves.get(part).copied().flatten();
         let mut faces = Vec::new();
         for face in std::mem::take(&mut self.faces) {
-            if face
-                .parts
-                .iter()
-                .all(|&p| halves.get(p).copied().flatten().is_none())
-            {
+            if face.parts.iter().all(|&p| lower(p).is_none()) {
                 faces.push(face);
                 continue;
             }
             for side in [1.0, -1.0] {
-                let polygon = clip_face(&face.corners, &level, side);
-                if polygon.len() > 2 {
-                    let parts = face.parts.map(|p| match halves.get(p).copied().flatten() {
+                let corners = clip_face(&face.corners, level, side);
+                if corners.len() > 2 {
+                    let parts = face.parts.map(|p| match lower(p) {
                         Some(lower) if side < 0.0 => lower,
                         _ => p,
                     });
                     faces.push(Face {
                         crack: face.crack,
-                        corners: polygon,
+                        corners,
                         parts,
                     });
                 }
             }
         }
-        let facet: Vec<FaceCorner> = super::facet(CellKind::Hex8, corners, phi)
-            .into_iter()
-            .map(|(x, nodes)| (x, Some(nodes)))
-            .collect();
+        let crossings = crack.crossings(map, phi).into_iter();
+        let facet = cyclic(crossings.map(|(x, nodes)| (x, Some(nodes))).collect());
         // Its own face, clipped to every part it divides by the cracks that divide those from each other.
         for (host, half) in halves.iter().enumerate() {
             let Some(lower) = *half else { continue };
             let mut polygon = facet.clone();
             for &(other, side) in self.parts[host].sides.iter().filter(|s| s.0 != index) {
-                polygon = clip_face(&polygon, &|x: &Point| cracks[other].distance(x), side);
+                polygon = clip_face(&polygon, |x| cracks[other].distance(x), side);
             }
             if polygon.len() > 2 {
                 faces.push(Face {
@@ -312,59 +207,42 @@ impl Partition {
             }
         }
         self.faces = faces;
-        Ok(())
     }
+}
+
+/// Polygon (2D) and tetrahedra (3D) of a half of a part.
+type Half = (Polygon, Vec<[Point; 4]>);
+
+/// Whether a crack reaches into a part, or ends on another one before.
+fn lives(crack: &Crack, part: &Part) -> bool {
+    let mut parents = crack.parents.iter();
+    parents.all(|p| part.side(p.crack).is_none_or(|s| s == p.side))
 }
 
 /// Convex polygon of face corners on one side of a level.
-fn clip_face(corners: &[FaceCorner], level: &dyn Fn(&Point) -> f64, side: Side) -> Vec<FaceCorner> {
-    let size = corners
-        .iter()
-        .map(|c| norm(&sub(&c.0, &corners[0].0)))
-        .fold(0.0, f64::max);
-    let values: Vec<f64> = corners
-        .iter()
-        .map(|c| {
-            let value = level(&c.0);
-            if value.abs() <= 1e-13 * size {
-                0.0
-            } else {
-                value
-            }
-        })
-        .collect();
-    if !values.iter().any(|v| v * side > 0.0) {
+fn clip_face(corners: &[FaceCorner], level: impl Fn(&Point) -> f64, side: Side) -> Vec<FaceCorner> {
+    let from_first = corners.iter().map(|c| norm(&sub(&c.0, &corners[0].0)));
+    let size = from_first.fold(0.0, f64::max);
+    let levels = corners.iter().map(|c| snapped(level(&c.0), 1e-13 * size));
+    let levels: Vec<f64> = levels.collect();
+    if !levels.iter().any(|v| v * side > 0.0) {
         return Vec::new();
     }
-    let mut part = Vec::new();
-    for i in 0..corners.len() {
-        let j = (i + 1) % corners.len();
-        if values[i] * side >= 0.0 {
-            part.push(corners[i]);
-        }
-        if values[i] * values[j] < 0.0 {
-            part.push((
-                crossing(&corners[i].0, values[i], &corners[j].0, values[j]),
-                None,
-            ));
-        }
-    }
-    part
+    clip_with(corners, &levels, side, |i, j| {
+        (
+            crossing(&corners[i].0, levels[i], &corners[j].0, levels[j]),
+            None,
+        )
+    })
 }
 
 /// The crack inside a 2D cell from entry to exit, or from or to the crack it ends on.
-fn chain_in(
-    mesh: &Mesh,
-    corners: &[Point],
-    phi: &[f64; 8],
-    cracks: &[Crack],
-    index: usize,
-) -> Result<Vec<FaceCorner>, PartitionError> {
-    let crack = &cracks[index];
+fn chain_in(map: &CellMap, phi: &[f64], crack: &Crack) -> Result<Vec<FaceCorner>, PartitionError> {
     let Geometry::Curve(curve) = &crack.geometry else {
         return Err(PartitionError::Muddle);
     };
-    let mut ends: Vec<(f64, FaceCorner)> = crossings(mesh.kind, corners, phi, crack)
+    let mut ends: Vec<(f64, FaceCorner)> = crack
+        .crossings(map, phi)
         .into_iter()
         .map(|(x, nodes)| (curve.nearest(&x).s, (x, Some(nodes))))
         .collect();
@@ -377,7 +255,7 @@ fn chain_in(
         ends[low].0 += curve.length();
     }
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let size = norm(&sub(&corners[2], &corners[0]));
+    let size = map.diagonal();
     // What ends on another crack in this cell stops there.
     for (k, end) in ends.iter_mut().enumerate() {
         let bound = crack.range[k];
@@ -387,8 +265,8 @@ fn chain_in(
         }
     }
     let inside = |x: &Point| {
-        let xi = mesh.kind.inverse_map(corners, x);
-        xi.is_some_and(|xi| xi[0].abs() < 1.0 && xi[1].abs() < 1.0)
+        let xi = map.inverse(x);
+        xi.is_some_and(|xi| map.kind.contains(&xi, 0.0))
     };
     let inner = curve.between(ends[0].0, ends[1].0);
     let inner: Vec<Point> = if inner.iter().all(inside) {
@@ -402,26 +280,28 @@ fn chain_in(
     Ok(chain)
 }
 
-/// Nodes on the crack and crossed edges of a cell.
-pub fn crossings(
-    kind: CellKind,
-    corners: &[Point],
-    phi: &[f64],
-    crack: &Crack,
-) -> Vec<(Point, [usize; 2])> {
-    let mut found: Vec<(Point, [usize; 2])> = (0..kind.nodes())
-        .filter(|&i| phi[i] == 0.0)
-        .map(|i| (corners[i], [i, i]))
-        .collect();
-    for &[i, j] in kind.edges() {
-        if phi[i] * phi[j] < 0.0 {
-            found.push((
-                crack.crossing(&corners[i], phi[i], &corners[j], phi[j]),
-                [i, j],
-            ));
+/// Corners of a convex polygon in cyclic order around their mean.
+fn cyclic(mut corners: Vec<FaceCorner>) -> Vec<FaceCorner> {
+    let centre = mean(corners.iter().map(|corner| &corner.0));
+    let from_centre = |corner: &FaceCorner| sub(&corner.0, &centre);
+    let Some(e1) = corners.first().map(from_centre) else {
+        return corners;
+    };
+    let mut normal = [0.0; 3];
+    for corner in &corners[1..] {
+        let candidate = cross(&e1, &from_centre(corner));
+        if norm(&candidate) > norm(&normal) {
+            normal = candidate;
         }
     }
-    found
+    let e2 = cross(&normal, &e1);
+    let (l1, l2) = (norm(&e1), norm(&e2));
+    let angle = |corner: &FaceCorner| {
+        let d = from_centre(corner);
+        (dot(&d, &e2) / l2).atan2(dot(&d, &e1) / l1)
+    };
+    corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
+    corners
 }
 
 /// A 2D face cut at the given points that lie inside it.
@@ -450,4 +330,38 @@ fn cut_at(face: Face, at: &[FaceCorner]) -> Vec<Face> {
             ..face.clone()
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::crack::Tip;
+    use crate::geometry::clip::fan;
+    use crate::geometry::crack_shape::CrackShape;
+    use crate::mesh::box_mesh::{GridSpec, box_mesh};
+
+    /// The corners of the face of a crack through the cell [−1, 1]^dim.
+    fn face(dim: usize, shape: &CrackShape) -> Vec<FaceCorner> {
+        let mesh = box_mesh(&GridSpec::new(vec![vec![-1.0, 1.0]; dim])).unwrap();
+        let crack = Crack::new(0, shape, Tip::None, &mesh);
+        let partition = Partition::new(&mesh, 0, &[crack], &[0]).unwrap();
+        assert_eq!((partition.parts.len(), partition.faces.len()), (2, 1));
+        partition.faces[0].corners.clone()
+    }
+
+    #[test]
+    fn the_face_of_a_diagonal_cut_joins_two_nodes_and_of_an_oblique_plane_is_a_hexagon() {
+        let segment = face(2, &CrackShape::Polyline(vec![[-1.0, -1.0], [1.0, 1.0]]));
+        let nodes: Vec<_> = segment.iter().map(|corner| corner.1).collect();
+        assert_eq!(nodes, [Some([0, 0]), Some([2, 2])]);
+        let plane = CrackShape::Plane {
+            point: [0.0; 3],
+            normal: [1.0; 3],
+        };
+        let hexagon: Vec<Point> = face(3, &plane).iter().map(|corner| corner.0).collect();
+        assert_eq!(hexagon.len(), 6);
+        let doubled = |t: &[Point; 3]| norm(&cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0])));
+        let area: f64 = fan(&hexagon).iter().map(|t| 0.5 * doubled(t)).sum();
+        assert!((area - 3.0 * 3.0f64.sqrt()).abs() < 1e-12); // regular hexagon of side √2
+    }
 }

@@ -7,7 +7,6 @@ use crate::mesh::Mesh;
 
 use super::crack::{Crack, Geometry};
 use super::is_split;
-use super::partition::crossings;
 
 /// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
 const ON_EDGE: f64 = 1e-9;
@@ -29,18 +28,16 @@ pub enum Along {
 /// Where a cell lies along a crack.
 pub fn along(mesh: &Mesh, crack: &Crack, cell: usize) -> Along {
     let phi = crack.cell_phi(mesh, cell);
-    let kind = mesh.kind;
-    if !is_split(kind, &phi) {
+    if !is_split(&phi) {
         return Along::Away;
     }
-    let corners = mesh.corners(cell);
-    let corners = &corners[..kind.nodes()];
-    let size = norm(&sub(&corners[0], &corners[kind.nodes() - 2]));
+    let map = mesh.map(cell);
+    let size = map.diagonal();
     // Far from a bent crack φ changes sign where two of its parts are equally near.
-    if phi[..kind.nodes()].iter().any(|f| f.abs() > 2.0 * size) {
+    if phi.iter().any(|f| f.abs() > 2.0 * size) {
         return Along::Away;
     }
-    let points = crossings(kind, corners, &phi, crack);
+    let points = crack.crossings(&map, &phi);
     if points
         .iter()
         .any(|(x, _)| crack.distance(x).abs() > 1e-6 * size)
@@ -144,8 +141,7 @@ pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(Point, Point)> {
             let Some(&cell) = cells_at(mesh, x).first() else {
                 return false;
             };
-            let corners = mesh.corners(cell);
-            let step = 1e-6 * norm(&sub(&corners[0], &corners[2]));
+            let step = 1e-6 * mesh.map(cell).diagonal();
             !cells_at(mesh, &add_scaled(x, step, ahead)).is_empty()
         })
         .collect()
@@ -160,17 +156,14 @@ pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
 
 /// Reference position of a point in the closure of a cell, give or take `slack` diagonals; `None` if it lies outside.
 pub fn reference_position(mesh: &Mesh, cell: usize, x: &Point, slack: f64) -> Option<Point> {
-    let corners = mesh.corners(cell);
-    let corners = &corners[..mesh.kind.nodes()];
-    let margin = slack * norm(&sub(&corners[0], &corners[2]));
+    let map = mesh.map(cell);
+    let margin = slack * map.diagonal();
     let outside = (0..mesh.dim()).any(|a| {
-        corners.iter().all(|c| c[a] < x[a] - margin) || corners.iter().all(|c| c[a] > x[a] + margin)
+        map.iter().all(|c| c[a] < x[a] - margin) || map.iter().all(|c| c[a] > x[a] + margin)
     });
     if outside {
         return None;
     }
-    let xi = mesh.kind.inverse_map(corners, x)?;
-    xi.iter()
-        .all(|v| v.abs() <= 1.0 + 4.0 * slack)
-        .then_some(xi)
+    let xi = map.inverse(x)?;
+    map.kind.contains(&xi, 4.0 * slack).then_some(xi)
 }

@@ -1,8 +1,9 @@
 //! Edges and facets of a cell, divided among its regions.
 
 use crate::cut::crack::Crack;
-use crate::cut::partition::{Part, Partition};
-use crate::geometry::clip::{Side, clip};
+use crate::cut::part::Part;
+use crate::cut::partition::Partition;
+use crate::geometry::clip::{Side, clip, snapped};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::Mesh;
 
@@ -20,8 +21,8 @@ pub fn pieces(
     cell: usize,
     local: &[usize],
 ) -> Vec<Piece> {
-    let corners = mesh.corners(cell);
-    let vertices: Vec<Point> = local.iter().map(|&i| corners[i]).collect();
+    let map = mesh.map(cell);
+    let vertices: Vec<Point> = local.iter().map(|&i| map[i]).collect();
     let Some(partition) = enrichment.partition(cell) else {
         return vec![(vertices, 0)];
     };
@@ -42,15 +43,11 @@ pub fn pieces(
             let level = |x: &Point| {
                 let node = vertices.iter().position(|v| v == x);
                 let value = node.map_or_else(|| cracks[crack].distance(x), |k| own[k]);
-                if value.abs() <= 1e-14 * size {
-                    0.0
-                } else {
-                    value
-                }
+                snapped(value, 1e-14 * size)
             };
-            let levels: Vec<(Point, f64)> = polygon.iter().map(|x| (*x, level(x))).collect();
-            polygon = if levels.iter().any(|v| v.1 * side > 0.0) {
-                clip(&levels, side).into_iter().map(|v| v.0).collect()
+            let levels: Vec<f64> = polygon.iter().map(level).collect();
+            polygon = if levels.iter().any(|v| v * side > 0.0) {
+                clip(&polygon, &levels, side)
             } else {
                 Vec::new()
             };

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::cut::crack::{Crack, Geometry};
-use crate::cut::partition::Face;
+use crate::cut::part::Face;
+use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::curve::turned;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::mesh::Mesh;
@@ -85,9 +86,8 @@ impl CrackFacets {
                 continue;
             };
             let nodes = mesh.cell(cell);
-            let corners = mesh.corners(cell);
             // What is cut off or merged by it is missing from the crack, and so from the forces on it.
-            let tolerance = 1e-12 * norm(&sub(&corners[0], &corners[2]));
+            let tolerance = 1e-12 * mesh.map(cell).diagonal();
             // Corners inside the cell that its own faces share.
             let mut inner: Vec<usize> = Vec::new();
             for face in partition.faces.iter().filter(|f| f.crack == index) {
@@ -161,11 +161,7 @@ fn within(crack: &Crack, polygon: &[Corner], tolerance: f64) -> Option<Clipped> 
     match &crack.geometry {
         Geometry::Plane { .. } => Some((polygon.to_vec(), None)),
         Geometry::Ellipse(ellipse) => {
-            let psi = |x: &Point| {
-                let psi = ellipse.nearest(x).psi;
-                if psi.abs() <= tolerance { 0.0 } else { psi }
-            };
-            inside_front(polygon, &psi)
+            inside_front(polygon, |x| snapped(ellipse.nearest(x).psi, tolerance))
         }
         Geometry::Curve(curve) if curve.is_closed() => Some((polygon.to_vec(), None)),
         Geometry::Curve(curve) => {
@@ -194,31 +190,22 @@ fn within(crack: &Crack, polygon: &[Corner], tolerance: f64) -> Option<Clipped> 
 }
 
 /// The convex part ψ <= 0 of a polygon, the front taken as a chord between its two crossings with the border.
-fn inside_front(polygon: &[Corner], psi: &dyn Fn(&Point) -> f64) -> Option<Clipped> {
+fn inside_front(polygon: &[Corner], psi: impl Fn(&Point) -> f64) -> Option<Clipped> {
     let values: Vec<f64> = polygon.iter().map(|c| psi(&c.x)).collect();
     if !values.iter().any(|&v| v < 0.0) {
         return None;
     }
-    let mut part: Vec<Corner> = Vec::new();
-    let mut front = Vec::new();
-    for i in 0..polygon.len() {
-        let j = (i + 1) % polygon.len();
-        if values[i] <= 0.0 {
-            part.push(polygon[i]);
-            if values[i] == 0.0 {
-                front.push(polygon[i].x);
-            }
-        }
-        if values[i] * values[j] < 0.0 {
-            let x = root(&polygon[i].x, &polygon[j].x, values[i], psi);
-            part.push(Corner { x, nodes: None });
-            front.push(x);
-        }
-    }
+    let corners: Vec<(Corner, f64)> = polygon.iter().copied().zip(values.clone()).collect();
+    let inside = clip_with(&corners, &values, -1.0, |i, j| {
+        let x = bent_crossing(&polygon[i].x, values[i], &polygon[j].x, &psi);
+        (Corner { x, nodes: None }, 0.0)
+    });
+    let part: Vec<Corner> = inside.iter().map(|c| c.0).collect();
     if part.len() < 3 || area(&part) <= 0.0 {
         return None;
     }
-    let chord = <[Point; 2]>::try_from(front)
+    let on_front = inside.iter().filter(|c| c.1 == 0.0).map(|c| c.0.x);
+    let chord = <[Point; 2]>::try_from(on_front.collect::<Vec<_>>())
         .ok()
         .filter(|_| values.iter().any(|&v| v > 0.0));
     let cut = chord.map(|chord| FrontCut {
@@ -237,19 +224,4 @@ fn area(polygon: &[Corner]) -> f64 {
         add_scaled(&sum, 0.5, &cross(&p, &q))
     });
     norm(&sum)
-}
-
-/// Zero of a function on the segment p q whose value at p is `at_p`, by bisection.
-fn root(p: &Point, q: &Point, at_p: f64, value: &dyn Fn(&Point) -> f64) -> Point {
-    let d = sub(q, p);
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if value(&add_scaled(p, middle, &d)) * at_p > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    add_scaled(p, 0.5 * (low + high), &d)
 }

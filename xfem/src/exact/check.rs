@@ -1,10 +1,11 @@
 //! Checks shared by the tests of all closed forms: Hooke's law, equilibrium, consistency of the faces, contact laws.
 
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub, unit};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, resolve, sub, unit};
 use crate::material::{Lame, Material, Model};
 
-use super::line_crack::{apply, axes, resolve};
-use super::{Field, Setting};
+use super::parts::line_crack::{LineCrack, apply, axes};
+use super::solution::{Field, Setting, Solution};
 
 /// A setting for tests: E = 2, ν = 0.3, plane strain, μ = 0.5, body [−1, 1]².
 pub fn setting(crack: &CrackShape) -> Setting<'_> {
@@ -135,6 +136,29 @@ pub fn check_contact(
             }
         }
     }
+}
+
+/// Contact laws at points of the crack after every increment of a path, against the increment before; the states.
+pub fn check_path(
+    solution: &dyn Solution,
+    of: &Setting<'_>,
+    path: &[f64],
+    points: &[Point],
+    tolerance: [f64; 2],
+) -> Vec<Box<dyn Field>> {
+    let at = |k: usize| solution.at(&path[..k]).unwrap();
+    let states: Vec<Box<dyn Field>> = (1..=path.len()).map(at).collect();
+    for (k, now) in states.iter().enumerate() {
+        let before = k.checked_sub(1).map(|k| states[k].as_ref());
+        check_contact(now.as_ref(), before, of, points, tolerance);
+    }
+    states
+}
+
+/// Points along a straight crack, off its ends.
+pub fn along(crack: &LineCrack) -> Vec<Point> {
+    let at = |k| crack.point((f64::from(k) / 100.0 - 0.995) * crack.half_length, 0.0);
+    (0..200).map(at).collect()
 }
 
 /// K at both ends of a straight crack against the stress just ahead, in the frame (ahead, n).

@@ -19,11 +19,12 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use crate::geometry::{CrackShape, Point, add_scaled, norm, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, norm, resolve, sub};
 
-use super::line_crack::{apply, axes, resolve};
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::{apply, axes};
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
 const ON_CIRCLE: f64 = 1e-10;
@@ -33,21 +34,15 @@ pub const SPEC: SolutionSpec = SolutionSpec {
     name: "circular-interface",
     summary: "2D disc parted by a circular arc, contact without friction, pressure p₀ + p₂ cos 2θ on its rim",
     parameters: &[
-        ParameterSpec {
-            name: "outer_radius_m",
-            summary: "radius R₁ of the rim, about the centre of the arc",
-            default: None,
-        },
-        ParameterSpec {
-            name: "pressure_pa",
-            summary: "mean pressure p₀ on the rim",
-            default: None,
-        },
-        ParameterSpec {
-            name: "pressure_wave_pa",
-            summary: "amplitude p₂ of the pressure varying as cos 2θ",
-            default: None,
-        },
+        ParameterSpec::required(
+            "outer_radius_m",
+            "radius R₁ of the rim, about the centre of the arc",
+        ),
+        ParameterSpec::required("pressure_pa", "mean pressure p₀ on the rim"),
+        ParameterSpec::required(
+            "pressure_wave_pa",
+            "amplitude p₂ of the pressure varying as cos 2θ",
+        ),
     ],
     build,
 };

@@ -4,34 +4,30 @@
 //! ```text
 //!   remote traction on side 1:   p = −n σ n (pressure),  τ = σ n − (n σ n) n
 //!   jump = D √(1 − x²/a² − y²/b²),  D uniform;  the stress drop is uniform over the crack
-//!   open (p < 0): D = (C_n |p|, C_a τ_a, C_b τ_b);   stick (|τ| <= μ p): D = 0;   slip: [`super::elliptic_slip`]
+//!   open (p < 0): D = (C_n |p|, C_a τ_a, C_b τ_b);   stick (|τ| <= μ p): D = 0;   slip: [`super::parts::elliptic_slip`]
 //! ```
 //!
 //! The slip has one direction everywhere, so Coulomb's law holds at every point and not only on average. Mode I: Green and
 //! Sneddon (1950); shear: Kassir and Sih (1966); a disc: Segedin (1950). The field off the crack is that of the jump
-//! ([`DiscPotential`]) and the uniform remote field: relative error 1e-15, 1e-16 a/r at a distance r from the front, where
+//! ([`super::parts::elliptic_disc::DiscPotential`]) and the uniform remote field: relative error 1e-15, 1e-16 a/r at a distance r from the front, where
 //! stresses are singular. The uniform part of the displacement vanishes with its rotation at the centre of the crack.
 //!
 //! Load factors scale the remote stress. With friction and slip they may not fall; the slip then keeps its direction.
 
 use std::f64::consts::PI;
 
+use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, sub};
 use crate::material::{Material, Model};
 
-#[cfg(doc)]
-use super::elliptic_disc::DiscPotential;
-use super::elliptic_disc::disc_potential;
-use super::elliptic_slip::{compliance, slip};
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::elliptic_disc::disc_potential;
+use super::parts::elliptic_slip::{compliance, slip};
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
+/// A component of stress.
 const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
-    ParameterSpec {
-        name,
-        summary,
-        default: Some(0.0),
-    }
+    ParameterSpec::optional(name, summary, 0.0)
 }
 
 /// The registered solution.
@@ -50,13 +46,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let CrackShape::Ellipse {
-        centre,
-        normal,
-        axis,
-        half_axes,
-    } = *setting.crack
-    else {
+    let CrackShape::Ellipse(ellipse) = *setting.crack else {
         return Err("elliptic-crack needs an elliptic crack".into());
     };
     if setting.model != Model::Solid {
@@ -66,12 +56,7 @@ fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, Str
         return Err("elliptic-crack takes six components of stress".into());
     };
     Ok(Box::new(EllipticCrack {
-        ellipse: Ellipse {
-            centre,
-            normal,
-            axis,
-            half_axes,
-        },
+        ellipse,
         material: setting.material,
         friction: setting.friction,
         stress: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
@@ -147,17 +132,10 @@ impl Solution for EllipticCrack {
             // ∫ √(1 − x²/a² − y²/b²) dA = 2π a b / 3
             let [a, b] = self.ellipse.half_axes;
             let work = -(unit.traction[0] * unit.jump[0] + unit.traction[1] * unit.jump[1]);
-            let mut before = 0.0;
-            for &factor in factors {
-                if factor < before {
-                    return Err(format!(
-                        "the load factor falls from {before} to {factor}: slip would reverse"
-                    ));
-                }
-                // Traction and slip are both proportional to the factor.
+            // Traction and slip are both proportional to the factor.
+            growing(factors, |factor, before| {
                 state.dissipation += 2.0 * PI * a * b / 3.0 * work * factor * (factor - before);
-                before = factor;
-            }
+            })?;
         }
         Ok(Box::new(state))
     }
@@ -271,7 +249,7 @@ impl Field for State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::exact::check::{check_elasticity, check_path, setting};
     use crate::geometry::unit;
 
     const MATERIAL: Material = Material {
@@ -311,13 +289,13 @@ mod tests {
     }
 
     /// Slipping, open, sticking; discs and ellipses either way round.
-    fn states() -> Vec<State> {
-        vec![
-            crack([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4).state(1.0),
-            crack([0.4, 0.9], [-1.0, 0.7, -0.2], 0.3).state(1.0),
-            crack([0.8, 0.8], [-1.0, 0.3, -0.6], 0.2).state(1.0),
-            crack([1.0, 0.6], [0.5, 0.3, -0.6], 0.2).state(1.0),
-            crack([1.0, 0.6], [-1.0, 0.3, -0.1], 0.6).state(1.0),
+    fn cracks() -> [EllipticCrack; 5] {
+        [
+            crack([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4),
+            crack([0.4, 0.9], [-1.0, 0.7, -0.2], 0.3),
+            crack([0.8, 0.8], [-1.0, 0.3, -0.6], 0.2),
+            crack([1.0, 0.6], [0.5, 0.3, -0.6], 0.2),
+            crack([1.0, 0.6], [-1.0, 0.3, -0.1], 0.6),
         ]
     }
 
@@ -352,7 +330,7 @@ mod tests {
     #[test]
     fn intensities_are_those_of_the_jump_near_the_front() {
         let (g, nu) = (1.0, 0.3);
-        for state in states() {
+        for state in cracks().map(|crack| crack.state(1.0)) {
             for t in [0.3, 1.4, -2.0] {
                 let front = state.ellipse.point(t);
                 let nearest = state.ellipse.nearest(&front);
@@ -384,34 +362,15 @@ mod tests {
 
     #[test]
     fn the_field_equations_and_the_contact_laws_hold() {
-        let cases = [
-            ([1.0, 0.5], [-1.0, 0.5, 0.5], 0.4),
-            ([0.4, 0.9], [-1.0, 0.7, -0.2], 0.3),
-            ([0.8, 0.8], [-1.0, 0.3, -0.6], 0.2),
-            ([1.0, 0.6], [0.5, 0.3, -0.6], 0.2),
-            ([1.0, 0.6], [-1.0, 0.3, -0.1], 0.6),
-        ];
-        for (half_axes, traction, friction) in cases {
-            let crack = crack(half_axes, traction, friction);
+        for crack in cracks() {
             let state = crack.state(1.0);
-            let Ellipse {
-                centre,
-                normal,
-                axis,
-                half_axes,
-            } = crack.ellipse;
-            let shape = CrackShape::Ellipse {
-                centre,
-                normal,
-                axis,
-                half_axes,
-            };
+            let shape = CrackShape::Ellipse(crack.ellipse);
             let mut of = setting(&shape);
-            (of.model, of.material, of.friction) = (Model::Solid, MATERIAL, friction);
+            (of.model, of.material, of.friction) = (Model::Solid, MATERIAL, crack.friction);
             let [x, y, z] = crack.stress;
             let solution = build(&of, &[x[0], y[1], z[2], x[1], y[2], x[2]]).unwrap();
-            let at = |local: [f64; 3]| add_scaled(&centre, 1.0, &state.global(local));
-            let [a, b] = half_axes;
+            let at = |local| add_scaled(&crack.ellipse.centre, 1.0, &state.global(local));
+            let [a, b] = crack.ellipse.half_axes;
             let on = [[0.0, 0.0], [0.5, 0.4], [-0.7, 0.7], [0.9, -0.43]]
                 .map(|[p, q]| at([a * p, b * q, 0.0]));
             // Off the crack, close to it, close to its front, in its plane.
@@ -422,16 +381,12 @@ mod tests {
                 [1.4, 0.3, 0.0],
             ]
             .map(at);
-            let mut before: Option<Box<dyn Field>> = None;
-            for path in [&[0.4][..], &[0.4, 1.0]] {
-                let now = solution.at(path).unwrap();
-                check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-11, 1e-13]);
+            for now in check_path(solution.as_ref(), &of, &[0.4, 1.0], &on, [1e-11, 1e-13]) {
                 check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-7);
-                before = Some(now);
             }
         }
         // Sticking and open, as meant.
-        let jumps: Vec<[f64; 3]> = states().iter().map(|s| s.jump).collect();
+        let jumps = cracks().map(|crack| crack.state(1.0).jump);
         assert!(jumps[4] == [0.0; 3] && jumps[3][2] > 0.0 && jumps[2][2] == 0.0);
     }
 

@@ -25,41 +25,31 @@ use std::f64::consts::{PI, TAU};
 use crate::geometry::Point;
 use crate::material::Lame;
 
-use super::jet::hump;
-use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::jet::hump;
+use super::parts::line_crack::LineCrack;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "manufactured-slip",
     summary: "2D body cut by a straight crack: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        ParameterSpec {
-            name: "pressure_pa",
-            summary: "mean pressure p₀ > 0",
-            default: None,
-        },
-        ParameterSpec {
-            name: "pressure_wave_pa",
-            summary: "amplitude p₁ of its variation, |p₁| < p₀",
-            default: None,
-        },
-        ParameterSpec {
-            name: "slip_m",
-            summary: "largest slip s₀ >= 0",
-            default: None,
-        },
-        ParameterSpec {
-            name: "wave_length_m",
-            summary: "length L of a slipping and a sticking half wave, which meet at the midpoint of the crack",
-            default: None,
-        },
-        ParameterSpec {
-            name: "stick_dip",
-            summary: "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
-            default: Some(1.0),
-        },
+        ParameterSpec::required("pressure_pa", "mean pressure p₀ > 0"),
+        ParameterSpec::required(
+            "pressure_wave_pa",
+            "amplitude p₁ of its variation, |p₁| < p₀",
+        ),
+        ParameterSpec::required("slip_m", "largest slip s₀ >= 0"),
+        ParameterSpec::required(
+            "wave_length_m",
+            "length L of a slipping and a sticking half wave, which meet at the midpoint of the crack",
+        ),
+        ParameterSpec::optional(
+            "stick_dip",
+            "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
+            1.0,
+        ),
     ],
     build,
 };
@@ -205,16 +195,10 @@ impl Solution for ManufacturedSlip {
             scale: 0.0,
             ..self.clone()
         };
-        for &factor in factors {
-            if factor < now.scale {
-                return Err(format!(
-                    "the load factor falls from {} to {factor}: slip would reverse",
-                    now.scale
-                ));
-            }
-            now.dissipation += factor * (factor - now.scale) * unit;
+        growing(factors, |factor, before| {
+            now.dissipation += factor * (factor - before) * unit;
             now.scale = factor;
-        }
+        })?;
         Ok(Box::new(now))
     }
 }
@@ -269,8 +253,8 @@ impl Field for ManufacturedSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
-    use crate::geometry::CrackShape;
+    use crate::exact::check::{check_elasticity, check_path, setting};
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Model;
 
     const VALUES: [f64; 5] = [1.0, 0.4, 0.03, 0.9, 1.3];
@@ -291,24 +275,16 @@ mod tests {
                 of.model = model;
                 let crack = LineCrack::new(&of).unwrap();
                 let solution = build(&of, &VALUES).unwrap();
-                let path = [0.3, 0.3, 1.0];
-                let mut before: Option<Box<dyn Field>> = None;
-                for k in 1..=path.len() {
-                    let now = solution.at(&path[..k]).unwrap();
-                    let on: Vec<Point> = (-20..=20)
-                        .map(|k| crack.point(k as f64 / 20.0, 0.0))
-                        .collect();
-                    check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-14, 1e-14]);
-                    // Off the crack, and off the lines where s''' leaps.
-                    let off: Vec<Point> = (-7..8)
-                        .flat_map(|k| {
-                            [-0.6, -0.2, 0.2, 0.6].map(|y| crack.point(0.13 * k as f64, y))
-                        })
-                        .filter(|x| (crack.abscissa(x) * TAU / 0.9).sin().abs() > 0.02)
-                        .collect();
-                    assert!(off.len() > 50);
+                let on = (-20..=20).map(|k| crack.point(k as f64 / 20.0, 0.0));
+                let on: Vec<Point> = on.collect();
+                // Off the crack, and off the lines where s''' leaps.
+                let off: Vec<Point> = (-7..8)
+                    .flat_map(|k| [-0.6, -0.2, 0.2, 0.6].map(|y| crack.point(0.13 * k as f64, y)))
+                    .filter(|x| (crack.abscissa(x) * TAU / 0.9).sin().abs() > 0.02)
+                    .collect();
+                assert!(off.len() > 50);
+                for now in check_path(solution.as_ref(), &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
                     check_elasticity(now.as_ref(), &of, &off, 2e-4, 1e-9);
-                    before = Some(now);
                 }
             }
         }

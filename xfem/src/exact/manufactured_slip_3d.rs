@@ -25,60 +25,47 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::geometry::clip::{clip, crossing};
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::material::{Lame, Model};
 use crate::quadrature::gauss;
 
-use super::jet::{Jet, Separable, cosine, hump, product, times};
-use super::line_crack::axes;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
+use super::parts::line_crack::axes;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
 
 /// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
 const ON_PLANE: f64 = 1e-10;
-
-const fn parameter(
-    name: &'static str,
-    summary: &'static str,
-    default: Option<f64>,
-) -> ParameterSpec {
-    ParameterSpec {
-        name,
-        summary,
-        default,
-    }
-}
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "manufactured-slip-3d",
     summary: "solid cut by a plane: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        parameter("pressure_pa", "mean pressure p₀ > 0", None),
-        parameter(
+        ParameterSpec::required("pressure_pa", "mean pressure p₀ > 0"),
+        ParameterSpec::required(
             "pressure_wave_pa",
             "amplitude p₁ of its variation, |p₁| < p₀",
-            None,
         ),
-        parameter("slip_m", "slip s₀ >= 0 of a half wave's middle", None),
-        parameter(
+        ParameterSpec::required("slip_m", "slip s₀ >= 0 of a half wave's middle"),
+        ParameterSpec::required(
             "wave_length_m",
             "length L of a slipping and a sticking half wave, which meet at the point of the plane",
-            None,
         ),
-        parameter(
+        ParameterSpec::optional(
             "slip_wave",
             "m, |m| < 1: variation of the slip along the half waves",
-            Some(0.5),
+            0.5,
         ),
-        parameter(
+        ParameterSpec::optional(
             "slip_angle_deg",
             "direction of slip, from the local axis a towards b",
-            Some(30.0),
+            30.0,
         ),
-        parameter(
+        ParameterSpec::optional(
             "stick_dip",
             "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
-            Some(1.0),
+            1.0,
         ),
     ],
     build,
@@ -228,9 +215,8 @@ impl ManufacturedSlip {
             .collect();
         for k in 0..3 {
             for (sign, wall) in [(1.0, body[0][k]), (-1.0, body[1][k])] {
-                let with: Vec<(Point, f64)> =
-                    polygon.iter().map(|x| (*x, sign * (x[k] - wall))).collect();
-                polygon = clip(&with, 1.0).into_iter().map(|(x, _)| x).collect();
+                let levels: Vec<f64> = polygon.iter().map(|x| sign * (x[k] - wall)).collect();
+                polygon = clip(&polygon, &levels, 1.0);
             }
         }
         if polygon.len() < 3 {
@@ -289,16 +275,10 @@ impl Solution for ManufacturedSlip {
             scale: 0.0,
             ..self.clone()
         };
-        for &factor in factors {
-            if factor < now.scale {
-                return Err(format!(
-                    "the load factor falls from {} to {factor}: slip would reverse",
-                    now.scale
-                ));
-            }
-            now.dissipation += factor * (factor - now.scale) * self.work;
+        growing(factors, |factor, before| {
+            now.dissipation += factor * (factor - before) * self.work;
             now.scale = factor;
-        }
+        })?;
         Ok(Box::new(now))
     }
 }
@@ -380,7 +360,7 @@ impl Field for ManufacturedSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::exact::check::{check_elasticity, check_path, setting};
     use crate::geometry::unit;
 
     const VALUES: [f64; 7] = [1.0, 0.4, 0.03, 0.9, 0.6, 35.0, 1.3];
@@ -411,24 +391,19 @@ mod tests {
         for shape in &shapes() {
             let of = solid(shape);
             let solution = build(&of, &VALUES).unwrap();
-            let path = [0.3, 0.3, 1.0];
-            let mut before: Option<Box<dyn Field>> = None;
-            for k in 1..=path.len() {
-                let now = solution.at(&path[..k]).unwrap();
-                let places: Vec<[f64; 2]> = (-8..=8)
-                    .flat_map(|i| (-3..=3).map(move |j| [0.11 * f64::from(i), 0.27 * f64::from(j)]))
-                    .collect();
-                let on: Vec<Point> = places.iter().map(|[p, q]| at(shape, *p, *q, 0.0)).collect();
-                check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-14, 1e-14]);
-                // Off the crack, and off the lines where s''' leaps.
-                let off: Vec<Point> = places
-                    .iter()
-                    .filter(|[p, _]| (p * TAU / 0.9).sin().abs() > 0.02)
-                    .flat_map(|[p, q]| [-0.6, -0.1, 0.2].map(|y| at(shape, *p, *q, y)))
-                    .collect();
-                assert!(off.len() > 300);
+            let places: Vec<[f64; 2]> = (-8..=8)
+                .flat_map(|i| (-3..=3).map(move |j| [0.11 * f64::from(i), 0.27 * f64::from(j)]))
+                .collect();
+            let on: Vec<Point> = places.iter().map(|[p, q]| at(shape, *p, *q, 0.0)).collect();
+            // Off the crack, and off the lines where s''' leaps.
+            let off: Vec<Point> = places
+                .iter()
+                .filter(|[p, _]| (p * TAU / 0.9).sin().abs() > 0.02)
+                .flat_map(|[p, q]| [-0.6, -0.1, 0.2].map(|y| at(shape, *p, *q, y)))
+                .collect();
+            assert!(off.len() > 300);
+            for now in check_path(solution.as_ref(), &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
                 check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-9);
-                before = Some(now);
             }
         }
     }

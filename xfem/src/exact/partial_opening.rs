@@ -16,28 +16,26 @@
 //!
 //! Rigid motion: the crack line keeps its direction, its midpoint does not move in the uncracked field.
 
-use super::contact_zone::released;
-use super::crack_field::{Background, CrackField};
-use super::face_load::Mode;
-use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::contact_zone::released;
+use super::parts::crack_field::{Background, CrackField};
+use super::parts::face_load::Mode;
+use super::parts::line_crack::LineCrack;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-opening",
     summary: "straight 2D crack in an infinite plate under stress growing linearly along it: partly open, partly closed",
     parameters: &[
-        ParameterSpec {
-            name: "pressure_pa",
-            summary: "pressure p₀ of the uncracked body at the midpoint of the crack, negative: tension",
-            default: None,
-        },
-        ParameterSpec {
-            name: "pressure_rise_pa",
-            summary: "p₁: that pressure at the second end of the crack less that at the midpoint",
-            default: None,
-        },
+        ParameterSpec::required(
+            "pressure_pa",
+            "pressure p₀ of the uncracked body at the midpoint of the crack, negative: tension",
+        ),
+        ParameterSpec::required(
+            "pressure_rise_pa",
+            "p₁: that pressure at the second end of the crack less that at the midpoint",
+        ),
     ],
     build,
 };
@@ -93,9 +91,9 @@ impl Solution for PartialOpening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, check_intensity, setting};
-    use crate::exact::face_load::FaceLoad;
-    use crate::geometry::{CrackShape, Point};
+    use crate::exact::check::{along, check_contact, check_elasticity, check_intensity, setting};
+    use crate::exact::parts::face_load::FaceLoad;
+    use crate::geometry::crack_shape::CrackShape;
     use std::f64::consts::PI;
 
     #[test]
@@ -119,10 +117,7 @@ mod tests {
     fn the_contact_laws_hold_in_every_state() {
         let shape = CrackShape::Polyline(vec![[-0.5, -0.3], [0.4, 0.2]]);
         let of = setting(&shape);
-        let crack = LineCrack::new(&of).unwrap();
-        let along: Vec<Point> = (0..200)
-            .map(|k| crack.point((k as f64 / 100.0 - 0.995) * crack.half_length, 0.0))
-            .collect();
+        let along = along(&LineCrack::new(&of).unwrap());
         let off = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
         let mut open_points = Vec::new();
         for (pressure, rise) in [

@@ -17,33 +17,24 @@
 //!
 //! Rigid motion: the crack line keeps its direction, its midpoint does not move in the uncracked field.
 
-use super::contact_zone::released;
-use super::crack_field::{Background, CrackField};
-use super::face_load::{FaceLoad, Mode};
-use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::contact_zone::released;
+use super::parts::crack_field::{Background, CrackField};
+use super::parts::face_load::{FaceLoad, Mode};
+use super::parts::line_crack::LineCrack;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-slip",
     summary: "straight 2D crack in an infinite plate, pressure linear along it, shear scaled by the load factor: partial slip, cycles",
     parameters: &[
-        ParameterSpec {
-            name: "pressure_pa",
-            summary: "pressure p₀ at the midpoint of the crack",
-            default: None,
-        },
-        ParameterSpec {
-            name: "pressure_rise_pa",
-            summary: "p₁: pressure at the second end less that at the midpoint, |p₁| < p₀",
-            default: None,
-        },
-        ParameterSpec {
-            name: "shear_pa",
-            summary: "remote shear stress t·σ·n at load factor 1",
-            default: None,
-        },
+        ParameterSpec::required("pressure_pa", "pressure p₀ at the midpoint of the crack"),
+        ParameterSpec::required(
+            "pressure_rise_pa",
+            "p₁: pressure at the second end less that at the midpoint, |p₁| < p₀",
+        ),
+        ParameterSpec::required("shear_pa", "remote shear stress t·σ·n at load factor 1"),
     ],
     build,
 };
@@ -174,8 +165,8 @@ impl Solution for PartialSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, check_intensity, setting};
-    use crate::geometry::{CrackShape, Point};
+    use crate::exact::check::{along, check_elasticity, check_intensity, check_path, setting};
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
     use std::f64::consts::PI;
 
@@ -274,24 +265,17 @@ mod tests {
         ] {
             let of = example(&inclined);
             let crack = LineCrack::new(&of).unwrap();
-            let along: Vec<Point> = (0..200)
-                .map(|k| crack.point((k as f64 / 100.0 - 0.995) * crack.half_length, 0.0))
-                .collect();
             let solution = build(&of, &[1.0, rise, shear]).unwrap();
             let path = [
                 0.5, 1.0, 0.3, -0.6, -0.1, -0.3, 0.4, 0.9, -1.2, 0.2, -0.9, 1.0, 1.5, -0.2,
             ];
-            let mut before: Option<Box<dyn Field>> = None;
-            for k in 1..=path.len() {
-                let now = at(solution.as_ref(), &path[..k]);
-                check_contact(now.as_ref(), before.as_deref(), &of, &along, [1e-13, 1e-14]);
-                check_intensity(now.as_ref(), &of);
-                if k == 5 {
-                    let points = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
-                    check_elasticity(now.as_ref(), &of, &points, 3e-4, 1e-9);
-                }
-                before = Some(now);
+            let along = along(&crack);
+            let states = check_path(solution.as_ref(), &of, &path, &along, [1e-13, 1e-14]);
+            for state in &states {
+                check_intensity(state.as_ref(), &of);
             }
+            let points = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
+            check_elasticity(states[4].as_ref(), &of, &points, 3e-4, 1e-9);
             let end = crack.point(crack.half_length * (1.0 - 1e-12), 0.0);
             assert!((at(solution.as_ref(), &[0.01]).traction(&end)[0] - 1.0 - rise).abs() < 1e-11);
         }

@@ -20,26 +20,24 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Point, add_scaled};
 
-use super::line_crack::LineCrack;
-use super::one_dof::FrictionSpring;
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::LineCrack;
+use super::parts::one_dof::FrictionSpring;
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "sliding-block",
     summary: "2D block parted from side to side, lateral pressure, top pushed down by the load factor: rigid slip, cycles",
     parameters: &[
-        ParameterSpec {
-            name: "pressure_pa",
-            summary: "pressure q > 0 on the lateral sides, constant",
-            default: None,
-        },
-        ParameterSpec {
-            name: "displacement_m",
-            summary: "downward displacement v of the top at load factor 1",
-            default: None,
-        },
+        ParameterSpec::required(
+            "pressure_pa",
+            "pressure q > 0 on the lateral sides, constant",
+        ),
+        ParameterSpec::required(
+            "displacement_m",
+            "downward displacement v of the top at load factor 1",
+        ),
     ],
     build,
 };
@@ -198,8 +196,8 @@ impl Field for Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
-    use crate::geometry::CrackShape;
+    use crate::exact::check::{check_elasticity, check_path, setting};
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
 
     const PATH: [f64; 16] = [
@@ -294,26 +292,15 @@ mod tests {
                 for friction in [0.0, 0.2, 2.0] {
                     let of = square(&shape, friction);
                     let crack = LineCrack::new(&of).unwrap();
-                    let on: Vec<Point> = [-0.4, 0.0, 0.3]
-                        .iter()
-                        .map(|s| crack.point(*s, 0.0))
-                        .collect();
+                    let on = [-0.4, 0.0, 0.3].map(|s| crack.point(s, 0.0));
                     let solution = build(&of, &[0.01, 0.01]).unwrap();
-                    let mut before: Option<Box<dyn Field>> = None;
-                    for k in 1..=PATH.len() {
-                        let now = solution.at(&PATH[..k]).unwrap();
-                        check_contact(now.as_ref(), before.as_deref(), &of, &on, [1e-15, 1e-15]);
-                        check_elasticity(
-                            now.as_ref(),
-                            &of,
-                            &[[0.1, 0.05, 0.0], [0.8, 0.95, 0.0]],
-                            1e-3,
-                            1e-12,
-                        );
+                    let states = check_path(solution.as_ref(), &of, &PATH, &on, [1e-15, 1e-15]);
+                    for (now, factor) in states.iter().zip(PATH) {
+                        let off = [[0.1, 0.05, 0.0], [0.8, 0.95, 0.0]];
+                        check_elasticity(now.as_ref(), &of, &off, 1e-3, 1e-12);
                         let top = now.displacement(&[0.6, 1.0, 0.0], 1.0)[1];
-                        assert!((top + 0.01 * PATH[k - 1]).abs() < 1e-15);
+                        assert!((top + 0.01 * factor).abs() < 1e-15);
                         assert_eq!(now.displacement(&[0.0; 3], 1.0), [0.0; 3]);
-                        before = Some(now);
                     }
                 }
             }

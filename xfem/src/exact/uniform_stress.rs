@@ -16,12 +16,13 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::{CrackShape, Point, add_scaled, dot, norm, sub};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot, norm, resolve, sub};
 use crate::material::Model;
 
-use super::line_crack::{apply, axes, resolve};
-use super::plane_elasticity::PlaneElasticity;
-use super::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::parts::line_crack::{apply, axes};
+use super::parts::plane_elasticity::PlaneElasticity;
+use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;
@@ -29,12 +30,9 @@ const ROUNDING: f64 = 1e-12;
 /// A point closer to an open crack than this, in units of the body's diagonal, lies on it: its side is asked for.
 const ON_CRACK: f64 = 1e-10;
 
+/// A component of stress.
 const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
-    ParameterSpec {
-        name,
-        summary,
-        default: Some(0.0),
-    }
+    ParameterSpec::optional(name, summary, 0.0)
 }
 
 /// Registry entry.
@@ -107,7 +105,7 @@ fn centre(crack: &CrackShape) -> Point {
             _ => [0.0; 3],
         },
         CrackShape::Arc { centre, .. } => [centre[0], centre[1], 0.0],
-        CrackShape::Ellipse { centre, .. } => *centre,
+        CrackShape::Ellipse(ellipse) => ellipse.centre,
         CrackShape::Plane { point, .. } => *point,
     }
 }
@@ -164,7 +162,7 @@ impl UniformStress {
                     })
                     .collect()
             }
-            CrackShape::Ellipse { centre, .. } => vec![*centre],
+            CrackShape::Ellipse(ellipse) => vec![ellipse.centre],
             CrackShape::Plane { point, .. } => vec![*point],
         }
     }
@@ -260,7 +258,8 @@ impl Field for UniformStress {
 mod tests {
     use super::*;
     use crate::exact::check::{check_contact, check_elasticity, setting};
-    use crate::geometry::{norm, unit};
+    use crate::geometry::ellipse::Ellipse;
+    use crate::geometry::unit;
     use crate::material::Material;
 
     fn held(of: &Setting<'_>, stress: &[f64; 6]) -> Result<Box<dyn Solution>, String> {
@@ -346,12 +345,12 @@ mod tests {
     #[test]
     fn an_elliptic_crack_holds_under_six_components() {
         let normal = unit(&[1.0, 1.0, 1.0]);
-        let shape = CrackShape::Ellipse {
+        let shape = CrackShape::Ellipse(Ellipse {
             centre: [0.1, 0.0, -0.2],
             normal,
             axis: unit(&[1.0, -1.0, 0.0]),
             half_axes: [0.5, 0.3],
-        };
+        });
         let mut of = setting(&shape);
         of.model = Model::Solid;
         let stress = [-1.0, -1.2, -0.9, 0.1, -0.15, 0.05];

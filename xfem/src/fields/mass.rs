@@ -10,8 +10,7 @@
 
 use rayon::prelude::*;
 
-use crate::enrichment::Enrichment;
-use crate::stiffness::assembly::{Cells, Scatter};
+use crate::stiffness::assembly::Assembly;
 use crate::stiffness::block_matrix::BlockMatrix;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 use crate::stiffness::elasticity::CellMatrix;
@@ -22,58 +21,32 @@ use super::sampling::comparison_points;
 /// φ_p φ_q has the factor r, and degree 13 in √r with the measure.
 const RULES: [usize; 2] = [4, 6];
 
-/// Mass matrices of all cells.
-struct Masses<'a> {
-    enrichment: &'a Enrichment,
-    users: &'a [Vec<u32>],
-    cells: Vec<CellMatrix>,
-}
-
-impl Cells for Masses<'_> {
-    fn functions(&self, cell: usize) -> &[u32] {
-        self.enrichment.cell(cell)
-    }
-    fn users(&self, function: usize) -> &[u32] {
-        &self.users[function]
-    }
-    fn matrix(&self, cell: usize) -> &CellMatrix {
-        &self.cells[cell]
-    }
-}
-
 /// Mass matrix over all unknowns for density 1 [m^dim], on the pattern of the stiffness.
 ///
 /// # Errors
 /// A part of a cell that cannot be integrated.
 pub fn mass(integrator: &CellIntegrator<'_>) -> Result<BlockMatrix, CellError> {
-    let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-    let users = enrichment.users();
-    let mut matrix = BlockMatrix::pattern(mesh.dim(), &users, |cell| enrichment.cell(cell));
-    let cells = (0..mesh.cell_count())
+    let cells: Vec<CellMatrix> = (0..integrator.mesh.cell_count())
         .into_par_iter()
         .map(|cell| cell_mass(integrator, cell))
         .collect::<Result<_, _>>()?;
-    let masses = Masses {
-        enrichment,
-        users: &users,
-        cells,
-    };
-    Scatter::new(&matrix, &masses, mesh.cell_count()).assemble(&mut matrix, &masses);
-    Ok(matrix)
+    let assembly = Assembly::new(integrator.mesh.dim(), integrator.enrichment);
+    Ok(assembly.sum(|cell| &cells[cell]))
 }
 
 fn cell_mass(integrator: &CellIntegrator<'_>, cell: usize) -> Result<CellMatrix, CellError> {
     let dim = integrator.mesh.dim();
-    let n = integrator.enrichment.cell(cell).len();
+    let mut functions = integrator.functions(cell);
+    let n = functions.numbers.len();
     let mut scalar = CellMatrix::zero(n);
     let tips = &integrator.enrichment.tips;
     let rule = RULES[usize::from(integrator.enrichment.has_branch(cell))];
     for p in comparison_points(integrator, cell, tips, rule)? {
         let p = p.point;
-        let values = integrator.values(cell, &p.xi, &p.x, p.region);
+        functions.evaluate(&p.xi, &p.x, p.region);
         for i in 0..n {
             for j in 0..n {
-                scalar.add(i, j, p.weight * values[i] * values[j]);
+                scalar.add(i, j, p.weight * functions.values[i] * functions.values[j]);
             }
         }
     }

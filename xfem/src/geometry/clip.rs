@@ -1,9 +1,14 @@
-//! Parts of convex polygons and tetrahedra on one side of a level.
+//! Parts of convex polygons and tetrahedra on one side of a level, parts of half the size.
 
-use super::{Point, add_scaled, cross, dot, sub};
+use super::{Point, add_scaled, bisect, cross, dot, sub};
 
 /// Side of a crack: +1 (side 1) or −1.
 pub type Side = f64;
+
+/// A level that is 0 exactly if it is no larger than a tolerance.
+pub fn snapped(level: f64, tolerance: f64) -> f64 {
+    if level.abs() <= tolerance { 0.0 } else { level }
+}
 
 /// Crossing of an edge: x on the edge from `p` (φ = `f`) to `q` (φ = `g`) with φ = 0, for f g < 0.
 pub fn crossing(p: &Point, f: f64, q: &Point, g: f64) -> Point {
@@ -15,28 +20,39 @@ pub fn crossing(p: &Point, f: f64, q: &Point, g: f64) -> Point {
     }
 }
 
-/// Vertices of the part of a convex polygon on one side of φ = 0, in cyclic order, each with its φ.
-pub fn clip(polygon: &[(Point, f64)], side: Side) -> Vec<(Point, f64)> {
-    let mut part = Vec::with_capacity(polygon.len() + 1);
-    for (i, &(p, f)) in polygon.iter().enumerate() {
-        let (q, g) = polygon[(i + 1) % polygon.len()];
-        if f * side >= 0.0 {
-            part.push((p, f));
+/// The same for a level that is not linear, by bisection.
+pub fn bent_crossing(p: &Point, f: f64, q: &Point, level: impl Fn(&Point) -> f64) -> Point {
+    let d = sub(q, p);
+    let same = |t: f64| level(&add_scaled(p, t, &d)) * f > 0.0;
+    add_scaled(p, bisect(0.0, 1.0, same), &d)
+}
+
+/// The part of a convex polygon with given levels of its corners on one side of 0, in cyclic order; `crossing(i, j)`: the
+/// corner on the edge from i to j.
+pub fn clip_with<T: Copy>(
+    corners: &[T],
+    levels: &[f64],
+    side: Side,
+    mut crossing: impl FnMut(usize, usize) -> T,
+) -> Vec<T> {
+    let mut part = Vec::with_capacity(corners.len() + 1);
+    for (i, corner) in corners.iter().enumerate() {
+        let j = (i + 1) % corners.len();
+        if levels[i] * side >= 0.0 {
+            part.push(*corner);
         }
-        if f * g < 0.0 {
-            part.push((crossing(&p, f, &q, g), 0.0));
+        if levels[i] * levels[j] < 0.0 {
+            part.push(crossing(i, j));
         }
     }
     part
 }
 
-/// Part of a facet or 2D cell on one side of the crack; empty where only its border touches that side.
-pub fn polygon_part(vertices: &[Point], phi: &[f64], side: Side) -> Vec<Point> {
-    let polygon: Vec<(Point, f64)> = vertices.iter().copied().zip(phi.iter().copied()).collect();
-    if !phi.iter().any(|&f| f * side > 0.0) {
-        return Vec::new();
-    }
-    clip(&polygon, side).into_iter().map(|(p, _)| p).collect()
+/// The same for a level that is linear along the edges.
+pub fn clip(polygon: &[Point], levels: &[f64], side: Side) -> Vec<Point> {
+    clip_with(polygon, levels, side, |i, j| {
+        crossing(&polygon[i], levels[i], &polygon[j], levels[j])
+    })
 }
 
 /// Triangles (v0, v_i, v_{i+1}) of a convex polygon.
@@ -74,12 +90,18 @@ pub fn clip_tetrahedron(t: &[Point; 4], phi: &[f64; 4], side: Side, parts: &mut 
     }
 }
 
+/// The four triangles of edge midpoints.
+pub fn halve_triangle(t: &[Point; 3]) -> [[Point; 3]; 4] {
+    let [a, b, c] = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| middle(&t[i], &t[j]));
+    [[t[0], a, c], [a, t[1], b], [c, b, t[2]], [a, b, c]]
+}
+
 /// The eight tetrahedra of edge midpoints.
-pub fn halve_tetrahedron(t: &[Point; 4]) -> Vec<[Point; 4]> {
-    let mid = |i: usize, j: usize| add_scaled(&t[i], 0.5, &sub(&t[j], &t[i]));
+pub fn halve_tetrahedron(t: &[Point; 4]) -> [[Point; 4]; 8] {
+    let mid = |i: usize, j: usize| middle(&t[i], &t[j]);
     let (m01, m02, m03) = (mid(0, 1), mid(0, 2), mid(0, 3));
     let (m12, m13, m23) = (mid(1, 2), mid(1, 3), mid(2, 3));
-    vec![
+    [
         [t[0], m01, m02, m03],
         [t[1], m01, m12, m13],
         [t[2], m02, m12, m23],
@@ -91,23 +113,31 @@ pub fn halve_tetrahedron(t: &[Point; 4]) -> Vec<[Point; 4]> {
     ]
 }
 
+/// Middle of a segment.
+fn middle(p: &Point, q: &Point) -> Point {
+    add_scaled(p, 0.5, &sub(q, p))
+}
+
 /// Unsigned volume of a tetrahedron [m³].
 pub fn tetrahedron_volume(t: &[Point; 4]) -> f64 {
     let [a, b, c] = [1, 2, 3].map(|i| sub(&t[i], &t[0]));
     dot(&a, &cross(&b, &c)).abs() / 6.0
 }
 
-/// The six tetrahedra of a hex around its diagonal 0–6.
-const TETRAHEDRA: [[usize; 4]; 6] = [
-    [0, 1, 2, 6],
-    [0, 2, 3, 6],
-    [0, 3, 7, 6],
-    [0, 7, 4, 6],
-    [0, 4, 5, 6],
-    [0, 5, 1, 6],
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The six tetrahedra of a hexahedron, as what is given for its corners; exact for cells with planar faces.
-pub fn tetrahedra_of<T: Copy>(corners: &[T]) -> [[T; 4]; 6] {
-    TETRAHEDRA.map(|t| t.map(|i| corners[i]))
+    #[test]
+    fn a_corner_cut_keeps_one_tetrahedron_per_corner() {
+        let t = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for eps in [1e-1, 1e-6, 1e-12] {
+            let phi = [-eps, 1.0 - eps, 1.0 - eps, 1.0 - eps];
+            let mut parts = Vec::new();
+            clip_tetrahedron(&t, &phi, -1.0, &mut parts);
+            assert_eq!(parts.len(), 1);
+            let volume = tetrahedron_volume(&parts[0]);
+            assert!((volume / (eps.powi(3) / 6.0) - 1.0).abs() < 1e-10, "{eps}");
+        }
+    }
 }

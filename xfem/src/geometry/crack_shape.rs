@@ -1,5 +1,8 @@
 //! Place and shape of a crack, as a case states it.
 
+use super::ellipse::Ellipse;
+use super::{Point, add_scaled, cross, unit};
+
 /// Geometry of a crack.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CrackShape {
@@ -18,16 +21,7 @@ pub enum CrackShape {
         to: f64,
     },
     /// Flat elliptic crack inside a solid; a disc if both half axes are equal.
-    Ellipse {
-        /// Centre [m].
-        centre: [f64; 3],
-        /// Unit normal, from side 2 to side 1.
-        normal: [f64; 3],
-        /// Unit direction of the first half axis, perpendicular to the normal; the local axis a.
-        axis: [f64; 3],
-        /// Half axes along `axis` and along normal × axis [m].
-        half_axes: [f64; 2],
-    },
+    Ellipse(Ellipse),
     /// 3D plane through the whole body: a point [m] and a unit normal n (normalised by the parser).
     Plane {
         /// A point of the plane [m].
@@ -35,4 +29,19 @@ pub enum CrackShape {
         /// Unit normal, from side 2 to side 1.
         normal: [f64; 3],
     },
+}
+
+/// n, a, b of a plane: a from the axis least along n, the first of equals, so that n = e_z gives a = e_x, b = e_y.
+pub fn plane_frame(normal: &Point) -> [Point; 3] {
+    let n = unit(normal);
+    let mut axis = 0;
+    for k in 1..3 {
+        if n[k].abs() < n[axis].abs() - 1e-12 {
+            axis = k;
+        }
+    }
+    let mut e = [0.0; 3];
+    e[axis] = 1.0;
+    let a = unit(&add_scaled(&e, -n[axis], &n));
+    [n, a, cross(&n, &a)]
 }

@@ -39,6 +39,11 @@ pub struct Nearest {
 }
 
 impl Ellipse {
+    /// Local frame n, a, b of the crack.
+    pub fn frame(&self) -> [Point; 3] {
+        [self.normal, self.axis, cross(&self.normal, &self.axis)]
+    }
+
     /// Nearest point of the front. Where several are equally near (evolute, centre) one is chosen by a fixed rule.
     pub fn nearest(&self, x: &Point) -> Nearest {
         let second = cross(&self.normal, &self.axis);

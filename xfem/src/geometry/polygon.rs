@@ -1,5 +1,6 @@
 //! Simple polygons in the plane: cut along chains, filled with triangles.
 
+use super::clip::fan;
 use super::{Point, add_scaled, cross, dot, norm, sub};
 
 /// Corners in counter-clockwise order.
@@ -36,7 +37,8 @@ pub fn border_distance(polygon: &[Point], x: &Point) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+/// Edges, each from corner to corner.
+pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     let count = polygon.len();
     (0..count).map(move |i| (polygon[i], polygon[(i + 1) % count]))
 }
@@ -117,9 +119,7 @@ pub fn is_convex(polygon: &[Point]) -> bool {
 pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
     let count = polygon.len();
     if is_convex(polygon) {
-        return (2..count)
-            .map(|i| [polygon[0], polygon[i - 1], polygon[i]])
-            .collect();
+        return fan(polygon);
     }
     let mut rest = polygon.to_vec();
     let mut found = Vec::with_capacity(count.saturating_sub(2));

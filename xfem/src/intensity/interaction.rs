@@ -25,6 +25,7 @@ use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::material::{double_dot, stress};
+use crate::mesh::Mesh;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::williams::{Mode, Williams, plane_modulus};
@@ -83,8 +84,6 @@ pub fn interaction(
     }
     let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
     let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
-        let corners = mesh.corners(cell);
-        let corners = &corners[..mesh.kind.nodes()];
         let ring = count(cell) < mesh.kind.nodes();
         let points = comparison_points(integrator, cell, domain.fronts, domain.rule)?;
         let gradients = if ring {
@@ -95,7 +94,7 @@ pub fn interaction(
         let mut sums = [0.0; 2];
         for (at, h) in points.iter().zip(&gradients) {
             let p = &at.point;
-            let (q, dq) = weight(integrator, cell, &inside, corners, &p.xi);
+            let (q, dq) = weight(mesh, cell, &inside, &p.xi);
             let force = (fields.body_force)(&p.x, at.side);
             if !ring && force == [0.0; 3] {
                 continue;
@@ -125,9 +124,7 @@ pub fn interaction(
         if count(point.cell) == 0 {
             continue;
         }
-        let corners = mesh.corners(point.cell);
-        let corners = &corners[..mesh.kind.nodes()];
-        let (q, _) = weight(integrator, point.cell, &inside, corners, &point.xi);
+        let (q, _) = weight(mesh, point.cell, &inside, &point.xi);
         for (sum, mode) in total.iter_mut().zip(&modes) {
             let [one, two] = [1.0, -1.0].map(|side| ahead(&mode.at(&point.x, Some(side)).1, tip));
             *sum -= point.weight * q * dot(traction, &sub(&one, &two));
@@ -150,8 +147,7 @@ fn stands_alone(
         return false;
     }
     cells.iter().all(|&cell| {
-        let corners = mesh.corners(cell);
-        let size = norm(&sub(&corners[0], &corners[2]));
+        let size = mesh.map(cell).diagonal();
         let other_crack = integrator.enrichment.partition(cell).is_some_and(|p| {
             let sides = p.parts.iter().flat_map(|part| &part.sides);
             sides.into_iter().any(|s| s.0 != tip.crack)
@@ -165,18 +161,11 @@ fn stands_alone(
 }
 
 /// q and ∇q [1/m].
-fn weight(
-    integrator: &CellIntegrator<'_>,
-    cell: usize,
-    inside: &[bool],
-    corners: &[Point],
-    xi: &Point,
-) -> (f64, Point) {
-    let kind = integrator.mesh.kind;
-    let n = kind.shape(xi);
-    let (dn, _) = kind.gradients(corners, xi);
+fn weight(mesh: &Mesh, cell: usize, inside: &[bool], xi: &Point) -> (f64, Point) {
+    let n = mesh.kind.shape(xi);
+    let (dn, _) = mesh.map(cell).gradients(xi);
     let (mut q, mut dq) = (0.0, [0.0; 3]);
-    for (i, &node) in integrator.mesh.cell(cell).iter().enumerate() {
+    for (i, &node) in mesh.cell(cell).iter().enumerate() {
         if inside[node as usize] {
             q += n[i];
             dq = add_scaled(&dq, 1.0, &dn[i]);

@@ -30,6 +30,31 @@ pub struct GridSpec {
 }
 
 impl GridSpec {
+    /// A grid whose points stay where its lines cross.
+    pub fn new(lines: Vec<Vec<f64>>) -> Self {
+        GridSpec {
+            lines,
+            follow: None,
+            twist: None,
+            distort: None,
+        }
+    }
+
+    /// Lowest and highest corner; third entries 0 in 2D [m].
+    pub fn extents(&self) -> [Point; 2] {
+        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+        for (axis, line) in self.lines.iter().enumerate() {
+            (low[axis], high[axis]) = (line[0], line[line.len() - 1]);
+        }
+        [low, high]
+    }
+
+    /// Largest distance of neighbouring lines [m].
+    pub fn cell_size(&self) -> f64 {
+        let pairs = self.lines.iter().flat_map(|line| line.windows(2));
+        pairs.map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+    }
+
     /// The same box with every interval of every axis divided into `factor` >= 1 equal parts.
     ///
     /// The given grid lines keep their bits, so probes and sides stay where they are. Zero is taken as one.
@@ -82,58 +107,34 @@ pub fn box_mesh(spec: &GridSpec) -> Result<Mesh, FoldedCell> {
     } else {
         CellKind::Hex8
     };
-    let points = |axis: usize| spec.lines.get(axis).map_or(1, Vec::len);
-    let (nx, ny, nz) = (points(0), points(1), points(2));
-    let mut nodes = Vec::with_capacity(nx * ny * nz);
-    let mut grid = Vec::with_capacity(nx * ny * nz);
-    for k in 0..nz {
-        for j in 0..ny {
-            for i in 0..nx {
-                let mut x = [0.0; 3];
-                for (axis, index) in [i, j, k].into_iter().enumerate().take(dim) {
-                    x[axis] = spec.lines[axis][index];
-                }
-                nodes.push(x);
-                grid.push([i as u32, j as u32, k as u32]);
-            }
+    let lines = [0, 1, 2].map(|axis| spec.lines.get(axis).map_or(1, Vec::len));
+    let mut nodes = Vec::with_capacity(lines.iter().product());
+    let mut grid = Vec::with_capacity(nodes.capacity());
+    for position in positions(lines) {
+        let mut x = [0.0; 3];
+        for (axis, line) in spec.lines.iter().enumerate() {
+            x[axis] = line[position[axis]];
         }
+        nodes.push(x);
+        grid.push(position.map(|i| i as u32));
     }
-    let at = |i: usize, j: usize, k: usize| (i + nx * (j + ny * k)) as u32;
-    let count = [nx - 1, ny - 1, if dim == 2 { 1 } else { nz - 1 }];
-    let mut cells = Vec::with_capacity(kind.nodes() * count.iter().product::<usize>());
+    let intervals = lines.map(|count| count.max(2) - 1);
+    let mut cells = Vec::with_capacity(kind.nodes() * intervals.iter().product::<usize>());
     let mut sides: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
-    let mut cell = 0;
-    for k in 0..count[2] {
-        for j in 0..count[1] {
-            for i in 0..count[0] {
-                cells.extend([
-                    at(i, j, k),
-                    at(i + 1, j, k),
-                    at(i + 1, j + 1, k),
-                    at(i, j + 1, k),
-                ]);
-                if dim == 3 {
-                    let l = k + 1;
-                    cells.extend([
-                        at(i, j, l),
-                        at(i + 1, j, l),
-                        at(i + 1, j + 1, l),
-                        at(i, j + 1, l),
-                    ]);
+    for (cell, position) in positions(intervals).enumerate() {
+        cells.extend((0..kind.nodes()).map(|node| {
+            let corner = kind.corner(node);
+            let [i, j, k] = [0, 1, 2].map(|a| position[a] + usize::from(corner[a] > 0.0));
+            (i + lines[0] * (j + lines[1] * k)) as u32
+        }));
+        for (axis, names) in side_names(dim).iter().enumerate() {
+            let last = intervals[axis] - 1;
+            for (end, border) in [0, last].into_iter().enumerate() {
+                if position[axis] == border {
+                    let local = 2 * axis + end;
+                    let side = sides.entry(names[end].to_owned()).or_default();
+                    side.push(Facet { cell, local });
                 }
-                for (axis, index) in [i, j, k].into_iter().enumerate().take(dim) {
-                    for (end, here) in [(0, index == 0), (1, index + 1 == count[axis])] {
-                        if here {
-                            let facet = Facet {
-                                cell,
-                                local: 2 * axis + end,
-                            };
-                            let name = side_names(dim)[axis][end].to_owned();
-                            sides.entry(name).or_default().push(facet);
-                        }
-                    }
-                }
-                cell += 1;
             }
         }
     }
@@ -166,18 +167,20 @@ fn move_nodes(
     for node in 0..mesh.nodes.len() {
         mesh.nodes[node] = place(node, &mesh.grid[node], &mesh.nodes[node]);
     }
-    let kind = mesh.kind;
-    for cell in 0..mesh.cell_count() {
-        let corners = mesh.corners(cell);
-        let corners = &corners[..kind.nodes()];
-        if (0..kind.nodes()).any(|i| kind.gradients(corners, &kind.corner(i)).1 <= 0.0) {
-            return Err(FoldedCell {
-                centre: mesh.centre(cell),
-                motion,
-            });
+    for map in (0..mesh.cell_count()).map(|cell| mesh.map(cell)) {
+        let kind = map.kind;
+        if (0..kind.nodes()).any(|i| map.determinant(&kind.corner(i)) <= 0.0) {
+            let centre = map.centre();
+            return Err(FoldedCell { centre, motion });
         }
     }
     Ok(())
+}
+
+/// Positions in a box of so many per axis, the first axis fastest.
+fn positions([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let row = move |j, k| (0..nx).map(move |i| [i, j, k]);
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| row(j, k)))
 }
 
 /// Moving grid points folded a cell over.
@@ -196,30 +199,18 @@ mod tests {
     use crate::geometry::{norm, sub};
     use crate::mesh::grid_motion::{Distort, Follow, Twist};
 
-    fn spec(lines: Vec<Vec<f64>>, follow: Option<Follow>) -> GridSpec {
-        GridSpec {
-            lines,
-            follow,
-            twist: None,
-            distort: None,
-        }
-    }
-
     fn unit_square(cells: usize) -> GridSpec {
         let line: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
-        spec(vec![line.clone(), line], None)
+        GridSpec::new(vec![line.clone(), line])
     }
 
     #[test]
     fn sides_hold_their_facets_and_corners_meet() {
-        let mesh = box_mesh(&spec(
-            vec![
-                vec![0.0, 1.0, 3.0],
-                vec![0.0, 2.0],
-                vec![0.0, 1.0, 2.0, 4.0],
-            ],
-            None,
-        ))
+        let mesh = box_mesh(&GridSpec::new(vec![
+            vec![0.0, 1.0, 3.0],
+            vec![0.0, 2.0],
+            vec![0.0, 1.0, 2.0, 4.0],
+        ]))
         .unwrap();
         assert_eq!(mesh.cell_count(), 6);
         assert_eq!(mesh.sides["left"].len(), 3);
@@ -241,12 +232,13 @@ mod tests {
         let lines: Vec<f64> = (0..=23)
             .map(|i| -10.0 + 20.0 * f64::from(i) / 23.0)
             .collect();
-        let follow = Follow {
+        let mut spec = GridSpec::new(vec![lines.clone(); 2]);
+        spec.follow = Some(Follow {
             point: [0.0; 3],
             angle: std::f64::consts::FRAC_PI_4,
             half_length: 5.5,
-        };
-        let mesh = box_mesh(&spec(vec![lines.clone(), lines.clone()], Some(follow))).unwrap();
+        });
+        let mesh = box_mesh(&spec).unwrap();
         let half_row = 10.0 / 23.0;
         for (x, grid) in mesh.nodes.iter().zip(&mesh.grid) {
             if x[0].abs() < 5.5 && (grid[1] == 11 || grid[1] == 12) {
@@ -263,13 +255,13 @@ mod tests {
 
     #[test]
     fn a_fold_is_refused() {
-        let follow = Follow {
+        let mut spec = GridSpec::new(vec![vec![-1.0, 0.0, 1.0]; 2]);
+        spec.follow = Some(Follow {
             point: [0.0; 3],
             angle: 1.4,
             half_length: f64::INFINITY,
-        };
-        let lines = vec![vec![-1.0, 0.0, 1.0]; 2];
-        assert!(box_mesh(&spec(lines, Some(follow))).is_err());
+        });
+        assert!(box_mesh(&spec).is_err());
     }
 
     fn twist(degrees: f64) -> Option<Twist> {
@@ -318,7 +310,7 @@ mod tests {
     fn a_distorted_mesh_moves_interior_nodes_only_and_is_reproducible() {
         let graded = vec![0.0, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9, 2.0];
         for dim in [2, 3] {
-            let plain = spec(vec![graded.clone(); dim], None);
+            let plain = GridSpec::new(vec![graded.clone(); dim]);
             let moved = |seed| {
                 let mut spec = plain.clone();
                 let amplitude = 0.25;

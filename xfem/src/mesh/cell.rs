@@ -11,10 +11,15 @@
 //!   N_i(ξ) = 2^−dim Π_a (1 + ξ_a ξ_a^i)        x(ξ) = Σ N_i x_i        ∂N/∂x = J⁻ᵀ ∂N/∂ξ,  J = ∂x/∂ξ
 //! ```
 
-use crate::geometry::{Point, dot, sub};
+use std::ops::{Deref, DerefMut};
+
+use crate::geometry::{Point, dot, norm, sub};
+
+/// Most nodes of a cell.
+pub const MOST_NODES: usize = 8;
 
 /// Corner signs of the reference cell; quad4 uses the first four.
-const CORNERS: [Point; 8] = [
+const CORNERS: [Point; MOST_NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -25,10 +30,36 @@ const CORNERS: [Point; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// Values of all shape functions at a point; quad4 uses the first four.
-pub type Shape = [f64; 8];
-/// Gradients of all shape functions at a point, in space [1/m].
-pub type Gradients = [Point; 8];
+/// One value per node of a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Nodal<T> {
+    values: [T; MOST_NODES],
+    count: usize,
+}
+
+impl<T: Copy + Default> Nodal<T> {
+    /// The values of the nodes 0, 1, …
+    pub fn new(count: usize, value: impl FnMut(usize) -> T) -> Self {
+        let mut values = [T::default(); MOST_NODES];
+        let filled = values.iter_mut().zip((0..count).map(value));
+        filled.for_each(|(slot, value)| *slot = value);
+        Nodal { values, count }
+    }
+}
+
+impl<T> Deref for Nodal<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        &self.values[..self.count]
+    }
+}
+
+impl<T> DerefMut for Nodal<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.values[..self.count]
+    }
+}
 
 /// Kind of cell; a mesh holds one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +81,10 @@ impl CellKind {
 
     /// Number of nodes.
     pub fn nodes(self) -> usize {
-        1 << self.dim()
+        match self {
+            CellKind::Quad4 => 4,
+            CellKind::Hex8 => 8,
+        }
     }
 
     /// Edges as pairs of local nodes.
@@ -89,86 +123,155 @@ impl CellKind {
         }
     }
 
+    /// The node opposite to the first.
+    fn opposite(self) -> usize {
+        match self {
+            CellKind::Quad4 => 2,
+            CellKind::Hex8 => 6,
+        }
+    }
+
+    /// Tetrahedra around the diagonal 0–6 that fill a 3D cell, exactly if its faces are planar; none in 2D.
+    pub fn tetrahedra(self) -> &'static [[usize; 4]] {
+        match self {
+            CellKind::Quad4 => &[],
+            CellKind::Hex8 => &[
+                [0, 1, 2, 6],
+                [0, 2, 3, 6],
+                [0, 3, 7, 6],
+                [0, 7, 4, 6],
+                [0, 4, 5, 6],
+                [0, 5, 1, 6],
+            ],
+        }
+    }
+
     /// Reference coordinates of a local node.
     pub fn corner(self, node: usize) -> Point {
-        let mut corner = CORNERS[node];
-        if self == CellKind::Quad4 {
-            corner[2] = 0.0;
-        }
-        corner
+        let [x, y, z] = CORNERS[node];
+        [x, y, if self.dim() == 3 { z } else { 0.0 }]
+    }
+
+    /// True for a reference point inside the cell, or outside by less than `slack`.
+    pub fn contains(self, xi: &Point, slack: f64) -> bool {
+        xi.iter().all(|v| v.abs() < 1.0 + slack)
     }
 
     /// N_i(ξ).
-    pub fn shape(self, xi: &Point) -> Shape {
-        let mut n = [0.0; 8];
-        for (i, value) in n.iter_mut().enumerate().take(self.nodes()) {
+    pub fn shape(self, xi: &Point) -> Nodal<f64> {
+        Nodal::new(self.nodes(), |i| {
             let c = &CORNERS[i];
-            *value = 0.25 * (1.0 + xi[0] * c[0]) * (1.0 + xi[1] * c[1]);
-            if self == CellKind::Hex8 {
-                *value *= 0.5 * (1.0 + xi[2] * c[2]);
+            let flat = 0.25 * (1.0 + xi[0] * c[0]) * (1.0 + xi[1] * c[1]);
+            match self {
+                CellKind::Quad4 => flat,
+                CellKind::Hex8 => flat * (0.5 * (1.0 + xi[2] * c[2])),
             }
-        }
-        n
+        })
     }
 
     /// ∂N_i/∂ξ_a.
-    pub fn reference_gradients(self, xi: &Point) -> Gradients {
-        let mut g = [[0.0; 3]; 8];
-        for (i, grad) in g.iter_mut().enumerate().take(self.nodes()) {
+    fn reference_gradients(self, xi: &Point) -> Nodal<Point> {
+        Nodal::new(self.nodes(), |i| {
             let c = &CORNERS[i];
             let f = [1.0 + xi[0] * c[0], 1.0 + xi[1] * c[1], 1.0 + xi[2] * c[2]];
-            *grad = match self {
+            match self {
                 CellKind::Quad4 => [0.25 * c[0] * f[1], 0.25 * c[1] * f[0], 0.0],
                 CellKind::Hex8 => [
                     0.125 * c[0] * f[1] * f[2],
                     0.125 * c[1] * f[0] * f[2],
                     0.125 * c[2] * f[0] * f[1],
                 ],
-            };
+            }
+        })
+    }
+}
+
+/// The map from the reference cell to a cell in space, given by its corners [m].
+#[derive(Debug, Clone, Copy)]
+pub struct CellMap {
+    /// Kind of the cell.
+    pub kind: CellKind,
+    corners: Nodal<Point>,
+}
+
+/// The corners.
+impl Deref for CellMap {
+    type Target = [Point];
+
+    fn deref(&self) -> &[Point] {
+        &self.corners
+    }
+}
+
+impl CellMap {
+    /// The map of a cell whose node i lies at `corner(i)`.
+    pub fn new(kind: CellKind, corner: impl FnMut(usize) -> Point) -> Self {
+        CellMap {
+            kind,
+            corners: Nodal::new(kind.nodes(), corner),
         }
-        g
     }
 
-    /// x(ξ) for a cell with the given node positions.
-    pub fn map(self, nodes: &[Point], xi: &Point) -> Point {
-        let n = self.shape(xi);
+    /// Diagonal from the first corner to the opposite one: the length to which distances in the cell are compared [m].
+    pub fn diagonal(&self) -> f64 {
+        norm(&sub(&self[self.kind.opposite()], &self[0]))
+    }
+
+    /// Longest edge [m].
+    pub fn longest_edge(&self) -> f64 {
+        let edges = self.kind.edges().iter();
+        let lengths = edges.map(|&[i, j]| norm(&sub(&self[i], &self[j])));
+        lengths.fold(0.0, f64::max)
+    }
+
+    /// Mean of the corners [m].
+    pub fn centre(&self) -> Point {
+        let count = self.len() as f64;
+        let sum = |c: Point, x: &Point| [0, 1, 2].map(|a| c[a] + x[a] / count);
+        self.iter().fold([0.0; 3], sum)
+    }
+
+    /// x(ξ).
+    pub fn at(&self, xi: &Point) -> Point {
         let mut x = [0.0; 3];
-        for (node, value) in nodes.iter().zip(n) {
+        for (corner, value) in self.iter().zip(self.kind.shape(xi).iter()) {
             for a in 0..3 {
-                x[a] += value * node[a];
+                x[a] += value * corner[a];
             }
         }
         x
     }
 
-    /// Gradients in space and det J [m^dim] at ξ.
-    pub fn gradients(self, nodes: &[Point], xi: &Point) -> (Gradients, f64) {
-        let reference = self.reference_gradients(xi);
-        let (inverse, det) = self.inverse_jacobian(nodes, &reference);
-        let mut g = [[0.0; 3]; 8];
-        for i in 0..self.nodes() {
-            for a in 0..self.dim() {
+    /// Gradients ∂N_i/∂x [1/m] and det J [m^dim] at ξ.
+    pub fn gradients(&self, xi: &Point) -> (Nodal<Point>, f64) {
+        let mut g = self.kind.reference_gradients(xi);
+        let (inverse, det) = self.inverse_jacobian(&g);
+        for gradient in g.iter_mut() {
+            let reference = *gradient;
+            for a in 0..self.kind.dim() {
                 // ∂N/∂x_a = Σ_b ∂N/∂ξ_b ∂ξ_b/∂x_a
-                g[i][a] = dot(
-                    &reference[i],
-                    &[inverse[0][a], inverse[1][a], inverse[2][a]],
-                );
+                gradient[a] = dot(&reference, &[inverse[0][a], inverse[1][a], inverse[2][a]]);
             }
         }
         (g, det)
     }
 
+    /// det J [m^dim] at ξ.
+    pub fn determinant(&self, xi: &Point) -> f64 {
+        self.inverse_jacobian(&self.kind.reference_gradients(xi)).1
+    }
+
     /// (∂ξ_b/∂x_a)[b][a] and det ∂x/∂ξ; in 2D the third direction is the identity.
-    fn inverse_jacobian(self, nodes: &[Point], reference: &Gradients) -> ([Point; 3], f64) {
+    fn inverse_jacobian(&self, reference: &[Point]) -> ([Point; 3], f64) {
         let mut j = [[0.0; 3]; 3]; // j[a][b] = ∂x_a/∂ξ_b
-        for (node, grad) in nodes.iter().zip(reference) {
+        for (corner, grad) in self.iter().zip(reference) {
             for a in 0..3 {
                 for b in 0..3 {
-                    j[a][b] += node[a] * grad[b];
+                    j[a][b] += corner[a] * grad[b];
                 }
             }
         }
-        if self == CellKind::Quad4 {
+        if self.kind.dim() == 2 {
             j[2] = [0.0, 0.0, 1.0];
         }
         let cofactor = |a: usize, b: usize| {
@@ -189,7 +292,7 @@ impl CellKind {
     /// ξ of a point in space, by Newton's method; `None` if it does not converge (point far outside a distorted cell).
     ///
     /// One step is exact on affine cells.
-    pub fn inverse_map(self, nodes: &[Point], x: &Point) -> Option<Point> {
+    pub fn inverse(&self, x: &Point) -> Option<Point> {
         /// Newton steps; bilinear maps need 3 to 6 inside the cell.
         const STEPS: usize = 30;
         /// In reference units, well above rounding and far below any quadrature error.
@@ -197,13 +300,13 @@ impl CellKind {
         let mut xi = [0.0; 3];
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
-            let residual = sub(x, &self.map(nodes, &xi));
-            let (inverse, det) = self.inverse_jacobian(nodes, &self.reference_gradients(&xi));
+            let residual = sub(x, &self.at(&xi));
+            let (inverse, det) = self.inverse_jacobian(&self.kind.reference_gradients(&xi));
             if det == 0.0 || !det.is_finite() {
                 return None;
             }
             let mut step: f64 = 0.0;
-            for b in 0..self.dim() {
+            for b in 0..self.kind.dim() {
                 let delta = dot(&inverse[b], &residual);
                 xi[b] += delta;
                 step = step.max(delta.abs());
@@ -218,21 +321,17 @@ impl CellKind {
     }
 
     /// True if the map is affine (parallelogram, parallelepiped) to rounding.
-    pub fn is_affine(self, nodes: &[Point]) -> bool {
-        let size = dot(&sub(&nodes[0], &nodes[2]), &sub(&nodes[0], &nodes[2])).sqrt();
-        let parallel = |a: usize, b: usize, c: usize, d: usize| {
-            (0..3).all(|k| {
-                ((nodes[a][k] - nodes[b][k]) - (nodes[c][k] - nodes[d][k])).abs() <= 1e-12 * size
-            })
+    pub fn is_affine(&self) -> bool {
+        let size = self.diagonal();
+        let parallel = |[a, b, c, d]: [usize; 4]| {
+            let differs = |k: usize| (self[a][k] - self[b][k]) - (self[c][k] - self[d][k]);
+            (0..3).all(|k| differs(k).abs() <= 1e-12 * size)
         };
-        match self {
-            CellKind::Quad4 => parallel(1, 0, 2, 3),
-            CellKind::Hex8 => {
-                parallel(1, 0, 2, 3)
-                    && parallel(4, 0, 5, 1)
-                    && parallel(4, 0, 6, 2)
-                    && parallel(4, 0, 7, 3)
-            }
+        match self.kind {
+            CellKind::Quad4 => parallel([1, 0, 2, 3]),
+            CellKind::Hex8 => [[1, 0, 2, 3], [4, 0, 5, 1], [4, 0, 6, 2], [4, 0, 7, 3]]
+                .into_iter()
+                .all(parallel),
         }
     }
 }
@@ -240,6 +339,7 @@ impl CellKind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::cross;
     use proptest::prelude::*;
 
     const KINDS: [CellKind; 2] = [CellKind::Quad4, CellKind::Hex8];
@@ -248,8 +348,7 @@ mod tests {
     fn shape_functions_are_one_at_their_node_and_zero_at_the_others() {
         for kind in KINDS {
             for j in 0..kind.nodes() {
-                let n = kind.shape(&kind.corner(j));
-                for (i, value) in n.iter().enumerate().take(kind.nodes()) {
+                for (i, value) in kind.shape(&kind.corner(j)).iter().enumerate() {
                     assert_eq!(*value, if i == j { 1.0 } else { 0.0 });
                 }
             }
@@ -262,9 +361,9 @@ mod tests {
             for facet in kind.facets() {
                 let c: Vec<Point> = facet.iter().map(|&i| kind.corner(i)).collect();
                 let e = sub(&c[1], &c[0]);
-                let normal = match kind {
-                    CellKind::Quad4 => [e[1], -e[0], 0.0],
-                    CellKind::Hex8 => crate::geometry::cross(&e, &sub(&c[2], &c[1])),
+                let normal = match kind.dim() {
+                    2 => [e[1], -e[0], 0.0],
+                    _ => cross(&e, &sub(&c[2], &c[1])),
                 };
                 assert!(dot(&normal, &c[0]) > 0.0, "{kind:?} {facet:?}");
             }
@@ -272,16 +371,14 @@ mod tests {
     }
 
     /// A cell with randomly moved corners, by at most 0.2 of the edge.
-    fn distorted(kind: CellKind, shifts: &[f64]) -> Vec<Point> {
-        (0..kind.nodes())
-            .map(|i| {
-                let mut x = kind.corner(i);
-                for a in 0..kind.dim() {
-                    x[a] += 0.4 * shifts[3 * i + a];
-                }
-                x
-            })
-            .collect()
+    fn distorted(kind: CellKind, shifts: &[f64]) -> CellMap {
+        CellMap::new(kind, |i| {
+            let mut x = kind.corner(i);
+            for a in 0..kind.dim() {
+                x[a] += 0.4 * shifts[3 * i + a];
+            }
+            x
+        })
     }
 
     proptest! {
@@ -290,17 +387,17 @@ mod tests {
             xi in prop::array::uniform3(-1.0f64..1.0), shifts in prop::collection::vec(-1.0f64..1.0, 24)
         ) {
             for kind in KINDS {
-                let nodes = distorted(kind, &shifts);
-                let sum: f64 = kind.shape(&xi)[..kind.nodes()].iter().sum();
+                let map = distorted(kind, &shifts);
+                let sum: f64 = kind.shape(&xi).iter().sum();
                 prop_assert!((sum - 1.0).abs() < 1e-14);
-                let (g, det) = kind.gradients(&nodes, &xi);
+                let (g, det) = map.gradients(&xi);
                 prop_assert!(det > 0.0);
                 for a in 0..kind.dim() {
-                    let total: f64 = g[..kind.nodes()].iter().map(|v| v[a]).sum();
+                    let total: f64 = g.iter().map(|v| v[a]).sum();
                     prop_assert!(total.abs() < 1e-13);
                     // linear fields are reproduced: Σ ∂N_i/∂x_a x_i = e_a
                     for b in 0..kind.dim() {
-                        let slope: f64 = (0..kind.nodes()).map(|i| g[i][a] * nodes[i][b]).sum();
+                        let slope: f64 = g.iter().zip(map.iter()).map(|(g, x)| g[a] * x[b]).sum();
                         let exact = f64::from(u8::from(a == b));
                         prop_assert!((slope - exact).abs() < 1e-12);
                     }
@@ -313,10 +410,10 @@ mod tests {
             xi in prop::array::uniform3(-1.0f64..1.0), shifts in prop::collection::vec(-1.0f64..1.0, 24)
         ) {
             for kind in KINDS {
-                let nodes = distorted(kind, &shifts);
+                let map = distorted(kind, &shifts);
                 let mut xi = xi;
-                if kind == CellKind::Quad4 { xi[2] = 0.0; }
-                let back = kind.inverse_map(&nodes, &kind.map(&nodes, &xi));
+                xi[kind.dim()..].fill(0.0);
+                let back = map.inverse(&map.at(&xi));
                 prop_assert!(back.is_some());
                 for (a, b) in back.iter().flatten().zip(&xi) {
                     prop_assert!((a - b).abs() < 1e-11);
@@ -328,13 +425,14 @@ mod tests {
     #[test]
     fn only_parallelepipeds_are_affine() {
         for kind in KINDS {
-            let mut nodes: Vec<Point> = (0..kind.nodes()).map(|i| kind.corner(i)).collect();
-            for x in &mut nodes {
-                x[0] += 0.7 * x[1] + 0.1 * x[2];
-            }
-            assert!(kind.is_affine(&nodes));
-            nodes[kind.nodes() - 1][1] += 1e-6;
-            assert!(!kind.is_affine(&nodes));
+            let sheared = |i: usize| {
+                let [x, y, z] = kind.corner(i);
+                [x + 0.7 * y + 0.1 * z, y, z]
+            };
+            let mut map = CellMap::new(kind, sheared);
+            assert!(map.is_affine());
+            map.corners[kind.nodes() - 1][1] += 1e-6;
+            assert!(!map.is_affine());
         }
     }
 }

@@ -13,7 +13,7 @@
 
 use crate::geometry::clip::{Side, clip, crossing};
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
-use crate::mesh::cell::CellKind;
+use crate::mesh::cell::CellMap;
 
 use super::slice::slice_points;
 use super::{FanRule, WeightedPoint, gauss};
@@ -87,57 +87,43 @@ pub(super) fn abscissae(mut breaks: Vec<f64>, ends: [f64; 2], n: usize) -> Vec<(
     points
 }
 
-/// Points of the part of a hex8 cell with planar faces on one side of the crack plane; `phi`: signed distances of the
+/// A point and the unit outward normal of every face of a 3D cell with planar faces.
+fn walls(map: &CellMap) -> Vec<(Point, Point)> {
+    let wall = |f: &&[usize]| {
+        let diagonals = [[2, 0], [3, 1]].map(|[i, j]: [usize; 2]| sub(&map[f[i]], &map[f[j]]));
+        (map[f[0]], unit(&cross(&diagonals[0], &diagonals[1])))
+    };
+    map.kind.facets().iter().map(wall).collect()
+}
+
+/// Points of the part of a 3D cell with planar faces on one side of the crack plane; `phi`: signed distances of the
 /// corners to it [m]. Empty if the part is.
 pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
-    corners: &[Point],
+    map: &CellMap,
     phi: &[f64],
     side: Side,
     piece: &FrontPiece<F>,
     rule: FrontRule,
 ) -> Vec<WeightedPoint> {
-    let kind = CellKind::Hex8;
-    if !phi[..8].iter().any(|f| f * side > 0.0) {
+    if !phi.iter().any(|f| f * side > 0.0) {
         return Vec::new();
     }
     let [a, b] = piece.chord;
     let along = unit(&sub(&b, &a));
     let ahead = cross(&piece.normal, &along);
     // Vertices of the part.
-    let mut vertices: Vec<Point> = (0..8)
-        .filter(|&i| phi[i] * side >= 0.0)
-        .map(|i| corners[i])
-        .collect();
-    for &[i, j] in kind.edges() {
+    let inside = (0..map.len()).filter(|&i| phi[i] * side >= 0.0);
+    let mut vertices: Vec<Point> = inside.map(|i| map[i]).collect();
+    for &[i, j] in map.kind.edges() {
         if phi[i] * phi[j] < 0.0 {
-            vertices.push(crossing(&corners[i], phi[i], &corners[j], phi[j]));
+            vertices.push(crossing(&map[i], phi[i], &map[j], phi[j]));
         }
     }
-    // Half spaces n · (x − p) <= 0 of the part: six faces and the crack.
-    let mut walls: Vec<(Point, Point)> = kind
-        .facets()
-        .iter()
-        .map(|f| {
-            let diagonals = [
-                sub(&corners[f[2]], &corners[f[0]]),
-                sub(&corners[f[3]], &corners[f[1]]),
-            ];
-            (corners[f[0]], unit(&cross(&diagonals[0], &diagonals[1])))
-        })
-        .collect();
-    let outwards = -side;
-    walls.push((
-        a,
-        [
-            outwards * piece.normal[0],
-            outwards * piece.normal[1],
-            outwards * piece.normal[2],
-        ],
-    ));
-    let size = corners[..8]
-        .iter()
-        .map(|x| norm(&sub(x, &a)))
-        .fold(0.0, f64::max);
+    // Half spaces n · (x − p) <= 0 of the part: the faces and the crack.
+    let mut walls = walls(map);
+    walls.push((a, piece.normal.map(|n| -side * n)));
+    let from_front = map.iter().map(|x| norm(&sub(x, &a)));
+    let size = from_front.fold(0.0, f64::max);
 
     let abscissa = |x: &Point| dot(&sub(x, &a), &along);
     let breaks: Vec<f64> = vertices.iter().map(abscissa).collect();
@@ -156,9 +142,8 @@ pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
             corner(-1.0, 1.0),
         ];
         for (p, n) in &walls {
-            let polygon: Vec<(Point, f64)> =
-                slice.iter().map(|x| (*x, -dot(n, &sub(x, p)))).collect();
-            slice = clip(&polygon, 1.0).into_iter().map(|(x, _)| x).collect();
+            let levels: Vec<f64> = slice.iter().map(|x| -dot(n, &sub(x, p))).collect();
+            slice = clip(&slice, &levels, 1.0);
         }
         let slice = tidy(slice, 1e-13 * size);
         if slice.len() < 3 {
@@ -190,33 +175,24 @@ fn tidy(polygon: Vec<Point>, small: f64) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::clip::{clip_tetrahedron, fan, tetrahedra_of, tetrahedron_volume};
+    use crate::geometry::clip::{clip_tetrahedron, fan, tetrahedron_volume};
     use crate::geometry::ellipse::Ellipse;
+    use crate::mesh::cell::CellKind;
     use crate::quadrature::graded::graded_triangles;
     use crate::quadrature::tip_triangle;
 
-    fn cell(shear: f64) -> Vec<Point> {
-        (0..8)
-            .map(|i| {
-                let c = CellKind::Hex8.corner(i);
-                [
-                    c[0] + shear * c[1],
-                    1.2 * c[1] - 0.3 * shear * c[2],
-                    c[2] + shear * c[0],
-                ]
-            })
-            .collect()
+    fn cell(shear: f64) -> CellMap {
+        CellMap::new(CellKind::Hex8, |i| {
+            let [x, y, z] = CellKind::Hex8.corner(i);
+            [x + shear * y, 1.2 * y - 0.3 * shear * z, z + shear * x]
+        })
     }
 
     /// Where the line x + t d enters and leaves the cell.
-    fn chord(corners: &[Point], x: &Point, d: &Point) -> [Point; 2] {
+    fn chord(map: &CellMap, x: &Point, d: &Point) -> [Point; 2] {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for f in CellKind::Hex8.facets() {
-            let n = cross(
-                &sub(&corners[f[2]], &corners[f[0]]),
-                &sub(&corners[f[3]], &corners[f[1]]),
-            );
-            let (gap, rate) = (dot(&n, &sub(x, &corners[f[0]])), dot(&n, d));
+        for (p, n) in walls(map) {
+            let (gap, rate) = (dot(&n, &sub(x, &p)), dot(&n, d));
             if rate > 0.0 {
                 high = high.min(-gap / rate);
             } else if rate < 0.0 {
@@ -229,7 +205,7 @@ mod tests {
     /// ∮ over the part's surface of r^α z^k (p·e)^m times the distance of the face's plane from the line, by
     /// div(x⊥ h) = (2 + α + m) h for h homogeneous of degree α + m in x⊥: only integrals over faces, by the 2D rules.
     fn by_faces(
-        corners: &[Point],
+        map: &CellMap,
         phi: &[f64],
         side: f64,
         [a, z, n]: [&Point; 3],
@@ -242,17 +218,12 @@ mod tests {
             let p = add_scaled(&d, -s, z);
             (norm(&p).powf(alpha) * s.powi(k) * dot(&p, &e).powi(m), p)
         };
-        let mut faces: Vec<(Vec<Point>, Point)> = CellKind::Hex8
-            .facets()
-            .iter()
-            .map(|f| {
-                let polygon: Vec<(Point, f64)> = f.iter().map(|&i| (corners[i], phi[i])).collect();
-                let part = clip(&polygon, side).into_iter().map(|(x, _)| x).collect();
-                let d = [
-                    sub(&corners[f[2]], &corners[f[0]]),
-                    sub(&corners[f[3]], &corners[f[1]]),
-                ];
-                (part, unit(&cross(&d[0], &d[1])))
+        let facets = map.kind.facets().iter().zip(walls(map));
+        let mut faces: Vec<(Vec<Point>, Point)> = facets
+            .map(|(f, (_, normal))| {
+                let polygon: Vec<Point> = f.iter().map(|&i| map[i]).collect();
+                let levels: Vec<f64> = f.iter().map(|&i| phi[i]).collect();
+                (clip(&polygon, &levels, side), normal)
             })
             .collect();
         // The crack's facet: x⊥ · n = 0 there, nothing to add.
@@ -303,21 +274,13 @@ mod tests {
         sum / (2.0 + alpha + f64::from(m))
     }
 
-    fn check(
-        corners: &[Point],
-        x: &Point,
-        along: &Point,
-        normal: &Point,
-        along_points: usize,
-    ) -> f64 {
-        let normal = unit(&add_scaled(
-            normal,
-            -dot(normal, along) / dot(along, along),
-            along,
-        ));
+    /// Largest error of the part's volume and of singular integrals over it.
+    fn check(map: &CellMap, x: &Point, along: &Point, normal: &Point, along_points: usize) -> f64 {
+        let share = -dot(normal, along) / dot(along, along);
+        let normal = unit(&add_scaled(normal, share, along));
         let z = unit(along);
-        let chord = chord(corners, x, &z);
-        let phi: Vec<f64> = corners.iter().map(|y| dot(&normal, &sub(y, x))).collect();
+        let chord = chord(map, x, &z);
+        let phi: Vec<f64> = map.iter().map(|y| dot(&normal, &sub(y, x))).collect();
         let piece = FrontPiece {
             chord,
             normal,
@@ -325,19 +288,14 @@ mod tests {
         };
         let mut worst: f64 = 0.0;
         for side in [1.0, -1.0] {
-            let points = front_cell_points(
-                corners,
-                &phi,
-                side,
-                &piece,
-                FrontRule {
-                    along: along_points,
-                    fan: FanRule::fine(true),
-                },
-            );
+            let rule = FrontRule {
+                along: along_points,
+                fan: FanRule::fine(true),
+            };
+            let points = front_cell_points(map, &phi, side, &piece, rule);
             let mut parts = Vec::new();
-            for (t, phi) in tetrahedra_of(corners).iter().zip(tetrahedra_of(&phi)) {
-                clip_tetrahedron(t, &phi, side, &mut parts);
+            for t in map.kind.tetrahedra() {
+                clip_tetrahedron(&t.map(|i| map[i]), &t.map(|i| phi[i]), side, &mut parts);
             }
             let volume: f64 = parts.iter().map(tetrahedron_volume).sum();
             let found: f64 = points.iter().map(|p| p.weight).sum();
@@ -353,7 +311,7 @@ mod tests {
                 (-0.5, 2, 1),
                 (0.0, 2, 2),
             ] {
-                let exact = by_faces(corners, &phi, side, [x, &z, &normal], (alpha, m, k));
+                let exact = by_faces(map, &phi, side, [x, &z, &normal], (alpha, m, k));
                 let found: f64 = points
                     .iter()
                     .map(|p| {
@@ -370,59 +328,21 @@ mod tests {
         worst
     }
 
+    /// Name, shear of the cell, a point of the front, its direction, the normal of the crack.
+    #[rustfmt::skip]
+    const FRONTS: [(&str, f64, Point, Point, Point); 7] = [
+        ("parallel to an edge", 0.0, [0.1, 0.2, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]),
+        ("parallel, near a face", 0.0, [0.99, 0.2, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]),
+        ("in a plane of the grid", 0.0, [0.1, 0.2, 0.3], [0.4, 0.0, 1.0], [0.0, 1.0, 0.0]),
+        ("oblique", 0.0, [0.1, 0.2, -0.1], [0.5, 0.3, 1.0], [0.3, 1.0, 0.0]),
+        ("sheared cell", 0.3, [0.1, 0.2, -0.1], [0.5, -0.7, 1.0], [0.3, 1.0, 0.0]),
+        ("across an edge", 0.0, [0.9, 0.1, 0.8], [1.0, 0.2, -1.0], [0.0, 1.0, 0.2]),
+        ("near a corner", 0.0, [0.9, 1.1, 0.9], [1.0, -0.7, -0.9], [0.3, 1.0, 0.2]),
+    ];
+
     #[test]
     fn singular_integrals_over_front_cells_are_good_to_1e_6() {
-        for (name, shear, x, along, normal) in [
-            (
-                "parallel to an edge",
-                0.0,
-                [0.1, 0.2, 0.0],
-                [0.0, 0.0, 1.0],
-                [0.0, 1.0, 0.0],
-            ),
-            (
-                "parallel, near a face",
-                0.0,
-                [0.99, 0.2, 0.0],
-                [0.0, 0.0, 1.0],
-                [0.0, 1.0, 0.0],
-            ),
-            (
-                "in a plane of the grid",
-                0.0,
-                [0.1, 0.2, 0.3],
-                [0.4, 0.0, 1.0],
-                [0.0, 1.0, 0.0],
-            ),
-            (
-                "oblique",
-                0.0,
-                [0.1, 0.2, -0.1],
-                [0.5, 0.3, 1.0],
-                [0.3, 1.0, 0.0],
-            ),
-            (
-                "sheared cell",
-                0.3,
-                [0.1, 0.2, -0.1],
-                [0.5, -0.7, 1.0],
-                [0.3, 1.0, 0.0],
-            ),
-            (
-                "across an edge",
-                0.0,
-                [0.9, 0.1, 0.8],
-                [1.0, 0.2, -1.0],
-                [0.0, 1.0, 0.2],
-            ),
-            (
-                "near a corner",
-                0.0,
-                [0.9, 1.1, 0.9],
-                [1.0, -0.7, -0.9],
-                [0.3, 1.0, 0.2],
-            ),
-        ] {
+        for (name, shear, x, along, normal) in FRONTS {
             for (n, allowed) in [(3, 2e-4), (5, 5e-6), (7, 1e-6)] {
                 let error = check(&cell(shear), &x, &along, &normal, n);
                 assert!(error < allowed, "{name}, {n} points: {error:.1e}");
@@ -432,7 +352,7 @@ mod tests {
 
     #[test]
     fn the_rule_follows_a_curved_front() {
-        let corners = cell(0.0);
+        let map = cell(0.0);
         let normal = [0.0, 1.0, 0.0];
         let disc = Ellipse {
             centre: [-3.6, 0.1, 0.4],
@@ -440,7 +360,7 @@ mod tests {
             axis: [1.0, 0.0, 0.0],
             half_axes: [4.0, 3.0],
         };
-        let phi: Vec<f64> = corners.iter().map(|x| x[1] - 0.1).collect();
+        let phi: Vec<f64> = map.iter().map(|x| x[1] - 0.1).collect();
         // Where the front crosses the faces z = ±1.
         let chord = [-1.0, 1.0].map(|z: f64| {
             [
@@ -452,16 +372,13 @@ mod tests {
         let integral = |n: usize, affine: bool, curved: bool| -> f64 {
             let along = unit(&sub(&chord[1], &chord[0]));
             let across = cross(&normal, &along);
-            let at = |x: &Point| {
-                if curved {
-                    disc.meet(x, &across)
-                } else {
-                    Some(*x)
-                }
+            let at = |x: &Point| match curved {
+                true => disc.meet(x, &across),
+                false => Some(*x),
             };
             let piece = FrontPiece { chord, normal, at };
             let fan = FanRule::fine(affine);
-            front_cell_points(&corners, &phi, 1.0, &piece, FrontRule { along: n, fan })
+            front_cell_points(&map, &phi, 1.0, &piece, FrontRule { along: n, fan })
                 .iter()
                 .map(|p| {
                     let r = disc.nearest(&p.x).psi.hypot(p.x[1] - 0.1);

@@ -23,7 +23,7 @@ pub fn front_facet_points<F: Fn(&Point) -> Option<Point>>(
     let along = unit(&sub(&b, &a));
     let mut back = cross(&piece.normal, &along);
     if dot(&back, behind) < 0.0 {
-        back = [-back[0], -back[1], -back[2]];
+        back = back.map(|v| -v);
     }
     let breaks: Vec<f64> = polygon.iter().map(|x| dot(&sub(x, &a), &along)).collect();
     if breaks.is_empty() {

@@ -6,37 +6,37 @@
 //! radius d around the line) the rule gets the leading digits only: error about d^(2+α) in 3D, d^(1+α) for a triangle
 //! that ends at the line.
 
-use crate::geometry::clip::halve_tetrahedron;
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
-use crate::mesh::cell::CellKind;
+use crate::geometry::clip::{halve_tetrahedron, halve_triangle};
+use crate::geometry::polygon::border_distance;
+use crate::geometry::{Point, add_scaled, diameter, mean, norm, sub};
+use crate::mesh::cell::CellMap;
 
 use super::{WeightedPoint, gauss_cell, tetrahedron, triangle_collapsed};
 
-/// Centroid of a simplex and its distance to the farthest vertex [m].
-fn ball(vertices: &[Point]) -> (Point, f64) {
-    let mut centre = [0.0; 3];
-    for x in vertices {
-        centre = add_scaled(&centre, 1.0 / vertices.len() as f64, x);
-    }
-    let radius = vertices.iter().map(|x| norm(&sub(x, &centre)));
-    (centre, radius.fold(0.0, f64::max))
-}
-
-/// Longest edge [m].
-fn diameter(vertices: &[Point]) -> f64 {
-    let mut longest: f64 = 0.0;
-    for (i, p) in vertices.iter().enumerate() {
-        for q in &vertices[i + 1..] {
-            longest = longest.max(norm(&sub(p, q)));
-        }
-    }
-    longest
-}
-
 /// True if no point of the simplex is nearer to the singularity than the simplex is long.
 fn is_far(vertices: &[Point], distance: &impl Fn(&Point) -> f64) -> bool {
-    let (centre, radius) = ball(vertices);
-    distance(&centre) - radius >= diameter(vertices)
+    let centre = mean(vertices);
+    let radius = vertices.iter().map(|x| norm(&sub(x, &centre)));
+    distance(&centre) - radius.fold(0.0, f64::max) >= diameter(vertices)
+}
+
+/// The parts of some simplices, those that are not far halved up to `depth` times.
+fn parts<S: Copy, const N: usize>(
+    simplices: &[S],
+    depth: usize,
+    far: impl Fn(&S) -> bool,
+    halve: fn(&S) -> [S; N],
+) -> Vec<S> {
+    let mut stack: Vec<(S, usize)> = simplices.iter().map(|s| (*s, 0)).collect();
+    let mut parts = Vec::new();
+    while let Some((simplex, level)) = stack.pop() {
+        if level == depth || far(&simplex) {
+            parts.push(simplex);
+        } else {
+            stack.extend(halve(&simplex).map(|part| (part, level + 1)));
+        }
+    }
+    parts
 }
 
 /// Points of tetrahedra near a front; `distance` is that of a point to the front [m], exact or a lower bound.
@@ -48,16 +48,13 @@ pub fn graded_tetrahedra(
     distance: impl Fn(&Point) -> f64,
     depth: usize,
 ) -> Vec<WeightedPoint> {
-    let mut stack: Vec<([Point; 4], usize)> = tetrahedra.iter().map(|t| (*t, 0)).collect();
-    let mut points = Vec::new();
-    while let Some((t, level)) = stack.pop() {
-        if level == depth || is_far(&t, &distance) {
-            points.extend(tetrahedron(&t));
-        } else {
-            stack.extend(halve_tetrahedron(&t).into_iter().map(|t| (t, level + 1)));
-        }
-    }
-    points
+    let parts = parts(
+        tetrahedra,
+        depth,
+        |t| is_far(t, &distance),
+        halve_tetrahedron,
+    );
+    parts.iter().flat_map(tetrahedron).collect()
 }
 
 /// Points of a whole hex8 cell near a front; `distance` as for tetrahedra.
@@ -66,21 +63,17 @@ pub fn graded_tetrahedra(
 /// direction so that (1 + 2d + √((1 + 2d)² − 1))^−2n, d the distance in edges, is below 2e-5, and one point more for the ramp,
 /// which raises the degree in every direction. `depth`: most halvings.
 pub fn graded_cell(
-    corners: &[Point],
+    map: &CellMap,
     distance: impl Fn(&Point) -> f64,
     depth: usize,
 ) -> Vec<WeightedPoint> {
-    let kind = CellKind::Hex8;
-    let edges = kind.edges().iter();
-    let longest = edges
-        .map(|&[i, j]| norm(&sub(&corners[i], &corners[j])))
-        .fold(0.0, f64::max);
+    let longest = map.longest_edge();
     let rules = [4, 5, 6, 7].map(|n| gauss_cell(3, n));
     let mut stack = vec![([0.0; 3], 0)];
     let mut points = Vec::new();
     while let Some((centre, level)) = stack.pop() {
         let half = 0.5f64.powi(level as i32);
-        let nearest = nearest_in_box(corners, &centre, half, &distance).1 / (half * longest);
+        let nearest = nearest_in_box(map, &centre, half, &distance).1 / (half * longest);
         if nearest < 0.25 && level < depth {
             for (corner, _) in gauss_cell(3, 2) {
                 let sign = corner.map(f64::signum);
@@ -97,8 +90,8 @@ pub fn graded_cell(
         points.extend(rule.iter().map(|(xi, weight)| {
             let xi = add_scaled(&centre, half, xi);
             WeightedPoint {
-                x: kind.map(corners, &xi),
-                weight: weight * half.powi(3) * kind.gradients(corners, &xi).1,
+                x: map.at(&xi),
+                weight: weight * half.powi(3) * map.determinant(&xi),
             }
         }));
     }
@@ -108,7 +101,7 @@ pub fn graded_cell(
 /// Which of 5 × 5 × 5 points of a box of the reference cell is nearest, and its distance [m]: at most a tenth of an edge too large where
 /// it is a quarter of an edge, and below that wherever the front enters the box.
 pub fn nearest_in_box(
-    corners: &[Point],
+    map: &CellMap,
     centre: &Point,
     half: f64,
     distance: impl Fn(&Point) -> f64,
@@ -119,7 +112,7 @@ pub fn nearest_in_box(
         for y in steps {
             for z in steps {
                 let xi = add_scaled(centre, half, &[x, y, z]);
-                let x = CellKind::Hex8.map(corners, &xi);
+                let x = map.at(&xi);
                 let d = distance(&x);
                 if d < nearest.1 {
                     nearest = (x, d);
@@ -139,60 +132,34 @@ pub fn graded_triangles(
     n: usize,
     depth: usize,
 ) -> Vec<WeightedPoint> {
-    let mut stack: Vec<([Point; 3], usize)> = triangles.iter().map(|t| (*t, 0)).collect();
-    let mut points = Vec::new();
-    while let Some((t, level)) = stack.pop() {
-        if level == depth || is_far(&t, &distance) {
-            points.extend(triangle_collapsed(&t, n));
-            continue;
-        }
-        let mid = |i: usize, j: usize| add_scaled(&t[i], 0.5, &sub(&t[j], &t[i]));
-        let (a, b, c) = (mid(0, 1), mid(1, 2), mid(2, 0));
-        for part in [[t[0], a, c], [a, t[1], b], [c, b, t[2]], [a, b, c]] {
-            stack.push((part, level + 1));
-        }
-    }
-    points
+    let parts = parts(triangles, depth, |t| is_far(t, &distance), halve_triangle);
+    parts
+        .iter()
+        .flat_map(|t| triangle_collapsed(t, n))
+        .collect()
 }
 
-/// Points of triangles that carry branch functions of tips outside of them: halved until no tip is closer than the
-/// triangle's diameter, then a rule that is exact to 1e-9 for functions with singularities at that distance.
-pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point]) -> Vec<WeightedPoint> {
-    /// Points per direction: relative error (3 + √8)^−2n = 2e-11.
-    const POINTS: usize = 7;
+/// Points of triangles near tips outside of them: halved until no tip is closer than the triangle's diameter, then n × n
+/// points on each part, which are exact to (3 + √8)^−2n for functions with singularities at that distance.
+pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<WeightedPoint> {
     /// Halvings; a tip 1e-9 edges away needs 30.
     const DEPTH: usize = 40;
-    let mut stack: Vec<([Point; 3], usize)> = triangles.iter().map(|t| (*t, 0)).collect();
-    let mut points = Vec::new();
-    while let Some((t, depth)) = stack.pop() {
-        let edge = |i: usize| norm(&sub(&t[i], &t[(i + 1) % 3]));
-        let diameter = edge(0).max(edge(1)).max(edge(2));
-        let near = tips
-            .iter()
-            .any(|tip| (0..3).any(|i| segment_distance(tip, &t[i], &t[(i + 1) % 3]) < diameter));
-        if !near || depth == DEPTH {
-            points.extend(triangle_collapsed(&t, POINTS));
-            continue;
-        }
-        let mid = |i: usize, j: usize| add_scaled(&t[i], 0.5, &sub(&t[j], &t[i]));
-        let (a, b, c) = (mid(0, 1), mid(1, 2), mid(2, 0));
-        for part in [[t[0], a, c], [a, t[1], b], [c, b, t[2]], [a, b, c]] {
-            stack.push((part, depth + 1));
-        }
-    }
-    points
-}
-
-/// Distance of a point from the segment p q [m].
-fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
-    let d = sub(q, p);
-    let t = (dot(&sub(x, p), &d) / dot(&d, &d)).clamp(0.0, 1.0);
-    norm(&sub(x, &add_scaled(p, t, &d)))
+    let far = |t: &[Point; 3]| {
+        let size = diameter(t);
+        !tips.iter().any(|tip| border_distance(t, tip) < size)
+    };
+    let parts = parts(triangles, DEPTH, far, halve_triangle);
+    parts
+        .iter()
+        .flat_map(|t| triangle_collapsed(t, n))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{cross, dot, unit};
+    use crate::mesh::cell::CellKind;
 
     /// Distance from the z axis.
     fn axis(x: &Point) -> f64 {
@@ -233,18 +200,12 @@ mod tests {
     #[test]
     fn a_whole_cell_beside_a_line_is_integrated_to_the_stated_error() {
         for gap in [2.0, 0.8, 0.4, 0.2, 0.1] {
-            let corners: Vec<Point> = (0..8)
-                .map(|i| {
-                    let c = CellKind::Hex8.corner(i);
-                    [
-                        gap + 0.5 + 0.5 * c[0],
-                        0.1 + 0.5 * c[1],
-                        0.5 * c[2] + 0.1 * c[0],
-                    ]
-                })
-                .collect();
-            let found = graded_cell(&corners, axis, 20);
-            let fine: Vec<WeightedPoint> = graded_cell(&corners, |x| 0.2 * axis(x), 20);
+            let map = CellMap::new(CellKind::Hex8, |i| {
+                let [x, y, z] = CellKind::Hex8.corner(i);
+                [gap + 0.5 + 0.5 * x, 0.1 + 0.5 * y, 0.5 * z + 0.1 * x]
+            });
+            let found = graded_cell(&map, axis, 20);
+            let fine: Vec<WeightedPoint> = graded_cell(&map, |x| 0.2 * axis(x), 20);
             for f in [
                 (|x: &Point| 1.0 / axis(x)) as fn(&Point) -> f64,
                 |x| axis(x).powf(-0.5) * (1.0 + x[2] + x[0] * x[1]),
@@ -265,6 +226,33 @@ mod tests {
             let error = (measure(&points, |x| axis(x).sqrt()) - 4.0 / 15.0).abs();
             assert!(error < 0.05 * f64::powf(0.5, 1.5 * depth as f64), "{error}");
             assert!((measure(&points, |_| 1.0) - 0.5).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn graded_points_integrate_a_near_singularity() {
+        let t = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        for distance in [1e-1, 1e-3, 1e-6] {
+            let tip = [0.4, -distance, 0.0];
+            let points = graded_points(&[t], &[tip], 7);
+            // ∫ 1/r over the triangle as the signed fan of its edges: Σ h (asinh(s1/h) − asinh(s0/h))
+            let exact: f64 = (0..3)
+                .map(|i| {
+                    let (a, b) = (t[i], t[(i + 1) % 3]);
+                    let along = unit(&sub(&b, &a));
+                    let (s0, s1) = (dot(&sub(&a, &tip), &along), dot(&sub(&b, &tip), &along));
+                    let h = cross(&sub(&a, &tip), &along)[2];
+                    h * ((s1 / h.abs()).asinh() - (s0 / h.abs()).asinh())
+                })
+                .sum();
+            let found: f64 = points
+                .iter()
+                .map(|p| p.weight / norm(&sub(&p.x, &tip)))
+                .sum();
+            assert!(
+                (found / exact - 1.0).abs() < 1e-8,
+                "{distance}: {found} {exact}"
+            );
         }
     }
 }

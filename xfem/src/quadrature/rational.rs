@@ -9,8 +9,9 @@
 //!   5e-4     5e-5   3e-6   2e-7   1e-8   below 1e-10
 //! ```
 
+use crate::geometry::clip::halve_triangle;
 use crate::geometry::{Point, add_scaled, sub};
-use crate::mesh::cell::CellKind;
+use crate::mesh::cell::CellMap;
 
 use super::{WeightedPoint, triangle_collapsed};
 
@@ -22,7 +23,7 @@ use super::{WeightedPoint, triangle_collapsed};
 /// ```
 ///
 /// The rate is Bernstein's (Trefethen, SIAM Review 50 (2008) 67, theorem 4.5).
-pub fn rational_order(kind: CellKind, corners: &[Point], [p, q]: [&Point; 2]) -> usize {
+pub fn rational_order(map: &CellMap, [p, q]: [&Point; 2]) -> usize {
     const ERROR: f64 = 1e-14;
     /// What cells close to parallelograms need.
     const LEAST: usize = 5;
@@ -30,8 +31,8 @@ pub fn rational_order(kind: CellKind, corners: &[Point], [p, q]: [&Point; 2]) ->
     const MOST: usize = 200;
     let discriminant = |t: f64| {
         let x = add_scaled(p, 0.5 * (1.0 + t), &sub(q, p));
-        let xi = kind.inverse_map(corners, &x);
-        xi.map_or(0.0, |xi| kind.gradients(corners, &xi).1.powi(2))
+        map.inverse(&x)
+            .map_or(0.0, |xi| map.determinant(&xi).powi(2))
     };
     let [low, middle, high] = [-1.0, 0.0, 1.0].map(discriminant);
     // D = a t² + b t + c; in 1/z the roots stay finite when a vanishes.
@@ -60,28 +61,17 @@ pub fn rational_order(kind: CellKind, corners: &[Point], [p, q]: [&Point; 2]) ->
 
 /// Points for functions of the reference position on a triangle in a distorted quad: the triangle is quartered until the
 /// rule of [`rational_order`] along its edges and medians is affordable.
-pub fn rational_points(
-    kind: CellKind,
-    corners: &[Point],
-    t: &[Point; 3],
-    points: &mut Vec<WeightedPoint>,
-) {
-    quartered(kind, corners, t, 0, points);
+pub fn rational_points(map: &CellMap, t: &[Point; 3], points: &mut Vec<WeightedPoint>) {
+    quartered(map, t, 0, points);
 }
 
-fn quartered(
-    kind: CellKind,
-    corners: &[Point],
-    t: &[Point; 3],
-    depth: usize,
-    points: &mut Vec<WeightedPoint>,
-) {
+fn quartered(map: &CellMap, t: &[Point; 3], depth: usize, points: &mut Vec<WeightedPoint>) {
     /// Above this four smaller triangles cost less.
     const AFFORDABLE: usize = 16;
     /// Quarterings: a fold stays outside of convex cells, so few are ever needed.
     const DEPTH: usize = 8;
-    let [ab, bc, ca] = [[0, 1], [1, 2], [2, 0]]
-        .map(|[i, j]: [usize; 2]| add_scaled(&t[i], 0.5, &sub(&t[j], &t[i])));
+    let quarters = halve_triangle(t);
+    let [ab, bc, ca] = quarters[3];
     let lines = [
         [&t[0], &t[1]],
         [&t[1], &t[2]],
@@ -92,22 +82,23 @@ fn quartered(
     ];
     let order = lines
         .into_iter()
-        .map(|line| rational_order(kind, corners, line))
+        .map(|line| rational_order(map, line))
         .fold(0, usize::max);
     if order <= AFFORDABLE || depth == DEPTH {
         points.extend(triangle_collapsed(t, order.min(AFFORDABLE)));
         return;
     }
-    for part in [[t[0], ab, ca], [ab, t[1], bc], [ca, bc, t[2]], [ab, bc, ca]] {
-        quartered(kind, corners, &part, depth + 1, points);
+    for part in &quarters {
+        quartered(map, part, depth + 1, points);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::clip::{fan, polygon_part};
-    use crate::quadrature::gauss_cell;
+    use crate::geometry::clip::{clip, fan};
+    use crate::mesh::cell::CellKind;
+    use crate::quadrature::gauss_map;
 
     /// The gradients of the shape functions are rational in space; over the whole cell their integrals are polynomial.
     #[test]
@@ -118,31 +109,22 @@ mod tests {
             [[0.2, 0.2], [0.8, -0.2], [1.1, 1.2], [-0.2, 0.8]],
             [[0.25, 0.2], [0.9, -0.25], [1.2, 1.2], [-0.25, 0.9]],
         ];
-        let kind = CellKind::Quad4;
         for cell in cells {
-            let corners: Vec<Point> = cell.iter().map(|c| [c[0], c[1], 0.0]).collect();
-            let gradient = |xi: &Point| {
-                let (gradients, det) = kind.gradients(&corners, xi);
-                (gradients[0][0], det)
-            };
-            let exact: f64 = gauss_cell(2, 2)
-                .iter()
-                .map(|(xi, w)| {
-                    let (g, det) = gradient(xi);
-                    w * det * g
-                })
-                .sum();
-            let phi: Vec<f64> = corners.iter().map(|x| x[1] - 0.3 * x[0] - 0.21).collect();
+            let map = CellMap::new(CellKind::Quad4, |i| [cell[i][0], cell[i][1], 0.0]);
+            let gradient = |xi: &Point| map.gradients(xi).0[0][0];
+            let points = gauss_map(&map, 2);
+            let exact: f64 = points.map(|(xi, p)| p.weight * gradient(&xi)).sum();
+            let phi: Vec<f64> = map.iter().map(|x| x[1] - 0.3 * x[0] - 0.21).collect();
             let found: f64 = [1.0, -1.0]
                 .iter()
                 .flat_map(|&side| {
                     let mut points = Vec::new();
-                    for t in fan(&polygon_part(&corners, &phi, side)) {
-                        rational_points(kind, &corners, &t, &mut points);
+                    for t in fan(&clip(&map, &phi, side)) {
+                        rational_points(&map, &t, &mut points);
                     }
                     points
                 })
-                .map(|p| p.weight * gradient(&kind.inverse_map(&corners, &p.x).unwrap()).0)
+                .map(|p| p.weight * gradient(&map.inverse(&p.x).unwrap()))
                 .sum();
             assert!((found - exact).abs() < 1e-13, "{cell:?}: {found} {exact}");
         }
@@ -151,14 +133,14 @@ mod tests {
     #[test]
     fn affine_cells_take_the_fewest_points_and_distorted_ones_more_towards_their_fold() {
         let kind = CellKind::Quad4;
-        let square: Vec<Point> = (0..4).map(|i| kind.corner(i)).collect();
-        let order = |corners: &[Point], p: [f64; 2], q: [f64; 2]| {
-            rational_order(kind, corners, [&[p[0], p[1], 0.0], &[q[0], q[1], 0.0]])
+        let square = CellMap::new(kind, |i| kind.corner(i));
+        let order = |map: &CellMap, p: [f64; 2], q: [f64; 2]| {
+            rational_order(map, [&[p[0], p[1], 0.0], &[q[0], q[1], 0.0]])
         };
         assert_eq!(order(&square, [-0.5, -0.2], [0.7, 0.6]), 5);
         // det J falls from (−1, −1) to the third corner, which is pulled in.
-        let mut pulled = square.clone();
-        pulled[2] = [0.1, 0.1, 0.0];
+        let third = [0.1, 0.1, 0.0];
+        let pulled = CellMap::new(kind, |i| if i == 2 { third } else { kind.corner(i) });
         let (far, near) = (
             order(&pulled, [-0.9, -0.9], [-0.5, -0.5]),
             order(&pulled, [-0.5, -0.5], [0.09, 0.09]),

@@ -3,8 +3,11 @@
 //! With the point in the polygon: the crack-tip fan. With the point outside: polar coordinates around it, with the same
 //! ρ = √r. All weights are positive.
 
+use std::f64::consts::PI;
+
 use crate::geometry::clip::fan;
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::polygon::edges;
+use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, resolve, sub, unit};
 
 use super::{FanRule, WeightedPoint, fan_triangle, gauss, triangle};
 
@@ -21,20 +24,16 @@ pub fn slice_points(
     let Some(tip) = tip else {
         return fan(slice).iter().flat_map(triangle).collect();
     };
-    let edges = (0..slice.len()).map(|i| (&slice[i], &slice[(i + 1) % slice.len()]));
-    let areas: Vec<f64> = edges
-        .clone()
-        .map(|(p, q)| dot(along, &cross(&sub(p, &tip), &sub(q, &tip))))
-        .collect();
+    let area = |(p, q): (Point, Point)| dot(along, &cross(&sub(&p, &tip), &sub(&q, &tip)));
+    let areas: Vec<f64> = edges(slice).map(area).collect();
     let turn = areas.iter().sum::<f64>().signum();
-    let inside = edges.clone().zip(&areas).all(|((p, q), area)| {
+    let inside = edges(slice).zip(&areas).all(|((p, q), area)| {
         // Distance of the tip from the edge, positive inwards; rounding counts as the closure.
-        area * turn >= -1e-12 * size * norm(&sub(p, q))
+        area * turn >= -1e-12 * size * norm(&sub(&p, &q))
     });
     if inside {
-        edges
-            .flat_map(|(p, q)| fan_triangle(&tip, p, q, rule))
-            .collect()
+        let fan = edges(slice).map(|(p, q)| fan_triangle(&tip, &p, &q, rule));
+        fan.flatten().collect()
     } else {
         outside_points(slice, along, &tip, rule)
     }
@@ -56,18 +55,11 @@ fn outside_points(
 ) -> Vec<WeightedPoint> {
     /// Halvings; a tip 1e-9 edges away needs 30.
     const DEPTH: usize = 40;
-    let mut middle = [0.0; 3];
-    for x in polygon {
-        middle = add_scaled(&middle, 1.0 / polygon.len() as f64, &sub(x, tip));
-    }
     // Angles from the middle of the polygon, which lies within less than a half turn seen from outside.
-    let e0 = unit(&middle);
+    let from_tip: Vec<Point> = polygon.iter().map(|x| sub(x, tip)).collect();
+    let e0 = unit(&mean(&from_tip));
     let e1 = cross(along, &e0);
-    let flat: Vec<[f64; 2]> = polygon
-        .iter()
-        .map(|x| sub(x, tip))
-        .map(|d| [dot(&d, &e0), dot(&d, &e1)])
-        .collect();
+    let flat: Vec<[f64; 2]> = from_tip.iter().map(|d| resolve(&[e0, e1], d)).collect();
     let angles: Vec<f64> = flat.iter().map(|d| d[1].atan2(d[0])).collect();
     let mut breaks = angles.clone();
     breaks.sort_by(f64::total_cmp);
@@ -101,10 +93,7 @@ fn outside_points(
     while let Some((low, high, edges, depth)) = stack.pop() {
         let pole_distance = |pole: f64| {
             // To the nearest of pole + kπ.
-            let gap = |t: f64| {
-                (t - pole - std::f64::consts::PI * ((t - pole) / std::f64::consts::PI).round())
-                    .abs()
-            };
+            let gap = |t: f64| (t - pole - PI * ((t - pole) / PI).round()).abs();
             gap(low).min(gap(high))
         };
         let nearest = pole_distance(edges[0].1).min(pole_distance(edges[1].1));
@@ -119,15 +108,7 @@ fn outside_points(
             // Rounding may send r to infinity on an edge that points at the tip; it ends at its farther vertex.
             let r = edges.map(|(c, pole, most)| (c / (pole - theta).sin()).min(most).max(0.0));
             let (from, to) = (r[0].min(r[1]).sqrt(), r[0].max(r[1]).sqrt());
-            let direction = add_scaled(
-                &[
-                    e0[0] * theta.cos(),
-                    e0[1] * theta.cos(),
-                    e0[2] * theta.cos(),
-                ],
-                theta.sin(),
-                &e1,
-            );
+            let direction = add_scaled(&e0.map(|v| v * theta.cos()), theta.sin(), &e1);
             for &(x, wx) in &radial {
                 let rho = 0.5 * ((to - from) * x + from + to);
                 points.push(WeightedPoint {

@@ -1,38 +1,38 @@
-//! Assembly: element matrices into the block matrix, identical bits for any number of threads.
+//! Assembly: cell matrices into the block matrix of the body, identical bits for any number of threads.
 
 use rayon::prelude::*;
+
+use crate::enrichment::Enrichment;
+use crate::mesh::Mesh;
+use crate::mesh::ordering::nested_dissection;
 
 use super::block_matrix::BlockMatrix;
 use super::elasticity::CellMatrix;
 
-/// The cells of a body as assembly sees them.
-pub trait Cells: Sync {
-    /// Functions of a cell.
-    fn functions(&self, cell: usize) -> &[u32];
-    /// Cells that carry a function, ascending.
-    fn users(&self, function: usize) -> &[u32];
-    /// Matrix of a cell over its functions, row by row; cells of one shape return the same matrix.
-    fn matrix(&self, cell: usize) -> &CellMatrix;
-}
-
-/// Positions of the blocks of every cell inside the columns of the matrix: computed once per mesh.
-#[derive(Debug, Clone)]
-pub struct Scatter {
+/// Pattern of a body's matrices and the place of every cell in it: computed once per mesh.
+#[derive(Debug)]
+pub struct Assembly<'a> {
+    enrichment: &'a Enrichment,
+    /// Cells that carry each function, ascending.
+    pub users: Vec<Vec<u32>>,
+    pattern: BlockMatrix,
     start: Vec<usize>,
     /// For cell-local functions (l, k), l the column: position of row k in column l; unused above the diagonal.
     position: Vec<u16>,
 }
 
-impl Scatter {
+impl<'a> Assembly<'a> {
     /// Finds the position of every cell block.
-    pub fn new(matrix: &BlockMatrix, cells: &impl Cells, count: usize) -> Self {
-        let lists: Vec<Vec<u16>> = (0..count)
+    pub fn new(dim: usize, enrichment: &'a Enrichment) -> Self {
+        let users = enrichment.users();
+        let pattern = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
+        let lists: Vec<Vec<u16>> = (0..enrichment.cells())
             .into_par_iter()
             .map(|cell| {
-                let functions = cells.functions(cell);
+                let functions = enrichment.cell(cell);
                 let mut positions = Vec::with_capacity(functions.len() * functions.len());
                 for &column in functions {
-                    let rows = matrix.column_rows(column as usize);
+                    let rows = pattern.column_rows(column as usize);
                     for row in functions {
                         // Rows above the diagonal are absent and never asked for.
                         positions.push(rows.binary_search(row).unwrap_or_default() as u16);
@@ -45,25 +45,29 @@ impl Scatter {
         for list in &lists {
             start.push(start[start.len() - 1] + list.len());
         }
-        Scatter {
+        Assembly {
+            enrichment,
+            users,
+            pattern,
             start,
             position: lists.concat(),
         }
     }
 
-    /// Sums the cell matrices into the matrix. Every column gathers its cells in ascending order.
-    pub fn assemble(&self, matrix: &mut BlockMatrix, cells: &impl Cells) {
+    /// The sum of cell matrices over their functions. Every column gathers its cells in ascending order.
+    pub fn sum<'m>(&self, of_cell: impl Fn(usize) -> &'m CellMatrix + Sync) -> BlockMatrix {
+        let mut matrix = self.pattern.clone();
         let dim = matrix.dim();
         matrix.fill(|column, _, values| {
-            for &cell in cells.users(column) {
+            for &cell in &self.users[column] {
                 let cell = cell as usize;
-                let functions = cells.functions(cell);
+                let functions = self.enrichment.cell(cell);
                 let n = functions.len();
                 let Some(l) = functions.iter().position(|&f| f as usize == column) else {
                     continue;
                 };
                 let positions = &self.position[self.start[cell] + l * n..][..n];
-                let k = cells.matrix(cell);
+                let k = of_cell(cell);
                 for (row, &function) in functions.iter().enumerate() {
                     if (function as usize) < column {
                         continue;
@@ -77,5 +81,23 @@ impl Scatter {
                 }
             }
         });
+        matrix
     }
+}
+
+/// Nested dissection of the nodes, expanded to their unknowns with a number (`None`: prescribed).
+pub fn elimination_order(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    numbers: &[Option<u32>],
+) -> Vec<usize> {
+    let dim = mesh.dim();
+    let mut order = Vec::new();
+    for node in nested_dissection(&mesh.grid) {
+        for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
+            let free = (0..dim).filter_map(|a| numbers[f * dim + a]);
+            order.extend(free.map(|n| n as usize));
+        }
+    }
+    order
 }

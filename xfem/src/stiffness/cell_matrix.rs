@@ -12,19 +12,21 @@
 //! function by function.
 
 use crate::cut::crack::Crack;
-use crate::cut::partition::{Part, Partition};
+use crate::cut::part::Part;
+use crate::cut::partition::Partition;
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::{CellBasis, CellFunction, Region};
+use crate::enrichment::basis::Region;
+use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
-use crate::geometry::{Point, sub};
+use crate::geometry::{Point, polygon};
 use crate::material::Lame;
 use crate::mesh::Mesh;
-use crate::mesh::cell::CellKind;
+use crate::mesh::cell::CellMap;
 use crate::quadrature::graded::graded_points;
-use crate::quadrature::{Quadrature, WeightedPoint, gauss_cell, tip_points};
+use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
 
-use super::elasticity::{CellMatrix, Gram, cell_stiffness, flatten};
+use super::elasticity::{CellMatrix, Gram};
 use super::near_front::{Effort, NearFront};
 
 /// A quadrature point of a cell.
@@ -64,29 +66,28 @@ pub struct CellIntegrator<'a> {
     pub lame: Lame,
 }
 
-impl CellIntegrator<'_> {
+impl<'a> CellIntegrator<'a> {
+    /// The functions of a cell.
+    pub fn functions(&self, cell: usize) -> CellFunctions<'a> {
+        CellFunctions::new(self.mesh, self.enrichment, cell)
+    }
+
     /// Stiffness of any cell over its function list, `plain` being its standard stiffness.
     pub fn stiffness(&self, cell: usize, plain: &CellMatrix) -> Result<CellMatrix, CellError> {
-        let basis = self.enrichment.cell_basis(self.mesh, cell);
-        if basis.len() == self.mesh.kind.nodes() {
+        if self.enrichment.is_plain(self.mesh, cell) {
             Ok(plain.clone())
         } else if self.enrichment.has_branch(cell) {
-            self.by_functions(cell, &basis)
+            self.by_functions(cell)
         } else {
-            self.by_regions(cell, &basis, plain)
+            self.by_regions(cell, plain)
         }
     }
 
     /// The standard stiffness of every region, combined.
-    fn by_regions(
-        &self,
-        cell: usize,
-        basis: &[CellFunction],
-        plain: &CellMatrix,
-    ) -> Result<CellMatrix, CellError> {
-        let (kind, dim) = (self.mesh.kind, self.mesh.dim());
-        let corners = self.mesh.corners(cell);
-        let corners = &corners[..kind.nodes()];
+    fn by_regions(&self, cell: usize, plain: &CellMatrix) -> Result<CellMatrix, CellError> {
+        let dim = self.mesh.dim();
+        let functions = self.functions(cell);
+        let map = &functions.map;
         let points = self.points(cell)?;
         let regions = self.enrichment.regions(cell);
         let volume = |region: Region| -> f64 {
@@ -99,20 +100,14 @@ impl CellIntegrator<'_> {
             .max_by(|&a, &b| volume(a).total_cmp(&volume(b)))
             .unwrap_or(0);
         let integrate = |region: Region| {
-            let mut gram = Gram::zero(kind.nodes(), dim);
-            let mut flat = vec![0.0; kind.nodes() * dim];
+            let mut gram = Gram::zero(map.len(), dim);
             for p in points.iter().filter(|p| p.region == region) {
-                flatten(
-                    &kind.gradients(corners, &p.xi).0[..kind.nodes()],
-                    dim,
-                    &mut flat,
-                );
-                gram.add(p.weight, &flat);
+                gram.add(p.weight, &map.gradients(&p.xi).0);
             }
             gram.stiffness(self.lame)
         };
         let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
-        let exact = kind.is_affine(corners) && self.quadrature == Quadrature::SubCells;
+        let exact = map.is_affine() && self.quadrature == Quadrature::SubCells;
         let mut rest = plain.clone();
         for region in 0..regions {
             if exact && region == largest {
@@ -126,19 +121,17 @@ impl CellIntegrator<'_> {
         if exact {
             parts[largest] = rest;
         }
-        let mut k = CellMatrix::zero(basis.len() * dim);
-        let cell_basis = self.basis(cell, corners, basis);
+        let mut k = CellMatrix::zero(functions.numbers.len() * dim);
         for (region, part) in parts.iter().enumerate() {
-            let steps = cell_basis.steps(region);
-            for (p, fp) in basis.iter().enumerate() {
-                for (q, fq) in basis.iter().enumerate() {
-                    let f = steps[p] * steps[q];
+            for (p, (i, fp)) in functions.steps(region).enumerate() {
+                for (q, (j, fq)) in functions.steps(region).enumerate() {
+                    let f = fp * fq;
                     if f == 0.0 {
                         continue;
                     }
                     for a in 0..dim {
                         for b in 0..dim {
-                            let value = f * part.get(fp.local * dim + a, fq.local * dim + b);
+                            let value = f * part.get(i * dim + a, j * dim + b);
                             k.add(p * dim + a, q * dim + b, value);
                         }
                     }
@@ -149,92 +142,63 @@ impl CellIntegrator<'_> {
     }
 
     /// Direct integration of all functions.
-    fn by_functions(&self, cell: usize, basis: &[CellFunction]) -> Result<CellMatrix, CellError> {
-        let dim = self.mesh.dim();
-        let corners = self.mesh.corners(cell);
-        let cell_basis = self.basis(cell, &corners[..self.mesh.kind.nodes()], basis);
-        let mut gram = Gram::zero(basis.len(), dim);
-        let mut values = vec![0.0; basis.len()];
-        let mut gradients = vec![[0.0; 3]; basis.len()];
-        let mut flat = vec![0.0; basis.len() * dim];
+    fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
+        let mut functions = self.functions(cell);
+        let mut gram = Gram::zero(functions.numbers.len(), self.mesh.dim());
         for p in self.points(cell)? {
-            cell_basis.evaluate(&p.xi, &p.x, p.region, &mut values, &mut gradients);
-            flatten(&gradients, dim, &mut flat);
-            gram.add(p.weight, &flat);
+            functions.evaluate(&p.xi, &p.x, p.region);
+            gram.add(p.weight, &functions.gradients);
         }
         Ok(gram.stiffness(self.lame))
     }
 
-    /// The cell's functions, ready to be evaluated.
-    pub fn basis<'b>(
-        &'b self,
-        cell: usize,
-        corners: &'b [Point],
-        functions: &'b [CellFunction],
-    ) -> CellBasis<'b> {
-        CellBasis {
-            kind: self.mesh.kind,
-            corners,
-            functions,
-            steps: self.enrichment.steps(cell),
-            tips: &self.enrichment.tips,
-        }
-    }
-
     /// Quadrature points of a cell for its functions; the weights sum to its measure.
     pub fn points(&self, cell: usize) -> Result<Vec<SidedPoint>, CellError> {
-        let kind = self.mesh.kind;
-        let corners = self.mesh.corners(cell);
-        let corners = &corners[..kind.nodes()];
+        let map = self.mesh.map(cell);
         let partition = self.enrichment.partition(cell);
         let branch = self.enrichment.has_branch(cell);
         match (partition, self.quadrature) {
-            (None, _) if !branch => Ok(whole_cell(kind, corners, 2, |_| 0)),
-            (Some(partition), Quadrature::Gauss(n)) => Ok(whole_cell(kind, corners, n, |x| {
+            (None, _) if !branch => Ok(whole_cell(&map, 2, |_| 0)),
+            (Some(partition), Quadrature::Gauss(n)) => Ok(whole_cell(&map, n, |x| {
                 let holds = |&(crack, side): &(usize, Side)| {
                     (self.cracks[crack].distance(x) >= 0.0) == (side > 0.0)
                 };
                 let inside = |part: &Part| part.sides.iter().all(holds);
                 partition.parts.iter().position(inside).unwrap_or(0)
             })),
-            _ => self.sub_cell_points(cell, corners, partition, branch),
+            _ => self.sub_cell_points(cell, &map, partition, branch),
         }
     }
 
     fn sub_cell_points(
         &self,
         cell: usize,
-        corners: &[Point],
+        map: &CellMap,
         partition: Option<&Partition>,
         branch: bool,
     ) -> Result<Vec<SidedPoint>, CellError> {
-        let kind = self.mesh.kind;
-        let affine = kind.is_affine(corners);
-        let whole = Partition::whole(kind, corners);
+        let affine = map.is_affine();
+        let whole = Partition::whole(map);
         let parts = &partition.unwrap_or(&whole).parts;
-        if branch && kind == CellKind::Hex8 {
-            return self.near_front_points(cell, corners, parts, Effort::WORKING);
+        if branch && self.mesh.dim() == 3 {
+            return self.near_front_points(cell, parts, Effort::WORKING);
         }
         let tip = self.tip_in(cell);
+        let tips: Vec<Point> = self.enrichment.tips.iter().map(|t| t.position).collect();
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, tip) {
-                (true, Some(tip)) => {
-                    tip_points(&part.polygon, &self.enrichment.tips[tip].position, affine)
-                }
-                (true, None) => {
-                    let tips: Vec<Point> =
-                        self.enrichment.tips.iter().map(|t| t.position).collect();
-                    graded_points(&part.sub_cells().triangles, &tips)
-                }
-                (false, _) if affine => part.sub_cells().points(),
-                (false, _) => part.sub_cells().fine_points(kind, corners),
+                (true, Some(tip)) => tip_points(polygon::edges(&part.polygon), &tips[tip], affine),
+                // A relative error of 2e-11.
+                (true, None) => graded_points(&part.triangles(), &tips, 7),
+                (false, _) if affine => part.points(),
+                (false, _) => part.fine_points(map),
             };
             points.extend(rule.into_iter().map(|p| (p, region)));
         }
         // The sinh rule of a tip fan integrates constants to its own accuracy, not to rounding.
         let tolerance = if tip.is_some() { 1e-6 } else { 1e-12 };
-        self.located(cell, corners, points, tolerance)
+        self.located(cell, points, tolerance)
     }
 
     /// The tip or front in a cell.
@@ -247,51 +211,48 @@ impl CellIntegrator<'_> {
     pub fn near_front_points(
         &self,
         cell: usize,
-        corners: &[Point],
         parts: &[Part],
         effort: Effort,
     ) -> Result<Vec<SidedPoint>, CellError> {
         let near = NearFront {
-            corners,
+            map: &self.mesh.map(cell),
             parts,
             fronts: &self.enrichment.tips,
             chord: self.tip_in(cell).and_then(|tip| {
                 let index = self.enrichment.tips[tip].crack;
                 let crack = &self.cracks[index];
                 let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
-                facets
-                    .facets
-                    .iter()
-                    .find_map(|f| f.front.as_ref().map(|cut| cut.chord))
+                let mut cuts = facets.facets.iter().filter_map(|f| f.front.as_ref());
+                cuts.next().map(|cut| cut.chord)
             }),
         };
         let points = near.points(|crack| self.cracks[crack].cell_phi(self.mesh, cell), effort);
-        self.located(cell, corners, points, 1e-6)
+        self.located(cell, points, 1e-6)
     }
 
     /// Reference positions of points that must fill the cell up to a relative tolerance.
     fn located(
         &self,
         cell: usize,
-        corners: &[Point],
         points: Vec<(WeightedPoint, Region)>,
         tolerance: f64,
     ) -> Result<Vec<SidedPoint>, CellError> {
-        let kind = self.mesh.kind;
+        let map = self.mesh.map(cell);
+        let error = |reason: String| CellError {
+            at: map.centre(),
+            reason,
+        };
         // A slip in the geometry shows as a wrong measure: never integrate over it.
-        let measure: f64 = gauss_cell(kind.dim(), 2)
-            .iter()
-            .map(|(xi, w)| w * kind.gradients(corners, xi).1)
-            .sum();
+        let measure = measure(&map);
         let sum: f64 = points.iter().map(|(p, _)| p.weight).sum();
         if (sum - measure).abs() > tolerance * measure {
             let reason = format!("sub-cells measure {sum:e} instead of {measure:e}");
-            return Err(self.error(cell, reason));
+            return Err(error(reason));
         }
         let place = |(WeightedPoint { x, weight }, region)| {
-            let xi = kind.inverse_map(corners, &x).ok_or_else(|| {
-                self.error(cell, "a sub-cell point has no reference position".into())
-            })?;
+            let xi = map.inverse(&x);
+            let xi =
+                xi.ok_or_else(|| error("a sub-cell point has no reference position".into()))?;
             Ok(SidedPoint {
                 xi,
                 x,
@@ -302,45 +263,6 @@ impl CellIntegrator<'_> {
         points.into_iter().map(place).collect()
     }
 
-    fn error(&self, cell: usize, reason: String) -> CellError {
-        CellError {
-            at: self.mesh.centre(cell),
-            reason,
-        }
-    }
-
-    /// Standard stiffness of a cell.
-    pub fn plain(&self, cell: usize) -> CellMatrix {
-        let corners = self.mesh.corners(cell);
-        cell_stiffness(
-            self.mesh.kind,
-            &corners[..self.mesh.kind.nodes()],
-            self.lame,
-        )
-    }
-
-    /// Values of the functions of a cell at a reference point (position x).
-    pub fn values(&self, cell: usize, xi: &Point, x: &Point, region: Region) -> Vec<f64> {
-        let functions = self.enrichment.cell_basis(self.mesh, cell);
-        let corners = self.mesh.corners(cell);
-        let mut values = vec![0.0; functions.len()];
-        let mut gradients = vec![[0.0; 3]; functions.len()];
-        self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions)
-            .evaluate(xi, x, region, &mut values, &mut gradients);
-        values
-    }
-
-    /// Gradients of the functions of a cell at a reference point (position x) [1/m].
-    pub fn gradients(&self, cell: usize, xi: &Point, x: &Point, region: Region) -> Vec<Point> {
-        let functions = self.enrichment.cell_basis(self.mesh, cell);
-        let corners = self.mesh.corners(cell);
-        let mut values = vec![0.0; functions.len()];
-        let mut gradients = vec![[0.0; 3]; functions.len()];
-        self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions)
-            .evaluate(xi, x, region, &mut values, &mut gradients);
-        gradients
-    }
-
     /// Displacement gradient ∂u_a/∂x_b at a reference point of a cell, from all unknowns u (function-major).
     pub fn displacement_gradient(
         &self,
@@ -349,76 +271,26 @@ impl CellIntegrator<'_> {
         region: Region,
         u: &[f64],
     ) -> [Point; 3] {
-        let dim = self.mesh.dim();
-        let corners = self.mesh.corners(cell);
-        let x = (self.mesh.kind).map(&corners[..self.mesh.kind.nodes()], xi);
-        let gradients = self.gradients(cell, xi, &x, region);
-        let mut h = [[0.0; 3]; 3];
-        for (&f, g) in self.enrichment.cell(cell).iter().zip(&gradients) {
-            for a in 0..dim {
-                for b in 0..dim {
-                    h[a][b] += u[f as usize * dim + a] * g[b];
-                }
-            }
-        }
-        h
+        let mut functions = self.functions(cell);
+        let x = functions.map.at(xi);
+        functions.field(xi, &x, region, u).1
     }
 
     /// Displacement at a point of a cell, in one of its regions.
     pub fn displacement(&self, cell: usize, x: &Point, region: Region, u: &[f64]) -> Option<Point> {
-        let dim = self.mesh.dim();
-        let functions = self.enrichment.cell_basis(self.mesh, cell);
-        let corners = self.mesh.corners(cell);
-        let basis = self.basis(cell, &corners[..self.mesh.kind.nodes()], &functions);
-        let xi = self.mesh.kind.inverse_map(basis.corners, x)?;
-        let mut values = vec![0.0; functions.len()];
-        let mut gradients = vec![[0.0; 3]; functions.len()];
-        basis.evaluate(&xi, x, region, &mut values, &mut gradients);
-        let mut v = [0.0; 3];
-        for (&f, n) in self.enrichment.cell(cell).iter().zip(&values) {
-            for (a, va) in v.iter_mut().enumerate().take(dim) {
-                *va += n * u[f as usize * dim + a];
-            }
-        }
-        Some(v)
-    }
-
-    /// Shape up to translation, in multiples of `quantum` [m]: cells with equal keys share one standard stiffness.
-    pub fn shape_key(&self, cell: usize, quantum: f64) -> [i64; 21] {
-        let corners = self.mesh.corners(cell);
-        let mut key = [0; 21];
-        for (i, corner) in corners
-            .iter()
-            .enumerate()
-            .take(self.mesh.kind.nodes())
-            .skip(1)
-        {
-            let d = sub(corner, &corners[0]);
-            for a in 0..3 {
-                key[3 * (i - 1) + a] = (d[a] / quantum).round() as i64;
-            }
-        }
-        key
+        let mut functions = self.functions(cell);
+        let xi = functions.map.inverse(x)?;
+        Some(functions.field(&xi, x, region, u).0)
     }
 }
 
 /// Tensor Gauss points of the whole cell with a region each.
-fn whole_cell(
-    kind: CellKind,
-    corners: &[Point],
-    n: usize,
-    region: impl Fn(&Point) -> Region,
-) -> Vec<SidedPoint> {
-    gauss_cell(kind.dim(), n)
-        .into_iter()
-        .map(|(xi, w)| {
-            let x = kind.map(corners, &xi);
-            SidedPoint {
-                xi,
-                x,
-                weight: w * kind.gradients(corners, &xi).1,
-                region: region(&x),
-            }
-        })
-        .collect()
+pub fn whole_cell(map: &CellMap, n: usize, region: impl Fn(&Point) -> Region) -> Vec<SidedPoint> {
+    let sided = |(xi, WeightedPoint { x, weight })| SidedPoint {
+        xi,
+        x,
+        weight,
+        region: region(&x),
+    };
+    gauss_map(map, n).map(sided).collect()
 }

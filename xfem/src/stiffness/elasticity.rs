@@ -15,7 +15,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::geometry::Point;
 use crate::material::Lame;
-use crate::mesh::cell::CellKind;
+use crate::mesh::cell::CellMap;
 use crate::quadrature::gauss_cell;
 
 /// Gram matrix of gradients, dense symmetric, rows (k, a) with a fastest.
@@ -49,10 +49,12 @@ impl Gram {
         }
     }
 
-    /// G += w g gᵀ; `g` holds the gradients of all functions, `dim` entries each.
-    pub fn add(&mut self, weight: f64, g: &[f64]) {
-        self.gathered.extend_from_slice(g);
-        self.weighted.extend(g.iter().map(|v| weight * v));
+    /// G += w g gᵀ; `g`: the gradients of all functions.
+    pub fn add(&mut self, weight: f64, g: &[Point]) {
+        for gradient in g.iter().map(|g| &g[..self.dim]) {
+            self.gathered.extend_from_slice(gradient);
+            self.weighted.extend(gradient.iter().map(|v| weight * v));
+        }
         if self.gathered.len() >= Self::GATHER * self.size {
             self.gather();
         }
@@ -156,29 +158,21 @@ impl CellMatrix {
 }
 
 /// Stiffness of an uncut cell: 2 Gauss points per direction, exact on affine cells.
-pub fn cell_stiffness(kind: CellKind, corners: &[Point], lame: Lame) -> CellMatrix {
-    let dim = kind.dim();
-    let mut gram = Gram::zero(kind.nodes(), dim);
-    let mut flat = vec![0.0; kind.nodes() * dim];
+pub fn cell_stiffness(map: &CellMap, lame: Lame) -> CellMatrix {
+    let dim = map.kind.dim();
+    let mut gram = Gram::zero(map.len(), dim);
     for (xi, w) in gauss_cell(dim, 2) {
-        let (g, det) = kind.gradients(corners, &xi);
-        flatten(&g[..kind.nodes()], dim, &mut flat);
-        gram.add(w * det, &flat);
+        let (g, det) = map.gradients(&xi);
+        gram.add(w * det, &g);
     }
     gram.stiffness(lame)
-}
-
-/// Writes gradients as one vector, `dim` entries each.
-pub fn flatten(gradients: &[Point], dim: usize, flat: &mut [f64]) {
-    for (chunk, g) in flat.chunks_exact_mut(dim).zip(gradients) {
-        chunk.copy_from_slice(&g[..dim]);
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::material::{Material, Model};
+    use crate::mesh::cell::CellKind;
 
     const STEEL: Material = Material {
         young: 210e9,
@@ -190,11 +184,8 @@ mod tests {
     #[test]
     fn square_plane_stress_matches_the_closed_form() {
         let corners = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
-        let k = cell_stiffness(
-            CellKind::Quad4,
-            &corners,
-            Lame::new(STEEL, Model::PlaneStress),
-        );
+        let map = CellMap::new(CellKind::Quad4, |i| corners[i]);
+        let k = cell_stiffness(&map, Lame::new(STEEL, Model::PlaneStress));
         let (e, nu) = (STEEL.young, STEEL.poisson);
         let c = e / (1.0 - nu * nu);
         for (j, exact) in [
@@ -213,17 +204,11 @@ mod tests {
 
     #[test]
     fn rigid_motions_cost_no_energy_and_stiffness_is_symmetric() {
-        let corners: Vec<Point> = (0..8)
-            .map(|i| {
-                let c = CellKind::Hex8.corner(i);
-                [
-                    c[0] + 0.1 * c[1] * c[2],
-                    c[1] - 0.2 * c[0],
-                    1.3 * c[2] + 0.1 * c[0] * c[1],
-                ]
-            })
-            .collect();
-        let k = cell_stiffness(CellKind::Hex8, &corners, Lame::new(STEEL, Model::Solid));
+        let map = CellMap::new(CellKind::Hex8, |i| {
+            let [x, y, z] = CellKind::Hex8.corner(i);
+            [x + 0.1 * y * z, y - 0.2 * x, 1.3 * z + 0.1 * x * y]
+        });
+        let k = cell_stiffness(&map, Lame::new(STEEL, Model::Solid));
         let modes: [fn(&Point) -> Point; 4] = [
             |_| [1.0, 0.0, 0.0],
             |_| [0.0, 0.0, 1.0],
@@ -231,7 +216,7 @@ mod tests {
             |x| [0.0, -x[2], x[1]],
         ];
         for mode in modes {
-            let u: Vec<f64> = corners.iter().flat_map(mode).collect();
+            let u: Vec<f64> = map.iter().flat_map(mode).collect();
             for i in 0..24 {
                 let force: f64 = (0..24).map(|j| k.get(i, j) * u[j]).sum();
                 assert!(force.abs() < 1e-13 * k.get(0, 0) * 24.0);

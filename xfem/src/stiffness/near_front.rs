@@ -8,11 +8,11 @@
 //!
 //! Halving resolves a front at a distance d of the cell with about 1/d parts, slices with as many at any distance.
 
-use crate::cut::partition::Part;
+use crate::cut::part::Part;
 use crate::enrichment::basis::Region;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
-use crate::mesh::cell::CellKind;
+use crate::geometry::{Point, add_scaled, cross, dot, sub};
+use crate::mesh::cell::{CellMap, Nodal};
 use crate::quadrature::front::{FrontPiece, FrontRule, front_cell_points};
 use crate::quadrature::graded::{graded_cell, graded_tetrahedra, nearest_in_box};
 use crate::quadrature::{FanRule, WeightedPoint};
@@ -58,8 +58,8 @@ impl Effort {
 
 /// A cell near fronts.
 pub struct NearFront<'a> {
-    /// Corners [m].
-    pub corners: &'a [Point],
+    /// The cell.
+    pub map: &'a CellMap,
     /// Parts into which cracks divide it.
     pub parts: &'a [Part],
     /// Fronts.
@@ -72,7 +72,7 @@ impl NearFront<'_> {
     /// Points with the part they lie in; `phi`: signed distances of the corners to a crack [m].
     pub fn points(
         &self,
-        phi: impl Fn(usize) -> [f64; 8],
+        phi: impl Fn(usize) -> Nodal<f64>,
         effort: Effort,
     ) -> Vec<(WeightedPoint, Region)> {
         let distance = |x: &Point| {
@@ -85,7 +85,7 @@ impl NearFront<'_> {
             return self.slices(front, &nearest, &phi, effort.slices);
         }
         match self.parts {
-            [part] if part.sides.is_empty() => graded_cell(self.corners, nearer, DEPTH)
+            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH)
                 .into_iter()
                 .map(|p| (p, 0))
                 .collect(),
@@ -102,13 +102,9 @@ impl NearFront<'_> {
 
     /// The front to slice around, and a place of the cell next to it.
     fn sliced(&self, distance: &impl Fn(&Point) -> f64) -> Option<(&TipFrame, Point)> {
-        let edges = CellKind::Hex8.edges().iter();
-        let longest = edges
-            .map(|&[i, j]| norm(&sub(&self.corners[i], &self.corners[j])))
-            .fold(0.0, f64::max);
         let cut = self.parts.len() > 1;
-        let reach = REACH[usize::from(cut)] * longest;
-        let nearest = nearest_in_box(self.corners, &[0.0; 3], 1.0, distance);
+        let reach = REACH[usize::from(cut)] * self.map.longest_edge();
+        let nearest = nearest_in_box(self.map, &[0.0; 3], 1.0, distance);
         if nearest.1 > reach && self.chord.is_none() {
             return None;
         }
@@ -126,7 +122,7 @@ impl NearFront<'_> {
         &self,
         front: &TipFrame,
         place: &Point,
-        phi: &[f64; 8],
+        phi: &[f64],
         rule: FrontRule,
     ) -> Vec<(WeightedPoint, Region)> {
         let chord = self.chord.unwrap_or_else(|| {
@@ -135,7 +131,7 @@ impl NearFront<'_> {
             let foot = add_scaled(place, -at.psi, &ahead);
             let foot = add_scaled(&foot, -at.phi, &normal);
             // Ends far outside of the cell.
-            let far = 10.0 * norm(&sub(&self.corners[6], &self.corners[0]));
+            let far = 10.0 * self.map.diagonal();
             [-far, far].map(|s| add_scaled(&foot, s, &tangent))
         });
         let along = sub(&chord[1], &chord[0]);
@@ -154,7 +150,7 @@ impl NearFront<'_> {
             let own = part.side(front.crack);
             for side in [1.0, -1.0] {
                 if own.is_none_or(|s| s == side) {
-                    let half = front_cell_points(self.corners, phi, side, &piece, rule);
+                    let half = front_cell_points(self.map, phi, side, &piece, rule);
                     points.extend(half.into_iter().map(|p| (p, region)));
                 }
             }

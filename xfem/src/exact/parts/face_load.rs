@@ -168,7 +168,7 @@ impl FaceLoad {
 mod tests {
     use super::*;
     use crate::exact::check::setting;
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Model;
 
     const LOADS: [(f64, f64); 3] = [(1.0, 0.0), (0.0, 0.7), (0.6, -1.1)];

@@ -9,7 +9,7 @@
 
 use crate::material::{Lame, Model};
 
-use super::Setting;
+use crate::exact::solution::Setting;
 
 /// Elastic constants of a plane problem.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,7 @@ impl PlaneElasticity {
 mod tests {
     use super::*;
     use crate::exact::check::setting;
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
 
     #[test]

@@ -23,12 +23,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::enrichment::Enrichment;
+use crate::enrichment::basis::FunctionKind;
 use crate::geometry::tip_frame::FrontShape;
 use crate::mesh::Mesh;
-use crate::stiffness::elasticity::CellMatrix;
 
-use super::Enrichment;
-use super::basis::FunctionKind;
+use super::elasticity::CellMatrix;
 
 /// A function is dropped if the square of its part outside the span of the others is smaller than this part of its own
 /// square: K' carries the rounding of K divided by it.

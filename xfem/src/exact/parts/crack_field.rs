@@ -11,10 +11,10 @@
 
 use crate::geometry::Point;
 
-use super::Field;
 use super::face_load::{FaceLoad, Mode};
 use super::line_crack::LineCrack;
 use super::plane_elasticity::PlaneElasticity;
+use crate::exact::solution::Field;
 
 /// The uncracked field.
 #[derive(Debug, Clone, Copy, Default)]
@@ -130,7 +130,7 @@ impl Field for CrackField {
 mod tests {
     use super::*;
     use crate::exact::check::{check_elasticity, setting};
-    use crate::geometry::CrackShape;
+    use crate::geometry::crack_shape::CrackShape;
     use crate::material::Model;
 
     /// Every part at once: uniform stress, bending, and zones of both modes, one of them with a smooth end.

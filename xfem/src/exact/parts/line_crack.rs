@@ -5,9 +5,12 @@
 //!   m = n · (x − centre)    from side 2 to side 1; n = t turned by +90°
 //! ```
 
-use crate::geometry::{CrackShape, Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::crack_shape::plane_frame;
+use crate::geometry::curve::turned;
+use crate::geometry::{Point, add_scaled, dot, norm, sub, unit};
 
-use super::Setting;
+use crate::exact::solution::Setting;
 
 /// A point closer to the crack line than this, in half lengths, lies on it: its side is the one asked for.
 const ON_LINE: f64 = 1e-10;
@@ -45,7 +48,7 @@ impl LineCrack {
         Ok(LineCrack {
             centre: [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.0],
             tangent,
-            normal: [-tangent[1], tangent[0], 0.0],
+            normal: turned(&tangent),
             half_length: 0.5 * length,
             sense: 1.0,
         })
@@ -142,7 +145,7 @@ pub fn axes(shape: &CrackShape, x: &Point) -> [Point; 3] {
                 }
             }
             let a = best.1;
-            [[-a[1], a[0], 0.0], a, e_z]
+            [turned(&a), a, e_z]
         }
         CrackShape::Arc {
             centre, from, to, ..
@@ -152,27 +155,9 @@ pub fn axes(shape: &CrackShape, x: &Point) -> [Point; 3] {
             let n = outward.map(|v| -turn * v);
             [n, [n[1], -n[0], 0.0], e_z]
         }
-        CrackShape::Ellipse { normal, axis, .. } => [*normal, *axis, cross(normal, axis)],
-        CrackShape::Plane { normal, .. } => {
-            // The axis least along n; the first of equals, so that n = e_z gives a = e_x, b = e_y.
-            let n = unit(normal);
-            let mut least = 0;
-            for k in 1..3 {
-                if n[k].abs() < n[least].abs() - 1e-12 {
-                    least = k;
-                }
-            }
-            let mut e = [0.0; 3];
-            e[least] = 1.0;
-            let a = unit(&add_scaled(&e, -n[least], &n));
-            [n, a, cross(&n, &a)]
-        }
+        CrackShape::Ellipse(ellipse) => ellipse.frame(),
+        CrackShape::Plane { normal, .. } => plane_frame(normal),
     }
-}
-
-/// Components of a vector along local axes.
-pub fn resolve(axes: &[Point; 3], v: &Point) -> [f64; 3] {
-    axes.map(|axis| dot(&axis, v))
 }
 
 #[cfg(test)]
