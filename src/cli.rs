@@ -15,10 +15,14 @@ mod spaces;
 mod stress;
 mod sweep;
 
+use std::process::ExitCode;
+
 use clap::{Parser, Subcommand};
+use stickslip_methods::Registry;
 
 pub use self::error::CliError;
 pub use self::output::warn;
+use crate::run::registry::install;
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
 #[derive(Debug, Parser)]
@@ -67,6 +71,26 @@ enum Verb {
     Show(show::Arguments),
     /// Check case files without running them
     Check(run::CheckArguments),
+}
+
+/// The whole program, with the methods of a registry: reads the command line and says how it ended.
+///
+/// A program with methods of its own is this call with a registry that holds them.
+pub fn program(methods: Registry) -> ExitCode {
+    if !install(methods) {
+        warn(format_args!(
+            "error: the methods of this program are settled already"
+        ));
+        return ExitCode::from(2);
+    }
+    match main(Cli::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            warn(format_args!("error: {error}"));
+            ExitCode::from(2)
+        }
+    }
 }
 
 /// Runs the command; true if everything was as expected (exit code 0), false otherwise (exit code 1).

@@ -1,17 +1,9 @@
-//! The program: parses the command line and turns the outcome into an exit code.
+//! The program with the methods of `stickslip-methods`.
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use stickslip::cli;
+use stickslip_methods::Registry;
 
 fn main() -> ExitCode {
-    match cli::main(cli::Cli::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            cli::warn(format_args!("error: {error}"));
-            ExitCode::from(2)
-        }
-    }
+    stickslip::cli::program(Registry::standard())
 }

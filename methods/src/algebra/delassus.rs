@@ -58,22 +58,15 @@ pub trait Delassus: Send + Sync {
         block
     }
 
-    /// The whole matrix with f applied to every entry (row, column, W_ij).
-    fn map(&self, f: &dyn Fn(usize, usize, f64) -> f64) -> Mat<f64> {
+    /// The whole matrix.
+    fn to_matrix(&self) -> Mat<f64> {
         let (m, mut work) = (self.rows(), Vec::new());
-        let mut mapped = Mat::zeros(m, m);
+        let mut matrix = Mat::zeros(m, m);
         for j in 0..m {
             let column = self.column(j, &mut work);
-            for (i, (to, from)) in mapped
-                .col_as_slice_mut(j)
-                .iter_mut()
-                .zip(column)
-                .enumerate()
-            {
-                *to = f(i, j, *from);
-            }
+            matrix.col_as_slice_mut(j).copy_from_slice(column);
         }
-        mapped
+        matrix
     }
 }
 

@@ -149,7 +149,8 @@ fn columns(
     e: Blocks<'_>,
     s: Blocks<'_>,
 ) {
-    let mut work = Vec::new();
+    // Where all rows are active, whole columns are added.
+    let (mut work, all) = (Vec::new(), active.len() == w.rows());
     for (b, (k, point)) in active.iter().enumerate() {
         let column = &mut J.col_as_slice_mut(b)[..active.len()];
         for l in point.clone() {
@@ -157,8 +158,17 @@ fn columns(
             if s != 0.0 {
                 let held = series.map(|c| c.col_as_slice(l));
                 for w in [Some(w.column(l, &mut work)), held].into_iter().flatten() {
-                    for (entry, (a, _)) in column.iter_mut().zip(active) {
-                        *entry += w[*a] * s;
+                    if all {
+                        column
+                            .iter_mut()
+                            .zip(w)
+                            .for_each(|(entry, w)| *entry += w * s);
+                    } else {
+                        let w = active.iter().map(|(a, _)| w[*a]);
+                        column
+                            .iter_mut()
+                            .zip(w)
+                            .for_each(|(entry, w)| *entry += w * s);
                     }
                 }
             }

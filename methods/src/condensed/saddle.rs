@@ -163,14 +163,16 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Mat<f64> {
         .collect();
     // Π W Π = W − Q (W Q)ᵀ − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
-    operator.w.map(&|i, j, w| {
-        let mut entry = w;
-        for a in 0..q.len() {
-            entry += kappa * q[a][i] * q[a][j] - q[a][i] * wq[a][j] - wq[a][i] * q[a][j];
-            for b in 0..q.len() {
-                entry += q[a][i] * inner[(a, b)] * q[b][j];
+    let mut augmented = operator.w.to_matrix();
+    for j in 0..m {
+        for (i, entry) in augmented.col_as_slice_mut(j).iter_mut().enumerate() {
+            for a in 0..q.len() {
+                *entry += kappa * q[a][i] * q[a][j] - q[a][i] * wq[a][j] - wq[a][i] * q[a][j];
+                for b in 0..q.len() {
+                    *entry += q[a][i] * inner[(a, b)] * q[b][j];
+                }
             }
         }
-        entry
-    })
+    }
+    augmented
 }

@@ -51,7 +51,12 @@ impl GlobalStage {
 
     /// With the given k₀ in N/m.
     pub fn along(operator: Arc<ContactOperator>, k0: f64) -> Result<Self, MethodError> {
-        let a = (operator.w).map(&|i, j, w| k0 * w + f64::from(u8::from(i == j)));
+        let mut a = operator.w.to_matrix();
+        for j in 0..a.ncols() {
+            let column = a.col_as_slice_mut(j);
+            column.iter_mut().for_each(|w| *w *= k0);
+            column[j] += 1.0;
+        }
         let factor = Llt::new(a.as_ref(), Side::Lower)
             .map_err(|e| kernel("factorisation of I + k0 W", format!("{e:?}")))?;
         let columns = operator.modes.q.iter();
