@@ -1,14 +1,25 @@
 //! What a method is given, what it returns, and who judges it: body, increment, state, laws, judge, options, registry.
 
 pub(crate) mod barrier_law;
-pub mod elastic;
-pub mod judge;
+pub(crate) mod elastic;
+pub(crate) mod judge;
 pub mod law;
-pub mod operator;
-pub mod options;
-pub mod point_status;
-pub mod registry;
-pub mod state;
-pub mod system;
-pub mod tier;
+pub(crate) mod operator;
+pub(crate) mod options;
+pub(crate) mod point_status;
+pub(crate) mod registry;
+pub(crate) mod state;
+pub(crate) mod system;
+pub(crate) mod tier;
 pub(crate) mod tractions;
+
+pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use judge::{Residuals, consistency, residuals, residuals_of};
+pub use operator::{ContactOperator, DelassusForm};
+pub(crate) use options::options;
+pub use options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};
+pub use point_status::{PointStatus, point_status};
+pub use registry::{Enforcement, Method, NameTaken, Needs, Registry};
+pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
+pub use system::{ContactSystem, Increment, Load};
+pub use tier::{Tier, UnknownTier};

@@ -86,24 +86,8 @@ pub mod splitting;
 pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
 pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
 pub use algebra::rows::RowSet;
-pub use condensed::forces::Forces;
-pub use condensed::local_form::LocalForm;
-pub use condensed::method::{CondensedMethod, End};
-pub use condensed::problem::{Check, ContactProblem, Limits};
-pub use condensed::starts::{Start, Uniqueness, from_all_starts};
-pub use condensed::uniqueness::contact_wise_margin;
-pub use contract::elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
-pub use contract::judge::{Residuals, consistency, residuals, residuals_of};
-pub use contract::law;
-pub use contract::operator::{ContactOperator, DelassusForm};
-pub use contract::options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};
-pub use contract::point_status::{PointStatus, point_status};
-pub use contract::registry::{Enforcement, Method, NameTaken, Needs, Registry};
-pub use contract::state::{
-    Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status,
-};
-pub use contract::system::{ContactSystem, Increment, Load};
-pub use contract::tier::{Tier, UnknownTier};
+pub use condensed::*;
+pub use contract::*;
 pub use error::MethodError;
 
 impl Registry {

@@ -41,8 +41,9 @@ pub(crate) type Blocks<'a> = &'a [[f64; 3]];
 pub(crate) enum Law<'a> {
     /// E = A, L = C, R = I.
     Rows { a: Blocks<'a>, c: Blocks<'a> },
-    /// L = I, R = S; `series` is a compliance added to W.
+    /// L = I, R = S, E = `unit` I + e; `series` is a compliance added to W.
     Columns {
+        unit: f64,
         e: Blocks<'a>,
         s: Blocks<'a>,
         series: Option<&'a Mat<f64>>,
@@ -74,7 +75,10 @@ impl Bordered {
         let mut J = Mat::<f64>::zeros(size, size);
         match law {
             Law::Rows { a, c } => rows(&mut J, w, &active, a, c),
-            Law::Columns { e, s, series } => columns(&mut J, w, *series, &active, e, s),
+            Law::Columns { unit, e, s, series } => {
+                (0..n).for_each(|k| J[(k, k)] = *unit);
+                columns(&mut J, w, *series, &active, e, s);
+            }
         }
         for (j, q) in q.iter().enumerate() {
             for (b, (k, own)) in active.iter().enumerate() {

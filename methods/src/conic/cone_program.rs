@@ -16,8 +16,7 @@ use clarabel::solver::{
 };
 
 use crate::algebra::factor::kernel;
-use crate::condensed::problem::ContactProblem;
-use crate::error::MethodError;
+use crate::{ContactProblem, MethodError};
 
 /// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
 pub(crate) const TIGHTEST: f64 = 1e-11;

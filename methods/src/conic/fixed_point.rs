@@ -9,18 +9,16 @@
 #![allow(non_snake_case)]
 
 use crate::condensed::branches::Branches;
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::condensed::starts::tied_forces;
 use crate::conic::anderson::Anderson;
 use crate::conic::cone_program::{ConeProgram, Law, TIGHTEST};
-use crate::contract::options::{OptionSpec, Options, Switch, Whole};
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
-use crate::newton::iteration::{Newton, max_iterations};
+use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
+use crate::{
+    Check, CondensedMethod, ContactProblem, End, Forces, Limits, MethodError, Monitor, OptionSpec,
+    Options, Switch, Whole, options,
+};
 
 /// Tolerance of a cone program, relative to the natural map before it.
 const LOOSE: f64 = 1e-3;
@@ -35,20 +33,11 @@ const PATIENCE: usize = 20;
 /// The same while polishing, counted from the best of the programs.
 const POLISH_PATIENCE: usize = 30;
 
-const MAX_ITERATIONS: Whole =
-    max_iterations(200, "cone programs and Newton steps before giving up");
-const ANDERSON: Whole = Whole {
-    name: "anderson",
-    default: 5,
-    min: 0,
-    max: 20,
-    help: "differences that Anderson acceleration keeps; 0: the plain fixed point",
-};
-const POLISHED: Switch = Switch {
-    name: "polish",
-    default: true,
-    help: "1: finish by Newton steps, which reach what the cone programs cannot",
-};
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "cone programs and Newton steps before giving up";
+    ANDERSON: Whole("anderson", 5, 0, 20): "differences that Anderson acceleration keeps; 0: the plain fixed point";
+    POLISHED: Switch("polish", true): "1: finish by Newton steps, which reach what the cone programs cannot";
+}
 
 /// What both methods can be told.
 pub(crate) static OPTIONS: [OptionSpec; 3] = [

@@ -39,10 +39,10 @@
 //! # Skips
 //! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.
 
+use crate::Method;
 use crate::conic::cone_program::Law;
 use crate::conic::fixed_point::{FixedPoint, OPTIONS};
 use crate::contract::law::tangential_norm;
-use crate::contract::registry::Method;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -42,9 +42,9 @@
 
 #![allow(non_snake_case)]
 
+use crate::Method;
 use crate::conic::cone_program::Law;
 use crate::conic::fixed_point::{FixedPoint, OPTIONS};
-use crate::contract::registry::Method;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

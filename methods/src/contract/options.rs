@@ -43,6 +43,14 @@ pub struct Switch {
     pub help: &'static str,
 }
 
+/// Declares options as constants, one a line: `NAME: Type(name, default, least, most): help;`.
+macro_rules! options {
+    ($($id:ident: $kind:ident($name:literal, $default:expr $(, $min:expr, $max:expr)?): $help:literal;)*) => {
+        $(const $id: $kind = $kind { name: $name, default: $default, $(min: $min, max: $max,)? help: $help };)*
+    };
+}
+pub(crate) use options;
+
 /// One option of a method, as the registry lists it. All options are dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OptionSpec {

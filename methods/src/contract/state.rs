@@ -24,39 +24,44 @@ impl ContactState {
     }
 }
 
-/// How a method ended. Only [`Converged`](Status::Converged) claims a solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Status {
-    /// The method's own equations hold to the tolerance asked for (see [`Claim`]).
-    Converged,
-    /// The iteration limit was reached first.
-    MaxIterations,
-    /// The residual stopped falling well before the iteration limit.
-    Stalled,
-    /// The tangent of the contact equations is singular at an iterate.
-    SingularTangent,
-    /// A floating piece is not held by the contact: it can move rigidly, or its load cannot be balanced.
-    Mechanism,
-    /// Numbers left the finite range.
-    Diverged,
-    /// The monitor asked to stop.
-    Stopped,
+/// The enum with the list of its values and their names, so that neither can forget one.
+macro_rules! statuses {
+    ($($(#[$doc:meta])* $status:ident = $name:literal,)*) => {
+        /// How a method ended. Only [`Converged`](Status::Converged) claims a solution.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Status {
+            $($(#[$doc])* $status,)*
+        }
+
+        impl Status {
+            /// All of them.
+            pub const ALL: &'static [Status] = &[$(Status::$status),*];
+
+            /// Name in tables.
+            pub fn as_str(self) -> &'static str {
+                match self {
+                    $(Status::$status => $name,)*
+                }
+            }
+        }
+    };
 }
 
-impl Status {
-    /// Name in tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Status::Converged => "converged",
-            Status::MaxIterations => "max-iterations",
-            Status::Stalled => "stalled",
-            Status::SingularTangent => "singular-tangent",
-            Status::Mechanism => "mechanism",
-            Status::Diverged => "diverged",
-            Status::Stopped => "stopped",
-        }
-    }
+statuses! {
+    /// The method's own equations hold to the tolerance asked for (see [`Claim`]).
+    Converged = "converged",
+    /// The iteration limit was reached first.
+    MaxIterations = "max-iterations",
+    /// The residual stopped falling well before the iteration limit.
+    Stalled = "stalled",
+    /// The tangent of the contact equations is singular at an iterate.
+    SingularTangent = "singular-tangent",
+    /// A floating piece is not held by the contact: it can move rigidly, or its load cannot be balanced.
+    Mechanism = "mechanism",
+    /// Numbers left the finite range.
+    Diverged = "diverged",
+    /// The monitor asked to stop.
+    Stopped = "stopped",
 }
 
 impl std::fmt::Display for Status {

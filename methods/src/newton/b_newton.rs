@@ -47,14 +47,11 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::Forces;
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
-use crate::contract::options::{OptionSpec, Whole};
-use crate::contract::registry::Method;
-use crate::error::MethodError;
-use crate::newton::iteration::{At, Newton, R, Scheme, max_iterations, trial};
+use crate::newton::iteration::{At, Newton, R, Scheme, trial};
 use crate::newton::step::Tangent;
+use crate::{Forces, Method, MethodError, OptionSpec, Whole, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -63,17 +60,18 @@ pub static METHOD: Method = Method {
     reference: "Christensen, Klarbring, Pang & Strömberg, Int. J. Numer. Meth. Engng 42 (1998) 145",
     summary: "Newton's method on the non-smooth equations min(r g, P_n) = 0 and P_t = proj(P_t - r d)",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(R),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        Tangent::OPTION,
+    ],
     source: include_str!("b_newton.rs"),
     build: |options| Box::new(Newton::new(BEquations, options, &MAX_ITERATIONS)),
 };
 
-const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(R),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    Tangent::OPTION,
-];
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
+}
 
 /// Rounds of branch correction at kinks within one step.
 const BRANCH_ROUNDS: usize = 10;

@@ -39,22 +39,19 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{self, Saddle};
 use crate::condensed::stages::alternate;
 use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::{Branch, return_map};
-use crate::contract::options::{OptionSpec, Options, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::{Monitor, Status};
-use crate::error::MethodError;
 use crate::newton::b_newton::BEquations;
 use crate::newton::iteration::{Newton, R, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
+use crate::{
+    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
+    Options, Status, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -63,30 +60,19 @@ pub static METHOD: Method = Method {
     reference: "Acary, Brémond & Huber (2018), in Advanced Topics in Nonsmooth Dynamics, Springer",
     summary: "a few Gauss-Seidel sweeps, then Newton's method, in rounds with ever more sweeps until one succeeds",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(R),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        OptionSpec::Whole(FIRST),
+    ],
     source: include_str!("hybrid.rs"),
     build: |options| Box::new(Hybrid::new(options)),
 };
 
-const MAX_ITERATIONS: Whole = Whole {
-    name: "max_iterations",
-    default: 50_000,
-    min: 1,
-    max: 100_000_000,
-    help: "sweeps and Newton steps before giving up",
-};
-const FIRST: Whole = Whole {
-    name: "first",
-    default: 5,
-    min: 1,
-    max: 10_000,
-    help: "sweeps of the first round",
-};
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(R),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    OptionSpec::Whole(FIRST),
-];
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 50_000, 1, 100_000_000): "sweeps and Newton steps before giving up";
+    FIRST: Whole("first", 5, 1, 10_000): "sweeps of the first round";
+}
 
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;

@@ -42,16 +42,12 @@
 
 use crate::algebra::dense::along;
 use crate::condensed::branches::Branches;
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
 use crate::condensed::point_row::{Bordered, Law};
-use crate::condensed::problem::{Check, ContactProblem, Limits};
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
-use crate::newton::iteration::max_iterations;
+use crate::{
+    Check, CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor,
+    OptionSpec, Options, Real, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -60,23 +56,18 @@ pub static METHOD: Method = Method {
     reference: "Kanno, Martins & Pinto da Costa, Int. J. Numer. Meth. Engng 65 (2006) 62",
     summary: "follows the central path of the contact laws, written as complementarity of second-order cones",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(FRACTION),
+        OptionSpec::Whole(MAX_ITERATIONS),
+    ],
     source: include_str!("interior_point.rs"),
     build: |options| Box::new(InteriorPoint::new(options)),
 };
 
-const FRACTION: Real = Real {
-    name: "fraction",
-    default: 0.99,
-    min: 0.5,
-    max: 0.9999,
-    help: "fraction of the way to the boundary of the cones that a step may take",
-};
-const MAX_ITERATIONS: Whole = max_iterations(200, "steps before giving up");
-static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec::Real(FRACTION),
-    OptionSpec::Whole(MAX_ITERATIONS),
-];
+options! {
+    FRACTION: Real("fraction", 0.99, 0.5, 0.9999): "fraction of the way to the boundary of the cones that a step may take";
+    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "steps before giving up";
+}
 
 /// Steps without progress after which the iteration counts as stalled.
 const PATIENCE: usize = 40;

@@ -9,20 +9,16 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
 use crate::condensed::point_row::PointRow;
-use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
 use crate::contract::law::{Branch, return_map};
-use crate::contract::options::{Options, Real, Whole};
-use crate::contract::registry::Needs;
-use crate::contract::state::{Monitor, Status};
-use crate::contract::system::ContactSystem;
-use crate::error::MethodError;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::Tangent;
+use crate::{
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, MethodError,
+    Monitor, Needs, Options, Real, Status, Whole,
+};
 
 /// Scale of the equations, an option of every scheme.
 pub(crate) const R: Real = Real {
@@ -32,17 +28,6 @@ pub(crate) const R: Real = Real {
     max: 1e3,
     help: "multiple of 1/W_ii that turns gaps and slips into forces",
 };
-
-/// Steps that a method may take, an option of every scheme.
-pub(crate) const fn max_iterations(default: i64, help: &'static str) -> Whole {
-    Whole {
-        name: "max_iterations",
-        default,
-        min: 1,
-        max: 1_000_000,
-        help,
-    }
-}
 
 /// Steps without progress after which an iteration counts as cycling.
 const PATIENCE: usize = 60;

@@ -41,12 +41,9 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
-use crate::contract::options::{OptionSpec, Whole};
-use crate::contract::registry::Method;
-use crate::newton::iteration::{
-    Newton, R, Scheme, augmented_branch, augmented_equations, max_iterations, trial,
-};
+use crate::newton::iteration::{Newton, R, Scheme, augmented_branch, augmented_equations, trial};
 use crate::newton::step::Tangent;
+use crate::{Method, OptionSpec, Whole, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -55,17 +52,18 @@ pub static METHOD: Method = Method {
     reference: "Alart & Curnier, Comput. Meth. Appl. Mech. Engng 92 (1991) 353",
     summary: "Newton's method on the stationarity conditions of the augmented Lagrangian",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(R),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        Tangent::OPTION,
+    ],
     source: include_str!("newton_ac.rs"),
     build: |options| Box::new(Newton::new(AlartCurnier, options, &MAX_ITERATIONS)),
 };
 
-const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(R),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    Tangent::OPTION,
-];
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
+}
 
 /// H and V; the loop is [`Newton::run`].
 #[derive(Clone, Copy)]

@@ -48,12 +48,9 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::contract::options::{OptionSpec, Whole};
-use crate::contract::registry::Method;
-use crate::newton::iteration::{
-    Newton, R, Scheme, augmented_branch, augmented_equations, max_iterations, trial,
-};
+use crate::newton::iteration::{Newton, R, Scheme, augmented_branch, augmented_equations, trial};
 use crate::newton::step::Tangent;
+use crate::{Method, OptionSpec, Whole, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -62,7 +59,11 @@ pub static METHOD: Method = Method {
     reference: "Hüeber, Stadler & Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572",
     summary: "guesses the open, sticking and slipping sets, solves for them, and reads the next sets from the signs",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(R),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        Tangent::OPTION,
+    ],
     source: include_str!("pdas.rs"),
     build: |options| {
         Box::new(Newton {
@@ -73,12 +74,9 @@ pub static METHOD: Method = Method {
     },
 };
 
-const MAX_ITERATIONS: Whole = max_iterations(200, "changes of the sets before giving up");
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(R),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    Tangent::OPTION,
-];
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "changes of the sets before giving up";
+}
 
 /// The sets and their conditions; the loop is [`Newton::run`].
 #[derive(Clone, Copy)]

@@ -22,16 +22,14 @@
 use faer::Mat;
 
 use crate::algebra::dense::{along, mul_add, ratio, solve_dense};
-use crate::condensed::forces::{Forces, Pair};
+use crate::condensed::forces::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
-use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
 use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
-use crate::contract::state::{Iteration, Monitor, Status};
-use crate::error::MethodError;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{Tangent, monolithic_step};
+use crate::{ContactProblem, Forces, Iteration, MethodError, Monitor, Status};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
@@ -232,10 +230,10 @@ fn direction(
                 s[k][b] = d[a][b] * r[l];
                 e[k][b] = (c[k] - 1.0 / r[k]) * s[k][b];
             }
-            e[k][a] += 1.0;
         }
     }
     let law = Law::Columns {
+        unit: 1.0,
         e: &e,
         s: &s,
         series: coupled.map(|c| c.compliance),

@@ -7,15 +7,13 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::{Forces, Pair};
+use crate::condensed::forces::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
-use crate::condensed::problem::ContactProblem;
 use crate::condensed::whole_body::WholeBody;
-use crate::contract::operator::DelassusForm;
-use crate::contract::options::{OptionSpec, Options, Switch};
-use crate::contract::registry::Needs;
-use crate::contract::system::ContactSystem;
-use crate::error::MethodError;
+use crate::{
+    ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, Options,
+    Switch,
+};
 
 /// Where the linear problems of a method are solved.
 pub(crate) enum Tangent {

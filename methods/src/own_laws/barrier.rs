@@ -48,21 +48,18 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::{along, ratio};
-use crate::condensed::forces::{Forces, Pair};
-use crate::condensed::method::{CondensedMethod, End};
+use crate::condensed::forces::Pair;
 use crate::condensed::point_row::{Bordered, Law};
-use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
 use crate::condensed::unloaded::unloaded;
 use crate::contract::barrier_law::{BarrierLaw, resolvent};
 use crate::contract::law::{Branch, tangential_norm};
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::{Iteration, Monitor, Status};
-use crate::error::MethodError;
-use crate::newton::iteration::max_iterations;
 use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
+use crate::{
+    CondensedMethod, ContactProblem, End, Forces, Iteration, Method, MethodError, Monitor,
+    OptionSpec, Options, Real, Status, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -71,37 +68,22 @@ pub static METHOD: Method = Method {
     reference: "Zhao, Choo, Jiang, Li, Jiang & Soga, Comput. Meth. Appl. Mech. Engng 393 (2022) 114820",
     summary: "keeps gaps open by a barrier energy with smoothed friction; its error is proportional to the width of the barrier",
     exact: false,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(GAP),
+        OptionSpec::Real(SLIP),
+        OptionSpec::Real(STIFFNESS),
+        OptionSpec::Whole(MAX_ITERATIONS),
+    ],
     source: include_str!("barrier.rs"),
     build: |options| Box::new(Barrier::new(options)),
 };
 
-const GAP: Real = Real {
-    name: "gap",
-    default: 1e-4,
-    min: 1e-9,
-    max: 1.0,
-    help: "gap below which points repel each other, as a multiple of the mean jump without contact forces",
-};
-const SLIP: Real = Real {
-    name: "slip",
-    help: "slip from which on friction is full, as a multiple of the same jump",
-    ..GAP
-};
-const STIFFNESS: Real = Real {
-    name: "stiffness",
-    default: 1.0,
-    min: 1e-3,
-    max: 1e3,
-    help: "contact force at half the gap as a multiple of rho times the same jump",
-};
-const MAX_ITERATIONS: Whole = max_iterations(200, "Newton steps before giving up");
-static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec::Real(GAP),
-    OptionSpec::Real(SLIP),
-    OptionSpec::Real(STIFFNESS),
-    OptionSpec::Whole(MAX_ITERATIONS),
-];
+options! {
+    GAP: Real("gap", 1e-4, 1e-9, 1.0): "gap below which points repel each other, as a multiple of the mean jump without contact forces";
+    SLIP: Real("slip", 1e-4, 1e-9, 1.0): "slip from which on friction is full, as a multiple of the same jump";
+    STIFFNESS: Real("stiffness", 1.0, 1e-3, 1e3): "contact force at half the gap as a multiple of rho times the same jump";
+    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "Newton steps before giving up";
+}
 
 /// The smoothed equations are solved this much more accurately than asked: the judge holds the claim to them in another
 /// norm.
@@ -394,6 +376,7 @@ fn direction(
     }
     let all: Vec<usize> = (0..n).collect();
     let law = Law::Columns {
+        unit: 0.0,
         e: &S,
         s: &minus_DS,
         series: None,

@@ -50,19 +50,14 @@
 
 use std::sync::Arc;
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::{Method, Needs};
-use crate::contract::state::{Monitor, Status};
-use crate::contract::system::ContactSystem;
-use crate::error::MethodError;
-use crate::newton::iteration::max_iterations;
 use crate::newton::springs::recorded;
 use crate::newton::step::Tangent;
 use crate::own_laws::stabilisation::Stabilisation;
+use crate::{
+    CondensedMethod, ContactProblem, ContactSystem, End, Forces, Method, MethodError, Monitor,
+    Needs, OptionSpec, Options, Real, Status, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -71,31 +66,20 @@ pub static METHOD: Method = Method {
     reference: "Chouly & Hild, SIAM J. Numer. Anal. 51 (2013) 1295; Chouly, Hild & Renard, Math. Comput. 84 (2015) 1089",
     summary: "takes the contact forces from the stress at the crack and the jump, consistently and without multipliers",
     exact: false,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(GAMMA),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        OptionSpec::Whole(THETA),
+    ],
     source: include_str!("nitsche.rs"),
     build: |options| Box::new(Nitsche::new(options)),
 };
 
-const GAMMA: Real = Real {
-    name: "gamma",
-    default: 2.0,
-    min: 1e-2,
-    max: 1e6,
-    help: "stabilisation gamma as a multiple of the constant of the discrete trace inequality",
-};
-const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
-const THETA: Whole = Whole {
-    name: "theta",
-    default: 1,
-    min: -1,
-    max: 1,
-    help: "1 symmetric, 0 incomplete, -1 skew-symmetric variant",
-};
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(GAMMA),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    OptionSpec::Whole(THETA),
-];
+options! {
+    GAMMA: Real("gamma", 2.0, 1e-2, 1e6): "stabilisation gamma as a multiple of the constant of the discrete trace inequality";
+    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
+    THETA: Whole("theta", 1, -1, 1): "1 symmetric, 0 incomplete, -1 skew-symmetric variant";
+}
 
 /// The law is solved this much more accurately than asked: the judge holds the claim to it in another norm.
 const CLAIM_FRACTION: f64 = 0.1;

@@ -32,18 +32,13 @@
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
 //! to W as compliances 1/k.
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::ContactProblem;
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::{Method, Needs};
-use crate::contract::state::{Claim, Monitor, Status};
-use crate::contract::system::ContactSystem;
-use crate::error::MethodError;
-use crate::newton::iteration::max_iterations;
 use crate::newton::springs::{Springs, recorded};
 use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
+use crate::{
+    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Method, MethodError,
+    Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -52,30 +47,21 @@ pub static METHOD: Method = Method {
     reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97; Wriggers, Computational Contact Mechanics (2006)",
     summary: "replaces the contact laws by stiff springs with a frictional return mapping; its error falls like 1/stiffness",
     exact: false,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(NORMAL),
+        OptionSpec::Real(TANGENTIAL),
+        OptionSpec::Whole(MAX_ITERATIONS),
+        Tangent::OPTION,
+    ],
     source: include_str!("penalty.rs"),
     build: |options| Box::new(Penalty::new(options)),
 };
 
-const NORMAL: Real = Real {
-    name: "normal",
-    default: 1e4,
-    min: 1e-2,
-    max: 1e10,
-    help: "normal penalty stiffness as a multiple of rho = rows/trace(W)",
-};
-const TANGENTIAL: Real = Real {
-    name: "tangential",
-    help: "tangential penalty stiffness as a multiple of rho",
-    ..NORMAL
-};
-const MAX_ITERATIONS: Whole = max_iterations(100, "Newton steps before giving up");
-static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec::Real(NORMAL),
-    OptionSpec::Real(TANGENTIAL),
-    OptionSpec::Whole(MAX_ITERATIONS),
-    Tangent::OPTION,
-];
+options! {
+    NORMAL: Real("normal", 1e4, 1e-2, 1e10): "normal penalty stiffness as a multiple of rho = rows/trace(W)";
+    TANGENTIAL: Real("tangential", 1e4, 1e-2, 1e10): "tangential penalty stiffness as a multiple of rho";
+    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
+}
 
 /// The penalised equations are solved this much more accurately than asked, because the judge holds the claim to them in
 /// another norm; and again by this much after every claim that he would reject.

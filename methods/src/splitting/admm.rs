@@ -42,14 +42,12 @@ use std::sync::Arc;
 
 use crate::algebra::dense::norm;
 use crate::condensed::forces::Pair;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
+use crate::{
+    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, OptionSpec,
+    Options, Real, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -58,37 +56,20 @@ pub static METHOD: Method = Method {
     reference: "Tasora, Mangoni, Benatti & Garziera, Int. J. Numer. Meth. Engng 122 (2021) 4093",
     summary: "alternates linear equilibrium and projections on Coulomb's cone, with De Saxce's correction",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(PENALTY),
+        OptionSpec::Real(OVER_RELAXATION),
+        OptionSpec::Whole(MAX_ITERATIONS),
+    ],
     source: include_str!("admm.rs"),
     build: |options| Box::new(Admm::new(options)),
 };
 
-const PENALTY: Real = Real {
-    name: "penalty",
-    default: 1.0,
-    min: 1e-3,
-    max: 1e3,
-    help: "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)",
-};
-const OVER_RELAXATION: Real = Real {
-    name: "over_relaxation",
-    default: 1.6,
-    min: 0.5,
-    max: 1.9,
-    help: "over-relaxation; 1 is the plain method",
-};
-const MAX_ITERATIONS: Whole = Whole {
-    name: "max_iterations",
-    default: 20_000,
-    min: 1,
-    max: 10_000_000,
-    help: "pairs of steps before giving up",
-};
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(PENALTY),
-    OptionSpec::Real(OVER_RELAXATION),
-    OptionSpec::Whole(MAX_ITERATIONS),
-];
+options! {
+    PENALTY: Real("penalty", 1.0, 1e-3, 1e3): "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
+    OVER_RELAXATION: Real("over_relaxation", 1.6, 0.5, 1.9): "over-relaxation; 1 is the plain method";
+    MAX_ITERATIONS: Whole("max_iterations", 20_000, 1, 10_000_000): "pairs of steps before giving up";
+}
 
 /// Iterations without progress after which the iteration counts as stalled.
 const PATIENCE: usize = 2000;
@@ -320,7 +301,7 @@ mod tests {
         let Begin::Contact(mut problem) = begun.unwrap() else {
             panic!("the point closes");
         };
-        let mut admm = Admm::new(&Options::new(&OPTIONS, &[]).unwrap());
+        let mut admm = Admm::new(&Options::new(METHOD.options, &[]).unwrap());
         let counted = |admm: &mut Admm, problem: &mut ContactProblem<'_>, power: i32| {
             let k0 = admm.stage(problem, power).unwrap().k0();
             assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));

@@ -27,16 +27,12 @@
 //! # Failure modes
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{Check, ContactProblem, Limits};
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::{Method, Needs};
-use crate::contract::state::{Monitor, Status};
-use crate::contract::system::ContactSystem;
-use crate::error::MethodError;
 use crate::newton::springs::Springs;
 use crate::newton::step::Tangent;
+use crate::{
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, Method,
+    MethodError, Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -45,38 +41,21 @@ pub static METHOD: Method = Method {
     reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97",
     summary: "repeats a penalised solve, each time anchored at the contact forces of the last, until the springs are slack",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(STIFFNESS),
+        OptionSpec::Whole(MAX_OUTER),
+        OptionSpec::Whole(MAX_INNER),
+        Tangent::OPTION,
+    ],
     source: include_str!("augmented_lagrangian.rs"),
     build: |options| Box::new(AugmentedLagrangian::new(options)),
 };
 
-const STIFFNESS: Real = Real {
-    name: "stiffness",
-    default: 1e3,
-    min: 1e-2,
-    max: 1e6,
-    help: "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)",
-};
-const MAX_OUTER: Whole = Whole {
-    name: "max_outer",
-    default: 1000,
-    min: 1,
-    max: 1_000_000,
-    help: "multiplier updates before giving up",
-};
-const MAX_INNER: Whole = Whole {
-    name: "max_inner",
-    default: 100,
-    min: 1,
-    max: 1_000_000,
-    help: "Newton steps per inner problem before giving up",
-};
-static OPTIONS: [OptionSpec; 4] = [
-    OptionSpec::Real(STIFFNESS),
-    OptionSpec::Whole(MAX_OUTER),
-    OptionSpec::Whole(MAX_INNER),
-    Tangent::OPTION,
-];
+options! {
+    STIFFNESS: Real("stiffness", 1e3, 1e-2, 1e6): "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)";
+    MAX_OUTER: Whole("max_outer", 1000, 1, 1_000_000): "multiplier updates before giving up";
+    MAX_INNER: Whole("max_inner", 100, 1, 1_000_000): "Newton steps per inner problem before giving up";
+}
 
 /// The inner problem is solved this much more accurately than the outer loop is stopped.
 const INNER_FRACTION: f64 = 1e-2;

@@ -32,14 +32,12 @@
 use std::sync::Arc;
 
 use crate::condensed::forces::Pair;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
+use crate::{
+    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, OptionSpec,
+    Options, Real, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -48,37 +46,20 @@ pub static METHOD: Method = Method {
     reference: "Dolbow, Moës & Belytschko, Comput. Meth. Appl. Mech. Engng 190 (2001) 6825",
     summary: "alternates the contact laws point by point with linear equilibrium along fixed search directions",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(SEARCH_DIRECTION),
+        OptionSpec::Real(RELAXATION),
+        OptionSpec::Whole(MAX_ITERATIONS),
+    ],
     source: include_str!("latin.rs"),
     build: |options| Box::new(Latin::new(options)),
 };
 
-const SEARCH_DIRECTION: Real = Real {
-    name: "search_direction",
-    default: 1.0,
-    min: 1e-3,
-    max: 1e3,
-    help: "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W",
-};
-const RELAXATION: Real = Real {
-    name: "relaxation",
-    default: 0.8,
-    min: 0.1,
-    max: 1.0,
-    help: "relaxation of the global stage",
-};
-const MAX_ITERATIONS: Whole = Whole {
-    name: "max_iterations",
-    default: 20_000,
-    min: 1,
-    max: 10_000_000,
-    help: "pairs of stages before giving up",
-};
-static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Real(SEARCH_DIRECTION),
-    OptionSpec::Real(RELAXATION),
-    OptionSpec::Whole(MAX_ITERATIONS),
-];
+options! {
+    SEARCH_DIRECTION: Real("search_direction", 1.0, 1e-3, 1e3): "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W";
+    RELAXATION: Real("relaxation", 0.8, 0.1, 1.0): "relaxation of the global stage";
+    MAX_ITERATIONS: Whole("max_iterations", 20_000, 1, 10_000_000): "pairs of stages before giving up";
+}
 
 /// Iterations without progress after which the iteration counts as stalled: plateaus of some hundred are normal.
 const PATIENCE: usize = 2000;

@@ -30,16 +30,13 @@
 //! A point whose force does not change, as an open one that stays open, leaves v as it is and costs one local problem. v
 //! is computed afresh only every now and then, and before anything is claimed.
 
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
-use crate::contract::options::{OptionSpec, Options, Real, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
+use crate::{
+    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
+    Options, Real, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -48,29 +45,18 @@ pub static METHOD: Method = Method {
     reference: "Jourdan, Alart & Jean, Comput. Meth. Appl. Mech. Engng 155 (1998) 31",
     summary: "sweeps over the points and solves the contact law of each exactly with all others held",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Real(RELAXATION),
+        OptionSpec::Whole(MAX_ITERATIONS),
+    ],
     source: include_str!("nsgs.rs"),
     build: |options| Box::new(Nsgs::new(options)),
 };
 
-const RELAXATION: Real = Real {
-    name: "relaxation",
-    default: 1.0,
-    min: 0.1,
-    max: 1.9,
-    help: "fraction of the step to the solution of each local problem",
-};
-const MAX_ITERATIONS: Whole = Whole {
-    name: "max_iterations",
-    default: 100_000,
-    min: 1,
-    max: 100_000_000,
-    help: "sweeps over all points before giving up",
-};
-static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec::Real(RELAXATION),
-    OptionSpec::Whole(MAX_ITERATIONS),
-];
+options! {
+    RELAXATION: Real("relaxation", 1.0, 0.1, 1.9): "fraction of the step to the solution of each local problem";
+    MAX_ITERATIONS: Whole("max_iterations", 100_000, 1, 100_000_000): "sweeps over all points before giving up";
+}
 
 /// Sweeps without progress after which the iteration counts as stalled.
 const PATIENCE: usize = 5000;

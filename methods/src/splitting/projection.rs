@@ -38,15 +38,13 @@
 //! only every now and then, and before anything is claimed.
 
 use crate::algebra::dense::minus;
-use crate::condensed::forces::Forces;
-use crate::condensed::method::{CondensedMethod, End};
-use crate::condensed::problem::{COMPLIANCE_FLOOR, ContactProblem, Limits};
+use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::contract::options::{OptionSpec, Options, Whole};
-use crate::contract::registry::Method;
-use crate::contract::state::Monitor;
-use crate::error::MethodError;
+use crate::{
+    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
+    Options, Whole, options,
+};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -55,29 +53,18 @@ pub static METHOD: Method = Method {
     reference: "De Saxce & Feng, Math. Comput. Modelling 28 (1998) 225",
     summary: "steps against the corrected jump and projects on Coulomb's cone, with a step length that adapts",
     exact: true,
-    options: &OPTIONS,
+    options: &[
+        OptionSpec::Whole(MAX_ITERATIONS),
+        OptionSpec::Whole(VARIANT),
+    ],
     source: include_str!("projection.rs"),
     build: |options| Box::new(Projection::new(options)),
 };
 
-const MAX_ITERATIONS: Whole = Whole {
-    name: "max_iterations",
-    default: 100_000,
-    min: 1,
-    max: 100_000_000,
-    help: "steps before giving up",
-};
-const VARIANT: Whole = Whole {
-    name: "variant",
-    default: 0,
-    min: 0,
-    max: 1,
-    help: "0: fixed point, one projection per step; 1: extragradient, two",
-};
-static OPTIONS: [OptionSpec; 2] = [
-    OptionSpec::Whole(MAX_ITERATIONS),
-    OptionSpec::Whole(VARIANT),
-];
+options! {
+    MAX_ITERATIONS: Whole("max_iterations", 100_000, 1, 100_000_000): "steps before giving up";
+    VARIANT: Whole("variant", 0, 0, 1): "0: fixed point, one projection per step; 1: extragradient, two";
+}
 
 /// Iterations without progress after which the iteration counts as stalled: at large μ plateaus of several thousand end in
 /// convergence.
