@@ -109,7 +109,7 @@ impl RobustnessRow {
                 Verdict::Approximate(tier) => count(&mut approximate, &GRADES, tier),
                 Verdict::GaveUp(status) => {
                     gave_up += 1;
-                    count(&mut gave_up_by, &GIVE_UPS, status);
+                    count(&mut gave_up_by, GIVE_UPS, status);
                 }
                 Verdict::FalseClaim => false_claims += 1,
                 Verdict::Crashed(_) | Verdict::TimedOut | Verdict::OutOfMemory => crashed += 1,
