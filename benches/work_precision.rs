@@ -28,8 +28,8 @@ use stickslip::run::run_case::Progress;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::sweep::conduct::{Conduct, Shard, conduct};
 use stickslip::studies::sweep::plan::Plan;
+use stickslip::studies::sweep::record::Limits;
 use stickslip::studies::sweep::store::Store;
-use stickslip::studies::sweep::worker::Limits;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use stickslip::run::choice::Choice;
-use stickslip::studies::sweep::Bench;
+use stickslip::studies::sweep::measure::Bench;
 use stickslip::studies::sweep::measure::{Repeats, measure};
 use stickslip::studies::sweep::plan::Plan;
 

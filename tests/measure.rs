@@ -7,8 +7,8 @@ use stickslip::report::{Provenance, sweep};
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::friction_values;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::sweep::Bench;
 use stickslip::studies::sweep::cell::{Cell, digest};
+use stickslip::studies::sweep::measure::Bench;
 use stickslip::studies::sweep::measure::{Repeats, measure};
 use stickslip::studies::sweep::record::Record;
 use stickslip_methods::{

@@ -6,22 +6,22 @@ use report_data::{METHODS, key, results};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use stickslip::report::comparison::ComparisonRow;
 use stickslip::report::csv::Row;
 use stickslip::report::infsup::InfSupRow;
 use stickslip::report::paper::{self, Digits};
-use stickslip::report::robustness::{FailureRow, RobustnessRow};
 use stickslip::report::tables::{Align, Column, Table};
 use stickslip::report::timings::TimingRow;
 use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
 use stickslip::run::record::RunRow;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::convergence::orders::{ErrorRow, OrderRow};
+use stickslip::studies::paper::comparison::ComparisonRow;
 use stickslip::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use stickslip::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::spaces::patch::PatchRow;
+use stickslip::studies::stress::robustness::{FailureRow, RobustnessRow};
 use stickslip_methods::Status;
 
 fn text(bundle: &Bundle, path: &str) -> String {

@@ -11,6 +11,7 @@ use stickslip::report::{Provenance, robustness};
 use stickslip::run::registry::methods;
 use stickslip::run::run_case::Quiet;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::stress::robustness as summed;
 use stickslip::studies::stress::{self, StressPlan, Trial};
 use stickslip_methods::{Status, Tier};
 
@@ -54,7 +55,7 @@ fn every_run_of_every_method_is_counted_and_no_claim_is_false() {
         wrong.is_empty() && stress::as_expected(&trials),
         "{wrong:#?}"
     );
-    let rows = robustness::rows(&study, &trials);
+    let rows = summed::rows(&study, &trials);
     assert_eq!(rows.len(), 2 * FRICTION.len() * names.len());
     for row in &rows {
         let approximate = row.approximate.iter().sum::<usize>();
@@ -74,7 +75,7 @@ fn every_run_of_every_method_is_counted_and_no_claim_is_false() {
         "{mixed:?}"
     );
     let failed = trials.iter().filter(|t| t.verdict.is_failure()).count();
-    assert_eq!(robustness::failures(&study, &trials).len(), failed);
+    assert_eq!(summed::failures(&study, &trials).len(), failed);
 }
 
 /// Goal: a failure found in a study is found again by its number alone, and in its case file by `stickslip run`.
@@ -276,10 +277,10 @@ fn refused_problems_have_no_rate() {
     };
     let mut trials = trials(&study, &[METHOD]);
     trials[0].verdict = Verdict::Refused("no".into());
-    let rows = robustness::rows(&study, &trials);
+    let rows = summed::rows(&study, &trials);
     assert_eq!((rows.len(), rows[0].refused), (1, 1));
     assert!(rows[0].success.iter().all(|rate| rate.is_nan()));
-    assert!(robustness::failures(&study, &trials).is_empty());
+    assert!(summed::failures(&study, &trials).is_empty());
     let table = robustness::table(&rows).unwrap();
     assert_eq!(table.rows()[0][3], "refused");
     let bundle = robustness::bundle(&study, &trials, &Provenance::collect(1)).unwrap();
@@ -311,7 +312,7 @@ fn exact_methods_are_rated_by_solutions_and_approximate_ones_by_kept_claims() {
         for (trial, verdict) in trials.iter_mut().zip(&verdicts) {
             trial.verdict = verdict.clone();
         }
-        rows.extend(robustness::rows(&study, &trials));
+        rows.extend(summed::rows(&study, &trials));
     }
     for (row, kept) in rows.iter().zip([1, 5]) {
         assert_eq!((row.solved, row.approximate), (1, [0, 1, 1, 2]), "{row:?}");

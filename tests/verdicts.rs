@@ -7,12 +7,11 @@ use std::path::Path;
 
 use report_data::results;
 use stickslip::case;
-use stickslip::report::comparison::{self, ComparisonRow};
+use stickslip::report::comparison;
 use stickslip::report::csv::{self, Row};
 use stickslip::report::paper::converged_reactions::sequence_table;
 use stickslip::report::paper::plate_series::{penalty_table, refinement_table};
 use stickslip::report::paper::{Digits, table1, table2};
-use stickslip::report::robustness::FailureRow;
 use stickslip::report::tables::Table;
 use stickslip::report::timings::{self, BenchmarkName, TimingRow};
 use stickslip::report::{Bundle, Provenance, convergence, page, standard};
@@ -22,11 +21,13 @@ use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip::run::verdict::{Verdict, VerdictKind};
 use stickslip::studies::convergence::orders::{self, ErrorRow};
 use stickslip::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
+use stickslip::studies::paper::comparison::{ComparisonRow, comparison};
 use stickslip::studies::paper::converged_reactions::SequenceRow;
 use stickslip::studies::paper::plate_series::{PenaltyRow, RefinementRow};
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::spaces::patch::{Loaded, PatchRow, State};
+use stickslip::studies::stress::robustness::FailureRow;
 use stickslip::studies::sweep::statistics::Timing;
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Status,
@@ -175,7 +176,7 @@ fn every_kind_stands_in_every_table() {
             };
             orders::rows(&[sample]).0.swap_remove(0)
         };
-        let compared = || comparison::comparison(std::slice::from_ref(&run)).swap_remove(0);
+        let compared = || comparison(std::slice::from_ref(&run)).swap_remove(0);
         let known = || Some(verdict.clone());
         for found in [
             read_back(run.clone(), "verdict"),
@@ -221,7 +222,7 @@ fn every_kind_stands_in_every_table() {
 /// The folder of a report on these runs.
 fn folder_of(runs: &[RunRow]) -> tempfile::TempDir {
     let (dir, mut bundle) = (tempfile::tempdir().unwrap(), Bundle::new());
-    let compared = comparison::comparison(runs);
+    let compared = comparison(runs);
     bundle.add(RunRow::FILE, csv::file(runs).unwrap()).unwrap();
     bundle
         .add(ComparisonRow::FILE, csv::file(&compared).unwrap())

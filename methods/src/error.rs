@@ -1,7 +1,5 @@
 //! What can be wrong with the input of a method.
 
-use crate::contract::options::OptionError;
-
 /// Everything that keeps a method from starting. Failure to converge is not among it: that is a
 /// [`Status`](super::Status).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -121,9 +119,6 @@ pub enum MethodError {
         "the method solves laws of its own, to which the forces at the start are history: other starts are other problems"
     )]
     StartIsHistory,
-    /// A method option is unknown or out of range.
-    #[error(transparent)]
-    Option(#[from] OptionError),
 }
 
 /// Refuses arrays of the wrong length.

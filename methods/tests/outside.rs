@@ -56,7 +56,7 @@ impl CondensedMethod for Uzawa {
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
         let r = problem.scales(&vec![0.0; problem.len()]);
-        let mut x = Forces::start(problem);
+        let mut x = problem.start();
         loop {
             let v = problem.jump(&x.p, &x.beta);
             let natural_map = problem.natural_map(&x.p, &v);

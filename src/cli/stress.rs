@@ -8,10 +8,10 @@ use super::arguments::methods_or_all;
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::robustness::RobustnessRow;
 use crate::report::{Provenance, prepare_output, robustness};
 use crate::studies::stress;
 use crate::studies::stress::StressPlan;
+use crate::studies::stress::robustness::{RobustnessRow, rows};
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -90,7 +90,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         }
     }
     bundle.commit(&arguments.out)?;
-    let rows = robustness::rows(&plan, &trials);
+    let rows = rows(&plan, &trials);
     let table = robustness::table(&rows)?;
     say(format_args!("{}", table.terminal()));
     say(format_args!(

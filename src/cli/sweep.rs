@@ -13,9 +13,10 @@ use crate::studies::sweep::compare::compare;
 use crate::studies::sweep::conduct::{Conduct, Shard, conduct};
 use crate::studies::sweep::merge::merge;
 use crate::studies::sweep::plan::Plan;
+use crate::studies::sweep::record::Limits;
 use crate::studies::sweep::record::{Origin, Record};
 use crate::studies::sweep::store::Store;
-use crate::studies::sweep::worker::{Limits, serve};
+use crate::studies::sweep::worker::serve;
 
 /// The sweep that is run without a file: work and precision of all methods.
 const STANDARD: (&str, &str) = (

@@ -3,6 +3,7 @@
 //! Also the penalty error against its parameter, both plate meshes under refinement, the converged reactions of the plate,
 //! and every other shipped case against its expected numbers.
 
+pub mod comparison;
 pub mod converged_reactions;
 mod lookup;
 pub mod plate_series;

@@ -5,6 +5,7 @@
 //! friction coefficients and methods. Every increment starts from rest, so that one failure leaves the others alone.
 
 pub mod random;
+pub mod robustness;
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;

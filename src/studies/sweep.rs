@@ -1,7 +1,7 @@
 //! Sweeps: many cells (case × mesh × space × friction × method × tolerance), each measured by itself and kept as a record.
 //!
 //! ```text
-//! sweep file -> plan -> conduct -> (worker: setup -> measure -> record) -> store -> merge -> analysis, compare -> report
+//! sweep file -> plan -> conduct -> (worker: measure -> record) -> store -> merge -> analysis, compare -> report
 //! ```
 
 pub mod analysis;
@@ -13,10 +13,6 @@ mod memory;
 pub mod merge;
 pub mod plan;
 pub mod record;
-mod reference;
-mod setup;
 pub mod statistics;
 pub mod store;
 pub mod worker;
-
-pub use setup::Bench;

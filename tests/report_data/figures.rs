@@ -1,12 +1,12 @@
 //! Every kind of figure of made-up results.
 
 use super::{beam, beam_step, cycle, exact, plate, rates, results, results_of_all_methods};
-use stickslip::report::comparison::comparison;
 use stickslip::report::plot::{
     self, Axis3, Curve, CurvePlot, ErrorCurve, ErrorFigure, ErrorPanel, Guide, Magnification, Tier,
 };
 use stickslip::run::record::{HistoryRow, PointRow};
 use stickslip::run::registry::methods;
+use stickslip::studies::paper::comparison::comparison;
 
 /// Every kind of figure, with the texts that it must show.
 pub fn figures() -> Vec<(&'static str, String, Vec<&'static str>)> {

@@ -7,9 +7,9 @@ pub mod figures;
 
 use stickslip::model::field_mesh::*;
 use stickslip::model::quantities::{PointState, Quantity};
-use stickslip::report::robustness::RobustnessRow;
 use stickslip::run::record::*;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::stress::robustness::RobustnessRow;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];

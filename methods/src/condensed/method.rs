@@ -1,6 +1,6 @@
 //! What methods on the condensed increment do alike: begin, iterate, finish.
 
-use crate::condensed::forces::Forces;
+use crate::condensed::forces::End;
 use crate::condensed::problem::{Begin, ContactProblem};
 use crate::contract::registry::{Enforcement, Needs};
 use crate::contract::state::{Claim, Monitor, Outcome, Status};
@@ -35,21 +35,12 @@ pub trait CondensedMethod: Send {
     ) -> Result<End, MethodError>;
 }
 
-/// How an iteration ended, and where.
-#[derive(Debug, Clone)]
-pub struct End {
-    /// How.
-    pub status: Status,
-    /// The last iterate.
-    pub at: Forces,
-}
-
 impl End {
     /// Given up at the start of the increment.
     pub fn at_start(problem: &ContactProblem<'_>) -> Self {
         Self {
             status: Status::Stalled,
-            at: Forces::start(problem),
+            at: problem.start(),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::algebra::dense::{dot, norm, ratio};
 use crate::algebra::rows::RowSet;
-use crate::condensed::method::End;
+use crate::condensed::forces::{End, Forces};
 use crate::contract::judge::{free_jump, natural_map_norm, reference_force, slip_from};
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
@@ -186,6 +186,13 @@ impl<'a> ContactProblem<'a> {
         let mut p = self.rows.restrict(&self.increment.start.p);
         self.rebalance(&mut p);
         p
+    }
+
+    /// What every increment starts from.
+    pub fn start(&self) -> Forces {
+        let p = self.start_forces();
+        let beta = self.start_amplitudes(&p);
+        Forces { p, beta }
     }
 
     /// Rigid amplitudes that bring the jump closest to that at the start.

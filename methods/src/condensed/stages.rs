@@ -16,7 +16,7 @@ use crate::algebra::dense::solve_dense;
 use crate::algebra::dense::{along, dot};
 use crate::algebra::factor::kernel;
 use crate::algebra::spectrum::extremes;
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::condensed::whole_body::WholeBody;

@@ -20,7 +20,7 @@ use faer::sparse::{Argsort, Pair as Place, SparseColMat, SymbolicSparseColMat};
 use crate::algebra::dense::{along, norm};
 use crate::algebra::factor::sparse;
 use crate::algebra::rows::RowSet;
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::elastic::Elastic;

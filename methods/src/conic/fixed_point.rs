@@ -109,7 +109,7 @@ impl CondensedMethod for FixedPoint {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
-        let mut x = Forces::start(problem);
+        let mut x = problem.start();
         let mut program = ConeProgram::new(problem, self.law, &x.p)?;
         let mut anderson = Anderson::new(self.anderson);
         let mut branches = Branches::default();

@@ -159,7 +159,7 @@ impl Rounds {
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
-            best: Forces::start(problem),
+            best: problem.start(),
             r: method.r,
             max_iterations: method.max_iterations,
         }

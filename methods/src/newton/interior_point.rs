@@ -110,7 +110,7 @@ impl CondensedMethod for InteriorPoint {
             iterations: self.max_iterations,
             patience: PATIENCE,
         };
-        let Forces { p: mut P, mut beta } = Forces::start(problem);
+        let Forces { p: mut P, mut beta } = problem.start();
         let mut branches = Branches::default();
         let mut path: Option<Iterate> = None;
         let mut depth = 0.0;

@@ -210,7 +210,7 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
-        let start = Forces::start(problem);
+        let start = problem.start();
         self.run(problem, start, monitor)
     }
 }

@@ -22,7 +22,7 @@
 use faer::Mat;
 
 use crate::algebra::dense::{along, mul_add, ratio, solve_dense};
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::stages::rescue;
 use crate::condensed::whole_body::WholeBody;

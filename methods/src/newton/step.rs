@@ -7,7 +7,7 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
 use crate::{

@@ -48,7 +48,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::{along, ratio};
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::stages::rescue;
 use crate::condensed::unloaded::unloaded;

@@ -55,8 +55,8 @@ use crate::newton::springs::recorded;
 use crate::newton::step::Tangent;
 use crate::own_laws::stabilisation::Stabilisation;
 use crate::{
-    CondensedMethod, ContactProblem, ContactSystem, End, Forces, Method, MethodError, Monitor,
-    Needs, OptionSpec, Options, Real, Status, Whole, options,
+    CondensedMethod, ContactProblem, ContactSystem, End, Method, MethodError, Monitor, Needs,
+    OptionSpec, Options, Real, Status, Whole, options,
 };
 
 /// Registry entry.
@@ -158,7 +158,7 @@ impl CondensedMethod for Nitsche {
         let scale = (problem.operator.rho / terms.stiffest()).min(1.0);
         let stop = CLAIM_FRACTION * scale * problem.stop;
         let mut s = terms.free_stress(problem)?;
-        let mut x = Forces::start(problem);
+        let mut x = problem.start();
         let mut corrections = 0;
 
         let status = loop {

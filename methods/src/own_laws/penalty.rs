@@ -119,7 +119,7 @@ impl CondensedMethod for Penalty {
             coupled: None,
         };
 
-        let mut start = springs.predict(problem, Forces::start(problem));
+        let mut start = springs.predict(problem, problem.start());
         let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
         loop {
             let left = (self.max_iterations).saturating_sub(problem.history.len());

@@ -41,7 +41,7 @@
 use std::sync::Arc;
 
 use crate::algebra::dense::norm;
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{

@@ -30,8 +30,8 @@
 use crate::newton::springs::Springs;
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, Method,
-    MethodError, Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Limits, Method, MethodError,
+    Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
 };
 
 /// Registry entry.
@@ -99,7 +99,7 @@ impl CondensedMethod for AugmentedLagrangian {
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
         let k = self.stiffness * problem.operator.rho;
-        let mut x = Forces::start(problem);
+        let mut x = problem.start();
         let mut springs = Springs {
             normal: k,
             tangential: k,

@@ -31,7 +31,7 @@
 
 use std::sync::Arc;
 
-use crate::condensed::forces::Pair;
+use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
 use crate::{

@@ -3,6 +3,7 @@
 //! To add one: a file with `pub fn section(folder, budget) -> Result<Option<Section>, PageError>`, and a line in [`PARTS`].
 
 mod accuracy;
+mod blocks;
 mod cases;
 mod choice;
 mod expected;
@@ -13,11 +14,10 @@ mod peers;
 mod robustness;
 mod runs;
 mod spaces;
-mod study;
 mod summary;
+mod sweep;
 
-use super::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
-use crate::run::verdict::{Verdict, VerdictKind};
+use super::{Budget, Folder, PageError, Section};
 
 /// Reads what it knows in the folder; nothing where there is nothing.
 pub type Part = fn(&Folder, &mut Budget) -> Result<Option<Section>, PageError>;
@@ -27,7 +27,7 @@ pub const PARTS: [Part; 13] = [
     summary::section,
     choice::section,
     paper::section,
-    study::section,
+    sweep::section,
     methods::section,
     runs::section,
     expected::section,
@@ -38,114 +38,3 @@ pub const PARTS: [Part; 13] = [
     cases::section,
     files::section,
 ];
-
-/// A section of these blocks; nothing without any.
-fn made(id: &str, title: &str, lead: &str, blocks: Vec<Block>) -> Option<Section> {
-    (!blocks.is_empty()).then(|| Section {
-        id: id.into(),
-        title: title.into(),
-        lead: lead.into(),
-        blocks,
-    })
-}
-
-/// Every table of this file name, as it is, without the times of runs that did not do what they claim.
-fn tables(
-    folder: &Folder,
-    name: &str,
-    title: &str,
-    shows: &[Show],
-) -> Result<Vec<Block>, PageError> {
-    let paths = folder.named(name).into_iter();
-    paths
-        .map(|path| {
-            let mut grid = folder.grid(path, title, shows)?;
-            hide_times(&mut grid, Verdict::is_honest);
-            Ok(Block::Table(grid))
-        })
-        .collect()
-}
-
-/// Times stand only in rows whose verdict satisfies `keep`.
-fn hide_times(grid: &mut Grid, keep: fn(&Verdict) -> bool) {
-    let columns = grid.columns.iter();
-    let Some(verdict) = columns.clone().position(|c| c.kind == Kind::Verdict) else {
-        return;
-    };
-    let times: Vec<usize> = columns
-        .enumerate()
-        .filter_map(|(k, column)| (column.unit == "s").then_some(k))
-        .collect();
-    for row in &mut grid.rows {
-        if !row[verdict].parse().is_ok_and(|verdict| keep(&verdict)) {
-            times.iter().for_each(|k| row[*k] = "NaN".into());
-        }
-    }
-}
-
-/// Verdicts counted under [`Tally::NAMES`].
-#[derive(Clone, Copy, Default)]
-struct Tally([usize; Tally::NAMES.len()]);
-
-impl Tally {
-    const NAMES: [&str; 7] = [
-        "solved",
-        "approximate",
-        "refused",
-        "gave up or crashed",
-        "false claims",
-        "timed out",
-        "out of memory",
-    ];
-
-    /// Counts one more.
-    fn add(&mut self, kind: VerdictKind) {
-        let place = match kind {
-            VerdictKind::Solved => 0,
-            VerdictKind::Approximate => 1,
-            VerdictKind::Refused => 2,
-            VerdictKind::GaveUp | VerdictKind::Crashed => 3,
-            VerdictKind::FalseClaim => 4,
-            VerdictKind::TimedOut => 5,
-            VerdictKind::OutOfMemory => 6,
-        };
-        self.0[place] += 1;
-    }
-
-    /// Places and names of what is shown beside each other: ends at a limit only where one of the tallies has any.
-    fn shown(all: &[Self]) -> Vec<(usize, &'static str)> {
-        let places = Self::NAMES.into_iter().enumerate();
-        let wanted = |place: usize| place < 5 || all.iter().any(|tally| tally.0[place] > 0);
-        places.filter(|(place, _)| wanted(*place)).collect()
-    }
-}
-
-/// Figures whose path without folders satisfies `wanted`, as one folded group.
-fn figures(
-    folder: &Folder,
-    budget: &mut Budget,
-    title: &str,
-    wanted: impl Fn(&str) -> bool,
-) -> Result<Vec<Block>, PageError> {
-    let paths = folder.of_kind("svg");
-    let paths = paths.filter(|path| wanted(super::folder::split(path).1));
-    let group = folder.figures(title, paths, budget)?;
-    Ok(group.map(Block::Figures).into_iter().collect())
-}
-
-/// Sets the columns of a table that is gathered here.
-fn columns(grid: &mut Grid, columns: &[(&str, &str, Kind)]) {
-    grid.columns = columns
-        .iter()
-        .map(|(heading, unit, kind)| super::Column {
-            heading: (*heading).into(),
-            unit: (*unit).into(),
-            kind: *kind,
-        })
-        .collect();
-}
-
-/// Largest number; NaN of nothing and of NaN only.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(f64::NAN, f64::max)
-}

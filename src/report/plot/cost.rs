@@ -9,7 +9,7 @@ use super::legend::{self, Entry, LegendGrid};
 use super::methods;
 use super::style::draw_marker;
 use crate::report::ReportError;
-use crate::report::comparison::ComparisonRow;
+use crate::studies::paper::comparison::ComparisonRow;
 
 const LANE_MM: f64 = 8.8;
 /// Heights in a lane over which methods in the order of the registry are spread in turn: equal costs stay apart [mm].

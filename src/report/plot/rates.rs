@@ -9,7 +9,7 @@ use super::methods;
 use super::style::{Style, draw_marker};
 use crate::report::ReportError;
 use crate::report::number::{fixed, value};
-use crate::report::robustness::RobustnessRow;
+use crate::studies::stress::robustness::RobustnessRow;
 
 /// Heights of a lane and of its part that holds the scale [mm].
 const LANE_MM: f64 = 7.0;

@@ -92,7 +92,10 @@ mod tests {
             VerdictKind::Solved => vec![Verdict::Solved],
             VerdictKind::Approximate => grades.map(Verdict::Approximate).into(),
             VerdictKind::FalseClaim => vec![Verdict::FalseClaim],
-            VerdictKind::GaveUp => GIVE_UPS.map(Verdict::GaveUp).into(),
+            VerdictKind::GaveUp => GIVE_UPS
+                .iter()
+                .map(|status| Verdict::GaveUp(*status))
+                .collect(),
             VerdictKind::Refused => reasons.map(Verdict::Refused).into(),
             VerdictKind::Crashed => reasons.map(Verdict::Crashed).into(),
             VerdictKind::TimedOut => vec![Verdict::TimedOut],

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use super::analysis::is_honest;
 use super::measure::Repeats;
 use super::plan::Task;
-use super::record::{Found, Origin, Record, SCHEMA};
+use super::record::{Found, Limits, Origin, Record, SCHEMA};
 use super::store::{Store, StoreError};
-use super::worker::{Answer, Limits, Request, Worker, WorkerError};
+use super::worker::{Answer, Request, Worker, WorkerError};
 use crate::run::choice::Choice;
 use crate::run::run_case::Progress;
 

@@ -5,6 +5,11 @@
 //! began it; only these calls are timed. A repetition that ends in other bits than the first pass is an error of the
 //! method: the same increment twice must give the same bits.
 
+mod reference;
+mod scene;
+
+pub use scene::{Bench, MeasureError};
+
 use std::time::Instant;
 
 use stickslip_methods::{ContactState, Increment, Load, PointStatus};
@@ -14,19 +19,17 @@ use super::memory;
 use super::record::{
     DeviationFound, Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent, ValueFound,
 };
-use super::reference::solver_error;
-use super::setup::{Bench, Scene};
 use super::statistics::Timing;
-use crate::model::body::BodyError;
 use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
-use crate::run::choice::{Choice, ChoiceError};
+use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::load_path::{LoadPathRun, PathEnd};
 use crate::run::record::RunRow;
-use crate::run::run_case::RunError;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::convergence::{closed_form, followed};
+use reference::solver_error;
+use scene::Scene;
 
 /// How often a cell is repeated for its times.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -61,29 +64,6 @@ impl Repeats {
         done >= self.most
             || (done >= self.least && spent_s >= self.seconds)
             || (done > 0 && spent_s >= self.patience_s)
-    }
-}
-
-/// Why a cell could not be measured; what a method does wrong is a verdict.
-#[derive(Debug, thiserror::Error)]
-pub enum MeasureError {
-    /// The case or its discretisation.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The method.
-    #[error(transparent)]
-    Choice(#[from] ChoiceError),
-    /// The contact space.
-    #[error("unknown contact space `{0}`")]
-    Space(String),
-}
-
-impl From<MeasureError> for Verdict {
-    fn from(error: MeasureError) -> Self {
-        match error {
-            MeasureError::Run(RunError::Body(BodyError::Method(error))) => error.into(),
-            other => Verdict::Crashed(other.to_string()),
-        }
     }
 }
 

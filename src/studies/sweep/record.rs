@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
 use super::statistics::Timing;
-use super::worker::Limits;
 use crate::model::errors::Deviation;
 use crate::run::provenance::Provenance;
 use crate::run::verdict::Verdict;
@@ -36,6 +35,15 @@ pub struct Record {
     pub found: Found,
     /// Times and memory; present beside an honest verdict on a machine that had nothing else to do.
     pub spent: Option<Spent>,
+}
+
+/// Limits on one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Wall-clock time with set-up and repeats [s].
+    pub seconds: f64,
+    /// Address space of the process [MB]; none: unlimited.
+    pub memory_mb: Option<u64>,
 }
 
 /// Program and machine.

@@ -13,10 +13,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
-use super::measure::{Repeats, measure};
+use super::measure::{Bench, Repeats, measure};
 use super::memory;
-use super::record::Record;
-use super::setup::Bench;
+use super::record::{Limits, Record};
 use crate::run::choice::Choice;
 use crate::run::verdict::Verdict;
 
@@ -42,15 +41,6 @@ pub enum Reply {
     Measured(Box<Record>),
     /// The case, its discretisation or its method cannot be used.
     Ended(Verdict),
-}
-
-/// Limits on one cell.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// Wall-clock time with set-up and repeats [s].
-    pub seconds: f64,
-    /// Address space of the process [MB]; none: unlimited.
-    pub memory_mb: Option<u64>,
 }
 
 /// Why a worker could not be used at all.

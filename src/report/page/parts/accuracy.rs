@@ -1,6 +1,6 @@
 //! Errors and observed orders on sequences of meshes.
 
-use super::{figures, made, tables};
+use super::blocks::{figures, made, tables};
 use crate::report::page::{Budget, Folder, Kind, PageError, Section, Show};
 
 const ORDERS: [Show; 13] = [

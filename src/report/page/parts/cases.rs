@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::made;
+use super::blocks::made;
 use crate::report::page::folder::split;
 use crate::report::page::{Block, Budget, Figures, Folder, Link, PageError, Section};
 

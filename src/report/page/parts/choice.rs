@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{largest, made};
+use super::blocks::{largest, made};
 use crate::report::number::significant;
 use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Sheet, Show};
 

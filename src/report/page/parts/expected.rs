@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{columns, made};
+use super::blocks::{columns, made};
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
 use crate::run::record::{MET, MISSED_AS_DOCUMENTED};
 

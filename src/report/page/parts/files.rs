@@ -1,6 +1,6 @@
 //! Every table of the folder: CSV with its size, those too large for the page among them, and the forms for documents.
 
-use super::made;
+use super::blocks::made;
 use crate::report::page::{Block, Budget, Folder, Link, PageError, Section};
 
 /// The section.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Tally, columns, figures, made, tables};
+use super::blocks::{Tally, columns, figures, made, tables};
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
 use crate::report::plot::method_rank;
 

@@ -1,6 +1,6 @@
 //! The founding paper: its tables computed beside printed, refinement, limits, the penalty parameter.
 
-use super::{figures, made, tables};
+use super::blocks::{figures, made, tables};
 use crate::report::page::{Budget, Folder, Kind, PageError, Section, Show};
 
 const TABLE1: [Show; 7] = [

@@ -1,6 +1,6 @@
 //! Other programs on the same problems.
 
-use super::{made, tables};
+use super::blocks::{made, tables};
 use crate::report::page::{Block, Budget, Folder, Kind, Link, PageError, Section, Show};
 
 const SICONOS: [Show; 13] = [

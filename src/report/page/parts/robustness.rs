@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{columns, figures, largest, made};
+use super::blocks::{columns, figures, largest, made};
 use crate::report::number::value;
 use crate::report::page::{Block, Budget, Column, Folder, Grid, Kind, PageError, Section};
 use crate::report::plot::method_rank;

@@ -1,6 +1,6 @@
 //! The runs themselves, where no comparison sums them up: the results of `stickslip run`.
 
-use super::{hide_times, made, tables};
+use super::blocks::{hide_times, made, tables};
 use crate::report::page::{Block, Budget, Folder, Kind, PageError, Section, Show};
 use crate::run::verdict::Verdict;
 

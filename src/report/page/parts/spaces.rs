@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{columns, figures, largest, made};
+use super::blocks::{columns, figures, largest, made};
 use crate::report::number::value;
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section};
 

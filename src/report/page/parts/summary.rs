@@ -1,6 +1,6 @@
 //! At a glance: what ran, what it claims, whether the expected numbers were found.
 
-use super::{Tally, largest, made};
+use super::blocks::{Tally, largest, made};
 use crate::report::number::significant;
 use crate::report::page::{Block, Budget, Fact, Folder, PageError, Section};
 use crate::run::verdict::{Verdict, VerdictKind};

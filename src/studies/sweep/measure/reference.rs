@@ -11,12 +11,12 @@
 //!
 //! No method is measured against itself: the converged solution for `hybrid` is that of the next method.
 
-use super::record::SolverError;
-use super::setup::Scene;
+use super::scene::Scene;
 use crate::model::quantities::Snapshot;
 use crate::run::choice::Choice;
 use crate::run::load_path::LoadPathRun;
 use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::sweep::record::SolverError;
 
 /// Natural map of the converged solution, three decades below the highest tier.
 const TOLERANCE: f64 = 1e-12;

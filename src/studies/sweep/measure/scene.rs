@@ -5,14 +5,38 @@ use std::sync::Arc;
 
 use stickslip_methods::ContactSystem;
 
-use super::cell::Cell;
-use super::measure::MeasureError;
-use super::memory;
 use super::reference::References;
 use crate::case::{self, Case, ContactSpace};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
+use crate::run::choice::ChoiceError;
 use crate::run::run_case::RunError;
+use crate::run::verdict::Verdict;
+use crate::studies::sweep::cell::Cell;
+use crate::studies::sweep::memory;
+
+/// Why a cell could not be measured; what a method does wrong is a verdict.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasureError {
+    /// The case or its discretisation.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The method.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
+    /// The contact space.
+    #[error("unknown contact space `{0}`")]
+    Space(String),
+}
+
+impl From<MeasureError> for Verdict {
+    fn from(error: MeasureError) -> Self {
+        match error {
+            MeasureError::Run(RunError::Body(BodyError::Method(error))) => error.into(),
+            other => Verdict::Crashed(other.to_string()),
+        }
+    }
+}
 
 /// Keeps the last body.
 #[derive(Default)]

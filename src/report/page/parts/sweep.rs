@@ -1,6 +1,6 @@
 //! The study of run time against error: rates, ranks, profiles, work against precision.
 
-use super::{figures, made, tables};
+use super::blocks::{figures, made, tables};
 use crate::report::page::{Budget, Folder, Kind, PageError, Section, Show};
 
 const SUCCESS: [Show; 13] = [

@@ -1,0 +1,68 @@
+//! Contact forces with their jump: the iterate of alternating methods.
+
+use crate::condensed::forces::Forces;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::state::{Monitor, Status};
+use crate::error::MethodError;
+
+/// Contact forces, jump rows and rigid amplitudes that fulfil equilibrium.
+pub(crate) struct Pair {
+    pub p: Vec<f64>,
+    pub v: Vec<f64>,
+    pub beta: Vec<f64>,
+}
+
+impl From<Pair> for Forces {
+    fn from(Pair { p, beta, .. }: Pair) -> Self {
+        Self { p, beta }
+    }
+}
+
+impl Pair {
+    /// The pair every method starts from.
+    pub fn start(problem: &ContactProblem<'_>) -> Self {
+        let Forces { p, beta } = problem.start();
+        Self {
+            v: problem.jump(&p, &beta),
+            p,
+            beta,
+        }
+    }
+
+    /// Checks the pair as [`ContactProblem::check`] does, and says how the method ends there. A relaxed v carries the
+    /// rounding of all stages before: nothing is claimed without a fresh one.
+    pub fn ends(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        changes: usize,
+        limits: Limits,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<Status>, MethodError> {
+        loop {
+            let mut natural_map = problem.natural_map(&self.p, &self.v);
+            if natural_map <= problem.stop {
+                self.v = problem.jump(&self.p, &self.beta);
+                natural_map = problem.natural_map(&self.p, &self.v);
+            }
+            let at = (&self.p[..], &self.beta[..]);
+            match problem.check(natural_map, at, changes, limits, monitor)? {
+                Check::GoOn => return Ok(None),
+                Check::End(status) => return Ok(Some(status)),
+                Check::Corrected => self.v = problem.jump(&self.p, &self.beta),
+            }
+        }
+    }
+
+    /// self += ω (new − self).
+    pub fn relax(&mut self, problem: &ContactProblem<'_>, omega: f64, new: &Pair) {
+        let step = |x: &mut [f64], new: &[f64]| {
+            x.iter_mut()
+                .zip(new)
+                .for_each(|(x, new)| *x += omega * (new - *x));
+        };
+        step(&mut self.p, &new.p);
+        step(&mut self.v, &new.v);
+        step(&mut self.beta, &new.beta);
+        problem.rebalance(&mut self.p);
+    }
+}
