@@ -14,7 +14,6 @@ use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface,
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
 use stickslip_xfem::cut::crack::{Crack, arms};
-use stickslip_xfem::enrichment::orthonormal::SolverBasis;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::material::Lame;
@@ -25,6 +24,7 @@ use stickslip_xfem::stiffness::assembly::{Cells, Scatter};
 use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::elasticity::CellMatrix;
+use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
 use crate::case::{Case, CaseError, ContactSpace, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};

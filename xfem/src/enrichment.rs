@@ -3,7 +3,6 @@
 pub mod basis;
 pub mod cell_facets;
 pub mod facets;
-pub mod orthonormal;
 pub mod pieces;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,3 +5,4 @@ pub mod block_matrix;
 pub mod cell_matrix;
 pub mod elasticity;
 pub mod near_front;
+pub mod orthonormal;

@@ -27,8 +27,8 @@ use crate::geometry::tip_frame::FrontShape;
 use crate::mesh::Mesh;
 use crate::stiffness::elasticity::CellMatrix;
 
-use super::Enrichment;
-use super::basis::FunctionKind;
+use crate::enrichment::Enrichment;
+use crate::enrichment::basis::FunctionKind;
 
 /// A function is dropped if the square of its part outside the span of the others is smaller than this part of its own
 /// square: K' carries the rounding of K divided by it.
