@@ -174,10 +174,7 @@ mod tests {
     use crate::material::{Material, Model};
     use crate::mesh::cell::CellKind;
 
-    const STEEL: Material = Material {
-        young: 210e9,
-        poisson: 0.3,
-    };
+    const STEEL: Material = Material::new(210e9, 0.3);
 
     /// K of a unit square, plane stress, against the printed closed form (Cook et al., Concepts and Applications of
     /// Finite Element Analysis, bilinear square): K_11 = E (3 − ν) / (6 (1 − ν²)) ... (thickness 1, side independent).
