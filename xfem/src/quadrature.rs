@@ -10,7 +10,7 @@ pub mod slice;
 
 use crate::geometry::clip::tetrahedron_volume;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
-use crate::mesh::cell::CellMap;
+use crate::mesh::cell::{CellKind, CellMap};
 
 /// Quadrature of cut cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,15 +64,15 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Tensor-product Gauss points of the reference cell [−1, 1]^dim with their weights.
-pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
+/// Gauss points of the reference cell with their weights, n per direction.
+pub fn gauss_cell(kind: CellKind, n: usize) -> Vec<(Point, f64)> {
     let line = gauss(n);
-    let mut points = Vec::with_capacity(n.pow(dim as u32));
-    for &(z, wz) in if dim == 3 {
-        line.as_slice()
-    } else {
-        &[(0.0, 1.0)]
-    } {
+    let across = match kind {
+        CellKind::Quad4 => vec![(0.0, 1.0)],
+        CellKind::Hex8 => line.clone(),
+    };
+    let mut points = Vec::with_capacity(across.len() * n * n);
+    for &(z, wz) in &across {
         for &(y, wy) in &line {
             for &(x, wx) in &line {
                 points.push(([x, y, z], wx * wy * wz));
@@ -84,7 +84,7 @@ pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
 
 /// Gauss points of a cell, n per direction: reference position, and position with weight.
 pub fn gauss_map(map: &CellMap, n: usize) -> impl Iterator<Item = (Point, WeightedPoint)> + '_ {
-    gauss_cell(map.kind.dim(), n).into_iter().map(|(xi, w)| {
+    gauss_cell(map.kind, n).into_iter().map(|(xi, w)| {
         (
             xi,
             WeightedPoint::new(map.at(&xi), w * map.determinant(&xi)),

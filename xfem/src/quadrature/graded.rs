@@ -68,14 +68,14 @@ pub fn graded_cell(
     depth: usize,
 ) -> Vec<WeightedPoint> {
     let longest = map.longest_edge();
-    let rules = [4, 5, 6, 7].map(|n| gauss_cell(3, n));
+    let rules = [4, 5, 6, 7].map(|n| gauss_cell(map.kind, n));
     let mut stack = vec![([0.0; 3], 0)];
     let mut points = Vec::new();
     while let Some((centre, level)) = stack.pop() {
         let half = 0.5f64.powi(level as i32);
         let nearest = nearest_in_box(map, &centre, half, &distance).1 / (half * longest);
         if nearest < 0.25 && level < depth {
-            for (corner, _) in gauss_cell(3, 2) {
+            for (corner, _) in gauss_cell(map.kind, 2) {
                 let sign = corner.map(f64::signum);
                 stack.push((add_scaled(&centre, 0.5 * half, &sign), level + 1));
             }

@@ -161,7 +161,7 @@ impl CellMatrix {
 pub fn cell_stiffness(map: &CellMap, lame: Lame) -> CellMatrix {
     let dim = map.kind.dim();
     let mut gram = Gram::zero(map.len(), dim);
-    for (xi, w) in gauss_cell(dim, 2) {
+    for (xi, w) in gauss_cell(map.kind, 2) {
         let (g, det) = map.gradients(&xi);
         gram.add(w * det, &g);
     }
