@@ -149,17 +149,12 @@ impl<'a> Vertices<'a> {
             .chunks_exact(dim)
             .map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)])
             .collect();
-        let smallest = body
-            .mesh
-            .node_sizes()
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
         Vertices {
             body,
             points: body.mesh.nodes.clone(),
             displacement,
             found: HashMap::new(),
-            quantum: 1e-7 * smallest,
+            quantum: 1e-7 * body.mesh.smallest_edge(),
         }
     }
 

@@ -1,76 +1,27 @@
-//! Which nodes carry which enriched functions, and which functions live in each cell.
+//! The functions of a body with cracks: which there are, and which live in each cell.
 
 pub mod basis;
+pub mod carriers;
 pub mod cell_facets;
 pub mod cell_functions;
+pub mod error;
 pub mod facets;
 pub mod pieces;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Parent, Tip};
+use crate::cut::crack::{Crack, Parent};
 use crate::cut::is_split;
 use crate::cut::part::Part;
-use crate::cut::partition::{Partition, PartitionError};
-use crate::cut::placement::{Along, along, fronts, undisturbed};
-use crate::geometry::Point;
+use crate::cut::partition::Partition;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
 use crate::mesh::cell::MOST_NODES;
 
 use self::basis::{Function, FunctionKind, Region};
-
-/// What is wrong with a crack in a mesh.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum EnrichmentError {
-    /// The crack cuts no cell.
-    #[error("crack {} lies wholly outside the mesh", crack + 1)]
-    Outside {
-        /// Crack number, from 0.
-        crack: usize,
-    },
-    /// Both tips in one cell, or in neighbours that share all contact: no contact point is left.
-    #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", crack + 1)]
-    TooShort {
-        /// Crack number, from 0.
-        crack: usize,
-    },
-    /// A crack ends in a cell that another one cuts.
-    #[error("crack {} ends in a cell that crack {} cuts, near {at:?}: let it end on that crack, or farther away", ending + 1, other + 1)]
-    Crowded {
-        /// The crack with the tip, from 0.
-        ending: usize,
-        /// The other crack, from 0.
-        other: usize,
-        /// Centre of the cell [m].
-        at: Point,
-    },
-    /// A cell cannot be divided.
-    #[error("crack {}: {reason}, near {at:?}", crack + 1)]
-    Partition {
-        /// Crack number, from 0.
-        crack: usize,
-        /// What is wrong.
-        reason: PartitionError,
-        /// Centre of the cell [m].
-        at: Point,
-    },
-    /// The crack runs along cell facets in one part and through cells in another.
-    #[error("crack {} runs partly along cell edges and partly through cells, near {at:?}", crack + 1)]
-    Mixed {
-        /// Crack number, from 0.
-        crack: usize,
-        /// Centre of a cell it cuts [m].
-        at: Point,
-    },
-    /// A crack on cell edges ends inside the body with branch functions asked for.
-    #[error("crack {} runs along cell edges and ends inside the body: branch functions need a tip inside a cell", crack + 1)]
-    ConformingTip {
-        /// Crack number, from 0.
-        crack: usize,
-    },
-}
+use self::carriers::Carriers;
+pub use self::error::EnrichmentError;
 
 /// All functions of the body and of every cell.
 #[derive(Debug, Clone)]
@@ -101,127 +52,13 @@ pub struct Enrichment {
 impl Enrichment {
     /// Enriches the nodes around the given cracks; none of them may run along cell facets.
     pub fn new(mesh: &Mesh, cracks: &[Crack]) -> Result<Self, EnrichmentError> {
-        let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let mut enriched: BTreeSet<Function> = BTreeSet::new();
-        let mut tips = Vec::new();
-        let mut cores = Vec::new();
-        let mut tip_cells = Vec::new();
-        for (index, crack) in cracks.iter().enumerate() {
-            let mut through = BTreeSet::new();
-            let mut ending = Vec::new();
-            for cell in 0..mesh.cell_count() {
-                match along(mesh, crack, cell) {
-                    Along::Through => {
-                        through.insert(cell);
-                        inside.entry(cell).or_default().push(index);
-                    }
-                    Along::Ends => ending.push(cell),
-                    Along::Away => {}
-                }
-            }
-            let other_arm = cracks
-                .iter()
-                .enumerate()
-                .any(|(i, c)| i != index && c.number == crack.number);
-            if through.is_empty() && ending.is_empty() && !other_arm {
-                return Err(EnrichmentError::Outside {
-                    crack: crack.number,
-                });
-            }
-            // Nodes where the jump must close (no tip functions) or is left to the branch functions.
-            let mut closing: BTreeSet<u32> = BTreeSet::new();
-            for (frame, mut cells) in fronts(mesh, index, crack) {
-                if frame.shape_is_ellipse() {
-                    cells.clone_from(&ending);
-                }
-                if crack.tip == Tip::None {
-                    let beyond = cells.iter().filter(|c| !through.contains(c));
-                    closing.extend(beyond.flat_map(|&c| mesh.cell(c)));
-                    continue;
-                }
-                let tip = tips.len();
-                let branch = |node: u32| {
-                    (0..4).map(move |order| Function {
-                        node,
-                        kind: FunctionKind::Branch {
-                            tip: tip as u32,
-                            order,
-                        },
-                    })
-                };
-                // Nodes of the ramp; empty: no ramp.
-                let mut core: BTreeSet<u32> = BTreeSet::new();
-                if matches!(crack.tip, Tip::Radius(_)) {
-                    core.extend(cells.iter().flat_map(|&c| mesh.cell(c)));
-                }
-                for &cell in &cells {
-                    if is_split(&crack.cell_phi(mesh, cell)) {
-                        let list = inside.entry(cell).or_default();
-                        if !list.contains(&index) {
-                            list.push(index);
-                        }
-                    }
-                    tip_cells.push((cell, tip));
-                    closing.extend(mesh.cell(cell));
-                    enriched.extend(mesh.cell(cell).iter().flat_map(|&n| branch(n)));
-                }
-                if let Tip::Radius(radius) = crack.tip {
-                    let reach = radius.min(undisturbed(crack, &frame));
-                    let near = |&n: &usize| frame.distance(&mesh.nodes[n]) <= reach;
-                    core.extend((0..mesh.nodes.len()).filter(near).map(|n| n as u32));
-                    // The nodes of the tip's cells have no Heaviside function: their cells need ρ = 1, which no kink may hinder.
-                    let at_tip: BTreeSet<u32> =
-                        cells.iter().flat_map(|&c| mesh.cell(c)).copied().collect();
-                    let ring: BTreeSet<u32> = (0..mesh.cell_count())
-                        .map(|cell| mesh.cell(cell))
-                        .filter(|nodes| nodes.iter().any(|n| at_tip.contains(n)))
-                        .flatten()
-                        .copied()
-                        .collect();
-                    let room = undisturbed(crack, &frame);
-                    let ramped = ring
-                        .iter()
-                        .all(|&n| frame.distance(&mesh.nodes[n as usize]) <= room);
-                    if ramped {
-                        core.extend(ring);
-                    }
-                    enriched.extend(core.iter().flat_map(|&n| branch(n)));
-                    if ramped {
-                        for nodes in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
-                            if nodes.iter().any(|n| core.contains(n)) {
-                                enriched.extend(nodes.iter().flat_map(|&n| branch(n)));
-                            }
-                        }
-                    } else {
-                        core.clear();
-                    }
-                }
-                cores.push(core);
-                tips.push(frame);
-            }
-            for &cell in &through {
-                for &node in mesh.cell(cell) {
-                    if !closing.contains(&node) {
-                        let kind = FunctionKind::Heaviside {
-                            crack: index as u32,
-                        };
-                        enriched.insert(Function { node, kind });
-                    }
-                }
-            }
-        }
-        tip_cells.sort_unstable();
-        for &(cell, tip) in &tip_cells {
-            let own = tips[tip].crack;
-            let others = inside.get(&cell).into_iter().flatten();
-            if let Some(&other) = others.into_iter().find(|&&c| c != own) {
-                return Err(EnrichmentError::Crowded {
-                    ending: cracks[own].number,
-                    other: cracks[other].number,
-                    at: mesh.centre(cell),
-                });
-            }
-        }
+        let Carriers {
+            enriched,
+            inside,
+            tips,
+            tip_cells,
+            cores,
+        } = Carriers::new(mesh, cracks)?;
         let mut partitions = BTreeMap::new();
         for (cell, list) in inside {
             let partition = Partition::new(mesh, cell, cracks, &list).map_err(|reason| {
@@ -235,12 +72,15 @@ impl Enrichment {
             partitions.insert(cell, partition);
         }
         let standard = mesh.nodes.len();
-        let functions: Vec<Function> = (0..standard as u32)
-            .map(|node| Function {
-                node,
-                kind: FunctionKind::Standard,
-            })
-            .chain(enriched)
+        let plain = (0..standard as u32).map(|node| Function {
+            node,
+            kind: FunctionKind::Standard,
+        });
+        let functions: Vec<Function> = plain.chain(enriched).collect();
+        let first_of =
+            |node: usize| functions[standard..].partition_point(|f| (f.node as usize) < node);
+        let node_ptr = (0..=standard)
+            .map(|node| standard + first_of(node))
             .collect();
         let shifts = functions
             .iter()
@@ -255,6 +95,7 @@ impl Enrichment {
             })
             .collect();
         let mut enrichment = Enrichment {
+            node_ptr,
             functions,
             shifts,
             tips,
@@ -265,30 +106,13 @@ impl Enrichment {
             cell_functions: Vec::new(),
             step_ptr: vec![0],
             steps: Vec::new(),
-            node_ptr: Vec::new(),
             on_crack: (0..standard)
                 .map(|node| cracks.iter().any(|crack| crack.phi[node] == 0.0))
                 .collect(),
             standard,
         };
-        enrichment.index_nodes();
         enrichment.index_cells(mesh, cracks);
         Ok(enrichment)
-    }
-
-    /// Starts of the enriched functions of every node.
-    fn index_nodes(&mut self) {
-        let mut ptr = vec![self.standard; self.standard + 1];
-        let mut position = self.standard;
-        for node in 0..self.standard {
-            ptr[node] = position;
-            while position < self.functions.len() && self.functions[position].node as usize == node
-            {
-                position += 1;
-            }
-        }
-        ptr[self.standard] = position;
-        self.node_ptr = ptr;
     }
 
     /// Function lists of the cells: standard ones, then the enriched ones that do not vanish in the cell.
@@ -307,11 +131,9 @@ impl Enrichment {
                 for f in self.enriched_of(node as usize) {
                     let steps: Vec<f64> = match self.functions[f].kind {
                         FunctionKind::Heaviside { crack } => {
-                            let step = |part: &Option<&Part>| {
-                                cell_step(cracks, crack as usize, nodes, *part)
-                            };
-                            let steps: Vec<f64> =
-                                parts.iter().map(|p| step(p) - self.shifts[f]).collect();
+                            let step = |part| cell_step(cracks, crack as usize, nodes, part);
+                            let steps = parts.iter().map(|part| step(*part) - self.shifts[f]);
+                            let steps: Vec<f64> = steps.collect();
                             if steps.iter().all(|&s| s == 0.0) {
                                 continue;
                             }
@@ -319,16 +141,15 @@ impl Enrichment {
                         }
                         // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
-                            let crack = &cracks[self.tips[tip as usize].crack];
-                            let cut = is_split(&crack.cell_phi(mesh, cell));
-                            let side = |part: &Option<&Part>| match part
-                                .and_then(|p| p.side(self.tips[tip as usize].crack))
-                            {
-                                Some(side) => side,
-                                None if cut => 0.0,
-                                None => whole_side(crack, nodes),
+                            let index = self.tips[tip as usize].crack;
+                            let crack = &cracks[index];
+                            let elsewhere = match is_split(&crack.cell_phi(mesh, cell)) {
+                                true => 0.0,
+                                false => whole_side(crack, nodes),
                             };
-                            parts.iter().map(side).collect()
+                            let side = |part: &Option<&Part>| part.and_then(|p| p.side(index));
+                            let sides = parts.iter().map(side);
+                            sides.map(|side| side.unwrap_or(elsewhere)).collect()
                         }
                         FunctionKind::Standard => continue,
                     };
@@ -354,9 +175,7 @@ impl Enrichment {
 
     /// Divided cells in order.
     pub fn cut_cells(&self) -> impl Iterator<Item = (usize, &Partition)> {
-        self.partitions
-            .iter()
-            .map(|(&cell, partition)| (cell, partition))
+        self.partitions.iter().map(|(&cell, part)| (cell, part))
     }
 
     /// Number of regions of a cell.
@@ -429,9 +248,13 @@ impl Enrichment {
 
     /// True if a function of the cell is a branch function.
     pub fn has_branch(&self, cell: usize) -> bool {
-        self.cell(cell)
+        let kinds = self
+            .cell(cell)
             .iter()
-            .any(|&f| matches!(self.functions[f as usize].kind, FunctionKind::Branch { .. }))
+            .map(|&f| self.functions[f as usize].kind);
+        kinds
+            .into_iter()
+            .any(|kind| matches!(kind, FunctionKind::Branch { .. }))
     }
 
     /// Cells that carry each function.

@@ -115,10 +115,7 @@ mod tests {
     };
 
     fn lame() -> Lame {
-        let material = Material {
-            young: 2.0,
-            poisson: 0.3,
-        };
+        let material = Material::new(2.0, 0.3);
         Lame::new(material, Model::Solid)
     }
 

@@ -28,3 +28,8 @@ pub mod material;
 pub mod mesh;
 pub mod quadrature;
 pub mod stiffness;
+
+/// The example of the README is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

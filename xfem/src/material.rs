@@ -29,6 +29,13 @@ pub struct Material {
     pub poisson: f64,
 }
 
+impl Material {
+    /// A material of a Young's modulus and a Poisson's ratio.
+    pub const fn new(young: f64, poisson: f64) -> Self {
+        Material { young, poisson }
+    }
+}
+
 /// Lamé constants of the model [Pa].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lame {
@@ -46,32 +53,22 @@ impl Lame {
         let Material { young, poisson } = material;
         let mu = young / (2.0 * (1.0 + poisson));
         let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-        match model {
-            Model::PlaneStress => Lame {
-                lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu),
-                mu,
-                lambda_z: 0.0,
-            },
-            Model::PlaneStrain | Model::Solid => Lame {
-                lambda,
-                mu,
-                lambda_z: lambda,
-            },
+        let (lambda, lambda_z) = match model {
+            Model::PlaneStress => (2.0 * lambda * mu / (lambda + 2.0 * mu), 0.0),
+            Model::PlaneStrain | Model::Solid => (lambda, lambda),
+        };
+        Lame {
+            lambda,
+            mu,
+            lambda_z,
         }
     }
 
     /// Von Mises stress [Pa] from the displacement gradient h[a][b] = ∂u_a/∂x_b.
     pub fn von_mises(&self, h: &[Point; 3], dim: usize) -> f64 {
-        let trace: f64 = (0..dim).map(|a| h[a][a]).sum();
-        let mut s = [[0.0; 3]; 3];
-        for a in 0..dim {
-            for b in 0..dim {
-                s[a][b] = self.mu * (h[a][b] + h[b][a]);
-            }
-            s[a][a] += self.lambda * trace;
-        }
+        let mut s = stress(*self, dim, h);
         if dim == 2 {
-            s[2][2] = self.lambda_z * trace;
+            s[2][2] = self.lambda_z * (h[0][0] + h[1][1]);
         }
         let [x, y, z] = [s[0][0], s[1][1], s[2][2]];
         let shear = s[0][1] * s[0][1] + s[1][2] * s[1][2] + s[0][2] * s[0][2];
@@ -116,10 +113,7 @@ pub fn double_dot(a: &[Point; 3], b: &[Point; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material {
-        young: 210e9,
-        poisson: 0.3,
-    };
+    const STEEL: Material = Material::new(210e9, 0.3);
 
     #[test]
     fn uniaxial_von_mises_is_the_stress_itself() {

@@ -144,6 +144,11 @@ impl Mesh {
         size
     }
 
+    /// Shortest cell edge [m].
+    pub fn smallest_edge(&self) -> f64 {
+        self.node_sizes().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Lowest and highest coordinates [m].
     pub fn extents(&self) -> [Point; 2] {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -1,5 +1,7 @@
 //! Quadrature rules: Gauss on the line and on cells, triangles and tetrahedra in space, the crack-tip fan.
 
+#[cfg(test)]
+mod check;
 pub mod front;
 pub mod front_facet;
 pub mod graded;
@@ -8,7 +10,7 @@ pub mod slice;
 
 use crate::geometry::clip::tetrahedron_volume;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
-use crate::mesh::cell::CellMap;
+use crate::mesh::cell::{CellKind, CellMap};
 
 /// Quadrature of cut cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +29,13 @@ pub struct WeightedPoint {
     pub x: Point,
     /// Weight: length, area or volume.
     pub weight: f64,
+}
+
+impl WeightedPoint {
+    /// A point with its weight.
+    pub fn new(x: Point, weight: f64) -> Self {
+        WeightedPoint { x, weight }
+    }
 }
 
 /// Gauss–Legendre points and weights on [−1, 1], exact to degree 2n − 1, by Newton's method on P_n.
@@ -55,15 +64,15 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Tensor-product Gauss points of the reference cell [−1, 1]^dim with their weights.
-pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
+/// Gauss points of the reference cell with their weights, n per direction.
+pub fn gauss_cell(kind: CellKind, n: usize) -> Vec<(Point, f64)> {
     let line = gauss(n);
-    let mut points = Vec::with_capacity(n.pow(dim as u32));
-    for &(z, wz) in if dim == 3 {
-        line.as_slice()
-    } else {
-        &[(0.0, 1.0)]
-    } {
+    let across = match kind {
+        CellKind::Quad4 => vec![(0.0, 1.0)],
+        CellKind::Hex8 => line.clone(),
+    };
+    let mut points = Vec::with_capacity(across.len() * n * n);
+    for &(z, wz) in &across {
         for &(y, wy) in &line {
             for &(x, wx) in &line {
                 points.push(([x, y, z], wx * wy * wz));
@@ -75,10 +84,11 @@ pub fn gauss_cell(dim: usize, n: usize) -> Vec<(Point, f64)> {
 
 /// Gauss points of a cell, n per direction: reference position, and position with weight.
 pub fn gauss_map(map: &CellMap, n: usize) -> impl Iterator<Item = (Point, WeightedPoint)> + '_ {
-    gauss_cell(map.kind.dim(), n).into_iter().map(|(xi, w)| {
-        let x = map.at(&xi);
-        let weight = w * map.determinant(&xi);
-        (xi, WeightedPoint { x, weight })
+    gauss_cell(map.kind, n).into_iter().map(|(xi, w)| {
+        (
+            xi,
+            WeightedPoint::new(map.at(&xi), w * map.determinant(&xi)),
+        )
     })
 }
 
@@ -93,10 +103,7 @@ pub fn segment(a: &Point, b: &Point, n: usize) -> Vec<WeightedPoint> {
     let half = 0.5 * norm(&d);
     gauss(n)
         .into_iter()
-        .map(|(s, w)| WeightedPoint {
-            x: add_scaled(a, 0.5 * (1.0 + s), &d),
-            weight: w * half,
-        })
+        .map(|(s, w)| WeightedPoint::new(add_scaled(a, 0.5 * (1.0 + s), &d), w * half))
         .collect()
 }
 
@@ -116,10 +123,7 @@ pub fn triangle(t: &[Point; 3]) -> Vec<WeightedPoint> {
             for (i, vertex) in t.iter().enumerate() {
                 x = add_scaled(&x, if i == apex { 1.0 - 2.0 * a } else { a }, vertex);
             }
-            points.push(WeightedPoint {
-                x,
-                weight: w * area,
-            });
+            points.push(WeightedPoint::new(x, w * area));
         }
     }
     points
@@ -137,10 +141,7 @@ pub fn triangle_collapsed(t: &[Point; 3], n: usize) -> Vec<WeightedPoint> {
             // x = t0 + r ((t1 − t0) + s (t2 − t1)), dA = 2|t| r dr ds
             let x = add_scaled(&t[0], r, &sub(&t[1], &t[0]));
             let x = add_scaled(&x, r * s, &sub(&t[2], &t[1]));
-            points.push(WeightedPoint {
-                x,
-                weight: area2 * r * 0.25 * wr * ws,
-            });
+            points.push(WeightedPoint::new(x, area2 * r * 0.25 * wr * ws));
         }
     }
     points
@@ -160,10 +161,7 @@ pub fn tetrahedron(t: &[Point; 4]) -> Vec<WeightedPoint> {
         for (b, vertex) in barycentric.iter().zip(t) {
             x = add_scaled(&x, *b, vertex);
         }
-        points.push(WeightedPoint {
-            x,
-            weight: w * volume,
-        });
+        points.push(WeightedPoint::new(x, w * volume));
     };
     for (a, w) in CORNER {
         for i in 0..4 {
@@ -244,10 +242,11 @@ pub fn fan_triangle(tip: &Point, a: &Point, b: &Point, rule: FanRule) -> Vec<Wei
         for &(rho, wr) in &radial {
             let rho = 0.5 * (1.0 + rho);
             let t = rho * rho;
-            points.push(WeightedPoint {
-                x: add_scaled(tip, t, &sub(&y, tip)),
-                weight: t * h * ds * rho * wr, // dt = 2 ρ dρ, dρ = wr/2
-            });
+            let weight = t * h * ds * rho * wr; // dt = 2 ρ dρ, dρ = wr/2
+            points.push(WeightedPoint::new(
+                add_scaled(tip, t, &sub(&y, tip)),
+                weight,
+            ));
         }
     }
     points
@@ -264,21 +263,16 @@ pub fn tip_points(
     for (a, b) in edges {
         let sign = 1.0f64.copysign(cross(&sub(&a, tip), &sub(&b, tip))[2]);
         let triangle = tip_triangle(tip, &a, &b, affine).into_iter();
-        points.extend(triangle.map(|WeightedPoint { x, weight }| WeightedPoint {
-            x,
-            weight: sign * weight,
-        }));
+        points.extend(triangle.map(|p| WeightedPoint::new(p.x, sign * p.weight)));
     }
     points
 }
 
 #[cfg(test)]
 mod tests {
+    use super::check::{integral, inverse_distance};
     use super::*;
-
-    fn integral(points: &[WeightedPoint], f: impl Fn(&Point) -> f64) -> f64 {
-        points.iter().map(|p| p.weight * f(&p.x)).sum()
-    }
+    use crate::geometry::polygon::edges;
 
     #[test]
     fn gauss_is_exact_to_degree_2n_minus_1() {
@@ -337,30 +331,13 @@ mod tests {
 
     #[test]
     fn tip_fan_integrates_the_singular_powers_of_r() {
-        // Square [−1, 1]² around a tip; ∫ 1/r and ∫ 1/√r by the same fan with many collapsed sub-triangles are known:
-        // ∫_square 1/r dA = 8 asinh(1); ∫ √(x² + y²)^−½ has no elementary form, so 4 nested levels give it to 1e-10.
+        let square: [Point; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]: [f64; 2]| [x, y, 0.0]);
         for tip in [[0.0, 0.0, 0.0], [0.35, -0.6, 0.0]] {
-            let corners: [Point; 4] = [
-                [-1.0, -1.0, 0.0],
-                [1.0, -1.0, 0.0],
-                [1.0, 1.0, 0.0],
-                [-1.0, 1.0, 0.0],
-            ];
-            let fan: Vec<WeightedPoint> = (0..4)
-                .flat_map(|i| tip_triangle(&tip, &corners[i], &corners[(i + 1) % 4], true))
-                .collect();
+            let fan = tip_points(edges(&square), &tip, true);
             assert!((integral(&fan, |_| 1.0) - 4.0).abs() < 1e-10);
-            let exact: f64 = (0..4)
-                .map(|i| {
-                    // ∫ over the triangle of 1/r = h (asinh(s1/h) − asinh(s0/h))
-                    let (a, b) = (corners[i], corners[(i + 1) % 4]);
-                    let t = [(b[0] - a[0]) / 2.0, (b[1] - a[1]) / 2.0, 0.0];
-                    let (s0, s1) = (dot(&sub(&a, &tip), &t), dot(&sub(&b, &tip), &t));
-                    let h = norm(&sub(&add_scaled(&a, -s0, &t), &tip));
-                    h * ((s1 / h).asinh() - (s0 / h).asinh())
-                })
-                .sum();
-            assert!((integral(&fan, |x| 1.0 / norm(&sub(x, &tip))) - exact).abs() < 1e-9);
+            let found = integral(&fan, |x| 1.0 / norm(&sub(x, &tip)));
+            assert!((found - inverse_distance(&square, &tip)).abs() < 1e-9);
         }
     }
 }

@@ -40,10 +40,7 @@ impl Body {
     }
 
     fn integrator(&self) -> CellIntegrator<'_> {
-        let material = Material {
-            young: 1.0,
-            poisson: 0.3,
-        };
+        let material = Material::new(1.0, 0.3);
         let model = [Model::PlaneStrain, Model::Solid][self.mesh.dim() - 2];
         CellIntegrator {
             mesh: &self.mesh,
@@ -115,10 +112,7 @@ fn the_rule_fills_the_body_and_resolves_both_tips() {
 /// through, with signs that depend on how it does, so it need not fall by half each time.
 #[test]
 fn halved_tetrahedra_resolve_a_front() {
-    let shape = CrackShape::Plane {
-        point: [0.0, 2.8, 0.0],
-        normal: [0.0, 1.0, 0.0],
-    };
+    let shape = CrackShape::plane([0.0, 2.8, 0.0], [0.0, 1.0, 0.0]);
     let body = Body::new(&[6.0, 6.0, 2.0], &[3, 3, 1], &shape, Tip::None);
     let integrator = body.integrator();
     // The line x = 3.2, y = 2.8.
@@ -179,10 +173,7 @@ fn one_side_of_a_cut_body_has_its_own_mass() {
         let error = found(&square, linear) / exact - 1.0;
         assert!(error.abs() < 1e-12, "2D, {linear}: {error:e}");
     }
-    let shape = CrackShape::Plane {
-        point: [0.0, 0.0, 0.667],
-        normal: [0.0, 0.0, 1.0],
-    };
+    let shape = CrackShape::plane([0.0, 0.0, 0.667], [0.0, 0.0, 1.0]);
     let cube = Body::new(&[1.0; 3], &[3; 3], &shape, Tip::None);
     let height = 1.0 - 0.667;
     for (linear, exact) in [(false, 14.0 * height), (true, 14.0 / 3.0 * height)] {

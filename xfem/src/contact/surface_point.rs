@@ -40,15 +40,16 @@ impl SurfacePoint {
         facet: &Facet,
         x: Point,
     ) -> Result<Self, CellError> {
-        let xi = integrator.mesh.map(facet.cell).inverse(&x);
+        let none = || CellError::new(x, "a point of the crack has no reference position");
         Ok(SurfacePoint {
             crack: integrator.cracks[index].number,
             cell: facet.cell,
             x,
-            xi: xi.ok_or_else(|| CellError {
-                at: x,
-                reason: "a point of the crack has no reference position".into(),
-            })?,
+            xi: integrator
+                .mesh
+                .map(facet.cell)
+                .inverse(&x)
+                .ok_or_else(none)?,
             weight: 0.0,
             regions: facet.regions,
             frame: facet.frame,

@@ -132,10 +132,7 @@ fn parts(
         }
     }
     if parts.is_empty() {
-        return Err(CellError {
-            at: point.x,
-            reason: "a contact point lies in no cell".into(),
-        });
+        return Err(CellError::new(point.x, "a contact point lies in no cell"));
     }
     Ok(parts)
 }

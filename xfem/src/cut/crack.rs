@@ -239,7 +239,7 @@ pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Vec<Crack> {
 /// Arms of a 2D crack: its parts between the earlier cracks it meets.
 fn curve_arms(crack: &Crack, curve: &Curve, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
     let length = curve.length();
-    let size = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+    let size = mesh.smallest_edge();
     // Closer than this to a crack is on it: nobody gives a point on a slanted crack to all digits.
     let slack = 1e-4 * size;
     let mut cuts: Vec<(f64, usize)> = Vec::new();

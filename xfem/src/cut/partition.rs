@@ -354,10 +354,7 @@ mod tests {
         let segment = face(2, &CrackShape::Polyline(vec![[-1.0, -1.0], [1.0, 1.0]]));
         let nodes: Vec<_> = segment.iter().map(|corner| corner.1).collect();
         assert_eq!(nodes, [Some([0, 0]), Some([2, 2])]);
-        let plane = CrackShape::Plane {
-            point: [0.0; 3],
-            normal: [1.0; 3],
-        };
+        let plane = CrackShape::plane([0.0; 3], [1.0; 3]);
         let hexagon: Vec<Point> = face(3, &plane).iter().map(|corner| corner.0).collect();
         assert_eq!(hexagon.len(), 6);
         let doubled = |t: &[Point; 3]| norm(&cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0])));

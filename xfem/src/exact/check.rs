@@ -10,10 +10,7 @@ use super::solution::{Field, Setting, Solution};
 /// A setting for tests: E = 2, ν = 0.3, plane strain, μ = 0.5, body [−1, 1]².
 pub fn setting(crack: &CrackShape) -> Setting<'_> {
     Setting {
-        material: Material {
-            young: 2.0,
-            poisson: 0.3,
-        },
+        material: Material::new(2.0, 0.3),
         model: Model::PlaneStrain,
         friction: 0.5,
         crack,

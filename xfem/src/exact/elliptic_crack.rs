@@ -252,10 +252,7 @@ mod tests {
     use crate::exact::check::{check_elasticity, check_path, setting};
     use crate::geometry::unit;
 
-    const MATERIAL: Material = Material {
-        young: 2.6,
-        poisson: 0.3,
-    };
+    const MATERIAL: Material = Material::new(2.6, 0.3);
 
     /// Crack with a normal off the axes, and a remote stress with given traction components (σ_nn, σ_na, σ_nb).
     fn crack(half_axes: [f64; 2], [nn, na, nb]: [f64; 3], friction: f64) -> EllipticCrack {
@@ -381,8 +378,8 @@ mod tests {
                 [1.4, 0.3, 0.0],
             ]
             .map(at);
-            for now in check_path(solution.as_ref(), &of, &[0.4, 1.0], &on, [1e-11, 1e-13]) {
-                check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-7);
+            for now in check_path(&*solution, &of, &[0.4, 1.0], &on, [1e-11, 1e-13]) {
+                check_elasticity(&*now, &of, &off, 1e-4, 1e-7);
             }
         }
         // Sticking and open, as meant.

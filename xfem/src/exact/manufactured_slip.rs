@@ -283,8 +283,8 @@ mod tests {
                     .filter(|x| (crack.abscissa(x) * TAU / 0.9).sin().abs() > 0.02)
                     .collect();
                 assert!(off.len() > 50);
-                for now in check_path(solution.as_ref(), &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
-                    check_elasticity(now.as_ref(), &of, &off, 2e-4, 1e-9);
+                for now in check_path(&*solution, &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
+                    check_elasticity(&*now, &of, &off, 2e-4, 1e-9);
                 }
             }
         }

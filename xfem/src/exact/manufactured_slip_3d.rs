@@ -366,10 +366,8 @@ mod tests {
     const VALUES: [f64; 7] = [1.0, 0.4, 0.03, 0.9, 0.6, 35.0, 1.3];
 
     fn shapes() -> [CrackShape; 3] {
-        [[0.0, 0.0, 1.0], [1.0, -2.0, 3.0], [1.0, 1.0, 0.0]].map(|normal| CrackShape::Plane {
-            point: [0.1, -0.05, 0.2],
-            normal: unit(&normal),
-        })
+        [[0.0, 0.0, 1.0], [1.0, -2.0, 3.0], [1.0, 1.0, 0.0]]
+            .map(|normal| CrackShape::plane([0.1, -0.05, 0.2], unit(&normal)))
     }
 
     fn solid(shape: &CrackShape) -> Setting<'_> {
@@ -402,8 +400,8 @@ mod tests {
                 .flat_map(|[p, q]| [-0.6, -0.1, 0.2].map(|y| at(shape, *p, *q, y)))
                 .collect();
             assert!(off.len() > 300);
-            for now in check_path(solution.as_ref(), &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
-                check_elasticity(now.as_ref(), &of, &off, 1e-4, 1e-9);
+            for now in check_path(&*solution, &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
+                check_elasticity(&*now, &of, &off, 1e-4, 1e-9);
             }
         }
     }
@@ -446,10 +444,7 @@ mod tests {
             assert!(build(&of, &values).is_err());
         }
         assert!(build(&of, &VALUES).unwrap().at(&[1.0, 0.9]).is_err());
-        let far = CrackShape::Plane {
-            point: [5.0, 0.0, 0.0],
-            normal: [1.0, 0.0, 0.0],
-        };
+        let far = CrackShape::plane([5.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
         assert!(build(&solid(&far), &VALUES).is_err());
     }
 }

@@ -133,9 +133,9 @@ mod tests {
             let solution = build(&of, &[pressure, rise]).unwrap();
             for factor in [1.0, -1.0] {
                 let field = solution.at(&[0.3, factor]).unwrap();
-                check_contact(field.as_ref(), None, &of, &along, [1e-13, 1e-14]);
-                check_elasticity(field.as_ref(), &of, &off, 3e-4, 1e-9);
-                check_intensity(field.as_ref(), &of);
+                check_contact(&*field, None, &of, &along, [1e-13, 1e-14]);
+                check_elasticity(&*field, &of, &off, 3e-4, 1e-9);
+                check_intensity(&*field, &of);
                 open_points.push(along.iter().filter(|x| field.jump(x)[0] > 0.0).count());
             }
         }

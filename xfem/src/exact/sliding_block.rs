@@ -212,10 +212,7 @@ mod tests {
     /// The unit square of the shipped cases: E = 1, ν = 0.3.
     fn square(shape: &CrackShape, friction: f64) -> Setting<'_> {
         Setting {
-            material: Material {
-                young: 1.0,
-                poisson: 0.3,
-            },
+            material: Material::new(1.0, 0.3),
             friction,
             body: [[0.0; 3], [1.0, 1.0, 0.0]],
             ..setting(shape)
@@ -294,7 +291,7 @@ mod tests {
                     let crack = LineCrack::new(&of).unwrap();
                     let on = [-0.4, 0.0, 0.3].map(|s| crack.point(s, 0.0));
                     let solution = build(&of, &[0.01, 0.01]).unwrap();
-                    let states = check_path(solution.as_ref(), &of, &PATH, &on, [1e-15, 1e-15]);
+                    let states = check_path(&*solution, &of, &PATH, &on, [1e-15, 1e-15]);
                     for (now, factor) in states.iter().zip(PATH) {
                         let off = [[0.1, 0.05, 0.0], [0.8, 0.95, 0.0]];
                         check_elasticity(now.as_ref(), &of, &off, 1e-3, 1e-12);

@@ -133,9 +133,9 @@ mod tests {
             let solution = build(&of, &[0.0, -1.0, 0.0]).unwrap();
             let field = solution.at(&[1.0]).unwrap();
             let points = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
-            check_elasticity(field.as_ref(), &of, &points, 3e-4, 1e-9);
-            check_contact(field.as_ref(), None, &of, &along(&crack), [1e-13, 1e-14]);
-            check_intensity(field.as_ref(), &of);
+            check_elasticity(&*field, &of, &points, 3e-4, 1e-9);
+            check_contact(&*field, None, &of, &along(&crack), [1e-13, 1e-14]);
+            check_intensity(&*field, &of);
             let drop = (s.abs() - friction * c.abs()).max(0.0) * c.abs();
             let tip = crack.point(a, 0.0);
             let k = field.intensity(&tip).unwrap();
@@ -158,10 +158,10 @@ mod tests {
         let of = setting(&shape);
         let crack = LineCrack::new(&of).unwrap();
         let field = build(&of, &[0.2, 1.0, -0.3]).unwrap().at(&[1.0]).unwrap();
-        check_contact(field.as_ref(), None, &of, &along(&crack), [1e-13, 1e-14]);
+        check_contact(&*field, None, &of, &along(&crack), [1e-13, 1e-14]);
         let points = [[0.7, -0.4, 0.0], [-0.2, 0.6, 0.0]];
-        check_elasticity(field.as_ref(), &of, &points, 1e-3, 1e-8);
-        check_intensity(field.as_ref(), &of);
+        check_elasticity(&*field, &of, &points, 1e-3, 1e-8);
+        check_intensity(&*field, &of);
         // n = (−1, 1)/√2: σ_nn = 0.6 + 0.3, σ_tn = 0.4.
         let root = (PI * 0.18_f64.sqrt()).sqrt();
         let k = field.intensity(&[0.3, 0.3, 0.0]).unwrap();
@@ -179,7 +179,7 @@ mod tests {
             let solution = build(&of, &stress).unwrap();
             let path = [0.4, 1.0, 0.9, 0.5, 0.2, 0.05, -0.3, 0.2, 1.2];
             let points = along(&crack);
-            let states = check_path(solution.as_ref(), &of, &path, &points, [1e-13, 1e-14]);
+            let states = check_path(&*solution, &of, &path, &points, [1e-13, 1e-14]);
             let dissipated = states.iter().map(|state| state.dissipation().unwrap());
             assert!(dissipated.is_sorted());
         }

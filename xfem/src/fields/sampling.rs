@@ -81,19 +81,12 @@ pub fn comparison_points(
             effort,
         )
     };
-    let located = |(WeightedPoint { x, weight }, number): (WeightedPoint, usize)| {
-        let xi = map.inverse(&x).ok_or_else(|| CellError {
-            at: x,
-            reason: "a point of a sub-cell has no reference position".into(),
-        })?;
+    let located = |(p, number): (WeightedPoint, usize)| {
+        let none = || CellError::new(p.x, "a point of a sub-cell has no reference position");
+        let xi = map.inverse(&p.x).ok_or_else(none)?;
         // A part has functions of its own only where the enrichment divides the cell, too.
         let region = if partition.is_some() { number } else { 0 };
-        let point = SidedPoint {
-            xi,
-            x,
-            weight,
-            region,
-        };
+        let point = SidedPoint::new(xi, p, region);
         let side = parts[number].sides.first().map(|s| s.1);
         Ok(ComparisonPoint { point, side })
     };

@@ -31,6 +31,23 @@ pub enum CrackShape {
     },
 }
 
+impl CrackShape {
+    /// An arc about a centre between two angles.
+    pub fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2]) -> Self {
+        CrackShape::Arc {
+            centre,
+            radius,
+            from,
+            to,
+        }
+    }
+
+    /// A plane through a point with a unit normal.
+    pub fn plane(point: Point, normal: Point) -> Self {
+        CrackShape::Plane { point, normal }
+    }
+}
+
 /// n, a, b of a plane: a from the axis least along n, the first of equals, so that n = e_z gives a = e_x, b = e_y.
 pub fn plane_frame(normal: &Point) -> [Point; 3] {
     let n = unit(normal);

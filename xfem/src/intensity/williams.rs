@@ -120,10 +120,7 @@ mod tests {
             normal: [-s, c, 0.0],
             shape: FrontShape::Straight,
         };
-        let material = Material {
-            young: 3.0,
-            poisson: 0.27,
-        };
+        let material = Material::new(3.0, 0.27);
         for model in [Model::PlaneStrain, Model::PlaneStress, Model::Solid] {
             let lame = Lame::new(material, model);
             let young = match model {

@@ -150,10 +150,11 @@ pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
             continue;
         }
         let in_slice = slice_points(&slice, &along, (piece.at)(&on_chord), size, rule.fan);
-        points.extend(in_slice.into_iter().map(|p| WeightedPoint {
-            x: p.x,
-            weight: p.weight * ds,
-        }));
+        points.extend(
+            in_slice
+                .into_iter()
+                .map(|p| WeightedPoint::new(p.x, p.weight * ds)),
+        );
     }
     points
 }

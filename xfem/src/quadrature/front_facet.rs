@@ -56,10 +56,11 @@ pub fn front_facet_points<F: Fn(&Point) -> Option<Point>>(
         }
         for &(t, weight) in &across {
             let rho = 0.5 * ((to - from) * t + from + to);
-            points.push(WeightedPoint {
-                x: add_scaled(&tip, rho * rho, &back),
-                weight: ds * (to - from) * rho * weight, // dw = 2 ρ dρ
-            });
+            let weight = ds * (to - from) * rho * weight; // dw = 2 ρ dρ
+            points.push(WeightedPoint::new(
+                add_scaled(&tip, rho * rho, &back),
+                weight,
+            ));
         }
     }
     points

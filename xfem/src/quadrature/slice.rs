@@ -111,10 +111,11 @@ fn outside_points(
             let direction = add_scaled(&e0.map(|v| v * theta.cos()), theta.sin(), &e1);
             for &(x, wx) in &radial {
                 let rho = 0.5 * ((to - from) * x + from + to);
-                points.push(WeightedPoint {
-                    x: add_scaled(tip, rho * rho, &direction),
-                    weight: 0.5 * (high - low) * wt * (to - from) * rho.powi(3) * wx,
-                });
+                let weight = 0.5 * (high - low) * wt * (to - from) * rho.powi(3) * wx;
+                points.push(WeightedPoint::new(
+                    add_scaled(tip, rho * rho, &direction),
+                    weight,
+                ));
             }
         }
     }
@@ -124,6 +125,7 @@ fn outside_points(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quadrature::check::{integral, inverse_distance};
 
     #[test]
     fn a_point_anywhere_gives_the_closed_form_of_1_over_r() {
@@ -143,32 +145,13 @@ mod tests {
             [2.0, 0.0, 0.0],
             [-4.0, 1.0, 0.0],
         ] {
-            let points = slice_points(
-                &square,
-                &[0.0, 0.0, 1.0],
-                Some(tip),
-                1.0,
-                FanRule::fine(true),
-            );
+            let normal = [0.0, 0.0, 1.0];
+            let points = slice_points(&square, &normal, Some(tip), 1.0, FanRule::fine(true));
             assert!(points.iter().all(|p| p.weight >= 0.0));
-            let area: f64 = points.iter().map(|p| p.weight).sum();
+            let area = integral(&points, |_| 1.0);
             assert!((area - 1.15).abs() < 1e-8, "{tip:?}: {area}");
-            let found: f64 = points
-                .iter()
-                .map(|p| p.weight / norm(&sub(&p.x, &tip)))
-                .sum();
-            // Signed triangles (tip, p, q): ∫ 1/r = h (asinh(s₁/h) − asinh(s₀/h)).
-            let exact: f64 = (0..4)
-                .map(|i| {
-                    let (p, q) = (sub(&square[i], &tip), sub(&square[(i + 1) % 4], &tip));
-                    let along = unit(&sub(&q, &p));
-                    let h = cross(&p, &along)[2];
-                    if h == 0.0 {
-                        return 0.0;
-                    }
-                    h * ((dot(&q, &along) / h.abs()).asinh() - (dot(&p, &along) / h.abs()).asinh())
-                })
-                .sum();
+            let found = integral(&points, |x| 1.0 / norm(&sub(x, &tip)));
+            let exact = inverse_distance(&square, &tip);
             assert!(
                 (found - exact).abs() < 1e-7 * exact,
                 "{tip:?}: {found} {exact}"

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::geometry::sub;
-use crate::mesh::cell::CellMap;
+use crate::mesh::cell::{CellMap, MOST_NODES};
 
 use super::cell_matrix::{CellError, CellIntegrator};
 use super::elasticity::{CellMatrix, cell_stiffness};
 use super::orthonormal::SolverBasis;
 
 /// Shape up to translation, in quanta of length.
-type ShapeKey = [i64; 21];
+type ShapeKey = [i64; 3 * (MOST_NODES - 1)];
 
 /// Stiffness matrices of all cells over their functions.
 pub struct CellMatrices {
@@ -28,7 +28,7 @@ impl CellMatrices {
     pub fn new(integrator: &CellIntegrator<'_>) -> Result<Self, CellError> {
         let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
         // Coordinates of a body 10⁴ cells wide carry rounding of 1e-12 of a cell.
-        let smallest = mesh.node_sizes().into_iter().fold(f64::INFINITY, f64::min);
+        let smallest = mesh.smallest_edge();
         let keys: Vec<ShapeKey> = (0..mesh.cell_count())
             .into_par_iter()
             .map(|cell| shape_key(&mesh.map(cell), 1e-10 * smallest))
@@ -83,7 +83,7 @@ impl CellMatrices {
 
 /// Cells with equal keys share one standard stiffness; `quantum`: length below which they are equal [m].
 fn shape_key(map: &CellMap, quantum: f64) -> ShapeKey {
-    let mut key = [0; 21];
+    let mut key = [0; 3 * (MOST_NODES - 1)];
     let edges = map[1..].iter().flat_map(|corner| sub(corner, &map[0]));
     for (entry, length) in key.iter_mut().zip(edges) {
         *entry = (length / quantum).round() as i64;

@@ -42,6 +42,18 @@ pub struct SidedPoint {
     pub region: Region,
 }
 
+impl SidedPoint {
+    /// A point of a rule with its reference position and region.
+    pub fn new(xi: Point, WeightedPoint { x, weight }: WeightedPoint, region: Region) -> Self {
+        SidedPoint {
+            xi,
+            x,
+            weight,
+            region,
+        }
+    }
+}
+
 /// A cell whose sub-cells cannot be integrated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("cell at {at:?}: {reason}")]
@@ -50,6 +62,16 @@ pub struct CellError {
     pub at: Point,
     /// What went wrong.
     pub reason: String,
+}
+
+impl CellError {
+    /// An error at a place.
+    pub fn new(at: Point, reason: impl Into<String>) -> Self {
+        CellError {
+            at,
+            reason: reason.into(),
+        }
+    }
 }
 
 /// Everything the cells of one body share.
@@ -238,27 +260,17 @@ impl<'a> CellIntegrator<'a> {
         tolerance: f64,
     ) -> Result<Vec<SidedPoint>, CellError> {
         let map = self.mesh.map(cell);
-        let error = |reason: String| CellError {
-            at: map.centre(),
-            reason,
-        };
         // A slip in the geometry shows as a wrong measure: never integrate over it.
         let measure = measure(&map);
         let sum: f64 = points.iter().map(|(p, _)| p.weight).sum();
         if (sum - measure).abs() > tolerance * measure {
             let reason = format!("sub-cells measure {sum:e} instead of {measure:e}");
-            return Err(error(reason));
+            return Err(CellError::new(map.centre(), reason));
         }
-        let place = |(WeightedPoint { x, weight }, region)| {
-            let xi = map.inverse(&x);
-            let xi =
-                xi.ok_or_else(|| error("a sub-cell point has no reference position".into()))?;
-            Ok(SidedPoint {
-                xi,
-                x,
-                weight,
-                region,
-            })
+        let lost = || CellError::new(map.centre(), "a sub-cell point has no reference position");
+        let place = |(p, region): (WeightedPoint, Region)| {
+            let xi = map.inverse(&p.x).ok_or_else(lost)?;
+            Ok(SidedPoint::new(xi, p, region))
         };
         points.into_iter().map(place).collect()
     }
@@ -286,11 +298,6 @@ impl<'a> CellIntegrator<'a> {
 
 /// Tensor Gauss points of the whole cell with a region each.
 pub fn whole_cell(map: &CellMap, n: usize, region: impl Fn(&Point) -> Region) -> Vec<SidedPoint> {
-    let sided = |(xi, WeightedPoint { x, weight })| SidedPoint {
-        xi,
-        x,
-        weight,
-        region: region(&x),
-    };
+    let sided = |(xi, p): (Point, WeightedPoint)| SidedPoint::new(xi, p, region(&p.x));
     gauss_map(map, n).map(sided).collect()
 }

@@ -161,7 +161,7 @@ impl CellMatrix {
 pub fn cell_stiffness(map: &CellMap, lame: Lame) -> CellMatrix {
     let dim = map.kind.dim();
     let mut gram = Gram::zero(map.len(), dim);
-    for (xi, w) in gauss_cell(dim, 2) {
+    for (xi, w) in gauss_cell(map.kind, 2) {
         let (g, det) = map.gradients(&xi);
         gram.add(w * det, &g);
     }
@@ -174,10 +174,7 @@ mod tests {
     use crate::material::{Material, Model};
     use crate::mesh::cell::CellKind;
 
-    const STEEL: Material = Material {
-        young: 210e9,
-        poisson: 0.3,
-    };
+    const STEEL: Material = Material::new(210e9, 0.3);
 
     /// K of a unit square, plane stress, against the printed closed form (Cook et al., Concepts and Applications of
     /// Finite Element Analysis, bilinear square): K_11 = E (3 − ν) / (6 (1 − ν²)) ... (thickness 1, side independent).

@@ -7,8 +7,7 @@
 //!
 //! Far from the tip the four branch functions of a node, and its Heaviside function, are nearly the same: the condition of
 //! K grows like a high power of radius over cell size (1e12 instead of 1e3). Close to a junction the steps of two cracks
-//! may differ on a sliver only. Scaled Cholesky factors of the node blocks
-//! bring it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part
+//! may differ on a sliver only. Scaled Cholesky factors of the node blocks bring it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part
 //! outside the span of those before it is too small to be told from rounding is dropped. Functions keep their numbers;
 //! only what the solver sees is transformed.
 //!
@@ -59,8 +58,8 @@ pub struct SolverBasis {
 }
 
 impl SolverBasis {
-    /// Orthonormalises the nodes of ramped branch functions and of several cracks. `matrix`: stiffness of a cell over its functions; `held`: whether
-    /// a function has a prescribed component, which keeps its node as it is.
+    /// Orthonormalises the nodes of ramped branch functions and of several cracks. `matrix`: stiffness of a cell over its
+    /// functions; `held`: whether a function has a prescribed component, which keeps its node as it is.
     pub fn new<'a>(
         mesh: &Mesh,
         enrichment: &Enrichment,
@@ -114,51 +113,49 @@ impl SolverBasis {
         })
     }
 
-    /// f' = T f, in place.
-    pub fn force(&self, dim: usize, f: &mut [f64]) {
+    /// Changes the values of every block, component by component.
+    fn change(&self, dim: usize, v: &mut [f64], change: impl Fn(&Block, &mut [f64])) {
         for block in &self.blocks {
             for a in 0..dim {
-                let old: Vec<f64> = (0..block.count)
-                    .map(|j| f[(block.first + j) * dim + a])
-                    .collect();
-                for i in 0..block.count {
-                    f[(block.first + i) * dim + a] = (0..=i).map(|j| block.t(i, j) * old[j]).sum();
-                }
+                let at = |i: usize| (block.first + i) * dim + a;
+                let mut own: Vec<f64> = (0..block.count).map(|i| v[at(i)]).collect();
+                change(block, &mut own);
+                own.into_iter().enumerate().for_each(|(i, x)| v[at(i)] = x);
             }
         }
+    }
+
+    /// f' = T f, in place.
+    pub fn force(&self, dim: usize, f: &mut [f64]) {
+        self.change(dim, f, |block, f| {
+            for i in (0..block.count).rev() {
+                f[i] = (0..=i).map(|j| block.t(i, j) * f[j]).sum();
+            }
+        });
     }
 
     /// u = Tᵀ u', in place.
     pub fn unknowns(&self, dim: usize, u: &mut [f64]) {
-        for block in &self.blocks {
-            for a in 0..dim {
-                let old: Vec<f64> = (0..block.count)
-                    .map(|j| u[(block.first + j) * dim + a])
-                    .collect();
-                for j in 0..block.count {
-                    u[(block.first + j) * dim + a] =
-                        (j..block.count).map(|i| block.t(i, j) * old[i]).sum();
-                }
+        self.change(dim, u, |block, u| {
+            for j in 0..block.count {
+                u[j] = (j..block.count).map(|i| block.t(i, j) * u[i]).sum();
             }
-        }
+        });
     }
 
     /// The u' of a u, in place; what only dropped functions could carry is lost.
     pub fn solver_unknowns(&self, dim: usize, u: &mut [f64]) {
-        for block in &self.blocks {
-            for a in 0..dim {
-                for j in (0..block.count).rev() {
-                    let at = |i: usize| (block.first + i) * dim + a;
-                    let rest: f64 = (j + 1..block.count).map(|i| block.t(i, j) * u[at(i)]).sum();
-                    let pivot = block.t(j, j);
-                    u[at(j)] = if pivot == 0.0 {
-                        0.0
-                    } else {
-                        (u[at(j)] - rest) / pivot
-                    };
-                }
+        self.change(dim, u, |block, u| {
+            for j in (0..block.count).rev() {
+                let rest: f64 = (j + 1..block.count).map(|i| block.t(i, j) * u[i]).sum();
+                let pivot = block.t(j, j);
+                u[j] = if pivot == 0.0 {
+                    0.0
+                } else {
+                    (u[j] - rest) / pivot
+                };
             }
-        }
+        });
     }
 
     /// Column of T: the unknowns of the solver to which one unknown contributes, with the factors.
@@ -204,14 +201,9 @@ impl SolverBasis {
                 Some(b) => {
                     let block = &self.blocks[b as usize];
                     let i = f as usize - block.first;
-                    let inside = |j: usize| {
-                        functions
-                            .iter()
-                            .position(|&g| g as usize == block.first + j)
-                    };
-                    (0..=i)
-                        .filter_map(|j| Some((inside(j)?, block.t(i, j))))
-                        .collect()
+                    let place = |f: usize| functions.iter().position(|&g| g as usize == f);
+                    let entry = |j: usize| Some((place(block.first + j)?, block.t(i, j)));
+                    (0..=i).filter_map(entry).collect()
                 }
             })
             .collect();
@@ -256,14 +248,12 @@ fn surplus(mesh: &Mesh, enrichment: &Enrichment, held: impl Fn(usize) -> bool) -
         {
             continue;
         }
-        let r = |f: usize| tip.distance(&mesh.nodes[enrichment.functions[f].node as usize]);
-        let core = functions
-            .iter()
-            .filter(|&&f| enrichment.in_core(number, enrichment.functions[f].node));
-        let farthest = core
-            .copied()
-            .max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
-        let node = farthest.map(|f| enrichment.functions[f].node);
+        let node_of = |f: usize| enrichment.functions[f].node;
+        let r = |f: usize| tip.distance(&mesh.nodes[node_of(f) as usize]);
+        let own = functions.iter().copied();
+        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)));
+        let farthest = core.max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
+        let node = farthest.map(node_of);
         found.extend(functions.into_iter().filter(|&f| {
             let function = enrichment.functions[f];
             let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
@@ -291,9 +281,8 @@ fn gram<'a>(
         for (i, f) in own.clone().enumerate() {
             for (j, g) in own.clone().enumerate() {
                 if let (Some(p), Some(q)) = (place(f), place(g)) {
-                    gram[i * count + j] += (0..dim)
-                        .map(|a| k.get(p * dim + a, q * dim + a))
-                        .sum::<f64>();
+                    let diagonal = (0..dim).map(|a| k.get(p * dim + a, q * dim + a));
+                    gram[i * count + j] += diagonal.sum::<f64>();
                 }
             }
         }

@@ -59,10 +59,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    const MATERIAL: Material = Material {
-        young: 2.6,
-        poisson: 0.3,
-    };
+    const MATERIAL: Material = Material::new(2.6, 0.3);
 
     /// Complete elliptic integrals K and E of k² = `m` by the arithmetic-geometric mean.
     fn complete(m: f64) -> (f64, f64) {

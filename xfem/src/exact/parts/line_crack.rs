@@ -188,12 +188,7 @@ mod tests {
         assert_eq!(axes(&line, &[0.3, 0.1, 0.0])[0], [0.0, 1.0, 0.0]);
         assert_eq!(axes(&line, &[1.1, 1.5, 0.0])[0], [-1.0, 0.0, 0.0]);
         for (from, to, sign) in [(0.0, 1.0, -1.0), (1.0, 0.0, 1.0)] {
-            let arc = CrackShape::Arc {
-                centre: [1.0, 1.0],
-                radius: 2.0,
-                from,
-                to,
-            };
+            let arc = CrackShape::arc([1.0, 1.0], 2.0, [from, to]);
             let [n, a, _] = axes(&arc, &[3.0, 1.0, 0.0]);
             assert_eq!(n, [sign, 0.0, 0.0]);
             assert_eq!(a[1], -sign);

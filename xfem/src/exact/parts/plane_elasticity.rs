@@ -61,10 +61,7 @@ mod tests {
         let shape = CrackShape::Polyline(Vec::new());
         let (e, nu) = (2.0, 0.3);
         let mut plane = setting(&shape);
-        plane.material = Material {
-            young: e,
-            poisson: nu,
-        };
+        plane.material = Material::new(e, nu);
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
         for (model, kappa, modulus, ratio) in [
             (

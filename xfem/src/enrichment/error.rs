@@ -1,0 +1,55 @@
+//! Cracks that a mesh cannot carry.
+
+use crate::cut::partition::PartitionError;
+use crate::geometry::Point;
+
+/// What is wrong with a crack in a mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EnrichmentError {
+    /// The crack cuts no cell.
+    #[error("crack {} lies wholly outside the mesh", crack + 1)]
+    Outside {
+        /// Crack number, from 0.
+        crack: usize,
+    },
+    /// Both tips in one cell, or in neighbours that share all contact: no contact point is left.
+    #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", crack + 1)]
+    TooShort {
+        /// Crack number, from 0.
+        crack: usize,
+    },
+    /// A crack ends in a cell that another one cuts.
+    #[error("crack {} ends in a cell that crack {} cuts, near {at:?}: let it end on that crack, or farther away", ending + 1, other + 1)]
+    Crowded {
+        /// The crack with the tip, from 0.
+        ending: usize,
+        /// The other crack, from 0.
+        other: usize,
+        /// Centre of the cell [m].
+        at: Point,
+    },
+    /// A cell cannot be divided.
+    #[error("crack {}: {reason}, near {at:?}", crack + 1)]
+    Partition {
+        /// Crack number, from 0.
+        crack: usize,
+        /// What is wrong.
+        reason: PartitionError,
+        /// Centre of the cell [m].
+        at: Point,
+    },
+    /// The crack runs along cell facets in one part and through cells in another.
+    #[error("crack {} runs partly along cell edges and partly through cells, near {at:?}", crack + 1)]
+    Mixed {
+        /// Crack number, from 0.
+        crack: usize,
+        /// Centre of a cell it cuts [m].
+        at: Point,
+    },
+    /// A crack on cell edges ends inside the body with branch functions asked for.
+    #[error("crack {} runs along cell edges and ends inside the body: branch functions need a tip inside a cell", crack + 1)]
+    ConformingTip {
+        /// Crack number, from 0.
+        crack: usize,
+    },
+}
