@@ -12,6 +12,7 @@ use std::path::Path;
 use stickslip::report;
 use stickslip::report::paper::converged_reactions::summary;
 use stickslip::report::{Provenance, standard};
+use stickslip::run::registry::method;
 use stickslip::run::run_case::{Fields, Quiet, Settings};
 use stickslip::studies::paper;
 use stickslip::studies::paper::converged_reactions::agreements;
@@ -76,10 +77,12 @@ impl Table {
         table
     }
 
-    /// Drops the rows of other methods.
+    /// Drops the rows of methods that are registered and not among these.
     fn keep_methods(&mut self, methods: &BTreeSet<String>) {
         if let Some(at) = self.header.iter().position(|column| column == "method") {
-            self.rows.retain(|row| methods.contains(name(&row[at])));
+            let printed = |row: &[String]| method(name(&row[at])).is_none();
+            self.rows
+                .retain(|row| methods.contains(name(&row[at])) || printed(row));
         }
     }
 
