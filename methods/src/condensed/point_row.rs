@@ -69,15 +69,16 @@ impl Bordered {
             problem.operator.rho,
         );
         let points = problem.rows.by_row();
+        let indices = active;
         let active: Vec<(usize, Range<usize>)> =
-            active.iter().map(|&k| (k, points[k].clone())).collect();
+            (indices.iter().map(|&k| (k, points[k].clone()))).collect();
         let (n, size) = (active.len(), active.len() + q.len());
         let mut J = Mat::<f64>::zeros(size, size);
         match law {
             Law::Rows { a, c } => rows(&mut J, w, &active, a, c),
             Law::Columns { unit, e, s, series } => {
                 (0..n).for_each(|k| J[(k, k)] = *unit);
-                columns(&mut J, w, *series, &active, e, s);
+                columns(&mut J, w, *series, (indices, &active), e, s);
             }
         }
         for (j, q) in q.iter().enumerate() {
@@ -145,7 +146,7 @@ fn columns(
     J: &mut Mat<f64>,
     w: &dyn Delassus,
     series: Option<&Mat<f64>>,
-    active: &[(usize, Range<usize>)],
+    (indices, active): (&[usize], &[(usize, Range<usize>)]),
     e: Blocks<'_>,
     s: Blocks<'_>,
 ) {
@@ -158,17 +159,12 @@ fn columns(
             if s != 0.0 {
                 let held = series.map(|c| c.col_as_slice(l));
                 for w in [Some(w.column(l, &mut work)), held].into_iter().flatten() {
+                    let entries = column.iter_mut();
                     if all {
-                        column
-                            .iter_mut()
-                            .zip(w)
-                            .for_each(|(entry, w)| *entry += w * s);
+                        entries.zip(w).for_each(|(entry, w)| *entry += w * s);
                     } else {
-                        let w = active.iter().map(|(a, _)| w[*a]);
-                        column
-                            .iter_mut()
-                            .zip(w)
-                            .for_each(|(entry, w)| *entry += w * s);
+                        let own = entries.zip(indices);
+                        own.for_each(|(entry, &a)| *entry += w[a] * s);
                     }
                 }
             }
