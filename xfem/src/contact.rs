@@ -1,6 +1,7 @@
 //! Contact on the crack faces: contact spaces, their points, traction, samples of the faces.
 //!
-//! A space is a file of its own, a variant of [`ContactSpace`] with its name, and a line of [`surface`].
+//! A space is a function that says where its points lie and what they stand for, a variant of [`ContactSpace`] with its
+//! name, and a line of [`surface`].
 
 pub mod conforming;
 pub mod edge_pairs;

@@ -86,8 +86,9 @@ impl CrackFacets {
                 continue;
             };
             let nodes = mesh.cell(cell);
+            let map = mesh.map(cell);
             // What is cut off or merged by it is missing from the crack, and so from the forces on it.
-            let tolerance = 1e-12 * mesh.map(cell).diagonal();
+            let tolerance = 1e-12 * norm(&sub(&map[0], &map[2]));
             // Corners inside the cell that its own faces share.
             let mut inner: Vec<usize> = Vec::new();
             for face in partition.faces.iter().filter(|f| f.crack == index) {
