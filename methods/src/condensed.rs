@@ -12,13 +12,10 @@ pub(crate) mod saddle;
 pub(crate) mod stages;
 pub(crate) mod starts;
 pub(crate) mod sweeps;
-pub(crate) mod uniqueness;
-pub(crate) mod unloaded;
 pub(crate) mod whole_body;
 
 pub use forces::{End, Forces};
 pub use local_form::LocalForm;
 pub use method::CondensedMethod;
 pub use problem::{Check, ContactProblem, Limits};
-pub use starts::{Start, Uniqueness, from_all_starts};
-pub use uniqueness::contact_wise_margin;
+pub use starts::{Start, Uniqueness, contact_wise_margin, from_all_starts};

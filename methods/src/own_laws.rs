@@ -9,3 +9,4 @@ pub mod nitsche;
 
 pub(crate) mod confirm;
 pub(crate) mod stabilisation;
+pub(crate) mod unloaded;

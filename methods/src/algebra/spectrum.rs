@@ -3,8 +3,7 @@
 use faer::{Mat, Side};
 
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::dot;
-use crate::algebra::dense::norm;
+use crate::algebra::dense::{dot, norm};
 use crate::algebra::floating::ModeJumps;
 
 /// Lanczos steps: the largest eigenvalue is then exact to a few digits, the smallest within a small factor.

@@ -12,8 +12,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
-use crate::algebra::dense::solve_dense;
-use crate::algebra::dense::{along, dot};
+use crate::algebra::dense::{along, dot, solve_dense};
 use crate::algebra::factor::kernel;
 use crate::algebra::spectrum::extremes;
 use crate::condensed::pair::Pair;

@@ -7,9 +7,7 @@
 
 use faer::Mat;
 
-use crate::algebra::dense::dot;
-use crate::algebra::dense::norm;
-use crate::algebra::dense::{minus, solve_dense};
+use crate::algebra::dense::{dot, minus, norm, solve_dense};
 
 /// Ridge on the normal equations, relative to their trace: differences may depend on each other.
 const RIDGE: f64 = 1e-12;

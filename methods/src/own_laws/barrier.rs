@@ -51,11 +51,11 @@ use crate::algebra::dense::{along, ratio};
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::stages::rescue;
-use crate::condensed::unloaded::unloaded;
 use crate::contract::barrier_law::{BarrierLaw, resolvent};
 use crate::contract::law::{Branch, tangential_norm};
 use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
+use crate::own_laws::unloaded::unloaded;
 use crate::{
     CondensedMethod, ContactProblem, End, Forces, Iteration, Method, MethodError, Monitor,
     OptionSpec, Options, Real, Status, Whole, options,

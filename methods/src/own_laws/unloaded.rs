@@ -2,8 +2,7 @@
 
 #![allow(non_snake_case)]
 
-use crate::condensed::forces::End;
-use crate::condensed::forces::Forces;
+use crate::condensed::forces::{End, Forces};
 use crate::condensed::problem::{Check, ContactProblem};
 use crate::contract::state::{Iteration, Status};
 use crate::error::MethodError;
