@@ -35,8 +35,9 @@ fn the_manual_is_that_of_this_source() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/methods.md");
     let committed = std::fs::read_to_string(path).expect("docs/methods.md");
     let sections = |text: &str| -> BTreeMap<String, String> {
-        let sections = text.split("\n## ").skip(1).map(|section| {
-            let name = section.split('`').nth(1).unwrap_or_default();
+        // Each begins with an anchor of its name.
+        let sections = text.split("<a id=\"").skip(1).map(|section| {
+            let name = section.split('"').next().unwrap_or_default();
             (name.to_owned(), section.trim_end().to_owned())
         });
         sections.collect()
