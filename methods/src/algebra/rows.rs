@@ -51,12 +51,6 @@ impl RowSet {
         self.start.windows(2).map(|ends| ends[0]..ends[1])
     }
 
-    /// For every row the rows of its point.
-    pub(crate) fn by_row(&self) -> Vec<std::ops::Range<usize>> {
-        let of_point = |rows: std::ops::Range<usize>| std::iter::repeat_n(rows.clone(), rows.len());
-        self.iter().flat_map(of_point).collect()
-    }
-
     /// Where each row stands among the rows of a larger set.
     pub(crate) fn positions_in(&self, larger: &RowSet) -> Vec<usize> {
         let last = larger.source.last().map_or(0, |last| last + 1);

@@ -61,17 +61,21 @@ pub(crate) struct Bordered {
 }
 
 impl Bordered {
-    /// Assembles and factors it on the active rows, those of a point one after the other; `None` if it is singular.
+    /// Assembles and factors it on the active rows, in increasing order; `None` if it is singular.
     pub fn new(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
         let (w, q, rho) = (
             &*problem.operator.w,
             &problem.operator.modes.q,
             problem.operator.rho,
         );
-        let points = problem.rows.by_row();
-        let indices = active;
-        let active: Vec<(usize, Range<usize>)> =
-            (indices.iter().map(|&k| (k, points[k].clone()))).collect();
+        // With the rows of its point.
+        let (indices, mut left) = (active, active.iter().peekable());
+        let mut active: Vec<(usize, Range<usize>)> = Vec::with_capacity(indices.len());
+        for own in problem.rows.iter() {
+            while let Some(&k) = left.next_if(|k| own.contains(k)) {
+                active.push((k, own.clone()));
+            }
+        }
         let (n, size) = (active.len(), active.len() + q.len());
         let mut J = Mat::<f64>::zeros(size, size);
         match law {

@@ -152,14 +152,12 @@ pub(crate) fn tied_forces(problem: &ContactProblem<'_>) -> Option<Vec<f64>> {
         problem.q.iter().map(|q| -rho * q).collect(),
     );
     let tied = |ridge: f64| {
-        let blocks = |value: f64| {
-            let points = problem.rows.by_row().into_iter().enumerate();
-            let unit = points.map(move |(k, own)| {
-                let mut row = [0.0; 3];
-                row[k - own.start] = value;
-                row
-            });
-            unit.collect::<Vec<_>>()
+        let blocks = |value: f64| -> Vec<[f64; 3]> {
+            let unit = [[value, 0.0, 0.0], [0.0, value, 0.0], [0.0, 0.0, value]];
+            let points = problem.rows.iter();
+            points
+                .flat_map(|own| unit.into_iter().take(own.len()))
+                .collect()
         };
         let (a, c) = (blocks(ridge), blocks(rho));
         let system = Bordered::new(problem, &all, &Law::Rows { a: &a, c: &c })?;

@@ -48,8 +48,8 @@ pub fn residuals(i: &Increment<'_>, s: &ContactState) -> Result<Residuals, Metho
 /// Judges a state against the contact laws and against the laws that a method claims to have solved. The jump is
 /// computed from `s.u`; nothing a method reports is trusted.
 ///
-/// Without contact forces and penetration the contact laws hold for any scale, so the natural map is 0 and the body is
-/// not even factored further.
+/// Without contact forces and penetration the contact laws hold for any scale, so the natural map is 0 and W is not
+/// asked for anything.
 ///
 /// # Errors
 /// Arrays of the wrong length or with non-finite entries; a claim of Nitsche's laws on a body without traction

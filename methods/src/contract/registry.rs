@@ -118,11 +118,6 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// A registry without methods.
-    pub fn empty() -> Self {
-        Self::default()
-    }
-
     /// The registry with one more method, the last of its list.
     ///
     /// # Errors
