@@ -1,13 +1,12 @@
 //! Records of a sweep as tables and figures.
 //!
 //! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
-//! `success.*`, `profiles.csv`, `data_profiles.csv` and their figures. All others belong to the machine. Times stand beside
+//! `success.*`. All others belong to the machine. Times stand beside
 //! honest verdicts only, see [`published_times`](crate::studies::sweep::analysis::published_times).
 
 mod accuracy;
 mod cells;
 mod compare;
-mod pairwise;
 mod profiles;
 mod ranking;
 mod recommendations;
@@ -39,7 +38,6 @@ pub fn bundle(
     times::add(&mut bundle, &sweep)?;
     success::add(&mut bundle, &sweep)?;
     profiles::add(&mut bundle, &sweep)?;
-    pairwise::add(&mut bundle, &sweep)?;
     ranking::add(&mut bundle, &sweep)?;
     work_precision::add(&mut bundle, &sweep)?;
     accuracy::add(&mut bundle, &sweep)?;

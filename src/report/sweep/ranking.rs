@@ -11,14 +11,14 @@ use crate::report::tables::add_readable;
 use crate::report::tables::{Align, Column, Table};
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::compare_methods;
-use crate::studies::sweep::analysis::costs::{Costs, Measure};
+use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
 
 /// Adds `ranking.csv`, `.md` and `.tex`.
 pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
     let mut rows = Vec::new();
     for set in &sweep.sets {
-        if let Some(own) = ranking(&Costs::new(set, Measure::Time)) {
+        if let Some(own) = ranking(&Costs::new(set)) {
             rows.extend(RankingRow::all(set.tier, &own));
         }
     }

@@ -7,14 +7,12 @@ use crate::studies::sweep::analysis::support::{end_with, lying, record, timed};
 use crate::studies::sweep::record::{DeviationFound, ValueFound};
 
 /// Files that must not depend on times.
-const TIMELESS: [&str; 7] = [
+const TIMELESS: [&str; 5] = [
     "cells.csv",
     "increments.csv",
     "deviations.csv",
     "study.csv",
     "success.csv",
-    "profiles.csv",
-    "data_profiles.csv",
 ];
 
 /// Three meshes of a plate with closed form and two of a beam without, with and without friction, by all methods at five
@@ -211,14 +209,6 @@ fn counters_and_errors_stand_in_files_without_times() {
         assert_eq!(before[path], after[path], "{path}");
     }
     assert_ne!(before["ranking.csv"], after["ranking.csv"]);
-    for figure in [
-        "profile.iterations",
-        "profile.local_solves",
-        "data_profile.passes",
-    ] {
-        let path = format!("figures/{figure}.svg");
-        assert_eq!(before[&path], after[&path], "{path}");
-    }
 }
 
 #[test]
@@ -248,9 +238,7 @@ fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
     assert_eq!(count("figures/work_precision."), 12);
     assert_eq!(count("figures/time_to_accuracy."), 4);
     assert_eq!(count("figures/stages."), 4);
-    assert_eq!(count("figures/profile."), 4);
-    assert_eq!(count("figures/data_profile."), 2);
-    assert_eq!(count("figures/pairwise"), 6);
+    assert_eq!(count("figures/profile."), 1);
 }
 
 #[test]
@@ -259,8 +247,7 @@ fn without_times_there_are_no_rankings_and_no_errors() {
     records.iter_mut().for_each(|record| record.spent = None);
     let files = files(&records);
     assert!(!files.contains_key("figures/profile.time.svg"));
-    assert!(files.contains_key("figures/profile.iterations.svg"));
-    for path in ["ranking.csv", "times.csv", "pairwise.csv"] {
+    for path in ["ranking.csv", "times.csv", "time_profiles.csv"] {
         let text = String::from_utf8(files[path].clone()).unwrap();
         assert_eq!(text.lines().count(), 1, "{path}");
     }
@@ -325,18 +312,12 @@ fn headers_are_those_of_the_documentation() {
     let table = changes.get("compare.csv").unwrap().to_vec();
     found.insert("compare.csv".into(), table);
     let documented = documented();
-    let same = [
-        ("time_profiles.csv", "profiles.csv"),
-        ("time_data_profiles.csv", "data_profiles.csv"),
-    ];
     let mut tables = 0;
     for (path, contents) in found.iter().filter(|(path, _)| path.ends_with(".csv")) {
-        let page = same.iter().find(|(file, _)| file == path);
-        let page = page.map_or(path.as_str(), |(_, page)| page);
         let text = String::from_utf8(contents.clone()).unwrap();
         let header = text.lines().next().unwrap();
-        assert_eq!(header, documented[page].join(","), "{path}");
+        assert_eq!(header, documented[path].join(","), "{path}");
         tables += 1;
     }
-    assert_eq!(tables, documented.len() + same.len());
+    assert_eq!(tables, documented.len());
 }

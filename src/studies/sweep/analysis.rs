@@ -6,7 +6,6 @@
 
 pub mod accuracy;
 pub mod costs;
-pub mod pairwise;
 pub mod profile;
 pub mod proportion;
 pub mod ranking;

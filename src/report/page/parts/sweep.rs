@@ -33,14 +33,10 @@ const RANKING: [Show; 10] = [
 ];
 
 /// Groups of figures: title, beginnings of the names.
-const FIGURES: [(&str, &[&str]); 5] = [
+const FIGURES: [(&str, &[&str]); 3] = [
     (
         "Performance profiles (Dolan & Moré): share of the problems solved within a factor of the best",
         &["profile."],
-    ),
-    (
-        "Pairs: share of the problems on which the row is faster than the column",
-        &["pairwise."],
     ),
     (
         "Run time against error: solver error of every method over the tolerance asked for",
@@ -49,10 +45,6 @@ const FIGURES: [(&str, &[&str]); 5] = [
     (
         "Error of the mesh against the time of the whole run, and what the time goes into",
         &["time_to_accuracy.", "stages."],
-    ),
-    (
-        "Data profiles (Moré & Wild) and profiles of pairs",
-        &["data_profile.", "pairwise_profiles."],
     ),
 ];
 

@@ -1,75 +1,13 @@
-//! What a right answer costs, by problem and method.
+//! What a right answer costs, by problem and method: the time of the method, preparation and all increments [s].
 
 use super::test_set::TestSet;
 use super::{is_correct, method_time, published_times};
 use crate::studies::sweep::record::Record;
 
-/// What is counted as cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Measure {
-    /// Time of the method, preparation and all increments [s].
-    Time,
-    /// Iterations of the method, which are not alike: a sweep, a Newton step, a cone program.
-    Iterations,
-    /// Evaluations of the contact law at one point.
-    LocalSolves,
-    /// Dense factorisations of condensed matrices.
-    DenseFactorisations,
-}
-
-impl Measure {
-    /// Those that every machine finds alike.
-    pub const COUNTERS: [Measure; 3] = [
-        Measure::Iterations,
-        Measure::LocalSolves,
-        Measure::DenseFactorisations,
-    ];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Measure::Time => "time",
-            Measure::Iterations => "iterations",
-            Measure::LocalSolves => "local_solves",
-            Measure::DenseFactorisations => "tangent_factorisations",
-        }
-    }
-
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Measure::Time => "time of the method",
-            Measure::Iterations => "iterations",
-            Measure::LocalSolves => "evaluations of the contact law",
-            Measure::DenseFactorisations => "dense factorisations",
-        }
-    }
-
-    /// Cost of a cell whatever its answer is worth; none of a time that may not be shown. Counters begin at 1: a ratio to
-    /// nothing at all would say nothing.
-    fn of(self, record: &Record) -> Option<Cost> {
-        let found = &record.found;
-        let count = match self {
-            Measure::Time => {
-                let time = method_time(published_times(record)?);
-                return Some(Cost {
-                    value: time.median_s,
-                    low: time.low_s,
-                    high: time.high_s,
-                });
-            }
-            Measure::Iterations => found.sum(|i| i.iterations),
-            Measure::LocalSolves => found.sum(|i| i.local_solves),
-            Measure::DenseFactorisations => found.sum(|i| i.tangent_factorisations),
-        };
-        Some(Cost::exactly(1.0 + count as f64))
-    }
-}
-
-/// A cost and the interval it is known to lie in.
+/// A time and the interval it is known to lie in [s].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
-    /// Median of a time.
+    /// Median.
     pub value: f64,
     /// Lower end.
     pub low: f64,
@@ -78,6 +16,16 @@ pub struct Cost {
 }
 
 impl Cost {
+    /// Of a cell whatever its answer is worth; none of a time that may not be shown.
+    fn of(record: &Record) -> Option<Self> {
+        let time = method_time(published_times(record)?);
+        Some(Self {
+            value: time.median_s,
+            low: time.low_s,
+            high: time.high_s,
+        })
+    }
+
     /// A cost without uncertainty.
     pub fn exactly(value: f64) -> Self {
         Self {
@@ -85,11 +33,6 @@ impl Cost {
             low: value,
             high: value,
         }
-    }
-
-    /// Whether the intervals have a point in common: then neither is cheaper.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        !self.is_below(other) && !other.is_below(self)
     }
 
     /// Whether it is cheaper beyond the intervals.
@@ -106,58 +49,43 @@ impl Cost {
 /// Costs of the right answers of a test set.
 #[derive(Debug, Clone)]
 pub struct Costs<'a> {
-    /// What is counted.
-    pub measure: Measure,
     /// Methods, as in the test set.
     pub methods: Vec<&'a str>,
     /// By problem and method; none where the answer is not right to the tier.
     pub costs: Vec<Vec<Option<Cost>>>,
-    /// The records, like `costs`.
-    pub records: Vec<Vec<&'a Record>>,
     /// Problems left out: a right answer has no time, or the times come from different machines.
     pub untimed: usize,
 }
 
 impl<'a> Costs<'a> {
     /// Costs of a test set.
-    pub fn new(set: &TestSet<'a>, measure: Measure) -> Self {
+    pub fn new(set: &TestSet<'a>) -> Self {
         let mut all = Self {
-            measure,
             methods: set.methods.clone(),
             costs: Vec::new(),
-            records: Vec::new(),
             untimed: 0,
         };
         for row in &set.records {
             let correct = |r: &&&Record| is_correct(r, set.tier);
             let right: Vec<&&Record> = row.iter().filter(correct).collect();
-            let known = right.iter().all(|r| measure.of(r).is_some());
-            let on = |r: &Record| (r.origin.machine.clone(), r.origin.profile.clone());
-            let comparable =
-                measure != Measure::Time || right.windows(2).all(|r| on(r[0]) == on(r[1]));
-            if !known || !comparable {
+            let known = right.iter().all(|r| Cost::of(r).is_some());
+            let on = |r: &'a Record| [&r.origin.machine, &r.origin.profile];
+            if !known || right.windows(2).any(|r| on(r[0]) != on(r[1])) {
                 all.untimed += 1;
                 continue;
             }
-            let cost = |r: &&Record| is_correct(r, set.tier).then(|| measure.of(r)).flatten();
+            let cost = |r: &&Record| Cost::of(r).filter(|_| is_correct(r, set.tier));
             all.costs.push(row.iter().map(cost).collect());
-            all.records.push(row.clone());
         }
         all
     }
 
     /// The costs of some methods alone, given by their places.
     pub fn of_methods(&self, methods: &[usize]) -> Self {
-        fn chosen<T: Copy>(methods: &[usize], row: &[T]) -> Vec<T> {
-            methods.iter().map(|m| row[*m]).collect()
-        }
-        let costs = self.costs.iter().map(|row| chosen(methods, row));
-        let records = self.records.iter().map(|row| chosen(methods, row));
+        let chosen = |row: &Vec<Option<Cost>>| methods.iter().map(|m| row[*m]).collect();
         Self {
-            measure: self.measure,
-            methods: chosen(methods, &self.methods),
-            costs: costs.collect(),
-            records: records.collect(),
+            methods: methods.iter().map(|m| self.methods[*m]).collect(),
+            costs: self.costs.iter().map(chosen).collect(),
             untimed: self.untimed,
         }
     }
@@ -210,11 +138,9 @@ mod tests {
             lying("false-claim"),
         ];
         let set = set(&records);
-        for measure in [Measure::Time, Measure::Iterations] {
-            let costs = Costs::new(&set, measure);
-            assert!(costs.costs[0][0].is_some());
-            assert_eq!(costs.costs[0][1], None);
-        }
+        let costs = Costs::new(&set);
+        assert!(costs.costs[0][0].is_some());
+        assert_eq!(costs.costs[0][1], None);
     }
 
     #[test]
@@ -225,18 +151,15 @@ mod tests {
         ];
         let costs = |records: &[Record]| {
             let set = set(records);
-            let [time, counter] = [Measure::Time, Measure::Iterations].map(|m| {
-                let costs = Costs::new(&set, m);
-                (costs.problems(), costs.untimed)
-            });
-            (time, counter)
+            let costs = Costs::new(&set);
+            (costs.problems(), costs.untimed)
         };
-        assert_eq!(costs(&records), ((0, 1), (1, 0)));
+        assert_eq!(costs(&records), (0, 1));
         records[1] = timed(records[1].clone(), 2.0);
-        assert_eq!(costs(&records), ((1, 0), (1, 0)));
+        assert_eq!(costs(&records), (1, 0));
         // Nor are two machines compared.
         records[1].origin.machine = "linux, two".into();
-        assert_eq!(costs(&records), ((0, 1), (1, 0)));
+        assert_eq!(costs(&records), (0, 1));
     }
 
     #[test]
@@ -246,7 +169,7 @@ mod tests {
             .map(|(method, t)| timed(record("plate", method, 1e-6), t))
             .into();
         let set = set(&records);
-        let costs = Costs::new(&set, Measure::Time);
+        let costs = Costs::new(&set);
         assert_eq!(costs.methods, ["b-newton", "pdas", "latin"]);
         assert_eq!(costs.cheapest(0), [0, 1]);
         assert!((costs.median_width() - 0.2).abs() < 1e-12);

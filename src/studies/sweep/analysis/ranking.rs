@@ -119,7 +119,6 @@ pub fn shifted_mean(values: impl ExactSizeIterator<Item = f64>, shift: f64) -> f
 mod tests {
     use stickslip_methods::Tier;
 
-    use super::super::costs::Measure;
     use super::super::support::{lying, record, timed};
     use super::super::test_set::TestSet;
     use super::*;
@@ -127,7 +126,7 @@ mod tests {
 
     fn ranked(records: &[Record]) -> Vec<(String, f64, [usize; 2])> {
         let set = TestSet::new(records, Tier::Mid);
-        let ranking = ranking(&Costs::new(&set, Measure::Time)).unwrap();
+        let ranking = ranking(&Costs::new(&set)).unwrap();
         let line = |s: &Standing| (s.method.to_owned(), s.mean.value, s.rank);
         ranking.standings.iter().map(line).collect()
     }
@@ -194,6 +193,6 @@ mod tests {
     fn what_nobody_solves_is_not_ranked() {
         let records = vec![lying("false-claim")];
         let set = TestSet::new(&records, Tier::Mid);
-        assert_eq!(ranking(&Costs::new(&set, Measure::Time)), None);
+        assert_eq!(ranking(&Costs::new(&set)), None);
     }
 }

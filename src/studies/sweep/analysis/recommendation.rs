@@ -14,7 +14,7 @@ use std::fmt;
 
 use stickslip_methods::Tier;
 
-use super::costs::{Costs, Measure};
+use super::costs::Costs;
 use super::proportion::wilson;
 use super::ranking::ranking;
 use super::test_set::TestSet;
@@ -277,7 +277,7 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
     let reliable: Vec<usize> = (0..counts.len())
         .filter(|m| correct > 0 && counts[*m] == correct)
         .collect();
-    let costs = Costs::new(set, Measure::Time);
+    let costs = Costs::new(set);
     let name = |m: &usize| set.methods[*m].to_owned();
     let ranking = ranking(&costs.of_methods(&reliable));
     let standings = ranking.map_or_else(Vec::new, |ranking| ranking.standings);
