@@ -4,22 +4,22 @@
 //! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::run::record::Results)
 //! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
 
-pub mod comparison;
 pub mod convergence;
-pub mod csv;
 mod error;
 mod error_figures;
-pub mod infsup;
+pub mod figures;
 mod loops;
 pub mod number;
 pub mod page;
 pub mod paper;
-pub mod patch;
 pub mod plot;
 mod quantity_name;
 pub mod robustness;
+pub mod schema;
+pub mod spaces;
 pub mod standard;
 pub mod sweep;
+pub mod table;
 pub mod tables;
 pub mod timings;
 pub mod vtu;

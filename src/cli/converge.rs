@@ -7,6 +7,7 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::case::{ContactSpace, Tip};
+use crate::report::table::readable;
 use crate::report::{Provenance, prepare_output};
 use crate::run::choice::Choice;
 use crate::studies::convergence::{self, ConvergencePlan, orders};
@@ -94,8 +95,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         .with_option("method", plan.choice.label.clone());
     let bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
     bundle.commit(&arguments.out)?;
-    let table = crate::report::convergence::order_table(&orders)?;
-    say(format_args!("{}", table.terminal()));
+    say(format_args!("{}", readable(&orders, "").terminal()));
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());
     say(format_args!(
         "{} runs: {} solved, {} not\nResults: {}",

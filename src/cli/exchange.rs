@@ -10,9 +10,8 @@ use super::error::CliError;
 use super::output::say;
 use super::progress::Bar;
 use crate::files::interchange::matrix_market;
-use crate::report::number::residual;
 use crate::report::standard::{self, problem_name};
-use crate::report::tables::{Align, Column, Table};
+use crate::report::table::{Column, Order, Row, columns, readable};
 use crate::report::{Bundle, prepare_output};
 use crate::run::choice::Choice;
 use crate::run::record::Results;
@@ -133,7 +132,11 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     bundle.commit(&args.out)?;
     say(format_args!(
         "{}",
-        standard::runs_table(&results.runs)?.terminal()
+        readable(
+            &standard::last_runs(&results.runs),
+            ": the last increment of each"
+        )
+        .terminal()
     ));
     say(format_args!(
         "{}\nResults: {}",
@@ -145,37 +148,43 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
 
 pub fn run_judge(args: JudgeArgs) -> Result<bool, CliError> {
     let problem = ProblemFile::read(&args.problem)?;
-    let mut columns = vec![Column::new("reaction", "", Align::Left)];
-    let residuals = [
-        "natural map",
-        "equilibrium",
-        "penetration",
-        "adhesion",
-        "complementarity",
-        "cone",
-        "slip direction",
-    ];
-    columns.extend(residuals.map(|name| Column::new(name, "", Align::Right)));
-    let mut table = Table::new(format!("Residuals of {}", problem.name), columns);
+    let mut rows = Vec::new();
     let mut all_hold = true;
     for reaction in &args.reactions {
         let found = problem.judge(reaction)?;
         all_hold &= holds(&found, args.tier);
-        let numbers = [
-            found.natural_map,
-            found.equilibrium,
-            found.penetration,
-            found.adhesion,
-            found.complementarity,
-            found.cone,
-            found.slip_direction,
-        ];
-        let mut cells = vec![reaction.display().to_string()];
-        cells.extend(numbers.map(residual));
-        table.push(cells)?;
+        let name = reaction.display().to_string();
+        rows.push(JudgedRow { name, found });
     }
-    say(format_args!("{}", table.terminal()));
+    let note = format!(" of {}", problem.name);
+    say(format_args!("{}", readable(&rows, &note).terminal()));
     Ok(all_hold)
+}
+
+/// What the judge says of a reaction from another program.
+struct JudgedRow {
+    name: String,
+    found: Residuals,
+}
+
+impl Row for JudgedRow {
+    const NAME: &'static str = "judged";
+    const TITLE: &'static str = "Residuals";
+    const QUESTION: &'static str = "Do reactions of another program solve the problem?";
+    const ORDER: Order<Self> = Order::Given;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "reaction" "" .shown() = r.name.clone(), "file of the reactions";
+            "natural_map" "–" .residual().shown() = r.found.natural_map, "residual of all contact conditions";
+            "equilibrium" "–" .residual().shown() = r.found.equilibrium, "backward error of equilibrium";
+            "penetration" "–" .residual().shown() = r.found.penetration, "deepest overlap";
+            "adhesion" "–" .residual().shown() = r.found.adhesion, "largest tension";
+            "complementarity" "–" .residual().shown() = r.found.complementarity, "largest product of gap and pressure";
+            "cone" "–" .residual().shown() = r.found.cone, "largest excess over the friction bound";
+            "slip_direction" "–" .residual().shown() = r.found.slip_direction, "largest deviation of the friction from the slip";
+        }
+    }
 }
 
 /// Whether the contact laws hold, in the same sense as in a verdict. NaN passes no comparison.

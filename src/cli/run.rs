@@ -11,6 +11,7 @@ use super::progress::Bar;
 use crate::case;
 use crate::model::body::{Body, Needs};
 use crate::model::loading::Loading;
+use crate::report::table::readable;
 use crate::report::{page, prepare_output, standard};
 use crate::run::choice::{Choice, choices};
 use crate::run::expect;
@@ -95,12 +96,16 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     page::write(out)?;
     say(format_args!(
         "{}",
-        standard::runs_table(&results.runs)?.terminal()
+        readable(
+            &standard::last_runs(&results.runs),
+            ": the last increment of each"
+        )
+        .terminal()
     ));
     if !results.expectations.is_empty() {
         say(format_args!(
             "{}",
-            standard::expectations_table(&results.expectations)?.terminal()
+            readable(&results.expectations, "").terminal()
         ));
     }
     say(format_args!(

@@ -8,12 +8,13 @@ use super::error::CliError;
 use super::method_manual;
 use super::output::say;
 use crate::case::{self, shipped};
+use crate::report::schema;
 use crate::run::registry::{method, methods};
 
 /// Arguments of `stickslip show`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Method or case
+    /// Method or case; `methods` and `schema` print the manuals of the methods and of the output files
     name: String,
 }
 
@@ -23,7 +24,7 @@ pub fn run_list() -> Result<bool, CliError> {
     Ok(true)
 }
 
-/// Prints one method or case, or all methods.
+/// Prints one method or case, or a manual.
 pub fn run(Arguments { name }: Arguments) -> Result<bool, CliError> {
     say(format_args!("{}", show_text(&name)?.trim_end()));
     Ok(true)
@@ -59,8 +60,10 @@ fn list_text() -> String {
 }
 
 fn show_text(name: &str) -> Result<String, CliError> {
-    if name == "methods" {
-        return Ok(method_manual::all());
+    match name {
+        "methods" => return Ok(method_manual::all()),
+        "schema" => return Ok(schema::manual()),
+        _ => {}
     }
     if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
         return Ok((*text).to_owned());

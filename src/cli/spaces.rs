@@ -6,7 +6,9 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::case::ContactSpace;
-use crate::report::{Bundle, Provenance, add_provenance, prepare_output};
+use crate::report::table::readable;
+use crate::report::tables::spaces::{InfSupSummary, PatchSummary};
+use crate::report::{Provenance, prepare_output, spaces as report};
 use crate::run::choice::Choice;
 use crate::studies::spaces::infsup::{self, SCENES, Scene};
 use crate::studies::spaces::patch::{self, PatchRow};
@@ -46,20 +48,14 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let rows = patch::run(&patches, &ContactSpace::stable_first(), &choice, &bar)?;
     bar.finish();
 
-    let mut bundle = Bundle::new();
-    crate::report::infsup::add_to(&mut bundle, &sequences)?;
-    crate::report::patch::add_to(&mut bundle, &rows)?;
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("meshes", meshes.to_string())
         .with_option("distances", distances.to_string());
-    add_provenance(&mut bundle, &provenance)?;
-    bundle.commit(&arguments.out)?;
-    for table in [
-        crate::report::infsup::table(&sequences)?,
-        crate::report::patch::table(&rows)?,
-    ] {
-        say(format_args!("{}", table.terminal()));
-    }
+    report::bundle(&sequences, &rows, &provenance)?.commit(&arguments.out)?;
+    let stability: Vec<InfSupSummary> = sequences.iter().map(InfSupSummary).collect();
+    say(format_args!("{}", readable(&stability, "").terminal()));
+    let passed = PatchSummary::of(&rows);
+    say(format_args!("{}", readable(&passed, "").terminal()));
     let failed = || {
         let star = |s: &&infsup::Sequence| s.space == ContactSpace::Star && !s.is_stable();
         sequences.iter().filter(star)

@@ -8,6 +8,7 @@ use super::arguments::methods_or_all;
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
+use crate::report::table::readable;
 use crate::report::{Provenance, prepare_output, robustness};
 use crate::studies::stress;
 use crate::studies::stress::StressPlan;
@@ -82,7 +83,8 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         .with_option("tier", plan.tier.to_string())
         .with_option("seed", plan.seed.to_string())
         .with_option("problems", plan.problems.to_string());
-    let mut bundle = robustness::bundle(&plan, &trials, &provenance)?;
+    let rows = rows(&plan, &trials);
+    let mut bundle = robustness::bundle(&plan, &trials, &rows, &provenance)?;
     if let Some(problem) = plan.only {
         for &dim in &plan.dims {
             let name = format!("problem-{dim}d-{problem}.toml");
@@ -90,9 +92,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         }
     }
     bundle.commit(&arguments.out)?;
-    let rows = rows(&plan, &trials);
-    let table = robustness::table(&rows)?;
-    say(format_args!("{}", table.terminal()));
+    say(format_args!("{}", readable(&rows, "").terminal()));
     say(format_args!(
         "{}\nResults: {}",
         summary(&rows),

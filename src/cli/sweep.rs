@@ -178,7 +178,7 @@ fn changes(a: &[Record], b: &[Record], out: Option<&Path>) -> Result<bool, CliEr
     if let Some(out) = out {
         sweep::comparison_bundle(&comparison)?.commit(out)?;
     }
-    let table = sweep::comparison_table(&comparison)?;
+    let table = sweep::comparison_table(&comparison);
     say(format_args!("{}", table.terminal()));
     Ok(!comparison.worse())
 }

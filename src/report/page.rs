@@ -1,39 +1,38 @@
 //! `index.html`: one page that shows a report folder and needs nothing else: styles, script and figures are inside.
 //!
 //! ```text
-//! folder on disk -> Folder -> parts (one file each) -> Section … -> compose -> index.html
+//! folder on disk -> Folder -> tables and figures by chapter of the catalogues -> html -> index.html
 //! ```
 //!
-//! A part reads the CSV tables it knows and is left out where there are none, so one page fits the report of the main job,
-//! the results of a single run and the folders of the studies. Numbers are those of the tables, with fewer digits; large
-//! tables are linked with their size. The same folder gives the same bytes.
+//! A chapter without files is left out, so one page fits the report of the main job, the results of a single run and the
+//! folders of the studies. Columns, headings and digits are those of the [catalogue](super::tables::catalogue); numbers are
+//! read from the CSV files. The same folder gives the same bytes.
 
-mod drawing;
 mod error;
 mod folder;
 mod html;
-mod parts;
-mod section;
+mod overview;
 mod sheet;
 
 use std::path::Path;
 
-pub use drawing::Drawing;
 pub use error::PageError;
 pub use folder::{Budget, Folder};
-pub use html::compose;
-pub use section::{
-    Block, Column, Fact, Figure, Figures, Grid, Kind, Link, Origin, Section, heading,
-};
-pub use sheet::{Sheet, Show};
+pub use sheet::Sheet;
 
 use super::Bundle;
+use super::figures;
+use super::tables::{Chapter, catalogue};
+use html::{Block, Grid, Link, Section};
 
 /// Name of the page in its folder.
 pub const FILE: &str = "index.html";
 
-/// Most bytes of figures inside the page; what comes later is linked. Tables add about a tenth.
-const FIGURE_BYTES: usize = 4_000_000;
+/// Most bytes of figures inside the page, before they are encoded; what comes later is linked.
+const FIGURE_BYTES: usize = 450_000;
+
+/// Longest table inside the page; longer ones are linked.
+const ROWS: usize = 250;
 
 /// The page of a folder.
 ///
@@ -42,16 +41,58 @@ const FIGURE_BYTES: usize = 4_000_000;
 pub fn of_folder(dir: &Path) -> Result<String, PageError> {
     let folder = Folder::open(dir)?;
     let mut budget = Budget::new(FIGURE_BYTES);
-    let mut sections = Vec::new();
-    for part in parts::PARTS {
-        sections.extend(part(&folder, &mut budget)?);
+    let mut sections: Vec<Section> = overview::section(&folder, &mut budget)?
+        .into_iter()
+        .collect();
+    for chapter in Chapter::ALL {
+        sections.extend(section(chapter, &folder, &mut budget)?);
     }
     if sections.is_empty() {
         return Err(PageError::Empty {
             folder: dir.to_path_buf(),
         });
     }
-    Ok(compose(&sections, &folder.origins()?))
+    Ok(html::compose(&sections, &folder.origins()?))
+}
+
+/// Figures, then tables; nothing without any.
+fn section(
+    chapter: Chapter,
+    folder: &Folder,
+    budget: &mut Budget,
+) -> Result<Option<Section>, PageError> {
+    let mut blocks = Vec::new();
+    for kind in figures::CATALOGUE
+        .iter()
+        .filter(|kind| kind.chapter == chapter)
+    {
+        blocks.extend(folder.figures(kind, budget)?.map(Block::Figures));
+    }
+    let mut links = Vec::new();
+    for (_, table) in catalogue().iter().filter(|(own, _)| *own == chapter) {
+        for path in folder.named(&table.file()) {
+            let sheet = folder.sheet(path)?;
+            let (rows, columns) = sheet.size();
+            match rows {
+                0 => {}
+                1..=ROWS => blocks.push(Block::Table(Grid::of(table, &sheet, folder, path)?)),
+                _ => links.push(Link {
+                    text: path.to_owned(),
+                    path: path.to_owned(),
+                    note: format!("{} {rows} rows, {columns} columns", table.question),
+                }),
+            }
+        }
+    }
+    if !links.is_empty() {
+        blocks.push(Block::Links(links));
+    }
+    Ok((!blocks.is_empty()).then(|| Section {
+        id: chapter.id(),
+        title: chapter.title(),
+        lead: chapter.lead(),
+        blocks,
+    }))
 }
 
 /// Writes `index.html` into the folder it shows; size in bytes.

@@ -3,14 +3,12 @@
 //! Profiles show the last increment of runs that did what they claim: solved the contact laws or, named as such, their own
 //! approximate ones. A wrong answer never stands beside right ones; residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
 
-use super::number::{residual, significant, time, value};
+use super::number::value;
 use super::plot::{self, Axis3, Magnification, Tier};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, loops, tables, vtu};
-use crate::run::record::{
-    ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, Results, RunFields, RunKey, RunRow,
-};
-use crate::run::verdict::{Verdict, VerdictKind};
+use super::tables::runs::ExpectSummary;
+use super::{Bundle, Provenance, ReportError, loops, table, vtu};
+use crate::run::record::{HistoryRow, PointRow, Results, RunFields, RunKey, RunRow};
+use crate::run::verdict::VerdictKind;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -20,12 +18,7 @@ use std::path::Path;
 /// Those of the parts; [`FolderError::Duplicate`](crate::files::bundle::FolderError::Duplicate) where two runs give the same file name.
 pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
     let mut bundle = Bundle::new();
-    csv::add_to(&mut bundle, results)?;
-    tables::add_readable(&mut bundle, "runs", &runs_table(&results.runs)?)?;
-    if !results.expectations.is_empty() {
-        let table = expectations_table(&results.expectations)?;
-        tables::add_readable(&mut bundle, "expectations", &table)?;
-    }
+    add_tables(&mut bundle, results)?;
     add_residuals(&mut bundle, results)?;
     add_profiles(&mut bundle, results)?;
     loops::add_to(&mut bundle, results)?;
@@ -34,6 +27,20 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
     }
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
+}
+
+/// Adds the tables of the runs.
+///
+/// # Errors
+/// Those of [`table::add`].
+pub fn add_tables(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
+    table::add(bundle, &results.runs, "")?;
+    table::add(bundle, &results.quantities, "")?;
+    table::add(bundle, &results.history, "")?;
+    table::add(bundle, &results.points, "")?;
+    table::add(bundle, &results.exact, "")?;
+    table::add(bundle, &results.expectations, "")?;
+    table::add(bundle, &ExpectSummary::of(&results.expectations), "")
 }
 
 /// Writes [`bundle`] into `dir`, all files or none.
@@ -63,142 +70,11 @@ pub(super) fn file_name(parts: &[&str]) -> String {
     parts.join(".").chars().map(clean).collect()
 }
 
-/// Summary of the runs for reading: last increment of each run.
-///
-/// # Errors
-/// Those of [`Table::push`].
-pub fn runs_table(rows: &[RunRow]) -> Result<Table, ReportError> {
-    let mut table = Table::new(
-        "Runs, last increment",
-        vec![
-            Column::new("case", "", Align::Left),
-            Column::new("mesh", "", Align::Left),
-            Column::new("space", "", Align::Left),
-            Column::new("method", "", Align::Left),
-            Column::new("μ", "", Align::Decimal),
-            Column::new("increment", "", Align::Right),
-            Column::new("tier", "", Align::Left),
-            Column::new("verdict", "", Align::Left),
-            Column::new("natural map", "", Align::Right),
-            Column::new("iterations", "", Align::Right),
-            Column::new("factorisations", "", Align::Right),
-            Column::new("solves", "", Align::Right),
-            Column::new("points", "", Align::Right),
-            Column::new("solve", "s", Align::Right),
-        ],
-    );
-    let mut sorted: Vec<&RunRow> = rows.iter().collect();
-    sorted.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then_with(|| a.tier.cmp(&b.tier)));
+/// The last increment of every run.
+pub fn last_runs(rows: &[RunRow]) -> Vec<RunRow> {
     let last = last_increments(rows.iter().map(|row| &row.key));
-    for row in sorted.into_iter().filter(|row| is_last(&last, &row.key)) {
-        // A time is published only beside a right answer.
-        let solve = if row.verdict == Verdict::Solved {
-            time(row.solve_s)
-        } else {
-            "–".into()
-        };
-        table.push(vec![
-            row.key.case.clone(),
-            row.key.mesh.clone(),
-            row.key.space.clone(),
-            row.key.method.clone(),
-            value(row.key.friction),
-            row.key.increment.to_string(),
-            row.tier.clone(),
-            row.verdict.to_string(),
-            residual(row.natural_map),
-            row.iterations.to_string(),
-            row.factorisations.to_string(),
-            row.solves.to_string(),
-            row.points.to_string(),
-            solve,
-        ])?;
-    }
-    Ok(table)
-}
-
-/// Expected and found quantities for reading.
-///
-/// # Errors
-/// Those of [`Table::push`].
-pub fn expectations_table(rows: &[ExpectRow]) -> Result<Table, ReportError> {
-    let mut table = Table::new(
-        "Expected and found",
-        vec![
-            Column::new("case", "", Align::Left),
-            Column::new("mesh", "", Align::Left),
-            Column::new("method", "", Align::Left),
-            Column::new("μ", "", Align::Decimal),
-            Column::new("quantity", "", Align::Left),
-            Column::new("expected", "", Align::Right),
-            Column::new("found", "", Align::Right),
-            Column::new("difference", "", Align::Right),
-            Column::new("allowed", "", Align::Right),
-            Column::new("unit", "", Align::Left),
-            Column::new("kind", "", Align::Left),
-            Column::new("source", "", Align::Left),
-            Column::new("verdict", "", Align::Left),
-        ],
-    );
-    let mut sorted: Vec<&ExpectRow> = rows.iter().collect();
-    sorted.sort_by(|a, b| csv::compare_keys(&a.key, &b.key).then_with(|| csv::Row::order(*a, *b)));
-    for row in sorted {
-        let quantity = [&row.quantity, &row.at, &row.component];
-        let quantity = quantity
-            .map(String::as_str)
-            .into_iter()
-            .filter(|part| !part.is_empty());
-        table.push(vec![
-            row.key.case.clone(),
-            row.key.mesh.clone(),
-            row.key.method.clone(),
-            value(row.key.friction),
-            quantity.collect::<Vec<_>>().join(" "),
-            value(row.expected),
-            value(row.found),
-            significant(row.found - row.expected, 3),
-            significant(row.allowed, 3),
-            row.unit.clone(),
-            row.kind.clone(),
-            row.source.clone(),
-            row.verdict.clone(),
-        ])?;
-    }
-    Ok(table)
-}
-
-/// Expected numbers by case, for a terminal.
-///
-/// # Errors
-/// Those of [`Table::push`].
-pub fn expectation_summary(rows: &[ExpectRow]) -> Result<Table, ReportError> {
-    let mut table = Table::new(
-        "Expected numbers, all exact methods",
-        vec![
-            Column::new("case", "", Align::Left),
-            Column::new("numbers", "", Align::Right),
-            Column::new("met", "", Align::Right),
-            Column::new("missed as documented", "", Align::Right),
-            Column::new("worst met, of its tolerance", "", Align::Right),
-        ],
-    );
-    let cases: BTreeSet<&str> = rows.iter().map(|row| row.key.case.as_str()).collect();
-    for case in cases {
-        let own = || rows.iter().filter(move |row| row.key.case == case);
-        let count = |verdict: &str| own().filter(|row| row.verdict == verdict).count();
-        let worst = own()
-            .filter(|row| row.verdict == MET)
-            .map(|row| (row.found - row.expected).abs() / row.allowed)
-            .fold(0.0, f64::max);
-        table.push(vec![
-            case.to_owned(),
-            own().count().to_string(),
-            count(MET).to_string(),
-            count(MISSED_AS_DOCUMENTED).to_string(),
-            format!("{worst:.1e}"),
-        ])?;
-    }
-    Ok(table)
+    let rows = rows.iter().filter(|row| is_last(&last, &row.key));
+    rows.cloned().collect()
 }
 
 /// One line on the verdicts and expectations of all runs.

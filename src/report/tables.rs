@@ -1,210 +1,199 @@
-//! One table, three forms: LaTeX, Markdown, terminal.
-//!
-//! Cells are text; whoever fills the table decides about digits. On a terminal, cells of columns aligned at the decimal
-//! point are padded where they have fewer decimals, so that the points stand below each other.
+//! Every table that a command writes: its row type with its columns, and the chapter it belongs to.
 
-mod latex;
+pub mod convergence;
+pub mod paper;
+pub mod runs;
+pub mod spaces;
+pub mod stress;
+pub mod sweep;
+pub mod timings;
+mod words;
 
-use super::{Bundle, ReportError};
-use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
+use super::table::Description;
+use crate::run::record::{ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, RunRow};
+use crate::studies::convergence::orders::{ErrorRow, OrderRow};
+use crate::studies::paper::comparison::ComparisonRow;
+use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
+use crate::studies::paper::variants::VariantRow;
+use crate::studies::spaces::patch::PatchRow;
+use crate::studies::stress::robustness::{FailureRow, RobustnessRow};
+use crate::studies::sweep::analysis::recommendation::Recommendation;
+use crate::studies::sweep::analysis::success::SuccessRow;
 
-/// Alignment of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// Text.
-    Left,
-    /// Whole numbers.
-    Right,
-    /// Numbers with decimals: the decimal points stand below each other.
-    Decimal,
+/// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Chapter {
+    /// The founding paper.
+    Paper,
+    /// Method against method on the shipped cases.
+    Methods,
+    /// Run time against error.
+    Study,
+    /// Random problems.
+    Robustness,
+    /// Errors of meshes.
+    Accuracy,
+    /// Contact spaces.
+    Spaces,
+    /// Benchmarks and other programs.
+    Benchmarks,
+    /// Expected numbers.
+    Expected,
+    /// Single runs.
+    Runs,
 }
 
-/// One column.
-#[derive(Debug, Clone)]
-pub struct Column {
+impl Chapter {
+    /// All, in the order of the page.
+    pub const ALL: [Self; 9] = [
+        Self::Paper,
+        Self::Methods,
+        Self::Study,
+        Self::Robustness,
+        Self::Accuracy,
+        Self::Spaces,
+        Self::Benchmarks,
+        Self::Expected,
+        Self::Runs,
+    ];
+
+    /// Anchor in the page.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Methods => "methods",
+            Self::Study => "study",
+            Self::Robustness => "robustness",
+            Self::Accuracy => "accuracy",
+            Self::Spaces => "spaces",
+            Self::Benchmarks => "benchmarks",
+            Self::Expected => "expected",
+            Self::Runs => "runs",
+        }
+    }
+
     /// Heading.
-    pub name: String,
-    /// Unit, shown in brackets behind the heading; empty for none.
-    pub unit: String,
-    /// Alignment of the cells and the heading.
-    pub align: Align,
-}
-
-impl Column {
-    /// A column with a heading, a unit (may be empty) and an alignment.
-    pub fn new(name: impl Into<String>, unit: impl Into<String>, align: Align) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-            align,
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Paper => "Founding paper",
+            Self::Methods => "Methods on all cases",
+            Self::Study => "Run time against error",
+            Self::Robustness => "Robustness",
+            Self::Accuracy => "Accuracy of the discretisation",
+            Self::Spaces => "Contact spaces",
+            Self::Benchmarks => "Benchmarks and other programs",
+            Self::Expected => "Expected numbers",
+            Self::Runs => "Runs",
         }
     }
 
-    fn heading(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} [{}]", self.name, self.unit)
-        }
-    }
-}
-
-/// A table: title, columns, rows of cells.
-#[derive(Debug, Clone)]
-pub struct Table {
-    /// Title, the caption in LaTeX.
-    pub title: String,
-    /// Columns.
-    pub columns: Vec<Column>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    /// A table without rows.
-    pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
-        Self {
-            title: title.into(),
-            columns,
-            rows: Vec::new(),
-        }
-    }
-
-    /// Appends a row.
-    ///
-    /// # Errors
-    /// [`ReportError::TableShape`] when the number of cells differs from the number of columns.
-    pub fn push(&mut self, cells: Vec<String>) -> Result<(), ReportError> {
-        if cells.len() != self.columns.len() {
-            return Err(ReportError::TableShape {
-                title: self.title.clone(),
-                row: self.rows.len() + 1,
-                found: cells.len(),
-                expected: self.columns.len(),
-            });
-        }
-        self.rows.push(cells);
-        Ok(())
-    }
-
-    /// Rows so far.
-    pub fn rows(&self) -> &[Vec<String>] {
-        &self.rows
-    }
-
-    /// Decimals to add to a cell so that it has as many as the longest of its column.
-    fn padding(&self, column: usize, cell: &str) -> usize {
-        if self.columns[column].align != Align::Decimal || !is_number(cell) {
-            return 0;
-        }
-        let longest = self
-            .rows
-            .iter()
-            .map(|row| &row[column])
-            .filter(|cell| is_number(cell))
-            .map(|cell| behind_point(cell))
-            .max()
-            .unwrap_or(0);
-        longest - behind_point(cell)
-    }
-
-    /// GitHub Markdown: the title as a heading of level 3, then the table.
-    pub fn markdown(&self) -> String {
-        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let mut text = format!("### {}\n\n", self.title);
-        text += &line(
-            self.columns
-                .iter()
-                .map(|c| escape_markdown(&c.heading()))
-                .collect(),
-        );
-        text += &line(
-            self.columns
-                .iter()
-                .map(|c| {
-                    if c.align == Align::Left {
-                        ":---"
-                    } else {
-                        "---:"
-                    }
-                    .to_owned()
-                })
-                .collect(),
-        );
-        for row in &self.rows {
-            text += &line(row.iter().map(|cell| escape_markdown(cell)).collect());
-        }
-        text
-    }
-
-    /// The title and the table for a terminal, never wrapped; no trailing line end.
-    pub fn terminal(&self) -> String {
-        const FIGURE_SPACE: &str = "\u{2007}";
-        let mut table = comfy_table::Table::new();
-        // Two spaces between columns and no vertical lines, since Table 2 is wide.
-        table.load_style(TableStyle::new());
-        table.set_content_arrangement(ContentArrangement::Disabled);
-        table.set_header(self.columns.iter().map(Column::heading));
-        for row in &self.rows {
-            table.add_row(row.iter().enumerate().map(|(column, cell)| {
-                cell.clone() + &FIGURE_SPACE.repeat(self.padding(column, cell))
-            }));
-        }
-        for (index, column) in self.columns.iter().enumerate() {
-            if let Some(target) = table.column_mut(index) {
-                target.set_padding((0, 2));
-                target.set_cell_alignment(match column.align {
-                    Align::Left => CellAlignment::Left,
-                    Align::Right | Align::Decimal => CellAlignment::Right,
-                });
+    /// What the reader finds there, and which command writes it.
+    pub fn lead(self) -> &'static str {
+        match self {
+            Self::Paper => {
+                "Plate and beam of the founding paper: computed beside printed numbers, and what the plate converges to \
+                 (`stickslip paper`)."
+            }
+            Self::Methods => {
+                "Every method on the shipped cases, the plate and the beam also by the variants of the methods (`stickslip paper`)."
+            }
+            Self::Study => {
+                "Every method on the same problems, asked for one accuracy after the other (`stickslip study`). Time of the \
+                 method: preparation and solution of all increments, K factored and condensed before; median of repetitions \
+                 on one thread. A time counts beside a right answer only."
+            }
+            Self::Robustness => {
+                "The same seeded random problems for every method (`stickslip stress`). Exact methods succeed where they \
+                 solved the contact laws, approximate ones where they kept their claim."
+            }
+            Self::Accuracy => {
+                "Errors and observed orders on sequences of meshes, against closed forms where there are any (`stickslip \
+                 converge`)."
+            }
+            Self::Spaces => {
+                "Which spaces of contact forces are stable on a crack that lies in the grid in any way, and which represent \
+                 uniform stress exactly (`stickslip spaces`)."
+            }
+            Self::Benchmarks => "Times of `cargo bench`, and other programs on the same problems.",
+            Self::Expected => {
+                "Closed forms and published numbers that the cases must reproduce, by every exact method. Missed as \
+                 documented: a limitation that the case file states."
+            }
+            Self::Runs => {
+                "The runs themselves, increment by increment: the results of `stickslip run`."
             }
         }
-        let lines: Vec<String> = table
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect();
-        // Three rules as in booktabs.
-        let width = lines.iter().map(|line| line.chars().count()).max();
-        let rule = "─".repeat(width.unwrap_or(0));
-        let mut text = format!("{}\n{rule}\n", self.title);
-        for (index, line) in lines.iter().enumerate() {
-            text += line;
-            text.push('\n');
-            if index == 0 {
-                text += &rule;
-                text.push('\n');
-            }
-        }
-        text + &rule
     }
 }
 
-fn is_number(cell: &str) -> bool {
-    cell.parse::<f64>().is_ok()
-}
-
-/// Characters from the decimal point on, the point included.
-fn behind_point(cell: &str) -> usize {
-    let mantissa = cell.split(['e', 'E']).next().unwrap_or(cell);
-    mantissa.find('.').map_or(0, |at| mantissa.len() - at)
-}
-
-fn escape_markdown(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '|' | '*' | '`' | '<' => out.extend(['\\', c]),
-            '\n' => out.push(' '),
-            _ => out.push(c),
-        }
-    }
-    out
-}
-
-/// Adds a table as `<stem>.md` and `<stem>.tex`, its LaTeX label `tab:<stem>`.
-///
-/// # Errors
-/// Those of [`Bundle::add`].
-pub fn add_readable(bundle: &mut Bundle, stem: &str, table: &Table) -> Result<(), ReportError> {
-    bundle.add(format!("{stem}.md"), table.markdown())?;
-    Ok(bundle.add(format!("{stem}.tex"), table.latex(&format!("tab:{stem}")))?)
+/// Every table with its chapter, those of a chapter in the order of the page.
+pub fn catalogue() -> Vec<(Chapter, Description)> {
+    let of = |chapter: Chapter, tables: Vec<Description>| {
+        tables.into_iter().map(move |table| (chapter, table))
+    };
+    let paper = vec![
+        Description::of::<Table1Row>(),
+        Description::of::<Table2Row>(),
+        Description::of::<ConvergedRow>(),
+        Description::of::<SequenceRow>(),
+        Description::of::<LimitRow>(),
+        Description::of::<RefinementRow>(),
+        Description::of::<PenaltyRow>(),
+    ];
+    let methods = vec![
+        Description::of::<ComparisonRow>(),
+        Description::of::<VariantRow>(),
+    ];
+    let study = vec![
+        Description::of::<Recommendation>(),
+        Description::of::<sweep::RankingRow>(),
+        Description::of::<SuccessRow>(),
+        Description::of::<sweep::SummaryRow>(),
+        Description::of::<sweep::ProfileRow>(),
+        Description::of::<sweep::PointRow<'_>>(),
+        Description::of::<sweep::AccuracyRow<'_>>(),
+        Description::of::<sweep::CellRow<'_>>(),
+        Description::of::<sweep::IncrementRow<'_>>(),
+        Description::of::<sweep::DeviationRow<'_>>(),
+        Description::of::<sweep::TimeRow<'_>>(),
+        Description::of::<sweep::ChangeRow<'_>>(),
+    ];
+    let robustness = vec![
+        Description::of::<RobustnessRow>(),
+        Description::of::<FailureRow>(),
+    ];
+    let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
+    let spaces = vec![
+        Description::of::<spaces::InfSupSummary<'_>>(),
+        Description::of::<spaces::InfSupRow<'_>>(),
+        Description::of::<spaces::PatchSummary<'_>>(),
+        Description::of::<PatchRow>(),
+    ];
+    let benchmarks = vec![
+        Description::of::<super::timings::TimingRow>(),
+        timings::siconos(),
+    ];
+    let expected = vec![
+        Description::of::<runs::ExpectSummary>(),
+        Description::of::<ExpectRow>(),
+    ];
+    let runs = vec![
+        Description::of::<RunRow>(),
+        Description::of::<QuantityRow>(),
+        Description::of::<HistoryRow>(),
+        Description::of::<PointRow>(),
+        Description::of::<ExactRow>(),
+    ];
+    of(Chapter::Paper, paper)
+        .chain(of(Chapter::Methods, methods))
+        .chain(of(Chapter::Study, study))
+        .chain(of(Chapter::Robustness, robustness))
+        .chain(of(Chapter::Accuracy, accuracy))
+        .chain(of(Chapter::Spaces, spaces))
+        .chain(of(Chapter::Benchmarks, benchmarks))
+        .chain(of(Chapter::Expected, expected))
+        .chain(of(Chapter::Runs, runs))
+        .collect()
 }

@@ -6,7 +6,6 @@
 //! [`last_built`]: every number of the table then comes from this build, and a run of some of the benchmarks brings only
 //! theirs up to date. Folder names are shortened and cleaned by criterion: a benchmark is known by the columns in its file.
 
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,18 +13,9 @@ use std::time::SystemTime;
 
 use serde::Deserialize;
 
-use super::csv::{self, Row};
-use super::number::{significant, time};
-use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, tables};
+use super::{Bundle, ReportError, table};
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::statistics::Timing;
-
-/// Significant digits of the readable table: more is noise.
-const DIGITS: usize = 3;
-
-/// Seconds per unit of the readable table.
-const MICROSECOND: f64 = 1e-6;
 
 /// Name of a benchmark.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -214,104 +204,10 @@ fn read(path: &Path) -> Result<(BenchmarkName, Timing, SystemTime), String> {
     }
 }
 
-/// Nothing where nothing was judged.
-fn judged(verdict: Option<&Verdict>) -> String {
-    verdict.map_or_else(String::new, Verdict::to_string)
-}
-
-impl Row for TimingRow {
-    const FILE: &'static str = "timings.csv";
-    const COLUMNS: &'static [&'static str] = &[
-        "group", "function", "value", "verdict", "samples", "median_s", "low_s", "high_s", "min_s",
-    ];
-    const LEADING: &'static [&'static str] = &[];
-
-    fn cells(&self) -> Vec<String> {
-        let TimingRow {
-            name:
-                BenchmarkName {
-                    group,
-                    function,
-                    value,
-                },
-            verdict,
-            timing:
-                Timing {
-                    median_s,
-                    min_s,
-                    low_s,
-                    high_s,
-                    samples,
-                },
-        } = self;
-        vec![
-            group.clone(),
-            function.clone(),
-            value.clone(),
-            judged(verdict.as_ref()),
-            samples.to_string(),
-            time(*median_s),
-            time(*low_s),
-            time(*high_s),
-            time(*min_s),
-        ]
-    }
-
-    fn order(&self, other: &Self) -> Ordering {
-        self.name.cmp(&other.name)
-    }
-}
-
-/// The timings of a microsecond and more for reading: below that a stage has nothing to do.
-///
-/// # Errors
-/// Those of [`Table::push`].
-pub fn table(rows: &[TimingRow]) -> Result<Table, ReportError> {
-    let mut table = Table::new(
-        "Wall times on one thread: median of the samples with its 95 % interval, and the least sample; nothing below 1 μs. \
-         Two medians whose intervals overlap are not told apart",
-        vec![
-            Column::new("group", "", Align::Left),
-            Column::new("function", "", Align::Left),
-            Column::new("value", "", Align::Left),
-            Column::new("median", "μs", Align::Right),
-            Column::new("low", "μs", Align::Right),
-            Column::new("high", "μs", Align::Right),
-            Column::new("min", "μs", Align::Right),
-            Column::new("samples", "", Align::Right),
-            Column::new("verdict", "", Align::Left),
-        ],
-    );
-    let shown = |seconds: f64| significant(seconds / MICROSECOND, DIGITS);
-    let long = |row: &&TimingRow| row.timing.median_s >= MICROSECOND;
-    let mut sorted: Vec<&TimingRow> = rows.iter().filter(long).collect();
-    sorted.sort_by(|a, b| a.order(b));
-    for row in sorted {
-        let TimingRow {
-            name,
-            verdict,
-            timing,
-        } = row;
-        table.push(vec![
-            name.group.clone(),
-            name.function.clone(),
-            name.value.clone(),
-            shown(timing.median_s),
-            shown(timing.low_s),
-            shown(timing.high_s),
-            shown(timing.min_s),
-            timing.samples.to_string(),
-            judged(verdict.as_ref()),
-        ])?;
-    }
-    Ok(table)
-}
-
 /// Adds `timings.csv`, `timings.md` and `timings.tex`.
 ///
 /// # Errors
 /// Those of [`Bundle::add`].
 pub fn add_to(bundle: &mut Bundle, rows: &[TimingRow]) -> Result<(), ReportError> {
-    bundle.add(TimingRow::FILE, csv::file(rows)?)?;
-    tables::add_readable(bundle, "timings", &table(rows)?)
+    table::add(bundle, rows, "")
 }

@@ -3,6 +3,8 @@
 //! Runs fill these types, the report writes them. Every row type is one CSV file, its field names are the column names
 //! (`docs/schema.md`).
 
+use std::cmp::Ordering;
+
 use serde::Serialize;
 
 use crate::model::field_mesh::FieldStep;
@@ -27,6 +29,16 @@ pub struct RunKey {
     pub friction: f64,
     /// Increment, from 1.
     pub increment: usize,
+}
+
+impl RunKey {
+    /// Order of runs: case, mesh, space, method (as text), friction, increment (as numbers).
+    pub fn order(&self, other: &Self) -> Ordering {
+        (&self.case, &self.mesh, &self.space, &self.method)
+            .cmp(&(&other.case, &other.mesh, &other.space, &other.method))
+            .then(self.friction.total_cmp(&other.friction))
+            .then(self.increment.cmp(&other.increment))
+    }
 }
 
 /// One row of `runs.csv`: one increment of one run.

@@ -14,20 +14,36 @@ pub use lookup::PaperError;
 
 use crate::case::shipped;
 use crate::run::record::Results;
+use crate::run::registry::method;
 use crate::run::run_case::{Fields, Progress, Settings, run_case};
 
 use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
-use lookup::case;
+use lookup::{case, choice};
 use plate_series::{
     LimitRow, PenaltyRow, RefinementRow, limit_rows, penalty_rows, refinement_rows,
 };
 use printed_tables::{Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
 use variants::{VariantRow, variant_rows};
 
+/// Cases that take longer than all others together.
+const LONG: [&str; 2] = ["elliptic_crack", "penny_crack"];
+
+/// Cases of the paper's two tables.
+const PAPER: [&str; 5] = [
+    "plate_mesh1",
+    "plate_mesh2",
+    "beam_model1",
+    "beam_model1_gauss6",
+    "beam_model2",
+];
+
+/// Methods whose tables are shown at once: the paper's own and the three it is compared with most.
+const FIRST: [&str; 4] = ["b-newton", "augmented-lagrangian", "latin", "penalty"];
+
 /// Everything the main job found.
 #[derive(Debug, Default)]
 pub struct Paper {
-    /// Runs of all shipped cases.
+    /// Runs of the shipped cases.
     pub results: Results,
     /// Table 1.
     pub table1: Vec<Table1Row>,
@@ -39,26 +55,74 @@ pub struct Paper {
     pub refinement: Vec<RefinementRow>,
     /// Their limits.
     pub limits: Vec<LimitRow>,
+    /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
+    pub beam_models_mm: f64,
+    /// What takes minutes, if it was asked for.
+    pub long: Option<Long>,
+}
+
+/// What takes minutes.
+#[derive(Debug)]
+pub struct Long {
     /// Reactions of the plate by star multipliers with a fixed tip radius, on three meshes under refinement.
     pub converged_meshes: Vec<SequenceRow>,
     /// Their limits beside the printed numbers.
     pub converged: Vec<ConvergedRow>,
     /// Plate and beam by every method and variant.
     pub variants: Vec<VariantRow>,
-    /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
-    pub beam_models_mm: f64,
+}
+
+/// How much is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// All that takes seconds.
+    Quick,
+    /// The long cases, the converged sequences and the variants of the methods too.
+    Full,
+}
+
+/// Tables 1 and 2 by the methods that are shown at once.
+///
+/// # Errors
+/// Of the cases or their discretisation.
+pub fn first_tables(
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<(Vec<Table1Row>, Vec<Table2Row>), PaperError> {
+    // Without a method of the list, in a program with another registry, the tables have fewer lines.
+    let known = FIRST.into_iter().filter(|name| method(name).is_some());
+    let choices = known.map(|name| choice(name, &[]));
+    let choices = choices.collect::<Result<Vec<_>, _>>()?;
+    let settings = Settings {
+        fields: Fields::None,
+        ..settings
+    };
+    let mut results = Results::default();
+    for name in PAPER {
+        results.append(run_case(&case(name)?, &choices, settings, progress)?);
+    }
+    Ok((plate_rows(&results)?, beam_rows(&results)?))
 }
 
 /// Runs everything.
-pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperError> {
-    let mut paper = Paper::default();
+///
+/// # Errors
+/// Of the cases or their discretisation.
+pub fn run(
+    extent: Extent,
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Paper, PaperError> {
     let numbers_only = Settings {
         fields: Fields::None,
         ..settings
     };
+    let mut paper = Paper::default();
     for (name, _) in shipped::CASES {
-        let results = run_case(&case(name)?, &[], settings, progress)?;
-        paper.results.append(results);
+        if extent == Extent::Full || !LONG.contains(&name) {
+            let results = run_case(&case(name)?, &[], settings, progress)?;
+            paper.results.append(results);
+        }
     }
     paper.table1 = plate_rows(&paper.results)?;
     paper.table2 = beam_rows(&paper.results)?;
@@ -66,7 +130,13 @@ pub fn run(settings: Settings, progress: &dyn Progress) -> Result<Paper, PaperEr
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
     paper.refinement = refinement_rows(numbers_only, progress)?;
     paper.limits = limit_rows(&paper.refinement);
-    (paper.converged_meshes, paper.converged) = converged_reactions(&paper.table1, progress)?;
-    paper.variants = variant_rows(&paper.results, numbers_only, progress)?;
+    if extent == Extent::Full {
+        let (converged_meshes, converged) = converged_reactions(&paper.table1, progress)?;
+        paper.long = Some(Long {
+            converged_meshes,
+            converged,
+            variants: variant_rows(&paper.results, numbers_only, progress)?,
+        });
+    }
     Ok(paper)
 }

@@ -4,8 +4,14 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Drawing, Figure, Figures, Grid, Link, Origin, PageError, Sheet, Show};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+use super::html::Link;
+use super::overview::is_headline;
+use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
+use crate::report::figures::Kind;
 
 /// Folders inside folders that are looked into: `accuracy/figures`, one more for what users arrange.
 const DEPTH: usize = 3;
@@ -15,9 +21,6 @@ const KINDS: [&str; 5] = ["csv", "md", "tex", "svg", "toml"];
 
 /// Folders that are left out: fields for ParaView are many, large and not for reading.
 const SKIPPED: [&str; 1] = ["fields"];
-
-/// Largest figure inside the page, in bytes.
-const LARGEST: usize = 200_000;
 
 /// A report folder.
 #[derive(Debug)]
@@ -38,6 +41,36 @@ impl Budget {
     pub fn new(bytes: usize) -> Self {
         Self { left: bytes }
     }
+}
+
+/// One figure inside the page.
+pub struct Figure {
+    /// Title in the file: what a reader hears who does not see it.
+    pub title: String,
+    /// File, relative to the page.
+    pub path: String,
+    /// The file as a data URL: as an image it can neither fetch nor act.
+    pub source: String,
+    /// Whether it is made for the whole width of a page.
+    pub wide: bool,
+}
+
+/// Figures of one kind.
+pub struct Figures {
+    /// The question that they answer.
+    pub title: &'static str,
+    /// Figures inside the page.
+    pub figures: Vec<Figure>,
+    /// Figures that are only linked.
+    pub links: Vec<Link>,
+}
+
+/// Where the numbers of a folder come from: its `provenance.toml`.
+pub struct Origin {
+    /// Folder, relative to the page; empty for that of the page.
+    pub folder: String,
+    /// Entries, sorted by name, those of sub-tables behind a colon.
+    pub entries: Vec<(String, String)>,
 }
 
 impl Folder {
@@ -61,20 +94,14 @@ impl Folder {
 
     /// Paths whose last part is `name`, those nearer to the top first.
     pub fn named(&self, name: &str) -> Vec<&str> {
-        let mut found: Vec<&str> = self
-            .files
-            .iter()
-            .map(String::as_str)
-            .filter(|path| split(path).1 == name)
-            .collect();
-        found.sort_by_key(|path| (path.matches('/').count(), *path));
-        found
+        self.matching(|own| own == name)
     }
 
-    /// Paths that end in `.kind`, sorted.
-    pub fn of_kind<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = &'a str> {
+    fn matching(&self, wanted: impl Fn(&str) -> bool) -> Vec<&str> {
         let files = self.files.iter().map(String::as_str);
-        files.filter(move |path| path.rsplit_once('.').is_some_and(|(_, own)| own == kind))
+        let mut found: Vec<&str> = files.filter(|path| wanted(split(path).1)).collect();
+        found.sort_by_key(|path| (path.matches('/').count(), *path));
+        found
     }
 
     fn bytes(&self, path: &str) -> Result<Vec<u8>, PageError> {
@@ -101,76 +128,67 @@ impl Folder {
         Sheet::read(&self.root.join(path), &self.bytes(path)?)
     }
 
-    /// A table to be shown as it is, with links to its files.
-    ///
-    /// # Errors
-    /// Those of [`Sheet::read`] and [`Sheet::shown`].
-    pub fn grid(&self, path: &str, title: &str, shows: &[Show]) -> Result<Grid, PageError> {
-        let (columns, rows) = self.sheet(path)?.shown(shows)?;
-        Ok(Grid {
-            columns,
-            rows,
-            ..self.empty_grid(path, title)
-        })
-    }
-
-    /// A table without columns and rows yet, with its links and an anchor made from its path; the title tells the folder
-    /// where several have such a table.
-    pub fn empty_grid(&self, path: &str, title: &str) -> Grid {
-        let stem = path.strip_suffix(".csv").unwrap_or(path);
-        let (place, name) = split(path);
-        let alone = place.is_empty() || self.named(name).len() == 1;
-        Grid {
-            id: anchor(stem),
-            title: match alone {
-                true => title.to_owned(),
-                false => format!("{title} ({place})"),
-            },
-            links: self.forms(stem),
-            ..Grid::default()
-        }
-    }
-
     /// Links to the forms of a table.
     pub fn forms(&self, stem: &str) -> Vec<Link> {
-        [("CSV", "csv"), ("LaTeX", "tex"), ("Markdown", "md")]
-            .into_iter()
-            .map(|(text, kind)| Link::new(text, format!("{stem}.{kind}")))
-            .filter(|link| self.has(&link.path))
-            .collect()
+        let link = |(text, kind): (&str, &str)| Link {
+            text: text.to_owned(),
+            path: format!("{stem}.{kind}"),
+            note: String::new(),
+        };
+        let forms = [("CSV", "csv"), ("LaTeX", "tex"), ("Markdown", "md")];
+        let links = forms.into_iter().map(link);
+        links.filter(|link| self.has(&link.path)).collect()
     }
 
-    /// A group of figures in the order of `paths`: inside the page while they are not too large and there is room, linked
-    /// otherwise. `None` without any.
+    /// A figure, if the page still takes it.
     ///
     /// # Errors
     /// [`PageError::Content`] at a file that is no drawing.
-    pub fn figures<'a>(
-        &self,
-        title: impl Into<String>,
-        paths: impl IntoIterator<Item = &'a str>,
-        budget: &mut Budget,
-    ) -> Result<Option<Figures>, PageError> {
+    pub fn figure(&self, path: &str, budget: &mut Budget) -> Result<Option<Figure>, PageError> {
+        let text = self.text(path)?;
+        let size = |name: &str| {
+            let (_, behind) = text.split_once(&format!("{name}=\""))?;
+            behind.split_once('"').map(|(value, _)| value.to_owned())
+        };
+        if !text.trim_start().starts_with("<svg") && !text.contains("<svg ") {
+            return Err(self.content(path, "is no SVG drawing"));
+        }
+        if text.len() > budget.left {
+            return Ok(None);
+        }
+        budget.left -= text.len();
+        let title = text
+            .split_once("<title>")
+            .and_then(|(_, t)| t.split_once("</title>"));
+        let width = size("width").and_then(|w| w.strip_suffix("mm")?.parse::<f64>().ok());
+        Ok(Some(Figure {
+            title: title.map_or_else(String::new, |(title, _)| title.to_owned()),
+            path: path.to_owned(),
+            source: format!("data:image/svg+xml;base64,{}", STANDARD.encode(&text)),
+            wide: width.is_none_or(|width| width > 100.0),
+        }))
+    }
+
+    /// The figures of a kind: inside the page while there is room, linked otherwise; those that open the page are not
+    /// repeated. `None` without any.
+    ///
+    /// # Errors
+    /// Those of [`Folder::figure`].
+    pub fn figures(&self, kind: &Kind, budget: &mut Budget) -> Result<Option<Figures>, PageError> {
         let mut group = Figures {
-            title: title.into(),
-            open: false,
+            title: kind.question,
             figures: Vec::new(),
             links: Vec::new(),
         };
-        for path in paths {
-            let name = split(path).1;
-            let caption = name.strip_suffix(".svg").unwrap_or(name);
-            let drawing = Drawing::read(&self.text(path)?).map_err(|e| self.content(path, e))?;
-            if drawing.size() > LARGEST.min(budget.left) {
-                group.links.push(Link::new(caption, path));
-                continue;
+        for path in self.matching(|name| kind.is_of(name) && !is_headline(name)) {
+            match self.figure(path, budget)? {
+                Some(figure) => group.figures.push(figure),
+                None => group.links.push(Link {
+                    text: split(path).1.to_owned(),
+                    path: path.to_owned(),
+                    note: String::new(),
+                }),
             }
-            budget.left -= drawing.size();
-            group.figures.push(Figure {
-                caption: caption.to_owned(),
-                path: path.to_owned(),
-                drawing,
-            });
         }
         let any = !group.figures.is_empty() || !group.links.is_empty();
         Ok(any.then_some(group))
@@ -217,14 +235,8 @@ fn plain(value: &toml::Value) -> String {
 }
 
 /// Folder and name of a path.
-pub(super) fn split(path: &str) -> (&str, &str) {
+pub fn split(path: &str) -> (&str, &str) {
     path.rsplit_once('/').unwrap_or(("", path))
-}
-
-/// An anchor from a path.
-pub(super) fn anchor(path: &str) -> String {
-    let clean = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-    format!("table-{}", path.chars().map(clean).collect::<String>())
 }
 
 fn list(

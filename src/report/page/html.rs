@@ -2,25 +2,128 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Block, Column, Figure, Figures, Grid, Kind, Link, Origin, Section};
-use crate::report::number::{fixed, significant};
+use super::folder::{Figure, Figures, Origin, split};
+use super::{Folder, PageError, Sheet};
+use crate::report::table::{About, Description};
 use crate::run::record::{MET, MISSED_AS_DOCUMENTED};
 use crate::run::verdict::{NOT_RUN, Verdict, VerdictKind};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// Nothing may be fetched, whatever a table or figure says.
+/// Nothing may be fetched, whatever a table says; figures are images, which can neither fetch nor act.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
+/// A part of the page with an entry in its table of contents.
+pub struct Section {
+    /// Anchor, unique in the page.
+    pub id: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// What the reader finds here.
+    pub lead: &'static str,
+    /// Contents in order.
+    pub blocks: Vec<Block>,
+}
+
+/// Contents of a section.
+pub enum Block {
+    /// Single numbers, shown large.
+    Facts(Vec<Fact>),
+    /// Words and what they mean, folded.
+    Terms {
+        title: &'static str,
+        terms: Vec<(String, String)>,
+    },
+    /// A table.
+    Table(Grid),
+    /// One figure.
+    Figure(Figure),
+    /// Figures of one kind, folded where there are several.
+    Figures(Figures),
+    /// Links to files.
+    Links(Vec<Link>),
+}
+
+/// One number with what it counts.
+pub struct Fact {
+    /// The number, as shown.
+    pub value: String,
+    /// What it is.
+    pub label: String,
+    /// Section that tells more.
+    pub section: &'static str,
+}
+
+/// A link to a file.
+pub struct Link {
+    /// Text.
+    pub text: String,
+    /// File, relative to the page, not encoded.
+    pub path: String,
+    /// Further text behind the link; may be empty.
+    pub note: String,
+}
+
+/// A table: cells as in the CSV file, shown with the digits of their column.
+pub struct Grid {
+    id: String,
+    title: String,
+    columns: Vec<About>,
+    rows: Vec<Vec<String>>,
+    links: Vec<Link>,
+}
+
+impl Grid {
+    /// The columns of a table that are for reading; times only in rows with an honest verdict.
+    ///
+    /// # Errors
+    /// Those of [`Sheet::texts`].
+    pub fn of(
+        table: &Description,
+        sheet: &Sheet,
+        folder: &Folder,
+        path: &str,
+    ) -> Result<Self, PageError> {
+        let shown = table.columns.iter().filter(|column| column.shown);
+        let columns: Vec<About> = shown.copied().collect();
+        let cells = columns.iter().map(|column| sheet.texts(column.name));
+        let cells = cells.collect::<Result<Vec<_>, _>>()?;
+        let verdict = columns.iter().position(|column| column.name == "verdict");
+        let verdict = verdict.filter(|_| table.columns.iter().any(|column| column.unit == "s"));
+        let row = |line: usize| {
+            let honest = |k: usize| {
+                let parsed = cells[k][line].parse::<Verdict>();
+                parsed.is_ok_and(|verdict| verdict.is_honest()) || cells[k][line].is_empty()
+            };
+            let honest = verdict.is_none_or(honest);
+            let cell = |k: usize| match columns[k].unit {
+                "s" if !honest => "NaN".to_owned(),
+                _ => cells[k][line].to_owned(),
+            };
+            (0..columns.len()).map(cell).collect()
+        };
+        let rows = (0..sheet.size().0).map(row).collect();
+        let stem = path.strip_suffix(".csv").unwrap_or(path);
+        let (place, name) = split(path);
+        let alone = place.is_empty() || folder.named(name).len() == 1;
+        let clean = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        Ok(Self {
+            id: format!("table-{}", stem.chars().map(clean).collect::<String>()),
+            title: match alone {
+                true => table.title.to_owned(),
+                false => format!("{} ({place})", table.title),
+            },
+            columns,
+            rows,
+            links: folder.forms(stem),
+        })
+    }
+}
+
 /// The page: table of contents, sections in order, provenance at the end.
 pub fn compose(sections: &[Section], origins: &[Origin]) -> String {
-    let mut figures = 0;
-    let bodies: Vec<Markup> = sections
-        .iter()
-        .map(|section| section_markup(section, &mut figures))
-        .collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -55,7 +158,7 @@ pub fn compose(sections: &[Section], origins: &[Origin]) -> String {
                         }
                     }
                     main #contents tabindex="-1" {
-                        @for body in &bodies { (body) }
+                        @for section in sections { (section_markup(section)) }
                         @if !origins.is_empty() { (provenance(origins)) }
                     }
                 }
@@ -68,24 +171,24 @@ pub fn compose(sections: &[Section], origins: &[Origin]) -> String {
     text
 }
 
-fn section_markup(section: &Section, figures: &mut usize) -> Markup {
+fn section_markup(section: &Section) -> Markup {
     html! {
         section #(section.id) {
             h2 { (section.title) }
-            @if !section.lead.is_empty() { p.lead { (section.lead) } }
-            @for block in &section.blocks { (block_markup(block, figures)) "\n" }
+            p.lead { (section.lead) }
+            @for block in &section.blocks { (block_markup(block)) "\n" }
         }
         "\n"
     }
 }
 
-fn block_markup(block: &Block, figures: &mut usize) -> Markup {
+fn block_markup(block: &Block) -> Markup {
     match block {
-        Block::Heading(text) => html! { h3 { (text) } },
-        Block::Paragraph(text) => html! { p { (text) } },
-        Block::List(items) => html! { ul { @for item in items { li { (item) } } } },
-        Block::Terms(terms) => html! {
-            dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } }
+        Block::Terms { title, terms } => html! {
+            details.gallery {
+                summary { (title) }
+                dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } }
+            }
         },
         Block::Facts(facts) => html! {
             ul.facts {
@@ -95,13 +198,22 @@ fn block_markup(block: &Block, figures: &mut usize) -> Markup {
             }
         },
         Block::Table(grid) => table(grid),
-        Block::Figures(group) => gallery(group, figures),
+        Block::Figure(figure) => card(figure),
+        Block::Figures(group) => gallery(group),
         Block::Links(links) => html! { ul.files { @for link in links { li { (anchor(link)) } } } },
     }
 }
 
 fn table(grid: &Grid) -> Markup {
     let title = format!("{}-title", grid.id);
+    let numeric: Vec<bool> = (0..grid.columns.len())
+        .map(|k| {
+            let cells = grid.rows.iter().map(|row| row[k].as_str());
+            cells
+                .filter(|c| !c.is_empty())
+                .all(|c| c.parse::<f64>().is_ok())
+        })
+        .collect();
     html! {
         figure.table {
             figcaption {
@@ -111,16 +223,16 @@ fn table(grid: &Grid) -> Markup {
             div.scroll role="region" aria-labelledby=(title) tabindex="0" {
                 table #(grid.id) {
                     thead { tr {
-                        @for column in &grid.columns {
-                            th scope="col" class=[is_number(column.kind).then_some("n")] {
-                                (column.heading)
-                                @if !column.unit.is_empty() { " " span.unit { "[" (column.unit) "]" } }
+                        @for (column, numeric) in grid.columns.iter().zip(&numeric) {
+                            th scope="col" class=[numeric.then_some("n")] {
+                                (column.heading())
+                                @if !column.shown_unit().is_empty() { " " span.unit { "[" (column.shown_unit()) "]" } }
                             }
                         }
                     } }
                     tbody {
                         @for row in &grid.rows {
-                            tr { @for (cell, column) in row.iter().zip(&grid.columns) { (data(cell, column)) } }
+                            tr { @for (k, cell) in row.iter().enumerate() { (data(cell, &grid.columns[k], numeric[k])) } }
                             "\n"
                         }
                     }
@@ -130,21 +242,22 @@ fn table(grid: &Grid) -> Markup {
     }
 }
 
-fn is_number(kind: Kind) -> bool {
-    !matches!(kind, Kind::Text | Kind::Verdict)
-}
-
-fn data(cell: &str, column: &Column) -> Markup {
-    match column.kind {
-        Kind::Text => html! { td { (cell) } },
-        Kind::Verdict => html! { td { span class=(verdict_class(cell)) { (cell) } } },
-        kind => {
-            let text = shown(cell, kind);
-            // What is sorted by, where it is not what is read.
-            let full = (text != cell).then_some(cell);
-            html! { td.n data-v=[full] { (text) } }
-        }
+fn data(cell: &str, column: &About, numeric: bool) -> Markup {
+    if column.name == "verdict" {
+        return html! { td { span class=(verdict_class(cell)) { (cell) } } };
     }
+    if !numeric {
+        return html! { td { (cell) } };
+    }
+    let text = match cell.parse::<f64>() {
+        Ok(x) if x.is_infinite() => if x > 0.0 { "∞" } else { "−∞" }.to_owned(),
+        Ok(x) if x.is_finite() && column.shown_digits.is_some() => typeset(&column.read(x)),
+        Ok(x) if x.is_finite() => typeset(cell),
+        _ => "–".to_owned(),
+    };
+    // What is sorted by, where it is not what is read.
+    let full = (text != cell).then_some(cell);
+    html! { td.n data-v=[full] { (text) } }
 }
 
 /// Colour of a verdict, on a run or on what a run found; the word stays, so nothing depends on the colour.
@@ -161,58 +274,30 @@ fn verdict_class(text: &str) -> &'static str {
     }
 }
 
-/// A number as the column shows it; other text as it is, nothing where there is no number.
-fn shown(cell: &str, kind: Kind) -> String {
-    let Ok(value) = cell.parse::<f64>() else {
-        return if cell.is_empty() { "–" } else { cell }.to_owned();
-    };
-    if value.is_nan() {
-        return "–".to_owned();
-    }
-    if value.is_infinite() {
-        return if value > 0.0 { "∞" } else { "−∞" }.to_owned();
-    }
-    typeset(&match kind {
-        Kind::Fixed(decimals) => fixed(value, decimals),
-        Kind::Percent(decimals) => fixed(100.0 * value, decimals) + " %",
-        Kind::Digits(digits) => significant(value, digits),
-        _ => cell.to_owned(),
-    })
-}
-
 /// `-1.5e-7` as −1.5×10⁻⁷.
 fn typeset(number: &str) -> String {
     let (mantissa, exponent) = number.split_once('e').unwrap_or((number, ""));
     let mut text = mantissa.replace('-', "−");
     if !exponent.is_empty() {
         text += "×10";
-        text.extend(exponent.chars().map(|c| match c {
-            '-' => '⁻',
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            '9' => '⁹',
-            other => other,
-        }));
+        let raised = |c: char| match c.to_digit(10) {
+            Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+            None => '⁻',
+        };
+        text.extend(exponent.chars().map(raised));
     }
     text
 }
 
-fn gallery(group: &Figures, count: &mut usize) -> Markup {
+fn gallery(group: &Figures) -> Markup {
     let total = group.figures.len() + group.links.len();
     html! {
-        details.gallery open[group.open] {
+        details.gallery open[total == 1] {
             summary {
                 (group.title) " "
                 span.count { "(" (total) @if total == 1 { " figure)" } @else { " figures)" } }
             }
-            div.cards { @for item in &group.figures { (card(item, count)) "\n" } }
+            div.cards { @for item in &group.figures { (card(item)) "\n" } }
             @if !group.links.is_empty() {
                 p { "As files: " @for (k, link) in group.links.iter().enumerate() {
                     @if k > 0 { ", " }
@@ -223,19 +308,13 @@ fn gallery(group: &Figures, count: &mut usize) -> Markup {
     }
 }
 
-fn card(item: &Figure, count: &mut usize) -> Markup {
-    *count += 1;
-    let prefix = format!("figure-{count}-");
-    let class = if item.drawing.is_wide() {
-        "card wide"
-    } else {
-        "card"
-    };
+fn card(item: &Figure) -> Markup {
     html! {
-        figure class=(class) {
-            // Checked by `Drawing::read`: shapes and text only.
-            (PreEscaped(item.drawing.markup(&prefix)))
-            figcaption { (anchor(&Link::new(item.caption.as_str(), item.path.as_str()))) }
+        figure class=(if item.wide { "card wide" } else { "card" }) {
+            img src=(item.source) alt=(item.title);
+            figcaption {
+                (anchor(&Link { text: split(&item.path).1.to_owned(), path: item.path.clone(), note: String::new() }))
+            }
         }
     }
 }
@@ -261,7 +340,7 @@ fn encode(path: &str) -> String {
     url
 }
 
-/// Folders beside each other; entries that all have in common stay one row.
+/// Folders beside each other, one row per entry.
 fn provenance(origins: &[Origin]) -> Markup {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in origins.iter().flat_map(|origin| &origin.entries) {
@@ -273,42 +352,23 @@ fn provenance(origins: &[Origin]) -> Markup {
         let found = origin.entries.iter().find(|entry| entry.0 == name);
         found.map_or_else(String::new, |entry| entry.1.clone())
     };
-    let column = |heading: &str| Column {
-        heading: heading.to_owned(),
-        unit: String::new(),
-        kind: Kind::Text,
-    };
-    let folder = |origin: &Origin| match origin.folder.as_str() {
-        "" => "this folder".to_owned(),
-        other => other.to_owned(),
-    };
-    let file = |origin: &Origin| match origin.folder.as_str() {
-        "" => "provenance.toml".to_owned(),
-        other => format!("{other}/provenance.toml"),
-    };
-    let grid = Grid {
-        id: "table-provenance".into(),
-        title: "Program, machine and options by folder".into(),
-        columns: std::iter::once(column("entry"))
-            .chain(origins.iter().map(|origin| column(&folder(origin))))
-            .collect(),
-        rows: names
-            .iter()
-            .map(|name| {
-                let values = origins.iter().map(|origin| value(origin, name));
-                std::iter::once((*name).to_owned()).chain(values).collect()
-            })
-            .collect(),
-        links: origins
-            .iter()
-            .map(|origin| Link::new(file(origin), file(origin)))
-            .collect(),
-    };
     html! {
         section #provenance {
             h2 { "Provenance" }
             p.lead { "Which program on which machine made the numbers. Times are comparable within one folder only." }
-            (table(&grid))
+            div.scroll tabindex="0" {
+                table {
+                    thead { tr {
+                        th scope="col" { "entry" }
+                        @for origin in origins {
+                            th scope="col" { @if origin.folder.is_empty() { "this folder" } @else { (origin.folder) } }
+                        }
+                    } }
+                    tbody { @for name in names {
+                        tr { td { (name) } @for origin in origins { td { (value(origin, name)) } } }
+                    } }
+                }
+            }
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::canvas::{italic, plain};
 use super::methods;
-use crate::report::csv::compare_keys;
 use crate::report::number::value;
 use crate::run::record::RunKey;
 
@@ -13,7 +12,7 @@ pub fn by_run<R>(
     order: impl Fn(&R, &R) -> std::cmp::Ordering,
 ) -> Vec<Vec<&R>> {
     let mut sorted: Vec<&R> = rows.iter().collect();
-    sorted.sort_by(|a, b| compare_keys(key(a), key(b)).then_with(|| order(a, b)));
+    sorted.sort_by(|a, b| RunKey::order(key(a), key(b)).then_with(|| order(a, b)));
     let mut runs: Vec<Vec<&R>> = sorted
         .chunk_by(|a, b| key(a) == key(b))
         .map(<[&R]>::to_vec)

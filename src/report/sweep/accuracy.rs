@@ -1,13 +1,12 @@
 //! Time to accuracy: the error of the discretisation beside what it takes to have the answer, mesh by mesh.
 
 use super::records::SweepRecords;
-use crate::report::csv::{self, Row};
 use crate::report::number::value;
 use crate::report::plot::{Guide, MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
 use crate::report::standard::file_name;
-use crate::report::{Bundle, ReportError, quantity_name};
-use crate::studies::convergence::Variant;
-use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
+use crate::report::tables::sweep::AccuracyRow;
+use crate::report::{Bundle, ReportError, quantity_name, table};
+use crate::studies::convergence::orders::{Kind, ROUND_OFF};
 use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
 use crate::studies::sweep::analysis::problem_names;
 use crate::studies::sweep::cell::Problem;
@@ -29,40 +28,7 @@ pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportEr
         }
         rows.extend(one.errors.iter().map(AccuracyRow));
     }
-    Ok(bundle.add(AccuracyRow::FILE, csv::file(&rows)?)?)
-}
-
-/// A row of `convergence.csv` without the enrichment of the tips, which the records do not know.
-struct AccuracyRow<'a>(&'a ErrorRow);
-
-impl Row for AccuracyRow<'_> {
-    const FILE: &'static str = "time_to_accuracy.csv";
-    const LEADING: &'static [&'static str] = &["case", "space", "method", "friction"];
-    const COLUMNS: &'static [&'static str] = ErrorRow::COLUMNS;
-
-    fn leading(&self) -> Vec<String> {
-        let Variant {
-            case,
-            space,
-            tip: _,
-            method,
-            friction,
-        } = &self.0.variant;
-        vec![
-            case.clone(),
-            space.clone(),
-            method.clone(),
-            value(*friction),
-        ]
-    }
-
-    fn cells(&self) -> Vec<String> {
-        self.0.cells()
-    }
-
-    fn order(&self, other: &Self) -> std::cmp::Ordering {
-        Row::order(self.0, other.0)
-    }
+    table::add(bundle, &rows, "")
 }
 
 fn figure(one: &Refinement, caveat: &str) -> MethodPanels {

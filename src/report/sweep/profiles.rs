@@ -1,21 +1,16 @@
 //! Performance profiles of the times as rows and a figure.
 
-use std::cmp::Ordering;
-
 use stickslip_methods::Tier;
 
 use super::records::{SweepRecords, tier_heading};
-use crate::report::csv::{self, Row};
-use crate::report::number::{fixed, significant};
+use crate::report::number::fixed;
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, method_panels, stairs};
-use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::compare_methods;
+use crate::report::tables::sweep::ProfileRow;
+use crate::report::{Bundle, ReportError, table};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::profile::{Curve, performance};
 use crate::studies::sweep::analysis::test_set::TestSet;
 
-/// Digits of bounds and fractions.
-const DIGITS: usize = 6;
 /// Height of a panel of many methods [mm].
 const HEIGHT_MM: f64 = 66.0;
 
@@ -25,7 +20,7 @@ pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportEr
     if let Some(svg) = method_panels(&figure(sweep, &tiers))? {
         bundle.add("figures/profile.time.svg", svg)?;
     }
-    Ok(bundle.add(ProfileRow::FILE, csv::file(&profile_rows(&tiers))?)?)
+    table::add(bundle, &profile_rows(&tiers), "")
 }
 
 /// The curves of one tier.
@@ -51,14 +46,6 @@ impl<'a> TierCurves<'a> {
     }
 }
 
-/// A step of a profile.
-struct ProfileRow {
-    tier: Tier,
-    method: String,
-    step: [f64; 2],
-    problems: usize,
-}
-
 fn profile_rows(tiers: &[TierCurves<'_>]) -> Vec<ProfileRow> {
     let of_tier = |tier: &TierCurves<'_>| {
         let (name, problems) = (tier.tier, tier.problems);
@@ -75,31 +62,6 @@ fn profile_rows(tiers: &[TierCurves<'_>]) -> Vec<ProfileRow> {
         tier.curves.iter().flat_map(of_curve).collect::<Vec<_>>()
     };
     tiers.iter().flat_map(of_tier).collect()
-}
-
-impl Row for ProfileRow {
-    const FILE: &'static str = "time_profiles.csv";
-    const COLUMNS: &'static [&'static str] = &["tier", "method", "tau", "fraction", "problems"];
-    const LEADING: &'static [&'static str] = &[];
-
-    fn cells(&self) -> Vec<String> {
-        let [bound, fraction] = self.step.map(|x| significant(x, DIGITS));
-        vec![
-            self.tier.to_string(),
-            self.method.clone(),
-            bound,
-            fraction,
-            self.problems.to_string(),
-        ]
-    }
-
-    fn order(&self, other: &Self) -> Ordering {
-        let tolerance = |row: &Self| row.tier.tolerance();
-        tolerance(other)
-            .total_cmp(&tolerance(self))
-            .then_with(|| compare_methods(&self.method, &other.method))
-            .then(self.step[0].total_cmp(&other.step[0]))
-    }
 }
 
 /// How many problems stand behind the panels.

@@ -287,37 +287,3 @@ fn a_comparison_lists_what_changed() {
     );
     assert!(text("compare.md").contains("found the same bit by bit"));
 }
-
-/// Columns that docs/schema.md lists in the section on studies, by file.
-fn documented() -> BTreeMap<String, Vec<String>> {
-    let page = include_str!("../../../docs/schema.md");
-    let section = page.split("\n## ").find(|part| part.starts_with("Study\n"));
-    let parts = section.unwrap().split("\n### `").skip(1);
-    let columns = |part: &str| -> Vec<String> {
-        let part = part.split("\n### ").next().unwrap();
-        let rows = part.lines().filter_map(|line| line.strip_prefix("| `"));
-        rows.map(|row| row.split('`').next().unwrap().to_owned())
-            .collect()
-    };
-    parts
-        .map(|part| (part.split('`').next().unwrap().to_owned(), columns(part)))
-        .collect()
-}
-
-#[test]
-fn headers_are_those_of_the_documentation() {
-    let mut found = files(&records_of_a_sweep());
-    let changes = crate::studies::sweep::compare::compare(&[], &[]);
-    let changes = comparison_bundle(&changes).unwrap();
-    let table = changes.get("compare.csv").unwrap().to_vec();
-    found.insert("compare.csv".into(), table);
-    let documented = documented();
-    let mut tables = 0;
-    for (path, contents) in found.iter().filter(|(path, _)| path.ends_with(".csv")) {
-        let text = String::from_utf8(contents.clone()).unwrap();
-        let header = text.lines().next().unwrap();
-        assert_eq!(header, documented[path].join(","), "{path}");
-        tables += 1;
-    }
-    assert_eq!(tables, documented.len());
-}

@@ -1,13 +1,11 @@
 //! Work against precision: rows, and a figure per problem with time and iterations side by side.
 
-use std::cmp::Ordering;
-
 use super::records::SweepRecords;
-use crate::report::csv::{self, Row};
-use crate::report::number::{RESIDUAL_FLOOR, residual, time, value};
+use crate::report::number::{RESIDUAL_FLOOR, value};
 use crate::report::plot::{MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
 use crate::report::standard::file_name;
-use crate::report::{Bundle, ReportError};
+use crate::report::tables::sweep::PointRow;
+use crate::report::{Bundle, ReportError, table};
 use crate::studies::sweep::analysis::series::{Point, Series, Swept, series};
 use crate::studies::sweep::analysis::{problem_names, problems};
 use crate::studies::sweep::cell::Problem;
@@ -38,68 +36,7 @@ pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportEr
             }));
         }
     }
-    Ok(bundle.add(PointRow::FILE, csv::file(&rows)?)?)
-}
-
-struct PointRow<'a> {
-    problem: String,
-    label: String,
-    swept: Swept,
-    exact: bool,
-    point: Point<'a>,
-}
-
-impl Row for PointRow<'_> {
-    const FILE: &'static str = "work_precision.csv";
-    const COLUMNS: &'static [&'static str] = &[
-        "problem",
-        "series",
-        "swept",
-        "value",
-        "exact",
-        "id",
-        "verdict",
-        "error_energy",
-        "iterations",
-        "local_solves",
-        "tangent_factorisations",
-        "method_median_s",
-        "method_low_s",
-        "method_high_s",
-    ];
-    const LEADING: &'static [&'static str] = &[];
-
-    fn cells(&self) -> Vec<String> {
-        let Point {
-            record,
-            value: swept_value,
-            error,
-            time: spent,
-        } = &self.point;
-        let found = &record.found;
-        let seconds = |t: Option<f64>| time(t.unwrap_or(f64::NAN));
-        vec![
-            self.problem.clone(),
-            self.label.clone(),
-            self.swept.name().to_owned(),
-            value(*swept_value),
-            self.exact.to_string(),
-            record.id.clone(),
-            found.verdict.to_string(),
-            residual(*error),
-            found.sum(|i| i.iterations).to_string(),
-            found.sum(|i| i.local_solves).to_string(),
-            found.sum(|i| i.tangent_factorisations).to_string(),
-            seconds(spent.map(|t| t.median_s)),
-            seconds(spent.map(|t| t.low_s)),
-            seconds(spent.map(|t| t.high_s)),
-        ]
-    }
-
-    fn order(&self, _: &Self) -> Ordering {
-        // They come by problem, series and value, which the stable sort keeps.
-        Ordering::Equal
-    }
+    table::add(bundle, &rows, "")
 }
 
 fn figure(problem: &Problem, series: &[Series<'_>], caveat: &str) -> MethodPanels {

@@ -43,7 +43,7 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
         groups.entry(key).or_default().push(run);
     }
     let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
-        let all_solved = group.iter().all(|r| r.verdict == Verdict::Solved);
+        let honest = group.iter().all(|r| r.verdict.is_honest());
         Some(ComparisonRow {
             case: case.into(),
             method: method.into(),
@@ -53,7 +53,7 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
             iterations: group.iter().map(|r| r.iterations).sum(),
             tangent_factorisations: group.iter().map(|r| r.tangent_factorisations).sum(),
             local_solves: group.iter().map(|r| r.local_solves).sum(),
-            solve_s: if all_solved {
+            solve_s: if honest {
                 group.iter().map(|r| r.solve_s).sum()
             } else {
                 f64::NAN

@@ -1,0 +1,146 @@
+//! At a glance: what ran, what it claims, and the figures that say most.
+
+use super::html::{Block, Fact, Section};
+use super::{Budget, Folder, PageError};
+use crate::report::number::significant;
+use crate::run::verdict::{Verdict, VerdictKind};
+
+/// Figures that open the page, where the folder has them.
+const HEADLINES: [&str; 4] = [
+    "table1.svg",
+    "fastest.svg",
+    "robustness.svg",
+    "headline.svg",
+];
+
+/// What a kind of verdict says.
+fn meaning(kind: VerdictKind) -> &'static str {
+    match kind {
+        VerdictKind::Solved => {
+            "claims the contact laws, and the judge finds them kept to the tier asked for"
+        }
+        VerdictKind::Approximate => {
+            "solved its own regularised or consistent laws, checked as such; the contact laws hold to the tier named, or to none"
+        }
+        VerdictKind::FalseClaim => "claims the contact laws, and the judge disagrees",
+        VerdictKind::GaveUp => "ended without a claim, with the reason",
+        VerdictKind::Refused => "cannot treat this problem, with the reason",
+        VerdictKind::Crashed => "failed with an error",
+        VerdictKind::TimedOut => "stopped at a time limit",
+        VerdictKind::OutOfMemory => "was denied memory",
+    }
+}
+
+/// The section; nothing where there are neither runs nor headlines.
+pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, PageError> {
+    let mut blocks = Vec::new();
+    let facts = facts(folder)?;
+    if !facts.is_empty() {
+        blocks.push(Block::Facts(facts));
+    }
+    for name in HEADLINES {
+        for path in folder.named(name) {
+            blocks.extend(folder.figure(path, budget)?.map(Block::Figure));
+        }
+    }
+    if blocks.is_empty() {
+        return Ok(None);
+    }
+    blocks.extend(advice(folder)?);
+    let terms = VerdictKind::ALL.iter();
+    let terms = terms.map(|kind| (kind.name().to_owned(), meaning(*kind).to_owned()));
+    blocks.push(Block::Terms {
+        title: "What the verdicts mean",
+        terms: terms.collect(),
+    });
+    Ok(Some(Section {
+        id: "glance",
+        title: "At a glance",
+        lead: "Accuracy is one number for every method, the natural map: the residual of all contact laws, recomputed by one \
+               judge from what the method returned. Tiers: low 10⁻³, mid 10⁻⁶, high 10⁻⁹. Times stand beside honest verdicts only.",
+        blocks,
+    }))
+}
+
+/// Counts of runs and expected numbers, in the words of the terminal.
+fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
+    let mut facts = Vec::new();
+    let mut fact = |value: String, label: String, section: &'static str| {
+        facts.push(Fact {
+            value,
+            label,
+            section,
+        });
+    };
+    if folder.has("runs.csv") {
+        let verdicts: Vec<Verdict> = folder.sheet("runs.csv")?.parsed("verdict")?;
+        let section = match folder.has("comparison.csv") {
+            true => "methods",
+            false => "runs",
+        };
+        let count = |wanted: fn(&Verdict) -> bool| {
+            let found = verdicts.iter().filter(|verdict| wanted(verdict));
+            found.count().to_string()
+        };
+        fact(verdicts.len().to_string(), "increments run".into(), section);
+        let solved = count(|v| v.kind() == VerdictKind::Solved);
+        fact(solved, "solved: the contact laws hold".into(), section);
+        let own = count(|v| v.kind() == VerdictKind::Approximate);
+        fact(own, "approximate: own laws solved".into(), section);
+        let failed = count(Verdict::is_failure);
+        fact(failed, "failed".into(), section);
+    }
+    if folder.has("expectations_by_case.csv") {
+        let sheet = folder.sheet("expectations_by_case.csv")?;
+        let sum = |column: &str| -> Result<usize, PageError> {
+            Ok(sheet.parsed::<usize>(column)?.into_iter().sum())
+        };
+        let (numbers, documented) = (sum("numbers")?, sum("missed_as_documented")?);
+        let stated = sum("met")? + documented;
+        let label = match documented {
+            0 => "expected numbers as stated".to_owned(),
+            _ => format!("expected numbers as stated, {documented} of them documented misses"),
+        };
+        fact(format!("{stated} of {numbers}"), label, "expected");
+    }
+    if folder.has("table1.csv") {
+        let sheet = folder.sheet("table1.csv")?;
+        let differences = sheet.texts("relative_difference")?.into_iter();
+        let own = differences.zip(sheet.texts("verdict")?);
+        let solved = own.filter(|(_, verdict)| verdict.parse() == Ok(Verdict::Solved));
+        let numbers = solved.filter_map(|(difference, _)| difference.parse::<f64>().ok());
+        let worst = numbers.map(f64::abs).fold(f64::NAN, f64::max);
+        if worst.is_finite() {
+            let label = "largest distance of a solved run from the printed Table 1";
+            fact(
+                format!("{} %", significant(100.0 * worst, 2)),
+                label.into(),
+                "paper",
+            );
+        }
+    }
+    Ok(facts)
+}
+
+/// What the study says of all problems together, tier after tier.
+fn advice(folder: &Folder) -> Result<Option<Block>, PageError> {
+    let Some(path) = folder.named("recommendations.csv").first().copied() else {
+        return Ok(None);
+    };
+    let sheet = folder.sheet(path)?;
+    let classes = ["dimension", "friction", "loading", "unknowns"].map(|name| sheet.texts(name));
+    let [dimension, friction, loading, unknowns] = classes;
+    let classes = [dimension?, friction?, loading?, unknowns?];
+    let (tiers, evidence) = (sheet.texts("tier")?, sheet.texts("evidence")?);
+    let all = (0..tiers.len()).filter(|k| classes.iter().all(|class| class[*k] == "any"));
+    let lines = all.map(|k| (format!("tier {}", tiers[k]), evidence[k].to_owned()));
+    Ok(Some(Block::Terms {
+        title: "Which method to use, over all problems of the study",
+        terms: lines.collect(),
+    }))
+}
+
+/// Whether the page opens with this figure.
+pub fn is_headline(name: &str) -> bool {
+    HEADLINES.contains(&name)
+}

@@ -1,0 +1,242 @@
+//! One table, five forms: CSV, Markdown, LaTeX, terminal, page; and its chapter of `docs/schema.md`.
+//!
+//! A row type says once what its columns are ([`Row::columns`]: name, unit, meaning, contents, digits) and which question
+//! the table answers; everything else follows from that.
+
+mod column;
+mod latex;
+mod readable;
+mod schema;
+
+use std::cmp::Ordering;
+
+pub(crate) use column::columns;
+pub use column::{About, Column, Digits, Value};
+pub use readable::{Align, Heading, Readable};
+pub use schema::Description;
+
+use super::{Bundle, ReportError};
+
+/// Order of the rows of a table.
+pub enum Order<R> {
+    /// By the columns marked as keys: text as text, numbers as numbers.
+    Keys,
+    /// As they come.
+    Given,
+    /// By a comparison of its own.
+    By(fn(&R, &R) -> Ordering),
+}
+
+/// A row type with the table it makes.
+pub trait Row: Sized {
+    /// Name of the files without ending.
+    const NAME: &'static str;
+    /// What the table is: its caption.
+    const TITLE: &'static str;
+    /// The reader's question that it answers.
+    const QUESTION: &'static str;
+    /// What else its chapter in `docs/schema.md` says; may be empty.
+    const NOTES: &'static str = "";
+    /// Whether it is written as Markdown and LaTeX too, for reading.
+    const READABLE: bool = true;
+    /// Order of the rows.
+    const ORDER: Order<Self> = Order::Keys;
+
+    /// The columns, in order.
+    fn columns() -> Vec<Column<Self>>;
+
+    /// Whether its times may be read: beside what did what it claims.
+    fn is_honest(&self) -> bool {
+        true
+    }
+}
+
+/// Rows in the order of their table.
+pub fn sorted<R: Row>(rows: &[R]) -> Vec<&R> {
+    let mut sorted: Vec<&R> = rows.iter().collect();
+    match R::ORDER {
+        Order::Given => {}
+        Order::By(compare) => sorted.sort_by(|a, b| compare(a, b)),
+        Order::Keys => {
+            let keys: Vec<fn(&R) -> Value> = R::columns()
+                .into_iter()
+                .filter_map(|column| column.about.key.then_some(column.get))
+                .collect();
+            sorted.sort_by_cached_key(|row| Keys(keys.iter().map(|get| get(row)).collect()));
+        }
+    }
+    sorted
+}
+
+/// Values that rows are sorted by.
+#[derive(PartialEq)]
+struct Keys(Vec<Value>);
+
+impl Eq for Keys {}
+
+impl PartialOrd for Keys {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Keys {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let pairs = self.0.iter().zip(&other.0);
+        pairs.fold(Ordering::Equal, |order, pair| {
+            order.then_with(|| match pair {
+                (Value::Text(a), Value::Text(b)) => a.cmp(b),
+                (Value::Whole(a), Value::Whole(b)) => a.cmp(b),
+                (Value::Real(a), Value::Real(b)) => a.total_cmp(b),
+                (a, b) => (*a != Value::Empty).cmp(&(*b != Value::Empty)),
+            })
+        })
+    }
+}
+
+/// The contents of the CSV file, rows sorted.
+///
+/// # Errors
+/// [`ReportError::Csv`] from the writer.
+pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
+    let columns = R::columns();
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns.iter().map(|column| column.about.name))?;
+    for row in sorted(rows) {
+        writer.write_record(columns.iter().map(|column| column.csv(row)))?;
+    }
+    writer
+        .into_inner()
+        .map_err(|e| ReportError::Csv(e.into_error().into()))
+}
+
+/// The columns for reading, rows sorted; `note` goes behind the title.
+pub fn readable<R: Row>(rows: &[R], note: &str) -> Readable {
+    let rows = sorted(rows);
+    let mut columns = R::columns();
+    columns.retain(|column| column.about.shown);
+    let heading = |column: &Column<R>| Heading {
+        name: column.about.heading(),
+        unit: column.about.shown_unit().to_owned(),
+        align: Align::of(
+            column.about.shown_digits,
+            rows.iter().map(|row| (column.get)(row)),
+        ),
+    };
+    let cell = |row: &R, column: &Column<R>| match column.about.unit {
+        "s" if !row.is_honest() => "–".to_owned(),
+        _ => column.read(row),
+    };
+    let line = |row: &&R| columns.iter().map(|column| cell(row, column)).collect();
+    Readable {
+        title: format!("{}{note}", R::TITLE),
+        columns: columns.iter().map(heading).collect(),
+        rows: rows.iter().map(line).collect(),
+    }
+}
+
+/// Adds a table in its forms as files.
+///
+/// # Errors
+/// Those of [`csv`] and [`Bundle::add`].
+pub fn add<R: Row>(bundle: &mut Bundle, rows: &[R], note: &str) -> Result<(), ReportError> {
+    let name = R::NAME;
+    bundle.add(format!("{name}.csv"), csv(rows)?)?;
+    if R::READABLE {
+        let table = readable(rows, note);
+        bundle.add(format!("{name}.md"), table.markdown())?;
+        bundle.add(format!("{name}.tex"), table.latex(&format!("tab:{name}")))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Sample {
+        name: &'static str,
+        h: f64,
+        error: Option<f64>,
+        time: f64,
+        honest: bool,
+    }
+
+    impl Row for Sample {
+        const NAME: &'static str = "samples";
+        const TITLE: &'static str = "Samples";
+        const QUESTION: &'static str = "Which?";
+
+        fn columns() -> Vec<Column<Self>> {
+            columns! { r: Self,
+                "name" "" .key() = r.name, "name";
+                "h_m" "m" .key().named("h").fixed(2) = r.h, "size";
+                "error" "–" .significant(3).percent(1) = r.error, "error";
+                "hidden" "" = 7_usize, "not for reading";
+                "solve_s" "s" .time().digits(2) = r.time, "time";
+            }
+        }
+
+        fn is_honest(&self) -> bool {
+            self.honest
+        }
+    }
+
+    fn samples() -> [Sample; 3] {
+        let sample = |name, h, error, time, honest| Sample {
+            name,
+            h,
+            error,
+            time,
+            honest,
+        };
+        [
+            sample("b_1", 10.0, None, 0.123_456, false),
+            sample("a", 10.0, Some(0.123_456), 0.123_456, true),
+            sample("a", 9.0, Some(f64::NAN), 2e-7, true),
+        ]
+    }
+
+    /// Goal: rows by their keys, numbers as numbers; missing, undefined and shortened cells each as its form wants them.
+    #[test]
+    fn one_description_makes_every_form() {
+        let text = String::from_utf8(csv(&samples()).unwrap()).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let expected = [
+            "name,h_m,error,hidden,solve_s",
+            "a,9,NaN,7,2e-7",
+            "a,10,0.123,7,0.1235",
+            "b_1,10,,7,0.1235",
+        ];
+        assert_eq!(lines, expected);
+
+        let table = readable(&samples(), "; incomplete");
+        let headings: Vec<&str> = table.columns.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(headings, ["name", "h", "error", "solve"]);
+        assert_eq!(table.rows[0], ["a", "9.00", "–", "2e-7"]);
+        assert_eq!(table.rows[1], ["a", "10.00", "12.3", "0.12"]);
+        // What did not do what it claims shows no time.
+        assert_eq!(table.rows[2], ["b_1", "10.00", "–", "–"]);
+        assert!(
+            table
+                .markdown()
+                .starts_with("### Samples; incomplete\n\n| name | h [m] | error [%] |")
+        );
+        assert!(table.terminal().contains("\na      9.00"));
+
+        let latex = table.latex("tab:samples");
+        for part in [
+            "S[table-format=2.2]",
+            "\\num{2e-7}",
+            "{error {[}\\unit{\\percent}]}",
+            "b\\_1 & 10.00 & {--}",
+        ] {
+            assert!(latex.contains(part), "{part}: {latex}");
+        }
+        let chapter = Description::of::<Sample>().chapter();
+        assert!(
+            chapter.contains("### `samples.csv`\n\n*Which?*")
+                && chapter.contains("| `h_m` | m | size |")
+        );
+    }
+}

@@ -1,0 +1,63 @@
+//! What is known of a table without its rows: for `docs/schema.md` and for the page, which reads files.
+
+use super::readable::escape_markdown;
+use super::{About, Row};
+
+/// A table that some command writes.
+#[derive(Debug, Clone)]
+pub struct Description {
+    /// Name of the file without ending.
+    pub name: &'static str,
+    /// Caption.
+    pub title: &'static str,
+    /// The reader's question that it answers.
+    pub question: &'static str,
+    /// Further text of its chapter.
+    pub notes: &'static str,
+    /// Whether there are `.md` and `.tex` beside the `.csv`.
+    pub readable: bool,
+    /// Columns of the CSV file.
+    pub columns: Vec<About>,
+}
+
+impl Description {
+    /// That of a row type.
+    pub fn of<R: Row>() -> Self {
+        Self {
+            name: R::NAME,
+            title: R::TITLE,
+            question: R::QUESTION,
+            notes: R::NOTES,
+            readable: R::READABLE,
+            columns: R::columns().iter().map(|column| column.about).collect(),
+        }
+    }
+
+    /// Name of the CSV file.
+    pub fn file(&self) -> String {
+        format!("{}.csv", self.name)
+    }
+
+    /// Its chapter of `docs/schema.md`.
+    pub fn chapter(&self) -> String {
+        let mut text = format!(
+            "### `{}`\n\n*{}*\n\n{}.",
+            self.file(),
+            self.question,
+            self.title
+        );
+        if !self.notes.is_empty() {
+            text += &format!(" {}", self.notes);
+        }
+        if self.readable {
+            text += " Also as `.md` and `.tex`.";
+        }
+        text += "\n\n| column | unit | meaning |\n| :--- | :--- | :--- |\n";
+        for column in &self.columns {
+            let meaning = column.meaning.replace('|', "\\|");
+            let unit = escape_markdown(column.unit);
+            text += &format!("| `{}` | {unit} | {meaning} |\n", column.name);
+        }
+        text
+    }
+}

@@ -1,0 +1,236 @@
+//! The founding paper's tables, the plate over one parameter, and method against method.
+
+use std::cmp::Ordering;
+
+use super::words::*;
+use crate::report::table::{Column, Order, Row, columns};
+use crate::run::verdict::Verdict;
+use crate::studies::paper::comparison::ComparisonRow;
+use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
+use crate::studies::paper::variants::VariantRow;
+
+/// The printed line comes before the computed ones.
+fn compare_methods(a: &str, b: &str) -> Ordering {
+    (a != PRINTED, a).cmp(&(b != PRINTED, b))
+}
+
+fn is_honest(verdict: Option<&Verdict>) -> bool {
+    verdict.is_some_and(Verdict::is_honest)
+}
+
+impl Row for Table1Row {
+    const NAME: &'static str = "table1";
+    const TITLE: &'static str =
+        "Table 1 of the founding paper: vertical reaction at the top of the plate";
+    const QUESTION: &'static str = "Do all methods find the reactions that the paper prints?";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        a.mesh
+            .cmp(&b.mesh)
+            .then(a.friction.total_cmp(&b.friction))
+            .then_with(|| compare_methods(&a.method, &b.method))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "mesh" "" .shown() = r.mesh.clone(), "`I` or `II`";
+            "friction" "–" .shown() = r.friction, FRICTION;
+            "method" "" .shown() = r.method.clone(), METHOD;
+            "reaction_mn_per_m" "MN/m" .fixed(3) = r.reaction_mn_per_m, "computed; empty where the method found no solution";
+            "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "printed in the paper; empty where it has none";
+            "relative_difference" "–" .significant(3).power(2) = r.relative_difference, "(computed − printed) / printed";
+            "verdict" "" .shown() = Verdict::or_not_run(r.verdict.as_ref()), VERDICT;
+        }
+    }
+}
+
+impl Row for Table2Row {
+    const NAME: &'static str = "table2";
+    const TITLE: &'static str =
+        "Table 2 of the founding paper: displacement of the points P1 to P7 of the beam";
+    const QUESTION: &'static str = "Do all methods find the displacements that the paper prints?";
+    const NOTES: &'static str = "The lines with the method `printed` repeat the paper.";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        (&a.model, &a.variant, &a.component)
+            .cmp(&(&b.model, &b.variant, &b.component))
+            .then_with(|| compare_methods(&a.method, &b.method))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "model" "" .shown() = r.model.clone(), "`I` or `II`";
+            "variant" "" .shown() = r.variant.clone(), "`as-printed` (μ = 0) or `as-stated` (μ = 0.1)";
+            "component" "" .named("comp.") = r.component.clone(), "`x`, `y` or `z`";
+            "method" "" .shown() = r.method.clone(), "method, or `printed`";
+            "p1_mm" "mm" .named("P1").fixed(7) = r.p_mm[0], "displacement of P1; `NaN` where the method found no solution";
+            "p2_mm" "mm" .named("P2").fixed(7) = r.p_mm[1], "displacement of P2";
+            "p3_mm" "mm" .named("P3").fixed(7) = r.p_mm[2], "displacement of P3";
+            "p4_mm" "mm" .named("P4").fixed(7) = r.p_mm[3], "displacement of P4";
+            "p5_mm" "mm" .named("P5").fixed(7) = r.p_mm[4], "displacement of P5";
+            "p6_mm" "mm" .named("P6").fixed(7) = r.p_mm[5], "displacement of P6";
+            "p7_mm" "mm" .named("P7").fixed(7) = r.p_mm[6], "displacement of P7";
+            "max_difference_mm" "mm" .named("max. diff.").significant(3).power(2) = r.max_difference_mm, "largest absolute difference from the printed line";
+            "verdict" "" .shown() = if r.method == PRINTED { String::new() } else { Verdict::or_not_run(r.verdict.as_ref()) }, VERDICT;
+        }
+    }
+}
+
+impl Row for PenaltyRow {
+    const NAME: &'static str = "penalty";
+    const TITLE: &'static str = "Penalty method, plate Mesh I: error against its parameter";
+    const QUESTION: &'static str = "How stiff must penalty springs be for a wanted accuracy?";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "friction" "–" .key() = r.friction, FRICTION;
+            "parameter" "–" .key().named("k/ρ") = r.parameter, "stiffness k of the contact springs in multiples of the natural scale ρ";
+            "reaction_mn_per_m" "MN/m" .fixed(4) = r.reaction_mn_per_m, "reaction at the top";
+            "relative_error" "–" .significant(3).power(2) = r.relative_error, "relative difference from the exact solution on the same mesh";
+            "max_penetration_m" "m" .significant(3).named("max. penetration").power(2) = r.max_penetration_m, "largest penetration";
+            "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
+            "verdict" "" .shown() = Verdict::or_not_run(r.verdict.as_ref()), VERDICT;
+        }
+    }
+}
+
+impl Row for RefinementRow {
+    const NAME: &'static str = "refinement";
+    const TITLE: &'static str = "Plate under refinement: vertical reaction at the top";
+    const QUESTION: &'static str = "How far are the paper's meshes from convergence?";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        a.family
+            .cmp(&b.family)
+            .then(a.friction.total_cmp(&b.friction))
+            .then(b.h_m.total_cmp(&a.h_m))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "family" "" .named("mesh") = r.family.clone(), "`I` or `II`";
+            "mesh" "" .named("cells") = r.mesh.clone(), MESH;
+            "h_m" "m" .fixed(4) = r.h_m, "cell width";
+            "friction" "–" .shown() = r.friction, FRICTION;
+            "dofs" "" .named("unknowns") = r.dofs, DOFS;
+            "reaction_mn_per_m" "MN/m" .fixed(3) = r.reaction_mn_per_m, "reaction at the top";
+            "verdict" "" .shown() = &r.verdict, VERDICT;
+        }
+    }
+}
+
+impl Row for LimitRow {
+    const NAME: &'static str = "limits";
+    const TITLE: &'static str = "Plate: limits for h → 0, extrapolated from the two finest meshes";
+    const QUESTION: &'static str = "Do both meshes of the paper lead to the same reaction?";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "friction" "–" .key() = r.friction, FRICTION;
+            "mesh_1_mn_per_m" "MN/m" .named("Mesh I").fixed(2) = r.mesh_1_mn_per_m, "limit of Mesh I";
+            "mesh_2_mn_per_m" "MN/m" .named("Mesh II").fixed(2) = r.mesh_2_mn_per_m, "limit of Mesh II";
+            "relative_gap" "–" .significant(3).power(2) = r.relative_gap, "difference of the two over their mean";
+        }
+    }
+}
+
+/// Meshes in the order in which they are refined.
+const MESHES_LAST: fn(&SequenceRow, &SequenceRow) -> Ordering = |a, b| {
+    a.friction
+        .total_cmp(&b.friction)
+        .then_with(|| a.mesh.cmp(&b.mesh))
+        .then(b.h_m.total_cmp(&a.h_m))
+};
+
+impl Row for ConvergedRow {
+    const NAME: &'static str = "converged";
+    const TITLE: &'static str = "Converged reactions of the plate with error bars, beside Table 1";
+    const QUESTION: &'static str = "What is the reaction of the plate, whatever the mesh, and how far off is the printed number?";
+    const NOTES: &'static str =
+        "Star multipliers, branch functions within 1.5 m of the tips, three meshes.";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "friction" "–" .key() = r.friction, FRICTION;
+            "mesh" "" .key() = r.mesh.clone(), "`I`, `II`, or `I turned`: Mesh I turned by 20 degrees at its centre beneath the same crack";
+            "finest_h_m" "m" .named("finest h").fixed(4) = r.finest_h_m, "largest distance of neighbouring grid lines on the finest mesh";
+            "order" "–" .significant(3).fixed(2) = r.order, "observed order in h over the last two halvings";
+            "limit_mn_per_m" "MN/m" .fixed(3) = r.limit_mn_per_m, "limit of the reaction at the top for vanishing cell width, extrapolated from the three finest meshes; `NaN` where they follow no power law";
+            "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m, "its uncertainty, as `error_bar` in `convergence.csv`";
+            "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "reaction that Table 1 prints for this mesh; empty where it has none";
+            "printed_difference" "–" .significant(3).named("printed − limit").percent(2) = r.printed_difference(), "(printed − limit) / limit";
+        }
+    }
+}
+
+impl Row for SequenceRow {
+    const NAME: &'static str = "converged_meshes";
+    const TITLE: &'static str = "Plate under refinement, star multipliers, tips enriched within a fixed radius: vertical reaction at the top";
+    const QUESTION: &'static str = "Which reactions do the converged ones come from?";
+    const ORDER: Order<Self> = Order::By(MESHES_LAST);
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "mesh" "" .shown() = r.mesh.clone(), "as in `converged.csv`";
+            "cells" "" .shown() = r.cells.clone(), MESH;
+            "h_m" "m" .fixed(4) = r.h_m, CELL_WIDTH;
+            "friction" "–" .shown() = r.friction, FRICTION;
+            "dofs" "" .named("unknowns") = r.dofs, DOFS;
+            "points" "" .shown() = r.points, POINTS;
+            "reaction_mn_per_m" "MN/m" .fixed(3) = r.reaction_mn_per_m, "reaction at the top; `NaN` where the run is not solved";
+            "order" "–" .significant(3).fixed(2) = r.order, "observed order in h over this mesh and the two before; `NaN` where there are none";
+            "verdict" "" .shown() = &r.verdict, VERDICT;
+        }
+    }
+}
+
+impl Row for ComparisonRow {
+    const NAME: &'static str = "comparison";
+    const TITLE: &'static str =
+        "Every case by every method: all meshes, friction coefficients and increments together";
+    const QUESTION: &'static str = "Which method solves which case, and at what cost?";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "case" "" .key() = r.case.clone(), CASE;
+            "method" "" .key() = r.method.clone(), METHOD;
+            "increments" "" .shown() = r.increments, "increments run";
+            "verdict" "" .named("verdict, worst") = &r.verdict, "the worst of the increments: `solved`, `approximate: high`, `mid`, `low`, `none`, `refused: …`, `gave-up: …`, `out-of-memory`, `crashed: …`, `false-claim`, from best to worst; of equally bad ones the first by name";
+            "natural_map" "–" .residual().named("natural map, largest").power(2) = r.natural_map, "largest residual of the contact conditions, found by the judge; `NaN` if one increment left nothing to judge";
+            "iterations" "" .shown() = r.iterations, "iterations in all";
+            "tangent_factorisations" "–" .named("dense factorisations") = r.tangent_factorisations, "dense factorisations of condensed matrices in all";
+            "local_solves" "–" = r.local_solves, "evaluations of the contact law at one point in all";
+            "solve_s" "s" .time().digits(3) = r.solve_s, "solution of all increments; `NaN` unless every one has an honest verdict";
+        }
+    }
+
+    fn is_honest(&self) -> bool {
+        self.verdict.is_honest()
+    }
+}
+
+impl Row for VariantRow {
+    const NAME: &'static str = "variants";
+    const TITLE: &'static str = "Plate (Mesh I) and beam (Model I) by every method and variant";
+    const QUESTION: &'static str = "What does a variant of a method change: monolithic, without final Newton steps, other fixed points, other signs of Nitsche's θ?";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "case" "" .key() = r.case.clone(), CASE;
+            "friction" "–" .key().named("μ") = r.friction, FRICTION;
+            "method" "" .key() = r.method.clone(), METHOD;
+            "verdict" "" .shown() = Verdict::or_not_run(r.verdict.as_ref()), VERDICT;
+            "quantity" "" .shown() = r.quantity.clone(), "quantity, place and component that are compared: `reaction top y` of the plate, `displacement P4 z` of the beam";
+            "value" "N/m, m" .digits(8) = r.value, "its value: N/m of the plate, m of the beam; `NaN` where the run has no answer";
+            "deviation" "–" .residual().power(2) = r.deviation, "relative difference from `b-newton` on the same mesh";
+            "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
+            "iterations" "" .shown() = r.iterations, ITERATIONS;
+            "tangent_factorisations" "–" .named("dense") = r.tangent_factorisations, TANGENTS;
+            "global_factorisations" "–" .named("sparse") = r.global_factorisations, GLOBALS;
+            "solve_s" "s" .time().digits(3) = r.solve_s, "solution of the increment";
+        }
+    }
+
+    fn is_honest(&self) -> bool {
+        is_honest(self.verdict.as_ref())
+    }
+}

@@ -1,0 +1,28 @@
+//! Meanings that columns of several tables share.
+
+pub const CASE: &str = "name of the case: its file without `.toml`";
+pub const MESH: &str = "mesh label, e.g. `22x22`";
+pub const SPACE: &str = "contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`";
+pub const METHOD: &str = "method, options other than the default in brackets";
+pub const FRICTION: &str = "friction coefficient (of the first crack where cracks differ)";
+pub const INCREMENT: &str = "number of the increment, from 1";
+pub const TIER: &str = "requested accuracy: `low` 1e-3, `mid` 1e-6, `high` 1e-9 on the natural map";
+pub const VERDICT: &str = "what the method claims, checked: `solved`, `approximate: low`, `mid` or `none` (its own laws solved; the contact laws hold to that tier), `false-claim`, `gave-up: …`, `refused: …`, `crashed: …`, `timed-out`, `out-of-memory`; `not run` where there is no such run";
+pub const NATURAL_MAP: &str = "residual of the contact conditions, found by the judge";
+pub const ITERATIONS: &str = "iterations of the method";
+pub const TANGENTS: &str = "dense factorisations of condensed matrices";
+pub const GLOBALS: &str =
+    "sparse factorisations of matrices over all unknowns, by monolithic variants";
+pub const LOCALS: &str = "evaluations of the contact law at one point";
+pub const SOLVES: &str = "solves with the factor of K";
+pub const DOFS: &str = "free displacement unknowns";
+pub const POINTS: &str = "contact points";
+pub const CELL_WIDTH: &str = "largest distance of neighbouring grid lines";
+pub const SETUP_S: &str = "mesh, cracks, sparsity pattern and elimination order, once per mesh";
+pub const ASSEMBLY_S: &str = "assembly of K, once per mesh";
+pub const FACTORISATION_S: &str = "factorisation of K, once per mesh";
+pub const CONDENSATION_S: &str = "condensation to the contact points, once per mesh; for methods that need it with that of the traction operator";
+pub const PREPARE_S: &str = "preparation of the method";
+pub const AT: &str = "place: a side, a probe, a crack (`crack-1`), or empty";
+pub const COMPONENT: &str = "`x`, `y`, `z`, `n`, `a`, `b`, or empty";
+pub const DIMENSION: &str = "space dimension, 2 or 3";
