@@ -4,9 +4,8 @@ use std::cmp::Ordering;
 
 use super::csv::{self, Row};
 use super::number::{residual, significant, time, value};
-use super::plot::method_cost;
 use super::tables::{Align, Column, Table};
-use super::{Bundle, ReportError, tables};
+use super::{Bundle, ReportError, figures, tables};
 use crate::run::record::RunRow;
 use crate::run::verdict::Verdict;
 use crate::studies::paper::comparison::{ComparisonRow, comparison};
@@ -184,10 +183,7 @@ pub fn add(
     let rows = comparison(runs);
     bundle.add(ComparisonRow::FILE, csv::file(&rows)?)?;
     tables::add_readable(bundle, "comparison", &comparison_table(&rows)?)?;
-    // Where nothing did what it claims there is nothing to draw.
-    if rows.iter().any(|row| row.verdict.is_honest()) {
-        bundle.add("figures/cost.svg", method_cost(&rows)?)?;
-    }
+    figures::cost::add(bundle, &rows)?;
     bundle.add(VariantRow::FILE, csv::file(variants)?)?;
     tables::add_readable(bundle, "variants", &variant_table(variants)?)
 }

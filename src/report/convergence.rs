@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::csv::{self, Row};
 use super::number::{fixed, significant, time, value};
 use super::tables::{self, Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, error_figures};
+use super::{Bundle, Provenance, ReportError, figures};
 use crate::studies::convergence::Variant;
 use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
 
@@ -316,7 +316,7 @@ pub fn bundle(
     bundle.add(OrderRow::FILE, csv::file(orders)?)?;
     tables::add_readable(&mut bundle, "convergence", &error_table(errors)?)?;
     tables::add_readable(&mut bundle, "orders", &order_table(orders)?)?;
-    error_figures::add(&mut bundle, errors, orders)?;
+    figures::error::add(&mut bundle, errors, orders)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

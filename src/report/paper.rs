@@ -12,7 +12,7 @@ use self::plate_series::{
 use super::csv::{self, Row};
 use super::number::{fixed, significant, value};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, comparison, standard, tables};
+use super::{Bundle, Provenance, ReportError, comparison, figures, standard, tables};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::Paper;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
@@ -227,7 +227,8 @@ fn sorted<R: Row>(rows: &[R]) -> Vec<&R> {
 /// Those of [`Bundle::add`].
 pub fn add_table1(bundle: &mut Bundle, rows: &[Table1Row]) -> Result<(), ReportError> {
     bundle.add(Table1Row::FILE, csv::file(rows)?)?;
-    tables::add_readable(bundle, "table1", &table1(rows)?)
+    tables::add_readable(bundle, "table1", &table1(rows)?)?;
+    figures::table1::add(bundle, rows)
 }
 
 /// Adds `table2.csv`, `table2.md` and `table2.tex`.

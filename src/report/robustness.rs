@@ -5,9 +5,8 @@ use std::collections::BTreeSet;
 
 use super::csv::{self, Row};
 use super::number::{fixed, residual, significant, time, value};
-use super::plot::success_rates;
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, tables};
+use super::{Bundle, Provenance, ReportError, figures, tables};
 use crate::studies::stress::robustness::{FailureRow, RobustnessRow, failures, rows};
 use crate::studies::stress::{StressPlan, Trial};
 
@@ -201,10 +200,7 @@ pub fn bundle(
     bundle.add(RobustnessRow::FILE, csv::file(&rows)?)?;
     bundle.add(FailureRow::FILE, csv::file(&failures(plan, trials))?)?;
     tables::add_readable(&mut bundle, "robustness", &table(&rows)?)?;
-    // Where every method declines every problem there is nothing to draw.
-    if rows.iter().any(|row| row.success[0].is_finite()) {
-        bundle.add("figures/robustness.svg", success_rates(&rows)?)?;
-    }
+    figures::robustness::add(&mut bundle, &rows)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

@@ -4,11 +4,10 @@
 //! approximate ones. A wrong answer never stands beside right ones; residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
 
 use super::number::{residual, significant, time, value};
-use super::plot::{self, Axis3, Magnification, Tier};
 use super::tables::{Align, Column, Table};
-use super::{Bundle, Provenance, ReportError, csv, loops, tables, vtu};
+use super::{Bundle, Provenance, ReportError, csv, figures, tables, vtu};
 use crate::run::record::{
-    ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, Results, RunFields, RunKey, RunRow,
+    ExpectRow, MET, MISSED_AS_DOCUMENTED, Results, RunFields, RunKey, RunRow,
 };
 use crate::run::verdict::{Verdict, VerdictKind};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,9 +25,9 @@ pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, Repo
         let table = expectations_table(&results.expectations)?;
         tables::add_readable(&mut bundle, "expectations", &table)?;
     }
-    add_residuals(&mut bundle, results)?;
-    add_profiles(&mut bundle, results)?;
-    loops::add_to(&mut bundle, results)?;
+    figures::residual::add(&mut bundle, results)?;
+    figures::profile::add(&mut bundle, results)?;
+    figures::friction_loop::add(&mut bundle, results)?;
     for fields in &results.fields {
         add_fields(&mut bundle, fields, provenance)?;
     }
@@ -250,91 +249,6 @@ fn is_last(last: &BTreeMap<RunName, usize>, key: &RunKey) -> bool {
     last.get(&run_name(key)) == Some(&key.increment)
 }
 
-/// `figures/<case>.<mesh>.<space>.mu-<friction>.residual.svg`: all methods on one problem.
-fn add_residuals(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    let last = last_increments(results.history.iter().map(|row| &row.key));
-    let mut figures: BTreeMap<String, Vec<HistoryRow>> = BTreeMap::new();
-    for row in results
-        .history
-        .iter()
-        .filter(|row| is_last(&last, &row.key))
-    {
-        figures
-            .entry(problem_name(&row.key))
-            .or_default()
-            .push(row.clone());
-    }
-    let tiers: BTreeSet<&str> = results.runs.iter().map(|row| row.tier.as_str()).collect();
-    let tier = match tiers.into_iter().collect::<Vec<_>>()[..] {
-        [tier] => Tier::named(tier),
-        _ => None,
-    };
-    for (name, rows) in figures {
-        if rows.iter().any(|row| row.natural_map.is_finite()) {
-            let svg = plot::residual_history(&rows, tier.as_ref())?;
-            bundle.add(format!("figures/{name}.residual.svg"), svg)?;
-        }
-    }
-    Ok(())
-}
-
-/// `figures/….crack-<n>.traction.svg` and `….slip.svg`: per problem all methods, and all friction values by the first
-/// method that has several, which is an exact one where there is any: the others would show the same.
-fn add_profiles(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    let last = last_increments(results.points.iter().map(|row| &row.key));
-    let right: BTreeSet<(RunName, usize)> = results
-        .runs
-        .iter()
-        .filter(|row| row.verdict.is_honest())
-        .map(|row| (run_name(&row.key), row.key.increment))
-        .collect();
-    let mut problems: BTreeMap<(String, usize), Vec<PointRow>> = BTreeMap::new();
-    // By case, mesh, space and crack, then by method in the order of the registry.
-    type ByMethod<'a> = BTreeMap<(usize, &'a str), Vec<PointRow>>;
-    let mut sweeps: BTreeMap<(String, usize), ByMethod<'_>> = BTreeMap::new();
-    for row in &results.points {
-        let plane = row.point.force_unit == "N/m";
-        let wanted = plane && is_last(&last, &row.key);
-        if wanted && right.contains(&(run_name(&row.key), row.key.increment)) {
-            let RunKey {
-                case,
-                mesh,
-                space,
-                method,
-                ..
-            } = &row.key;
-            problems
-                .entry((problem_name(&row.key), row.point.crack))
-                .or_default()
-                .push(row.clone());
-            let body = file_name(&[case, mesh, space]);
-            let methods = sweeps.entry((body, row.point.crack)).or_default();
-            let own = methods.entry((plot::method_rank(method), method));
-            own.or_default().push(row.clone());
-        }
-    }
-    let several = |rows: &Vec<PointRow>| {
-        let frictions: BTreeSet<String> = rows.iter().map(|row| value(row.key.friction)).collect();
-        frictions.len() > 1
-    };
-    let sweeps = sweeps.into_iter().filter_map(|((body, crack), methods)| {
-        let ((_, method), rows) = methods.into_iter().find(|(_, rows)| several(rows))?;
-        Some(((format!("{body}.{}", file_name(&[method])), crack), rows))
-    });
-    for ((name, crack), rows) in problems.into_iter().chain(sweeps) {
-        let name = format!("figures/{name}.crack-{crack}");
-        bundle.add(
-            format!("{name}.traction.svg"),
-            plot::contact_traction(&rows, &results.exact, crack)?,
-        )?;
-        bundle.add(
-            format!("{name}.slip.svg"),
-            plot::contact_slip(&rows, &results.exact, crack)?,
-        )?;
-    }
-    Ok(())
-}
-
 /// File name part for the problem of a run, without its method: `case.mesh.space.mu-0.1`.
 pub fn problem_name(key: &RunKey) -> String {
     let friction = format!("mu-{}", value(key.friction));
@@ -365,26 +279,5 @@ fn add_fields(
     );
     vtu::add_fields(bundle, "fields", &stem, fields, &origin)?;
 
-    let Some(step) = fields.steps.last() else {
-        return Ok(());
-    };
-    let caption = format!("{run}, μ = {friction}");
-    let (body, magnified) = (&step.body, Magnification::Auto);
-    let (displacement, stress) = match body.dim {
-        2 => (
-            plot::displacement_contours(body, magnified, &caption)?,
-            plot::von_mises_contours(body, magnified, &caption)?,
-        ),
-        3 => (
-            plot::solid_displacement(body, Axis3::Z, magnified, &caption)?,
-            plot::solid_von_mises(body, magnified, &caption)?,
-        ),
-        _ => return Ok(()),
-    };
-    if body.dim == 3 && !step.crack.cells.is_empty() {
-        let svg = plot::contact_status(step, magnified, &caption)?;
-        bundle.add(format!("figures/{stem}.contact.svg"), svg)?;
-    }
-    bundle.add(format!("figures/{stem}.displacement.svg"), displacement)?;
-    Ok(bundle.add(format!("figures/{stem}.von-mises.svg"), stress)?)
+    figures::fields::add(bundle, fields)
 }

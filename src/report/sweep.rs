@@ -19,7 +19,7 @@ mod work_precision;
 pub use compare::{ChangeRow, bundle as comparison_bundle, table as comparison_table};
 
 use super::csv::{self, Row};
-use super::{Bundle, Provenance, ReportError};
+use super::{Bundle, Provenance, ReportError, figures};
 use crate::studies::sweep::record::Record;
 use records::{SummaryRow, SweepRecords};
 
@@ -44,6 +44,12 @@ pub fn bundle(
     work_precision::add(&mut bundle, &sweep)?;
     accuracy::add(&mut bundle, &sweep)?;
     recommendations::add(&mut bundle, &sweep)?;
+    let caveat = sweep.caveat();
+    figures::fastest::add(&mut bundle, &sweep.sets, &caveat)?;
+    figures::performance::add(&mut bundle, &sweep.sets, &caveat)?;
+    figures::work_precision::add(&mut bundle, records, &caveat)?;
+    figures::time_to_accuracy::add(&mut bundle, records, &caveat)?;
+    figures::stages::add(&mut bundle, records, &caveat)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

@@ -4,20 +4,14 @@ use std::cmp::Ordering;
 
 use crate::report::csv::Row;
 use crate::report::number::{fixed, significant, value};
-use crate::report::plot::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure, italic};
 use crate::report::tables::{Align, Column, Table};
-use crate::report::{Bundle, ReportError, csv, tables};
-use crate::studies::paper::converged_reactions::{
-    Agreement, ConvergedRow, SequenceRow, agreements,
-};
+use crate::report::{Bundle, ReportError, csv, figures, tables};
+use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow, agreements};
 use crate::studies::paper::plate_series::RefinementRow;
 
 /// Digits of orders, error bars and differences: they are estimates.
 const ORDER_DIGITS: usize = 3;
 const BAR_DIGITS: usize = 2;
-
-/// Order that the corners of the plate allow, drawn as a triangle.
-const CORNER_ORDER: f64 = 1.4;
 
 impl Row for SequenceRow {
     const FILE: &'static str = "converged_meshes.csv";
@@ -188,8 +182,8 @@ pub fn sequence_table(rows: &[SequenceRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// Adds `converged.*`, `converged_meshes.*` and a figure per friction coefficient: the distance from the mean of the limits,
-/// beside that of the same plate with edge pairs and enriched tip cells.
+/// Adds `converged.*`, `converged_meshes.*` and their figure, where the same plate with edge pairs and enriched tip cells
+/// stands beside them.
 ///
 /// # Errors
 /// Those of [`Bundle::add`] and of the figures.
@@ -203,71 +197,7 @@ pub fn add(
     tables::add_readable(bundle, "converged_meshes", &sequence_table(sequences)?)?;
     bundle.add(ConvergedRow::FILE, csv::file(limits)?)?;
     tables::add_readable(bundle, "converged", &converged_table(limits)?)?;
-    let mut sorted: Vec<&SequenceRow> = sequences.iter().collect();
-    sorted.sort_by(|a, b| Row::order(*a, *b));
-    for Agreement {
-        friction,
-        mean_mn_per_m: mean,
-        ..
-    } in agreements(limits)
-    {
-        let distance = |h: f64, reaction: f64| [h, ((reaction - mean) / mean).abs()];
-        // The same mesh looks the same in both panels.
-        let mut looks: Vec<String> = Vec::new();
-        let mut panel = |heading: &str, points: Vec<(String, [f64; 2])>| {
-            let mut curves: Vec<ErrorCurve> = Vec::new();
-            for (mesh, point) in points {
-                let label = format!("Mesh {mesh}");
-                if let Some(curve) = curves.iter_mut().find(|curve| curve.label == label) {
-                    curve.points.push(point);
-                    continue;
-                }
-                let known = looks.iter().position(|look| *look == mesh);
-                let look = known.unwrap_or(looks.len());
-                if known.is_none() {
-                    looks.push(mesh);
-                }
-                curves.push(ErrorCurve {
-                    label,
-                    look,
-                    points: vec![point],
-                });
-            }
-            ErrorPanel {
-                heading: heading.to_owned(),
-                curves,
-                guides: vec![Guide {
-                    rise: CORNER_ORDER,
-                    run: 1.0,
-                    label: Some(format!("order {CORNER_ORDER} of the corners")),
-                }],
-            }
-        };
-        let star = sorted.iter().filter(|row| row.friction == friction);
-        let star = star.map(|row| (row.mesh.clone(), distance(row.h_m, row.reaction_mn_per_m)));
-        let pairs = edge_pairs.iter().filter(|row| row.friction == friction);
-        let pairs = pairs.map(|row| {
-            let point = distance(row.h_m, row.reaction_mn_per_m);
-            (row.family.to_string(), point)
-        });
-        let panels = vec![
-            panel("star, tips enriched within a fixed radius", star.collect()),
-            panel("edge pairs, tip cells enriched", pairs.collect()),
-        ];
-        let y_label = "relative distance to limit";
-        let figure = ErrorFigure {
-            title: format!("Plate: {y_label} against cell width"),
-            caption: format!("plate, {} = {}", italic("μ"), value(friction)),
-            x_label: format!("cell width {} [m]", italic("h")),
-            y_label: y_label.into(),
-            columns: 2,
-            panels,
-        };
-        if let Some(svg) = error_figure(&figure)? {
-            bundle.add(format!("figures/converged.mu-{}.svg", value(friction)), svg)?;
-        }
-    }
-    Ok(())
+    figures::converged::add(bundle, sequences, limits, edge_pairs)
 }
 
 #[cfg(test)]

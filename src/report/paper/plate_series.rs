@@ -4,9 +4,8 @@ use std::cmp::Ordering;
 
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, residual, significant, value};
-use crate::report::plot::{Curve, CurvePlot, error_plot};
 use crate::report::tables::{self, Align, Column, Table};
-use crate::report::{Bundle, ReportError};
+use crate::report::{Bundle, ReportError, figures};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 
@@ -192,23 +191,13 @@ pub fn limit_table(rows: &[LimitRow]) -> Result<Table, ReportError> {
 pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), ReportError> {
     bundle.add(PenaltyRow::FILE, csv::file(rows)?)?;
     tables::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
-    let plot = CurvePlot {
-        caption: "plate, Mesh I, penalty method".into(),
-        x_label: "penalty stiffness / natural scale".into(),
-        y_label: "relative error of the reaction".into(),
-        curves: curves(
-            rows,
-            |r| (r.friction, String::new()),
-            |r| [r.parameter, r.relative_error],
-        ),
-    };
-    Ok(bundle.add("figures/penalty.svg", error_plot(&plot, Some(-1.0))?)?)
+    figures::penalty::add(bundle, rows)
 }
 
-/// Adds `refinement.*`, `limits.*` and the figure of the distance from the common limit.
+/// Adds `refinement.*` and `limits.*`; the figure of the converged reactions shows them.
 ///
 /// # Errors
-/// Those of [`Bundle::add`] and of the figure.
+/// Those of [`Bundle::add`].
 pub fn add_refinement(
     bundle: &mut Bundle,
     rows: &[RefinementRow],
@@ -217,42 +206,5 @@ pub fn add_refinement(
     bundle.add(RefinementRow::FILE, csv::file(rows)?)?;
     tables::add_readable(bundle, "refinement", &refinement_table(rows)?)?;
     bundle.add(LimitRow::FILE, csv::file(limits)?)?;
-    tables::add_readable(bundle, "limits", &limit_table(limits)?)?;
-    let distance = |r: &RefinementRow| {
-        let limit = limits.iter().find(|l| l.friction == r.friction);
-        let mean = limit.map_or(f64::NAN, |l| 0.5 * (l.mesh_1_mn_per_m + l.mesh_2_mn_per_m));
-        [r.h_m, ((r.reaction_mn_per_m - mean) / mean).abs()]
-    };
-    let plot = CurvePlot {
-        caption: "plate, b-newton, edge pairs".into(),
-        x_label: "cell width h [m]".into(),
-        y_label: "relative distance to limit".into(),
-        curves: curves(
-            rows,
-            |r| (r.friction, format!("Mesh {}, ", r.family)),
-            distance,
-        ),
-    };
-    Ok(bundle.add("figures/refinement.svg", error_plot(&plot, Some(1.0))?)?)
-}
-
-/// One curve per friction value and prefix, in order of appearance.
-fn curves<R>(
-    rows: &[R],
-    name: impl Fn(&R) -> (f64, String),
-    point: impl Fn(&R) -> [f64; 2],
-) -> Vec<Curve> {
-    let mut curves: Vec<Curve> = Vec::new();
-    for row in rows {
-        let (friction, prefix) = name(row);
-        let label = format!("{prefix}μ = {}", value(friction));
-        match curves.iter_mut().find(|c| c.label == label) {
-            Some(curve) => curve.points.push(point(row)),
-            None => curves.push(Curve {
-                label,
-                points: vec![point(row)],
-            }),
-        }
-    }
-    curves
+    tables::add_readable(bundle, "limits", &limit_table(limits)?)
 }

@@ -3,32 +3,16 @@
 use super::records::SweepRecords;
 use crate::report::csv::{self, Row};
 use crate::report::number::value;
-use crate::report::plot::{Guide, MethodCurve, MethodPanel, MethodPanels, italic, method_panels};
-use crate::report::standard::file_name;
-use crate::report::{Bundle, ReportError, quantity_name};
+use crate::report::{Bundle, ReportError};
 use crate::studies::convergence::Variant;
-use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
-use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
-use crate::studies::sweep::analysis::problem_names;
-use crate::studies::sweep::cell::Problem;
+use crate::studies::convergence::orders::ErrorRow;
+use crate::studies::sweep::analysis::accuracy::refinements;
 
-/// Orders that a triangle may show.
-const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
-
-/// Adds `time_to_accuracy.csv` and a figure per case, contact space and friction.
+/// Adds `time_to_accuracy.csv`.
 pub fn add(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
     let all = refinements(sweep.records);
-    let coarsest: Vec<Problem> = all.iter().map(|one| one.coarsest.clone()).collect();
-    let mut rows = Vec::new();
-    for (one, name) in all.iter().zip(problem_names(&coarsest)) {
-        // The name tells everything but the mesh.
-        let name = name.replacen(&format!(".r{}.", one.coarsest.refine), ".", 1);
-        if let Some(svg) = method_panels(&figure(one, &sweep.caveat()))? {
-            let stem = file_name(&["time_to_accuracy", &name]);
-            bundle.add(format!("figures/{stem}.svg"), svg)?;
-        }
-        rows.extend(one.errors.iter().map(AccuracyRow));
-    }
+    let errors = all.iter().flat_map(|one| &one.errors);
+    let rows: Vec<AccuracyRow> = errors.map(AccuracyRow).collect();
     Ok(bundle.add(AccuracyRow::FILE, csv::file(&rows)?)?)
 }
 
@@ -62,72 +46,5 @@ impl Row for AccuracyRow<'_> {
 
     fn order(&self, other: &Self) -> std::cmp::Ordering {
         Row::order(self.0, other.0)
-    }
-}
-
-fn figure(one: &Refinement, caveat: &str) -> MethodPanels {
-    // Against its own finest mesh a sequence says nothing.
-    let first = one.orders.iter().find(|row| row.kind != Kind::Finest);
-    let mut methods: Vec<&str> = Vec::new();
-    for row in &one.errors {
-        if !methods.contains(&row.variant.method.as_str()) {
-            methods.push(&row.variant.method);
-        }
-    }
-    let curve = |method: &&str| MethodCurve {
-        method: (*method).to_owned(),
-        points: one
-            .errors
-            .iter()
-            .filter(|row| row.variant.method == *method && row.error >= ROUND_OFF)
-            .filter(|row| row.kind != Some(Kind::Finest))
-            .map(|row| [row.seconds.total(), row.error])
-            .collect(),
-        whiskers: Vec::new(),
-    };
-    let observed = first.map_or(f64::NAN, |row| row.order);
-    let off = |order: &f64| (order - observed).abs();
-    let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-    let nearest = nearest.filter(|order| off(order) < 0.5 * order);
-    let guide = nearest.map(|order| Guide {
-        rise: -order,
-        run: one.dim as f64,
-        label: None,
-    });
-    let name = first.map_or_else(String::new, |row| {
-        quantity_name::name(&row.quantity, &row.at)
-    });
-    let against = match first.map(|row| row.kind) {
-        Some(Kind::Exact) => "against the closed form",
-        _ => "against the extrapolated limit",
-    };
-    let space = first.map_or("", |row| row.variant.space.as_str());
-    let friction = one.coarsest.friction.first().copied().unwrap_or(0.0);
-    let triangle = match &guide {
-        Some(guide) => format!(
-            "\ntriangle: order {} in h, time proportional to the unknowns",
-            value(-guide.rise)
-        ),
-        None => String::new(),
-    };
-    MethodPanels {
-        title: format!("Time to accuracy: {}", one.coarsest.case),
-        caption: format!(
-            "{}, {space}, {} = {}, {against}{caveat}{triangle}",
-            one.coarsest.case,
-            italic("μ"),
-            value(friction)
-        ),
-        y_label: format!("error: {name}"),
-        logarithmic: true,
-        every_point: true,
-        columns: 1,
-        height: 56.0,
-        panels: vec![MethodPanel {
-            heading: String::new(),
-            x_label: "total time [s]".into(),
-            curves: methods.iter().map(curve).collect(),
-            guides: guide.into_iter().collect(),
-        }],
     }
 }

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use stickslip_methods::Tier;
 
 use crate::report::csv::Row;
-use crate::report::number::{significant, value};
+use crate::report::number::value;
 use crate::studies::sweep::analysis::test_set::TestSet;
 use crate::studies::sweep::analysis::{compare_methods, compare_problems, problems};
 use crate::studies::sweep::record::{Record, SCHEMA};
@@ -123,10 +123,4 @@ pub fn cell_columns(record: &Record) -> Vec<String> {
         record.found.method.clone(),
         value(cell.tolerance),
     ]
-}
-
-/// A tier in figures.
-pub fn tier_heading(tier: Tier) -> String {
-    let exponent = significant(tier.tolerance(), 1);
-    format!("tier {tier}: natural map ≤ {exponent}")
 }

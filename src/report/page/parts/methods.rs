@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::blocks::{Tally, columns, figures, made, tables};
 use crate::report::page::{Block, Budget, Folder, Grid, Kind, PageError, Section, Show};
-use crate::report::plot::method_rank;
+use crate::report::plot::rank;
 
 const COMPARISON: [Show; 9] = [
     Show::new("case", Kind::Text),
@@ -60,7 +60,7 @@ fn by_method(folder: &Folder, path: &str) -> Result<Grid, PageError> {
     let methods = sheet.texts("method")?;
     let mut tallies: BTreeMap<(usize, &str), Tally> = BTreeMap::new();
     for (method, verdict) in methods.iter().zip(sheet.verdicts()?) {
-        let own = tallies.entry((method_rank(method), method)).or_default();
+        let own = tallies.entry((rank(method), method)).or_default();
         own.add(verdict.kind());
     }
     let all: Vec<Tally> = tallies.values().copied().collect();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::blocks::{columns, figures, largest, made};
 use crate::report::number::value;
 use crate::report::page::{Block, Budget, Column, Folder, Grid, Kind, PageError, Section};
-use crate::report::plot::method_rank;
+use crate::report::plot::rank;
 
 /// The section.
 pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, PageError> {
@@ -45,7 +45,7 @@ fn rates(folder: &Folder, path: &str) -> Result<Grid, PageError> {
     coefficients.dedup();
     let mut groups: BTreeMap<(&str, usize, &str), Vec<usize>> = BTreeMap::new();
     for (k, method) in methods.iter().enumerate() {
-        let key = (dimensions[k], method_rank(method), *method);
+        let key = (dimensions[k], rank(method), *method);
         groups.entry(key).or_default().push(k);
     }
     let title = format!(
