@@ -6,14 +6,11 @@
 
 pub mod convergence;
 mod error;
-mod error_figures;
 pub mod figures;
-mod loops;
 pub mod number;
 pub mod page;
 pub mod paper;
 pub mod plot;
-mod quantity_name;
 pub mod robustness;
 pub mod schema;
 pub mod spaces;

@@ -1,6 +1,6 @@
 //! The files of the convergence study.
 
-use super::{Bundle, Provenance, ReportError, error_figures, table};
+use super::{Bundle, Provenance, ReportError, figures, table};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
 
 /// `convergence.csv`, `orders.*`, figures, provenance.
@@ -15,7 +15,7 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     table::add(&mut bundle, errors, "")?;
     table::add(&mut bundle, orders, "")?;
-    error_figures::add(&mut bundle, errors, orders)?;
+    figures::error::add(&mut bundle, errors, orders)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

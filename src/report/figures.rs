@@ -1,28 +1,79 @@
-//! Figures: one file per kind.
+//! The kinds of figures, one file each: rows in, SVG files in a [`Bundle`] out.
+//!
+//! A kind declares itself in its `KIND` and is listed in [`CATALOGUE`]; manual and page follow from there. Times, profiles
+//! and errors stand beside honest verdicts only: runs that solved the contact laws or, named as such, their own ones.
 
-use crate::report::tables::Chapter;
+pub mod agreement;
+pub mod converged;
+pub mod cost;
+pub mod error;
+pub mod fastest;
+pub mod fields;
+pub mod friction_loop;
+pub mod infsup;
+pub mod penalty;
+pub mod performance;
+pub mod profile;
+mod quantity_name;
+pub mod residual;
+pub mod robustness;
+mod runs;
+pub mod stages;
+pub mod table1;
+pub mod time_to_accuracy;
+pub mod work_precision;
 
-/// A kind of figure.
+use super::tables::Chapter;
+use super::{Bundle, ReportError};
+
+/// A kind of figure, as the reader knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kind {
-    /// Name of its files; `*` stands for what tells them apart.
-    pub name: &'static str,
+    /// File name in `figures/`; `*` stands for what tells the files of a kind apart: case, mesh, contact space, method,
+    /// friction coefficient, crack, quantity, tier.
+    pub file: &'static str,
     /// The reader's question that it answers.
     pub question: &'static str,
-    /// What it shows.
+    /// What is drawn, for the manual.
     pub shows: &'static str,
-    /// Where it belongs.
-    pub chapter: Chapter,
 }
 
 impl Kind {
-    /// Whether a file is of this kind.
-    pub fn is_of(&self, name: &str) -> bool {
-        match self.name.split_once('*') {
-            Some((begin, end)) => name.starts_with(begin) && name.ends_with(end),
-            None => name == self.name,
+    /// Whether a file of this name (without its folder) is of this kind.
+    pub fn has(&self, name: &str) -> bool {
+        match self.file.split_once('*') {
+            Some((start, end)) => name.starts_with(start) && name.ends_with(end),
+            None => name == self.file,
         }
+    }
+
+    /// Adds a figure of this kind, where there is something to draw.
+    fn add(&self, bundle: &mut Bundle, own: &str, svg: Option<String>) -> Result<(), ReportError> {
+        if let Some(svg) = svg {
+            bundle.add(format!("figures/{}", self.file.replacen('*', own, 1)), svg)?;
+        }
+        Ok(())
     }
 }
 
-/// All kinds.
-pub const CATALOGUE: [Kind; 0] = [];
+/// All kinds with the chapter they belong to, in the order of the page.
+pub static CATALOGUE: [(Chapter, &Kind); 18] = [
+    (Chapter::Paper, &table1::KIND),
+    (Chapter::Paper, &converged::KIND),
+    (Chapter::Paper, &penalty::KIND),
+    (Chapter::Methods, &cost::KIND),
+    (Chapter::Study, &fastest::KIND),
+    (Chapter::Study, &work_precision::KIND),
+    (Chapter::Study, &time_to_accuracy::KIND),
+    (Chapter::Study, &performance::KIND),
+    (Chapter::Study, &stages::KIND),
+    (Chapter::Robustness, &robustness::KIND),
+    (Chapter::Accuracy, &error::KIND),
+    (Chapter::Spaces, &infsup::KIND),
+    (Chapter::Runs, &fields::CONTACT),
+    (Chapter::Runs, &fields::DISPLACEMENT),
+    (Chapter::Runs, &fields::VON_MISES),
+    (Chapter::Runs, &residual::KIND),
+    (Chapter::Runs, &profile::KIND),
+    (Chapter::Runs, &friction_loop::KIND),
+];

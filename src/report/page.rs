@@ -62,10 +62,7 @@ fn section(
     budget: &mut Budget,
 ) -> Result<Option<Section>, PageError> {
     let mut blocks = Vec::new();
-    for kind in figures::CATALOGUE
-        .iter()
-        .filter(|kind| kind.chapter == chapter)
-    {
+    for (_, kind) in figures::CATALOGUE.iter().filter(|(own, _)| *own == chapter) {
         blocks.extend(folder.figures(kind, budget)?.map(Block::Figures));
     }
     let mut links = Vec::new();

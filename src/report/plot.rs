@@ -1,55 +1,30 @@
-//! Figures for print, as SVG.
+//! Drawing for print, as SVG: one frame for lines, markers and bars ([`Figure`]), one heat map, one mesh drawing.
 //!
-//! Sizes are millimetres on paper: [`Width::Column`] 85 mm, [`Width::Page`] 170 mm, text 6.5 to 8 pt. Curves differ in
-//! colour (Okabe and Ito's palette, safe for the colour-blind), dash pattern and marker, so they stay apart in grey; methods
-//! look the same in every figure, approximate ones have hollow markers and short dashes.
-//! Legends stand outside the data, every axis has its unit. The same data give the same bytes.
+//! Sizes are millimetres on paper: 85 mm for a column, 170 mm for a page, text 6.5 to 8 pt. Curves differ in colour (Okabe
+//! and Ito's palette, safe for the colour-blind), dash pattern and marker, so they stay apart in grey. Few methods stand out,
+//! the same in every figure; the others are grey. Legends stand outside the data, every axis has its unit. The same data give
+//! the same bytes.
 //!
 //! Text is real SVG text: a program that turns the figure into pixels needs a sans-serif font, otherwise some drop all text
 //! without a message.
 
-mod agreement;
 mod axis;
 mod bands;
 mod canvas;
-mod chart;
-mod colour;
 mod contact;
 mod contour;
-mod cost;
-mod curve_direction;
-mod curves;
-mod errors;
-mod field;
-mod hysteresis;
-mod lattice;
+mod figure;
+mod heatmap;
 mod legend;
-mod marks;
-mod method_curves;
-mod method_panels;
-mod methods;
-mod names;
-mod opened_solid;
-mod outline;
-mod profile;
-mod rates;
+mod mesh;
+mod panel;
 mod solid;
-mod stacked;
 mod style;
-mod surface;
 
-pub use canvas::{Width, italic, subscript};
+pub use axis::{Axis, prefixed};
+pub use canvas::{italic, plain, subscript};
 pub use contact::contact_status;
-pub use contour::{displacement_contours, von_mises_contours};
-pub use cost::method_cost;
-pub use curves::{Curve, CurvePlot, Tier, error_plot, line_plot, residual_history};
-pub use errors::{ErrorCurve, ErrorFigure, ErrorPanel, Guide, error_figure};
-pub use field::Magnification;
-pub use hysteresis::friction_loop;
-pub use lattice::{Lattice, SmallPanel, lattice};
-pub use method_panels::{MethodCurve, MethodPanel, MethodPanels, method_panels, stairs};
-pub use methods::rank as method_rank;
-pub use profile::{contact_slip, contact_traction};
-pub use rates::success_rates;
-pub use solid::{Axis3, solid_displacement, solid_von_mises};
-pub use stacked::{Bar, Stacked, stacked};
+pub use contour::{displacement, von_mises};
+pub use figure::{Draw, Figure, Guide, Panel, Series};
+pub use heatmap::{Cell, HeatMap};
+pub use style::{Marker, Rgb, Style, base, is_exact, looks, rank, status_marker};

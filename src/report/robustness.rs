@@ -1,7 +1,6 @@
 //! The files of the random robustness study.
 
-use super::plot::success_rates;
-use super::{Bundle, Provenance, ReportError, table};
+use super::{Bundle, Provenance, ReportError, figures, table};
 use crate::studies::stress::robustness::{RobustnessRow, failures};
 use crate::studies::stress::{StressPlan, Trial};
 
@@ -18,10 +17,7 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     table::add(&mut bundle, rows, "")?;
     table::add(&mut bundle, &failures(plan, trials), "")?;
-    // Where every method declines every problem there is nothing to draw.
-    if rows.iter().any(|row| row.success[0].is_finite()) {
-        bundle.add("figures/robustness.svg", success_rates(rows)?)?;
-    }
+    figures::robustness::add(&mut bundle, rows)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

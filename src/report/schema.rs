@@ -17,10 +17,10 @@ pub fn manual() -> String {
             tables.push('\n');
         }
     }
-    let row = |kind: &figures::Kind| {
+    let row = |(_, kind): &(Chapter, &figures::Kind)| {
         let cell = |text: &str| text.replace('|', "\\|");
         let (question, shows) = (cell(kind.question), cell(kind.shows));
-        format!("| `{}` | {question} | {shows} |\n", kind.name)
+        format!("| `{}` | {question} | {shows} |\n", kind.file)
     };
     let figures: String = figures::CATALOGUE.iter().map(row).collect();
     TEMPLATE

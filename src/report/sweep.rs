@@ -4,25 +4,27 @@
 //! `success.*`. All others belong to the machine. Times stand beside
 //! honest verdicts only, see [`published_times`](crate::studies::sweep::analysis::published_times).
 
-mod accuracy;
-mod profiles;
-mod records;
-mod times;
-mod work_precision;
+use stickslip_methods::Tier;
 
 use super::number::{fixed, significant};
 use super::table::{self, Readable, readable};
-use super::tables::sweep::{CellRow, ChangeRow, DeviationRow, IncrementRow, RankingRow};
-use super::{Bundle, Provenance, ReportError};
-use crate::studies::sweep::analysis::accuracy::sequences;
+use super::tables::sweep::{
+    AccuracyRow, CellRow, ChangeRow, DeviationRow, IncrementRow, PointRow, ProfileRow, RankingRow,
+    SummaryRow, TimeRow,
+};
+use super::{Bundle, Provenance, ReportError, figures};
+use crate::studies::sweep::analysis::accuracy::{refinements, sequences};
 use crate::studies::sweep::analysis::costs::Costs;
+use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::ranking::ranking;
 use crate::studies::sweep::analysis::recommendation::recommendations;
+use crate::studies::sweep::analysis::series::{Series, series};
 use crate::studies::sweep::analysis::success::success;
+use crate::studies::sweep::analysis::test_set::TestSet;
+use crate::studies::sweep::analysis::{problem_names, problems};
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::compare::{Change, Comparison, What};
-use crate::studies::sweep::record::Record;
-use records::SweepRecords;
+use crate::studies::sweep::record::{Record, SCHEMA};
 
 /// Files of a sweep; `total`: cells that the sweep has in all. Paths have no common folder.
 ///
@@ -33,44 +35,109 @@ pub fn bundle(
     total: usize,
     provenance: &Provenance,
 ) -> Result<Bundle, ReportError> {
-    let sweep = SweepRecords::new(records, total);
-    let caveat = sweep.caveat();
+    let caveat = match records.len() {
+        found if found < total => format!("; incomplete, {found} of {total} cells"),
+        _ => String::new(),
+    };
+    let sets = Tier::ALL.map(|tier| TestSet::new(records, tier));
     let mut bundle = Bundle::new();
-    table::add(&mut bundle, &sweep.rows(), "")?;
-    add_cells(&mut bundle, &sweep)?;
-    times::add(&mut bundle, &sweep)?;
+    table::add(&mut bundle, &numbers(records, total, &sets), "")?;
+    add_cells(&mut bundle, records)?;
     table::add(&mut bundle, &success(records), &caveat)?;
-    profiles::add(&mut bundle, &sweep)?;
-    table::add(&mut bundle, &rankings(&sweep), &caveat)?;
-    work_precision::add(&mut bundle, &sweep)?;
-    accuracy::add(&mut bundle, &sweep)?;
+    table::add(&mut bundle, &profiles(&sets), "")?;
+    table::add(&mut bundle, &rankings(&sets), &caveat)?;
+    table::add(&mut bundle, &curves(records), "")?;
+    let meshes = refinements(records);
+    let errors = meshes
+        .iter()
+        .flat_map(|one| one.errors.iter().map(AccuracyRow));
+    table::add(&mut bundle, &errors.collect::<Vec<_>>(), "")?;
     table::add(&mut bundle, &recommendations(records), &caveat)?;
+    figures::fastest::add(&mut bundle, &sets, &caveat)?;
+    figures::performance::add(&mut bundle, &sets, &caveat)?;
+    figures::work_precision::add(&mut bundle, records, &caveat)?;
+    figures::time_to_accuracy::add(&mut bundle, records, &caveat)?;
+    figures::stages::add(&mut bundle, records, &caveat)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }
 
-/// Adds `cells.csv`, `increments.csv` and `deviations.csv`.
-fn add_cells(bundle: &mut Bundle, sweep: &SweepRecords<'_>) -> Result<(), ReportError> {
-    let records = sweep.sorted();
-    let cells: Vec<CellRow> = records.iter().map(|record| CellRow(record)).collect();
+/// The study in numbers.
+fn numbers(records: &[Record], total: usize, sets: &[TestSet<'_>]) -> Vec<SummaryRow> {
+    let row = |quantity: String, value| SummaryRow { quantity, value };
+    let mut rows = vec![
+        row("cells".into(), records.len()),
+        row("cells_of_the_sweep".into(), total),
+        row("problems".into(), problems(records).len()),
+        row("schema".into(), SCHEMA as usize),
+    ];
+    for set in sets {
+        let tier = set.tier;
+        rows.push(row(format!("problems_compared_{tier}"), set.problems.len()));
+        rows.push(row(format!("problems_left_out_{tier}"), set.left_out));
+    }
+    rows
+}
+
+/// Adds `cells.csv`, `increments.csv`, `deviations.csv` and `times.csv`.
+fn add_cells(bundle: &mut Bundle, records: &[Record]) -> Result<(), ReportError> {
+    let cells: Vec<CellRow> = records.iter().map(CellRow).collect();
     table::add(bundle, &cells, "")?;
-    let increments = records.iter().flat_map(|record| IncrementRow::of(record));
+    let increments = records.iter().flat_map(IncrementRow::of);
     table::add(bundle, &increments.collect::<Vec<_>>(), "")?;
     // A quantity without exact value says something only beside that of another mesh.
-    let refined: Vec<Problem> = sequences(sweep.records).into_iter().flatten().collect();
+    let refined: Vec<Problem> = sequences(records).into_iter().flatten().collect();
     let deviations = records.iter().flat_map(|record| {
         let several = refined.contains(&record.cell.problem());
         DeviationRow::of(record).filter(move |row| several || row.is_exact())
     });
-    table::add(bundle, &deviations.collect::<Vec<_>>(), "")
+    table::add(bundle, &deviations.collect::<Vec<_>>(), "")?;
+    let times: Vec<TimeRow> = records.iter().filter_map(TimeRow::of).collect();
+    table::add(bundle, &times, "")
+}
+
+/// Steps of the performance profiles, tier after tier.
+fn profiles(sets: &[TestSet<'_>]) -> Vec<ProfileRow> {
+    let mut rows = Vec::new();
+    for set in sets {
+        let costs = Costs::new(set);
+        for curve in performance(&costs) {
+            rows.extend(curve.steps.iter().map(|step| ProfileRow {
+                tier: set.tier,
+                method: curve.method.to_owned(),
+                step: *step,
+                problems: costs.problems(),
+            }));
+        }
+    }
+    rows
 }
 
 /// Methods by mean time, tier after tier.
-fn rankings(sweep: &SweepRecords<'_>) -> Vec<RankingRow> {
+fn rankings(sets: &[TestSet<'_>]) -> Vec<RankingRow> {
     let of = |set| Some((set, ranking(&Costs::new(set))?));
-    let all = sweep.sets.iter().filter_map(of);
-    all.flat_map(|(set, own)| RankingRow::of(set.tier, &own))
+    let all = sets.iter().filter_map(of);
+    all.flat_map(|(set, own): (&TestSet<'_>, _)| RankingRow::of(set.tier, &own))
         .collect()
+}
+
+/// Points of all curves of solver error against work.
+fn curves(records: &[Record]) -> Vec<PointRow<'_>> {
+    let all = problems(records);
+    let mut rows = Vec::new();
+    for (problem, name) in all.iter().zip(problem_names(&all)) {
+        for own in series(records, problem) {
+            let Series { label, swept, .. } = own;
+            rows.extend(own.points.into_iter().map(|point| PointRow {
+                problem: name.clone(),
+                label: label.clone(),
+                swept: swept.clone(),
+                exact: own.exact,
+                point,
+            }));
+        }
+    }
+    rows
 }
 
 /// All changes for reading. What differs only in its bits is counted in the title.

@@ -271,6 +271,23 @@ impl Results {
         self.fields.extend(other.fields);
     }
 
+    /// The part of these results that is about some cases.
+    pub fn of_cases(&self, names: &[&str]) -> Self {
+        fn part<R: Clone>(rows: &[R], wanted: impl Fn(&R) -> bool) -> Vec<R> {
+            rows.iter().filter(|row| wanted(row)).cloned().collect()
+        }
+        let wanted = |name: &str| names.contains(&name);
+        Self {
+            runs: part(&self.runs, |row| wanted(&row.key.case)),
+            quantities: part(&self.quantities, |row| wanted(&row.key.case)),
+            history: part(&self.history, |row| wanted(&row.key.case)),
+            points: part(&self.points, |row| wanted(&row.key.case)),
+            exact: part(&self.exact, |row| wanted(&row.case)),
+            expectations: part(&self.expectations, |row| wanted(&row.key.case)),
+            fields: part(&self.fields, |run| wanted(&run.key.case)),
+        }
+    }
+
     /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
     pub fn failures(&self) -> usize {
         self.runs.iter().filter(|r| r.verdict.is_failure()).count()

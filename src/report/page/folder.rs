@@ -180,7 +180,7 @@ impl Folder {
             figures: Vec::new(),
             links: Vec::new(),
         };
-        for path in self.matching(|name| kind.is_of(name) && !is_headline(name)) {
+        for path in self.matching(|name| kind.has(name) && !is_headline(name)) {
             match self.figure(path, budget)? {
                 Some(figure) => group.figures.push(figure),
                 None => group.links.push(Link {

@@ -5,12 +5,10 @@
 //! corners are pixels: cut points of a shared edge are computed in one order and agree exactly.
 
 use super::axis::{multiples, number};
-use super::canvas::{Anchor, Canvas, LABEL_PT, SMALL_PT};
-use super::colour::{self, BLACK, Rgb};
+use super::canvas::{Anchor, Canvas, LABEL_PT, Pixel, SMALL_PT};
+use super::style::{self, BLACK, Rgb};
+use crate::report::number::significant;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A place in pixels.
-pub type Pixel = [i32; 2];
 
 /// A triangle in pixels with the field at its corners.
 pub type Triangle = [(Pixel, f64); 3];
@@ -34,26 +32,21 @@ impl Levels {
     /// Round levels for a field between `low` and `high`.
     pub fn new(low: f64, high: f64) -> Self {
         let span = high - low;
-        // A constant field has one band; its round-off is no contour.
-        if span <= 1e-9 * low.abs().max(high.abs()) {
-            return Self {
-                low,
-                high,
-                inner: Vec::new(),
-                step: 0.0,
-                beyond: None,
-            };
-        }
-        let step = level_step(span / BANDS);
-        let mut inner = multiples(step, low, high);
-        inner.retain(|level| *level > low + 1e-6 * span && *level < high - 1e-6 * span);
-        Self {
+        let mut levels = Self {
             low,
             high,
-            inner,
-            step,
+            inner: Vec::new(),
+            step: 0.0,
             beyond: None,
+        };
+        // A constant field has one band; its round-off is no contour.
+        if span > 1e-9 * low.abs().max(high.abs()) {
+            levels.step = level_step(span / BANDS);
+            levels.inner = multiples(levels.step, low, high);
+            let inside = |level: &f64| *level > low + 1e-6 * span && *level < high - 1e-6 * span;
+            levels.inner.retain(inside);
         }
+        levels
     }
 
     /// The same for a field with this largest value, maybe above the upper end: the highest band takes what is above.
@@ -73,7 +66,7 @@ impl Levels {
 
     /// Colour of the band above the n-th level; band 0 lies below the first.
     fn colour(&self, band: usize) -> Rgb {
-        colour::field((band as f64 + 0.5) / (self.inner.len() + 1) as f64)
+        style::field((band as f64 + 0.5) / (self.inner.len() + 1) as f64)
     }
 }
 
@@ -100,9 +93,9 @@ pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_m
         let mut above = Region::default();
         let mut contour = BTreeSet::new();
         for triangle in triangles {
-            let part = part_above(triangle, *level);
-            above.add(&part.polygon);
-            contour.extend(part.contour.filter(|[a, b]| a != b));
+            let (polygon, line) = part_above(triangle, *level);
+            above.add(&polygon);
+            contour.extend(line.filter(|[a, b]| a != b));
         }
         canvas.fill_region(&above.loops(), levels.colour(index + 1));
         lines.extend(chains(&contour));
@@ -121,35 +114,26 @@ const POINT_MM: f64 = 2.5;
 pub fn colour_bar(
     canvas: &mut Canvas,
     levels: &Levels,
-    origin: [f64; 2],
+    [x, bottom]: [f64; 2],
     height: f64,
     label: &str,
 ) {
     const WIDTH: f64 = 3.0;
-    let [x, bottom] = origin;
-    let height = match levels.beyond {
-        Some(_) => height - POINT_MM - 1.2,
-        None => height,
-    };
+    // A bar that ends in a point does not reach the largest value.
+    let above = levels.beyond.map_or(0.0, |_| POINT_MM + 1.2);
+    let height = height - above;
     let span = if levels.high > levels.low {
         levels.high - levels.low
     } else {
         1.0
     };
     let place = |value: f64| bottom - (value - levels.low) / span * height;
-    let mut edges = vec![bottom];
-    edges.extend(levels.inner.iter().map(|level| place(*level)));
-    edges.push(bottom - height);
-    for (band, pair) in edges.windows(2).enumerate() {
-        let corners = [
-            [x, pair[0]],
-            [x + WIDTH, pair[0]],
-            [x + WIDTH, pair[1]],
-            [x, pair[1]],
-        ];
-        canvas.fill(&corners, levels.colour(band));
-    }
     let top = bottom - height;
+    let inner = levels.inner.iter().map(|level| place(*level));
+    let edges: Vec<f64> = std::iter::once(bottom).chain(inner).chain([top]).collect();
+    for (band, pair) in edges.windows(2).enumerate() {
+        canvas.boxed([x, pair[1]], [x + WIDTH, pair[0]], levels.colour(band), 0.0);
+    }
     let mut corners = vec![
         [x, top],
         [x, bottom],
@@ -157,7 +141,6 @@ pub fn colour_bar(
         [x + WIDTH, top],
         [x, top],
     ];
-    // A bar that ends in a point does not reach the largest value.
     let point = [x + 0.5 * WIDTH, top - POINT_MM];
     if levels.beyond.is_some() {
         let colour = levels.colour(levels.inner.len());
@@ -165,40 +148,36 @@ pub fn colour_bar(
         corners.insert(4, point);
     }
     canvas.line(&corners, BLACK, 0.15);
-
-    let mut tick = |at: f64, text: String| {
-        canvas.line(&[[x + WIDTH, at], [x + WIDTH + 0.8, at]], BLACK, 0.15);
+    let mut text = |at: f64, text: String| {
         canvas.text(&text, [x + WIDTH + 1.3, at], SMALL_PT, Anchor::Start, BLACK);
     };
     if levels.inner.is_empty() {
-        let text = crate::report::number::significant(levels.low, 3).replace('-', "−");
-        tick(bottom - 0.5 * height, text);
+        text(
+            bottom - 0.5 * height,
+            significant(levels.low, 3).replace('-', "−"),
+        );
     }
-    let digits = levels.decimals();
     for level in &levels.inner {
-        tick(place(*level), number(*level, digits));
+        text(place(*level), number(*level, levels.decimals()));
     }
     if let Some(largest) = levels.beyond {
-        let text = format!("to {}", crate::report::number::significant(largest, 2));
-        let at = [x + WIDTH + 1.3, point[1] + 0.3];
-        canvas.text(&text, at, SMALL_PT, Anchor::Start, BLACK);
+        text(point[1] + 0.3, format!("to {}", significant(largest, 2)));
     }
-    let above = if levels.beyond.is_some() {
-        POINT_MM + 1.2
-    } else {
-        0.0
-    };
-    let at = [x, top - 3.0 - above];
-    canvas.text(label, at, LABEL_PT, Anchor::Start, BLACK);
+    for level in &levels.inner {
+        let at = place(*level);
+        canvas.line(&[[x + WIDTH, at], [x + WIDTH + 0.8, at]], BLACK, 0.15);
+    }
+    canvas.text(
+        label,
+        [x, top - 3.0 - above],
+        LABEL_PT,
+        Anchor::Start,
+        BLACK,
+    );
 }
 
 /// The part of a triangle where the field is at least the level, and the piece of contour line that bounds it.
-struct Part {
-    polygon: Vec<Pixel>,
-    contour: Option<[Pixel; 2]>,
-}
-
-fn part_above(triangle: &Triangle, level: f64) -> Part {
+fn part_above(triangle: &Triangle, level: f64) -> (Vec<Pixel>, Option<[Pixel; 2]>) {
     let mut polygon = Vec::with_capacity(4);
     let mut cuts = Vec::with_capacity(2);
     for index in 0..3 {
@@ -216,7 +195,7 @@ fn part_above(triangle: &Triangle, level: f64) -> Part {
         [a, b] => Some([*a.min(b), *a.max(b)]),
         _ => None,
     };
-    Part { polygon, contour }
+    (polygon, contour)
 }
 
 /// Where the field reaches the level between two corners.
@@ -378,7 +357,7 @@ mod tests {
     fn contour_of_a_linear_field_is_one_straight_line() {
         let mut contour = BTreeSet::new();
         for triangle in square_of_triangles() {
-            contour.extend(part_above(&triangle, 0.25).contour);
+            contour.extend(part_above(&triangle, 0.25).1);
         }
         let lines = chains(&contour);
         assert_eq!(lines.len(), 1);

@@ -3,24 +3,25 @@
 //! The library draws on whole pixels and writes the size in pixels. So there are [`PX_PER_MM`] of them per millimetre, and
 //! the finished text gets its size in millimetres, a title, and subscripts, which the library does not have.
 
-use super::colour::{BLACK, GREY, Rgb, WHITE};
+use super::style::{BLACK, GREY, Rgb, WHITE};
 use crate::report::ReportError;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Resolution of the drawing: 0.05 mm.
-pub const PX_PER_MM: f64 = 20.0;
+const PX_PER_MM: f64 = 20.0;
 const MM_PER_PT: f64 = 25.4 / 72.0;
 /// The library divides font sizes by this.
 const FONT_DIVISOR: f64 = 1.24;
-/// Sizes of text [pt].
+/// Sizes of text [pt]: titles and labels, ticks and legends, captions.
 pub const LABEL_PT: f64 = 8.0;
 pub const TICK_PT: f64 = 7.0;
 pub const SMALL_PT: f64 = 6.5;
-
-/// Size and line distance of captions.
-pub const CAPTION_PT: f64 = 6.5;
-const CAPTION_MM: f64 = 3.0;
+/// Distance of text from the edge of the paper [mm].
+pub const MARGIN_MM: f64 = 1.5;
+/// Distances of lines in titles and captions [mm].
+const TITLE_MM: f64 = 3.7;
+const CAPTION_MM: f64 = 2.9;
 const FONTS: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
 // Marks inside text, from Unicode's private use area: they cannot come from data (`plain` removes them).
@@ -29,24 +30,10 @@ const SUB_END: char = '\u{E001}';
 const ITALIC: char = '\u{E002}';
 const ITALIC_END: char = '\u{E003}';
 
-/// Width of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Width {
-    /// One column of a journal, 85 mm.
-    Column,
-    /// Both columns, 170 mm.
-    Page,
-}
-
-impl Width {
-    /// In millimetres.
-    pub fn mm(self) -> f64 {
-        match self {
-            Self::Column => 85.0,
-            Self::Page => 170.0,
-        }
-    }
-}
+/// Width of a figure in one column of a journal [mm].
+pub const COLUMN: f64 = 85.0;
+/// Width of a figure across both columns [mm].
+pub const PAGE: f64 = 170.0;
 
 /// A subscript inside a label: `format!("p{} [MPa]", subscript("n"))`.
 pub fn subscript(text: &str) -> String {
@@ -71,42 +58,29 @@ pub enum Anchor {
     Start,
     Middle,
     End,
+    /// Reads upwards, centred.
+    Upwards,
 }
 
 enum Shape {
-    Line {
-        points: Vec<[i32; 2]>,
-        colour: Rgb,
-        width: u32,
-    },
-    Fill {
-        points: Vec<[i32; 2]>,
-        colour: Rgb,
-    },
-    Circle {
-        centre: [i32; 2],
-        radius: i32,
-        colour: Rgb,
-    },
-    Text {
-        text: String,
-        at: [i32; 2],
-        size_pt: f64,
-        anchor: Anchor,
-        colour: Rgb,
-        upwards: bool,
-    },
+    Line(Vec<[i32; 2]>, u32),
+    Fill(Vec<[i32; 2]>),
+    Disc([i32; 2], i32),
+    Text(String, [i32; 2], f64, Anchor),
+}
+
+/// A place in pixels.
+pub type Pixel = [i32; 2];
+
+/// Millimetres to pixels.
+pub fn pixel(point: [f64; 2]) -> Pixel {
+    point.map(|c| (c * PX_PER_MM).round() as i32)
 }
 
 /// A drawing; origin at the top left, y downwards, millimetres.
 pub struct Canvas {
     size: [f64; 2],
-    shapes: Vec<Shape>,
-}
-
-/// Millimetres to pixels.
-pub fn pixel(point: [f64; 2]) -> [i32; 2] {
-    point.map(|c| (c * PX_PER_MM).round() as i32)
+    shapes: Vec<(Shape, Rgb)>,
 }
 
 impl Canvas {
@@ -123,26 +97,19 @@ impl Canvas {
     }
 
     /// An open line through pixels.
-    pub fn pixel_line(&mut self, points: Vec<[i32; 2]>, colour: Rgb, width: f64) {
+    pub fn pixel_line(&mut self, points: Vec<Pixel>, colour: Rgb, width: f64) {
         let width = (width * PX_PER_MM).round().max(1.0) as u32;
         if points.len() > 1 {
-            self.shapes.push(Shape::Line {
-                points,
-                colour,
-                width,
-            });
+            self.shapes.push((Shape::Line(points, width), colour));
         }
     }
 
-    /// A line of dashes: `pattern` holds lengths drawn and left out in turn [mm]; empty for a solid line, 0 first for one
-    /// that begins with a gap.
+    /// A line of dashes: `pattern` holds lengths drawn and left out in turn [mm]; empty for a solid line.
     pub fn dashed(&mut self, points: &[[f64; 2]], colour: Rgb, width: f64, pattern: &[f64]) {
         if pattern.is_empty() {
-            self.line(points, colour, width);
-            return;
+            return self.line(points, colour, width);
         }
-        let mut piece = 0;
-        let mut left = pattern[0];
+        let (mut piece, mut left) = (0, pattern[0]);
         let mut dash: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
         for pair in points.windows(2) {
             let [from, to] = [pair[0], pair[1]];
@@ -150,13 +117,9 @@ impl Canvas {
             let mut done = 0.0;
             while length - done > left {
                 done += left;
-                let t = done / length;
-                let at = [
-                    from[0] + t * (to[0] - from[0]),
-                    from[1] + t * (to[1] - from[1]),
-                ];
+                let at = [0, 1].map(|c| from[c] + done / length * (to[c] - from[c]));
                 dash.push(at);
-                if piece % 2 == 0 && pattern[piece] > 0.0 {
+                if piece % 2 == 0 {
                     self.line(&dash, colour, width);
                 }
                 dash = vec![at];
@@ -174,14 +137,23 @@ impl Canvas {
     /// A filled polygon.
     pub fn fill(&mut self, points: &[[f64; 2]], colour: Rgb) {
         let points = points.iter().map(|p| pixel(*p)).collect();
-        self.shapes.push(Shape::Fill { points, colour });
+        self.shapes.push((Shape::Fill(points), colour));
+    }
+
+    /// A filled rectangle between two corners with a black outline of this width, 0 for none [mm].
+    pub fn boxed(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], colour: Rgb, line: f64) {
+        let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
+        self.fill(&corners[..4], colour);
+        if line > 0.0 {
+            self.line(&corners, BLACK, line);
+        }
     }
 
     /// A filled region bounded by oriented loops of pixels, holes running the other way round.
     ///
     /// The library has polygons only, so the loops are joined by bridges that are walked there and back: they enclose
     /// nothing, and the non-zero rule of SVG leaves the holes empty.
-    pub fn fill_region(&mut self, loops: &[Vec<[i32; 2]>], colour: Rgb) {
+    pub fn fill_region(&mut self, loops: &[Vec<Pixel>], colour: Rgb) {
         let mut points = Vec::new();
         for ring in loops {
             points.extend(ring);
@@ -189,69 +161,23 @@ impl Canvas {
         }
         points.extend(loops.iter().rev().skip(1).filter_map(|ring| ring.first()));
         if !points.is_empty() {
-            self.shapes.push(Shape::Fill { points, colour });
+            self.shapes.push((Shape::Fill(points), colour));
         }
     }
 
     /// A filled circle.
     pub fn disc(&mut self, centre: [f64; 2], radius: f64, colour: Rgb) {
         let radius = (radius * PX_PER_MM).round() as i32;
-        self.shapes.push(Shape::Circle {
-            centre: pixel(centre),
-            radius,
-            colour,
-        });
+        self.shapes
+            .push((Shape::Disc(pixel(centre), radius), colour));
     }
 
     /// Text whose middle height is at the point.
     pub fn text(&mut self, text: &str, at: [f64; 2], size_pt: f64, anchor: Anchor, colour: Rgb) {
-        let text = text.to_owned();
-        self.shapes.push(Shape::Text {
-            text,
-            at: pixel(at),
-            size_pt,
-            anchor,
+        self.shapes.push((
+            Shape::Text(text.to_owned(), pixel(at), size_pt, anchor),
             colour,
-            upwards: false,
-        });
-    }
-
-    /// Text that reads upwards, centred at the point.
-    pub fn text_upwards(&mut self, text: &str, at: [f64; 2], size_pt: f64, colour: Rgb) {
-        let text = text.to_owned();
-        let anchor = Anchor::Middle;
-        self.shapes.push(Shape::Text {
-            text,
-            at: pixel(at),
-            size_pt,
-            anchor,
-            colour,
-            upwards: true,
-        });
-    }
-
-    /// Small grey lines at the top left; they end at [`caption_height`].
-    pub fn caption(&mut self, lines: &[String]) {
-        for (index, line) in lines.iter().enumerate() {
-            let at = [1.5, 2.8 + CAPTION_MM * index as f64];
-            self.text(line, at, CAPTION_PT, Anchor::Start, GREY);
-        }
-    }
-
-    /// The SVG text; `title` is for screen readers and file browsers.
-    pub fn finish(&self, title: &str) -> Result<String, ReportError> {
-        let size = pixel(self.size);
-        let mut svg = String::new();
-        {
-            let pixels = (size[0] as u32, size[1] as u32);
-            let area = SVGBackend::with_string(&mut svg, pixels).into_drawing_area();
-            area.fill(&rgb(WHITE)).map_err(drawing)?;
-            for shape in &self.shapes {
-                draw(&area, shape)?;
-            }
-            area.present().map_err(drawing)?;
-        }
-        Ok(finish_svg(&svg, self.size, title))
+        ));
     }
 
     /// A line with a filled head.
@@ -270,70 +196,62 @@ impl Canvas {
         self.line(&[from, neck], BLACK, 0.25);
         self.fill(&[to, side(1.0), side(-1.0)], BLACK);
     }
+
+    /// The SVG text; `title` is for screen readers and file browsers.
+    pub fn finish(&self, title: &str) -> Result<String, ReportError> {
+        let mut svg = String::new();
+        {
+            let [width, height] = pixel(self.size).map(|c| c as u32);
+            let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
+            area.fill(&rgb(WHITE)).map_err(drawing)?;
+            for (shape, colour) in &self.shapes {
+                draw(&area, shape, rgb(*colour)).map_err(drawing)?;
+            }
+            area.present().map_err(drawing)?;
+        }
+        Ok(finish_svg(&svg, self.size, title))
+    }
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Failure<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>;
 
-fn draw(area: &Area<'_>, shape: &Shape) -> Result<(), ReportError> {
+fn draw<'a>(area: &Area<'a>, shape: &Shape, colour: RGBColor) -> Result<(), Failure<'a>> {
     let pairs =
-        |points: &[[i32; 2]]| -> Vec<(i32, i32)> { points.iter().map(|[x, y]| (*x, *y)).collect() };
+        |points: &[Pixel]| -> Vec<(i32, i32)> { points.iter().map(|[x, y]| (*x, *y)).collect() };
     match shape {
-        Shape::Line {
-            points,
-            colour,
-            width,
-        } => area.draw(&PathElement::new(
+        Shape::Line(points, width) => area.draw(&PathElement::new(
             pairs(points),
-            rgb(*colour).stroke_width(*width),
+            colour.stroke_width(*width),
         )),
-        Shape::Fill { points, colour } => area.draw(&Polygon::new(pairs(points), rgb(*colour))),
-        Shape::Circle {
-            centre,
-            radius,
-            colour,
-        } => area.draw(&Circle::new(
-            (centre[0], centre[1]),
-            *radius,
-            rgb(*colour).filled(),
-        )),
-        Shape::Text {
-            text,
-            at,
-            size_pt,
-            anchor,
-            colour,
-            upwards,
-        } => {
+        Shape::Fill(points) => area.draw(&Polygon::new(pairs(points), colour)),
+        Shape::Disc([x, y], radius) => area.draw(&Circle::new((*x, *y), *radius, colour.filled())),
+        Shape::Text(text, at, size_pt, anchor) => {
             let size = size_pt * MM_PER_PT * PX_PER_MM * FONT_DIVISOR;
-            let horizontal = match anchor {
-                Anchor::Start => HPos::Left,
-                Anchor::Middle => HPos::Center,
-                Anchor::End => HPos::Right,
+            let (place, turn) = match anchor {
+                Anchor::Start => (HPos::Left, FontTransform::None),
+                Anchor::Middle => (HPos::Center, FontTransform::None),
+                Anchor::End => (HPos::Right, FontTransform::None),
+                Anchor::Upwards => (HPos::Center, FontTransform::Rotate270),
             };
-            let mut font = (FONTS, size).into_font();
-            if *upwards {
-                font = font.transform(FontTransform::Rotate270);
-            }
-            let style = font
-                .color(&rgb(*colour))
-                .pos(Pos::new(horizontal, VPos::Center));
+            let font = (FONTS, size).into_font().transform(turn);
+            let style = font.color(&colour).pos(Pos::new(place, VPos::Center));
             area.draw_text(text, &style, (at[0], at[1]))
         }
     }
-    .map_err(drawing)
 }
 
 fn drawing<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> ReportError {
     ReportError::Drawing(error.to_string())
 }
 
-fn rgb(colour: Rgb) -> RGBColor {
-    RGBColor(colour[0], colour[1], colour[2])
+fn rgb([r, g, b]: Rgb) -> RGBColor {
+    RGBColor(r, g, b)
 }
 
 /// Size in millimetres, a title, text elements on one line each (a line end would count as a space), subscripts.
 fn finish_svg(svg: &str, size: [f64; 2], title: &str) -> String {
-    let title = title
+    let title = plain(title)
         .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;");
@@ -343,10 +261,8 @@ fn finish_svg(svg: &str, size: [f64; 2], title: &str) -> String {
         if line.starts_with("<svg ") {
             let view = line.find("viewBox").map_or("", |at| &line[at..]);
             out += &format!(
-                "<svg width=\"{:.2}mm\" height=\"{:.2}mm\" stroke-linejoin=\"round\" {view}\n<title>{}</title>\n",
-                size[0],
-                size[1],
-                plain(&title)
+                "<svg width=\"{:.2}mm\" height=\"{:.2}mm\" stroke-linejoin=\"round\" {view}\n<title>{title}</title>\n",
+                size[0], size[1],
             );
         } else if line.starts_with("<text ") {
             // Without this a viewer drops the space behind a subscript.
@@ -362,10 +278,12 @@ fn finish_svg(svg: &str, size: [f64; 2], title: &str) -> String {
 }
 
 fn font_size(element: &str) -> f64 {
-    element
+    let rest = element
         .split_once("font-size=\"")
-        .and_then(|(_, rest)| rest.split_once('"'))
-        .and_then(|(size, _)| size.parse().ok())
+        .map_or("", |(_, rest)| rest);
+    rest.split('"')
+        .next()
+        .and_then(|size| size.parse().ok())
         .unwrap_or(PX_PER_MM)
 }
 
@@ -398,18 +316,15 @@ fn styled(text: &str, size: f64) -> String {
 
 /// Estimated width of a text [mm]; a little generous, since the font is the reader's.
 pub fn text_width(text: &str, size_pt: f64) -> f64 {
-    let em: f64 = text
-        .chars()
-        .map(|c| match c {
-            SUB..=ITALIC_END => 0.0,
-            'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.3,
-            ' ' | 't' | 'f' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.38,
-            'm' | 'w' | 'M' | 'W' | '=' | '×' | '−' => 0.85,
-            '⁰' | '¹' | '²' | '³' | '⁴'..='⁹' | '⁻' => 0.42,
-            _ => 0.62,
-        })
-        .sum();
-    em * size_pt * MM_PER_PT
+    let em = text.chars().map(|c| match c {
+        SUB..=ITALIC_END => 0.0,
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.3,
+        ' ' | 't' | 'f' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.38,
+        'm' | 'w' | 'M' | 'W' | '=' | '×' | '−' => 0.85,
+        '⁰' | '¹' | '²' | '³' | '⁴'..='⁹' | '⁻' => 0.42,
+        _ => 0.62,
+    });
+    em.sum::<f64>() * size_pt * MM_PER_PT
 }
 
 /// The size, at most `size_pt`, at which a text is at most `width` [mm] wide; never below 5 pt.
@@ -417,49 +332,56 @@ pub fn fitting_size(text: &str, size_pt: f64, width: f64) -> f64 {
     (size_pt * width / text_width(text, size_pt)).clamp(5.0, size_pt)
 }
 
-/// The text cut with an ellipsis so that it is at most `width` [mm] wide.
-pub fn fitted(text: &str, size_pt: f64, width: f64) -> String {
-    let mut kept: String = text.to_owned();
-    if text_width(&kept, size_pt) <= width {
-        return kept;
-    }
-    while !kept.is_empty() && text_width(&kept, size_pt) + text_width("m", size_pt) > width {
-        kept.pop();
-    }
-    kept + "…"
-}
-
-/// Height that a caption takes [mm].
-pub fn caption_height(lines: &[String]) -> f64 {
-    2.0 + CAPTION_MM * lines.len() as f64
-}
-
-/// The text broken at line ends and after commas into lines of at most `width` [mm].
+/// The text broken at its line ends and at spaces into lines of at most `width` [mm].
 pub fn wrapped(text: &str, size_pt: f64, width: f64) -> Vec<String> {
-    let paragraphs = text.split('\n');
-    paragraphs
-        .flat_map(|paragraph| wrapped_paragraph(paragraph, size_pt, width))
-        .collect()
-}
-
-fn wrapped_paragraph(text: &str, size_pt: f64, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for part in text.split(", ").filter(|part| !part.is_empty()) {
-        match lines.last_mut() {
-            Some(line) if text_width(&format!("{line}, {part},"), size_pt) <= width => {
-                *line += ", ";
-                *line += part;
-            }
-            last => {
-                if let Some(line) = last {
-                    line.push(',');
-                }
-                lines.push(part.to_owned());
+    let mut lines = Vec::new();
+    for paragraph in text.split('\n').filter(|p| !p.is_empty()) {
+        let mut line = String::new();
+        for word in paragraph.split(' ') {
+            let longer = format!("{line} {word}");
+            if line.is_empty() {
+                line = word.to_owned();
+            } else if text_width(&longer, size_pt) <= width {
+                line = longer;
+            } else {
+                lines.push(std::mem::replace(&mut line, word.to_owned()));
             }
         }
+        lines.push(line);
     }
     lines
-        .iter()
-        .map(|line| fitted(line, size_pt, width))
-        .collect()
+}
+
+/// Title and caption above a figure.
+pub struct Head {
+    title: Vec<String>,
+    caption: Vec<String>,
+}
+
+impl Head {
+    /// Broken into lines for a figure of this width [mm].
+    pub fn new(title: &str, caption: &str, width: f64) -> Self {
+        let lines = |text, size| wrapped(text, size, width - 2.0 * MARGIN_MM);
+        Self {
+            title: lines(title, LABEL_PT),
+            caption: lines(caption, SMALL_PT),
+        }
+    }
+
+    /// Room that it takes [mm].
+    pub fn height(&self) -> f64 {
+        1.5 + TITLE_MM * self.title.len() as f64 + CAPTION_MM * self.caption.len() as f64
+    }
+
+    pub fn draw(&self, canvas: &mut Canvas) {
+        let mut y = 2.8;
+        for line in &self.title {
+            canvas.text(line, [MARGIN_MM, y], LABEL_PT, Anchor::Start, BLACK);
+            y += TITLE_MM;
+        }
+        for line in &self.caption {
+            canvas.text(line, [MARGIN_MM, y - 0.3], SMALL_PT, Anchor::Start, GREY);
+            y += CAPTION_MM;
+        }
+    }
 }

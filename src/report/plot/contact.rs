@@ -4,19 +4,14 @@
 //! what is behind it as a body; otherwise the whole solid is an outline. Status is told by tint and marker.
 
 use super::axis::prefixed;
-use super::bands::{Pixel, Region};
-use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, SMALL_PT, TICK_PT, Width, caption_height, pixel, wrapped,
-};
-use super::colour::{BLACK, GREY, Rgb};
-use super::contour::{Box2, stroke};
-use super::field::{DISPLACEMENT, Magnification, full_caption, point_vector};
-use super::opened_solid::{Lookup, OpenedSolid, Plane, dot, sum};
-use super::solid::{Deformed, Sheet, draw_triad, project};
-use super::style::{draw_marker, status_marker};
+use super::bands::Region;
+use super::canvas::{Anchor, COLUMN, Canvas, Head, Pixel, SMALL_PT, TICK_PT, italic, pixel};
+use super::mesh::{Box2, DISPLACEMENT, point_vector, sides, stroke};
+use super::solid::{OpenedSolid, Plane, dot, normal, project, sum};
+use super::style::{BLACK, GREY, Rgb, draw_marker, status_marker};
 use crate::model::field_mesh::{CellShape, FieldMesh, FieldStep};
 use crate::report::ReportError;
-use crate::report::number::significant;
+use crate::report::number::{fixed, significant};
 
 /// Status by its value in the point scalar `status`, and its tint; in grey the tints are 1, 0.5 and 0.8.
 const STATUS: [(&str, Rgb); 3] = [
@@ -25,8 +20,9 @@ const STATUS: [(&str, Rgb); 3] = [
     ("slip", [244, 200, 120]),
 ];
 
-/// Least distance of markers [mm].
+/// Least distance of markers, size of one [mm].
 const APART_MM: f64 = 3.4;
+const MARKER_MM: f64 = 0.85;
 /// Length of the longest arrow, unless it points to the viewer [mm].
 const ARROW_MM: f64 = 5.0;
 /// Arrows shorter than this fraction of the longest are left out.
@@ -36,74 +32,88 @@ const ROUND_OFF: f64 = 1e-10;
 const LEGEND_MM: f64 = 5.0;
 
 /// Open, stick and slip on the crack of a solid with arrows for its tangential jump, or for the tangential contact traction
-/// on side 1 where nothing slips.
+/// on side 1 where nothing slips; `run` is small text above.
 ///
 /// # Errors
 /// [`ReportError::FieldMesh`] when the body is not 3D, the crack has no facets, or either lacks a field.
-pub fn contact_status(
-    step: &FieldStep,
-    magnification: Magnification,
-    caption: &str,
-) -> Result<String, ReportError> {
-    let (body, crack) = (&step.body, &step.crack);
-    let shape = Deformed::new(body, magnification)?;
-    let displacement = point_vector(body, DISPLACEMENT)?;
+pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError> {
+    let crack = &step.crack;
     let plane =
         Plane::of(crack).ok_or_else(|| ReportError::field_mesh("crack", "no facets".into()))?;
-    let parts = OpenedSolid::new(body, displacement, &shape, &plane);
+    let solid = OpenedSolid::new(&step.body, &plane)?;
     let face = Face::new(crack, &plane)?;
-    let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
+    let shown = Box2::around(solid.places.iter().map(|p| project(*p)))
         .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
-
-    let width = Width::Column.mm();
-    let scale = ((width - 6.0) / shown.width()).min(75.0 / shown.height());
-    let caption = full_caption(caption, shape.factor);
-    let lines = wrapped(&caption, CAPTION_PT, width - 3.0);
-    let bottom = caption_height(&lines) + 2.0 + scale * shown.height();
-    let sheet = Sheet {
-        left: 0.5 * (width - scale * shown.width()),
-        bottom,
-        shown,
-        scale,
+    let scale = ((COLUMN - 6.0) / shown.width()).min(75.0 / shown.height());
+    let title = face.title();
+    let factor = significant(solid.factor, 1);
+    let head = Head::new(&title, &format!("{run}, deformation ×{factor}"), COLUMN);
+    let bottom = head.height() + 2.0 + scale * shown.height();
+    let left = 0.5 * (COLUMN - scale * shown.width());
+    let paper = |place: [f64; 3]| {
+        let [x, y] = project(place);
+        [
+            left + scale * (x - shown.low[0]),
+            bottom - scale * (y - shown.low[1]),
+        ]
     };
-    let lookup = Lookup::new(body, displacement, &parts.behind);
-    let places: Vec<[f64; 3]> = crack
-        .points
-        .iter()
-        .map(|x| sum(*x, shape.factor, lookup.at(*x)))
-        .collect();
+    let places: Vec<[f64; 3]> = crack.points.iter().map(|x| solid.moved(*x)).collect();
     // Beside or below the body, whichever corner it leaves free.
-    let triad = [width - 9.0, bottom + 1.0];
+    let triad = [COLUMN - 9.0, bottom + 1.0];
     let legend = bottom + 4.0;
-    let height = (legend + LEGEND_MM * face.legend_rows() as f64).max(triad[1] + 4.0);
-    let mut canvas = Canvas::new(width, height);
-    canvas.caption(&lines);
-
-    let corner = |p: usize| pixel(sheet.at(shape.places[p]));
-    let hidden = |seen: bool| {
-        let edges = parts.edges.iter().filter(move |edge| edge.1 == seen);
-        edges.map(|edge| edge.0).collect::<Vec<_>>()
+    let rows = if face.largest > 0.0 { 2.0 } else { 1.0 };
+    let mut canvas = Canvas::new(COLUMN, (legend + LEGEND_MM * rows).max(triad[1] + 4.0));
+    head.draw(&mut canvas);
+    let corner = |p: usize| pixel(paper(solid.places[p]));
+    let edges = |seen: bool| {
+        solid
+            .edges
+            .iter()
+            .filter(move |edge| edge.1 == seen)
+            .map(|edge| edge.0)
     };
-    for [a, b] in hidden(false) {
-        let ends = [a, b].map(|p| sheet.at(shape.places[p]));
-        canvas.dashed(&ends, GREY, 0.1, &[0.6, 0.6]);
+    for [a, b] in edges(false) {
+        canvas.dashed(
+            &[paper(solid.places[a]), paper(solid.places[b])],
+            GREY,
+            0.1,
+            &[0.6, 0.6],
+        );
     }
-    for patch in &parts.body {
-        let normal = plane_normal(&patch.faces[0], &shape.places);
-        for points in &patch.faces {
-            canvas.fill_region(
-                &[points.iter().map(|p| corner(*p)).collect()],
-                shade(normal),
-            );
-        }
-        stroke(&mut canvas, &patch.outline, corner, GREY, 0.05);
+    for points in &solid.body {
+        canvas.fill_region(
+            &[points.iter().map(|p| corner(*p)).collect()],
+            shade(normal(&solid.places, points)),
+        );
+        stroke(
+            &mut canvas,
+            &sides(points).collect::<Vec<_>>(),
+            corner,
+            GREY,
+            0.05,
+        );
     }
-    face.fill(&mut canvas, |p| sheet.at(places[p]));
-    stroke(&mut canvas, &hidden(true), corner, GREY, 0.15);
-    face.marks(&mut canvas, &places, &sheet);
+    face.fill(&mut canvas, |p| paper(places[p]));
+    stroke(
+        &mut canvas,
+        &edges(true).collect::<Vec<_>>(),
+        corner,
+        GREY,
+        0.15,
+    );
+    face.marks(&mut canvas, &places, paper, scale);
     face.legend(&mut canvas, [3.0, legend]);
-    draw_triad(&mut canvas, triad);
-    canvas.finish(&format!("Contact status: {caption}"))
+    for (direction, name) in [
+        ([1.0, 0.0, 0.0], "x"),
+        ([0.0, 1.0, 0.0], "y"),
+        ([0.0, 0.0, 1.0], "z"),
+    ] {
+        let [x, y] = project(direction);
+        let at = |length: f64| [triad[0] + length * x, triad[1] - length * y];
+        canvas.line(&[triad, at(5.0)], BLACK, 0.25);
+        canvas.text(&italic(name), at(7.0), TICK_PT, Anchor::Middle, BLACK);
+    }
+    canvas.finish(&format!("{title}: {run}"))
 }
 
 /// The crack surface with what is drawn on it.
@@ -122,14 +132,16 @@ struct Face<'a> {
 impl<'a> Face<'a> {
     fn new(crack: &'a FieldMesh, plane: &Plane) -> Result<Self, ReportError> {
         let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
-        let status = status.map(|(_, values)| values.as_slice()).unwrap_or(&[]);
+        let status = status.map_or(&[][..], |(_, values)| values);
         if status.len() != crack.points.len() {
             let reason = format!("{} values for {} points", status.len(), crack.points.len());
             return Err(ReportError::field_mesh("status", reason));
         }
         let tangential = |name: &str| -> Result<Vec<[f64; 3]>, ReportError> {
-            let vectors = point_vector(crack, name)?.iter();
-            Ok(vectors.map(|v| plane.tangential(*v)).collect())
+            Ok(point_vector(crack, name)?
+                .iter()
+                .map(|v| plane.tangential(*v))
+                .collect())
         };
         let longest = |vectors: &[[f64; 3]]| {
             let lengths = vectors.iter().map(|v| dot(*v, *v).sqrt());
@@ -144,43 +156,63 @@ impl<'a> Face<'a> {
         let (arrows, what, unit) = if longest(&jump) > ROUND_OFF * size {
             (jump, "slip of side 1 against side 2", "m")
         } else {
-            let traction = tangential("contact_traction_pa")?;
-            (traction, "tangential traction on side 1", "Pa")
+            (
+                tangential("contact_traction_pa")?,
+                "tangential traction on side 1",
+                "Pa",
+            )
         };
         let largest = longest(&arrows);
         let (factor, unit) = prefixed(largest, unit);
-        let number = significant(largest * factor, 3);
+        let label = format!(
+            "{what}, longest {} {unit}",
+            significant(largest * factor, 3)
+        );
         let index = |value: &f64| (*value as usize).min(STATUS.len() - 1);
         Ok(Self {
             crack,
             status: status.iter().map(index).collect(),
             arrows,
             largest,
-            label: format!("{what}, longest {number} {unit}"),
+            label,
         })
+    }
+
+    /// How much of the crack is in which status, by points.
+    fn title(&self) -> String {
+        let count = |index: usize| self.status.iter().filter(|s| **s == index).count();
+        let verbs = [(2, "slips"), (1, "sticks"), (0, "is open")];
+        let share = |n: usize| fixed(100.0 * n as f64 / self.status.len().max(1) as f64, 0);
+        let told = verbs.into_iter().filter(|(index, _)| count(*index) > 0);
+        let told: Vec<String> = told
+            .map(|(i, verb)| format!("{} % {verb}", share(count(i))))
+            .collect();
+        match &told[..] {
+            [_] => format!("The whole crack {}", told[0].trim_start_matches("100 % ")),
+            _ => format!("Of the crack {}", told.join(", ")),
+        }
     }
 
     /// Fills the facets: the part of a facet at each corner has that corner's status.
     fn fill(&self, canvas: &mut Canvas, at: impl Fn(usize) -> [f64; 2]) {
         let mut regions: [Region; 3] = std::array::from_fn(|_| Region::default());
-        let facets = self
+        for facet in self
             .crack
             .cells
             .iter()
-            .filter(|c| c.shape == CellShape::Polygon);
-        for facet in facets {
+            .filter(|c| c.shape == CellShape::Polygon)
+        {
             let corners: Vec<[f64; 2]> = facet.points.iter().map(|p| at(*p)).collect();
             let n = corners.len();
             let mean = |points: &[[f64; 2]]| -> [f64; 2] {
-                std::array::from_fn(|c| {
-                    points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64
-                })
+                [0, 1].map(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64)
             };
-            let middle = mean(&corners);
             for (i, point) in facet.points.iter().enumerate() {
                 let before = mean(&[corners[i], corners[(i + n - 1) % n]]);
                 let after = mean(&[corners[i], corners[(i + 1) % n]]);
-                let part: Vec<Pixel> = [before, corners[i], after, middle].map(pixel).to_vec();
+                let part: Vec<Pixel> = [before, corners[i], after, mean(&corners)]
+                    .map(pixel)
+                    .to_vec();
                 regions[self.status[*point]].add(&part);
             }
         }
@@ -194,74 +226,62 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// Markers and arrows, few enough to be told apart.
-    fn marks(&self, canvas: &mut Canvas, places: &[[f64; 3]], sheet: &Sheet) {
+    /// Markers and arrows, few enough to be told apart; `scale`: millimetres per metre.
+    fn marks(
+        &self,
+        canvas: &mut Canvas,
+        places: &[[f64; 3]],
+        paper: impl Fn([f64; 3]) -> [f64; 2],
+        scale: f64,
+    ) {
         let mut taken: Vec<[f64; 2]> = Vec::new();
-        let mut chosen = Vec::new();
+        let unit = ARROW_MM / scale / self.largest.max(f64::MIN_POSITIVE);
         for (point, place) in places.iter().enumerate() {
-            let at = sheet.at(*place);
-            let free = |other: &[f64; 2]| (at[0] - other[0]).hypot(at[1] - other[1]) >= APART_MM;
-            if taken.iter().all(free) {
-                taken.push(at);
-                chosen.push(point);
+            let at = paper(*place);
+            if taken
+                .iter()
+                .any(|other| (at[0] - other[0]).hypot(at[1] - other[1]) < APART_MM)
+            {
+                continue;
             }
-        }
-        let unit = ARROW_MM / sheet.scale / self.largest.max(f64::MIN_POSITIVE);
-        for point in chosen {
-            let (from, v) = (sheet.at(places[point]), self.arrows[point]);
+            taken.push(at);
+            let v = self.arrows[point];
             if dot(v, v).sqrt() >= SHORTEST * self.largest && self.largest > 0.0 {
-                let to = sheet.at(sum(places[point], unit, v));
-                canvas.arrow(from, to);
+                canvas.arrow(at, paper(sum(*place, unit, v)));
             }
-            let (marker, filled) = status_marker(STATUS[self.status[point]].0);
-            draw_marker(canvas, from, marker, filled, BLACK);
+            draw_marker(
+                canvas,
+                at,
+                status_marker(STATUS[self.status[point]].0),
+                MARKER_MM,
+                BLACK,
+            );
         }
-    }
-
-    fn legend_rows(&self) -> usize {
-        if self.largest > 0.0 { 2 } else { 1 }
     }
 
     /// Status in the first row, the arrow in the second.
     fn legend(&self, canvas: &mut Canvas, [left, top]: [f64; 2]) {
         let mut x = left;
         for (index, (name, tint)) in STATUS.into_iter().enumerate() {
-            if !self.status.contains(&index) {
-                continue;
+            if self.status.contains(&index) {
+                canvas.boxed([x, top - 1.6], [x + 6.0, top + 1.6], tint, 0.1);
+                draw_marker(
+                    canvas,
+                    [x + 3.0, top],
+                    status_marker(name),
+                    MARKER_MM,
+                    BLACK,
+                );
+                canvas.text(name, [x + 7.5, top], TICK_PT, Anchor::Start, BLACK);
+                x += 19.0;
             }
-            let corners = [
-                [x, top - 1.6],
-                [x + 6.0, top - 1.6],
-                [x + 6.0, top + 1.6],
-                [x, top + 1.6],
-                [x, top - 1.6],
-            ];
-            canvas.fill(&corners, tint);
-            canvas.line(&corners, BLACK, 0.1);
-            let (marker, filled) = status_marker(name);
-            draw_marker(canvas, [x + 3.0, top], marker, filled, BLACK);
-            canvas.text(name, [x + 7.5, top], TICK_PT, Anchor::Start, BLACK);
-            x += 19.0;
         }
-        if self.legend_rows() > 1 {
+        if self.largest > 0.0 {
             let y = top + LEGEND_MM;
             canvas.arrow([left + 0.5, y], [left + 5.5, y]);
-            let at = [left + 7.5, y];
-            canvas.text(&self.label, at, SMALL_PT, Anchor::Start, BLACK);
+            canvas.text(&self.label, [left + 7.5, y], SMALL_PT, Anchor::Start, BLACK);
         }
     }
-}
-
-/// Unit normal of a face on its deformed place.
-fn plane_normal(face: &[usize], places: &[[f64; 3]]) -> [f64; 3] {
-    let edge = |i: usize| sum(places[face[i % face.len()]], -1.0, places[face[0]]);
-    let (a, b) = (edge(1), edge(2));
-    let normal: [f64; 3] = std::array::from_fn(|c| {
-        let (d, e) = ((c + 1) % 3, (c + 2) % 3);
-        a[d] * b[e] - a[e] * b[d]
-    });
-    let length = dot(normal, normal).sqrt().max(f64::MIN_POSITIVE);
-    normal.map(|c| c / length)
 }
 
 /// Grey of a face: light from above, a little from the right.

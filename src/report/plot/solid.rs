@@ -1,251 +1,272 @@
-//! A displacement component or von Mises' stress on the deformed boundary of a solid, seen along the diagonal of the axes.
+//! A solid around a flat crack inside it, as it is drawn: what is behind the crack as a body, the rest as edges.
 //!
-//! The boundary is drawn from back to front (painter's algorithm), patches that look away are left out. The
-//! view is isometric: x points to the lower left, y to the lower right, z up.
+//! The view is isometric, along the diagonal of the axes: x points to the lower left, y to the lower right, z up.
 
-use super::axis::range;
-use super::bands::{self, Triangle};
-use super::canvas::{
-    Anchor, CAPTION_PT, Canvas, TICK_PT, Width, caption_height, italic, pixel, wrapped,
-};
-use super::colour::BLACK;
-use super::contour::{Box2, split, stroke};
-use super::field::{DISPLACEMENT, Field, Magnification, STRESS, full_caption, point_vector};
-use super::outline::Weld;
-use super::surface::{self, Patch};
-use crate::model::field_mesh::FieldMesh;
+use super::mesh::{deformed, sides};
+use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
+use std::collections::BTreeMap;
 
-/// Component of a vector.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis3 {
-    /// First.
-    X,
-    /// Second.
-    Y,
-    /// Third.
-    Z,
-}
-
-impl Axis3 {
-    fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        }
-    }
-}
+type Vec3 = [f64; 3];
 
 /// Direction to the viewer.
-pub const VIEW: [f64; 3] = [1.0, 1.0, 1.0];
-/// Height of the colour bar [mm].
-const BAR_MM: f64 = 40.0;
-/// Room for the axes below it [mm].
-const TRIAD_MM: f64 = 16.0;
+const VIEW: Vec3 = [1.0, 1.0, 1.0];
+/// Faces whose normals make an angle with a larger cosine meet in no edge.
+const SMOOTH: f64 = 0.9;
+/// Points nearer than this fraction of the body's size to a side of its box lie on it, or in one place.
+const NEAR: f64 = 1e-6;
 
-/// One component of `displacement_m` of a 3D picture as filled bands on the deformed boundary.
-///
-/// # Errors
-/// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks the vector.
-pub fn solid_displacement(
-    picture: &FieldMesh,
-    component: Axis3,
-    magnification: Magnification,
-    caption: &str,
-) -> Result<String, ReportError> {
-    let displacement = point_vector(picture, DISPLACEMENT)?;
-    let field = Field::displacement(displacement, component as usize);
-    let title = format!("Displacement {}", component.name());
-    solid(picture, &field, magnification, &title, caption)
+/// Faces of a hexahedron, corners in VTK's order, normals outwards.
+const HEXAHEDRON: [&[usize]; 6] = [
+    &[0, 3, 2, 1],
+    &[4, 5, 6, 7],
+    &[0, 1, 5, 4],
+    &[1, 2, 6, 5],
+    &[2, 3, 7, 6],
+    &[3, 0, 4, 7],
+];
+/// Faces of a tetrahedron.
+const TETRA: [&[usize]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+
+/// Isometric projection: right and up on the paper [m].
+pub fn project([x, y, z]: Vec3) -> [f64; 2] {
+    [(y - x) / 2f64.sqrt(), (2.0 * z - x - y) / 6f64.sqrt()]
 }
 
-/// von Mises' equivalent stress of a 3D picture as filled bands on the deformed boundary; needs the cell scalar
-/// `von_mises_pa`, of which points show the mean over their cells.
-///
-/// # Errors
-/// Those of [`solid_displacement`].
-pub fn solid_von_mises(
-    picture: &FieldMesh,
-    magnification: Magnification,
-    caption: &str,
-) -> Result<String, ReportError> {
-    let field = Field::von_mises(picture)?;
-    let caption = format!("{caption}, {STRESS}");
-    solid(picture, &field, magnification, "Stress", &caption)
+pub fn dot(a: Vec3, b: Vec3) -> f64 {
+    (0..3).map(|c| a[c] * b[c]).sum()
 }
 
-/// A field on the deformed boundary.
-fn solid(
-    picture: &FieldMesh,
-    field: &Field,
-    magnification: Magnification,
-    title: &str,
-    caption: &str,
-) -> Result<String, ReportError> {
-    let shape = Deformed::new(picture, magnification)?;
-    let shown = Box2::around(shape.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
-    let width = Width::Column.mm();
-    let scale = ((width - 24.0) / shown.width()).min(70.0 / shown.height());
-    let height = scale * shown.height();
-    let caption = full_caption(caption, shape.factor);
-    let lines = wrapped(&caption, CAPTION_PT, width - 3.0);
-    let top = caption_height(&lines) + 4.0;
-    let bottom = top + height.max(BAR_MM + TRIAD_MM);
-    let sheet = Sheet {
-        shown,
-        scale,
-        left: 3.0,
-        bottom,
-    };
-    let mut canvas = Canvas::new(width, bottom + 4.0);
-    let corner = |p: usize| (pixel(sheet.at(shape.places[p])), field.values[p]);
-    for patch in shape.visible() {
-        let triangles: Vec<Triangle> = patch
-            .faces
-            .iter()
-            .flat_map(|face| split(face, corner))
-            .collect();
-        bands::fill(&mut canvas, &triangles, &field.levels, 0.0);
-        // The mesh line also covers the hairline between neighbouring patches.
-        stroke(&mut canvas, &patch.outline, |p| corner(p).0, BLACK, 0.05);
+/// a + s b.
+pub fn sum(a: Vec3, s: f64, b: Vec3) -> Vec3 {
+    std::array::from_fn(|c| a[c] + s * b[c])
+}
+
+fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|c| a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3])
+}
+
+/// Unit normal of a polygon, also of one that is not quite plane (Newell); not finite without area.
+pub fn normal(points: &[Vec3], polygon: &[usize]) -> Vec3 {
+    unit(area(points, polygon))
+}
+
+fn unit(v: Vec3) -> Vec3 {
+    v.map(|c| c / dot(v, v).sqrt())
+}
+
+/// Normal of a polygon, twice as long as its area.
+fn area(points: &[Vec3], polygon: &[usize]) -> Vec3 {
+    // About the first point, for the digits.
+    let at = |p: usize| sum(points[p], -1.0, points[polygon[0]]);
+    sides(polygon).fold([0.0; 3], |total, [a, b]| {
+        sum(total, 1.0, cross(at(a), at(b)))
+    })
+}
+
+/// Flat crack: a point and the unit normal that points to the viewer.
+pub struct Plane {
+    point: Vec3,
+    normal: Vec3,
+}
+
+impl Plane {
+    /// Mean plane of the facets of a crack; none without area.
+    pub fn of(crack: &FieldMesh) -> Option<Self> {
+        let (mut normal, mut point, mut count) = ([0.0; 3], [0.0; 3], 0.0);
+        for polygon in crack.cells.iter().filter(|c| c.shape == CellShape::Polygon) {
+            let own = area(&crack.points, &polygon.points);
+            // Facets may run either way round.
+            normal = sum(normal, if dot(own, normal) < 0.0 { -1.0 } else { 1.0 }, own);
+            for p in &polygon.points {
+                point = sum(point, 1.0, crack.points[*p]);
+                count += 1.0;
+            }
+        }
+        let sign = if dot(normal, VIEW) < 0.0 { -1.0 } else { 1.0 };
+        let found = Self {
+            point: point.map(|c| c / count),
+            normal: unit(normal).map(|c| sign * c),
+        };
+        (dot(normal, normal) > 0.0).then_some(found)
     }
 
-    canvas.caption(&lines);
-    let bar = [width - 15.0, bottom - TRIAD_MM];
-    bands::colour_bar(&mut canvas, &field.levels, bar, BAR_MM, &field.label);
-    draw_triad(&mut canvas, [width - 10.5, bottom - 3.0]);
-    canvas.finish(&format!("{title}: {caption}"))
+    /// The part of a vector in the plane.
+    pub fn tangential(&self, v: Vec3) -> Vec3 {
+        sum(v, -dot(v, self.normal), self.normal)
+    }
 }
 
-/// The boundary of a solid on its deformed shape.
-pub struct Deformed {
+/// A solid opened at a crack, on its deformed shape.
+pub struct OpenedSolid {
     /// Magnification of the displacement.
     pub factor: f64,
     /// Deformed positions of the points [m].
-    pub places: Vec<[f64; 3]>,
-    pub patches: Vec<Patch>,
+    pub places: Vec<Vec3>,
+    /// Faces behind the crack that look at the viewer, from back to front; none where the crack parts nothing.
+    pub body: Vec<Vec<usize>>,
+    /// Edges of the rest: ends, and whether they are in sight.
+    pub edges: Vec<([usize; 2], bool)>,
+    /// Points of the part behind the crack, or all: reference and deformed positions [m].
+    behind: Vec<[Vec3; 2]>,
+    slack: f64,
 }
 
-impl Deformed {
+impl OpenedSolid {
+    /// Parts a solid at a crack.
+    ///
     /// # Errors
-    /// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cells, or lacks `displacement_m`.
-    pub fn new(picture: &FieldMesh, magnification: Magnification) -> Result<Self, ReportError> {
+    /// [`ReportError::FieldMesh`] when the picture is not 3D, has no solid cell or one with the wrong points, or lacks the
+    /// displacement.
+    pub fn new(picture: &FieldMesh, crack: &Plane) -> Result<Self, ReportError> {
         if picture.dim != 3 {
             let reason = format!("{} dimensions, a solid needs 3", picture.dim);
             return Err(ReportError::field_mesh("picture", reason));
         }
-        let displacement = point_vector(picture, DISPLACEMENT)?;
-        let patches = surface::boundary(picture, &Weld::new(picture, displacement))?;
-        let length = |u: &[f64; 3]| u.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let diagonal: [f64; 3] = std::array::from_fn(|c| {
-            range(picture.points.iter().map(|p| p[c])).map_or(0.0, |(low, high)| high - low)
-        });
-        let largest = displacement
-            .iter()
-            .map(length)
-            .filter(|u| u.is_finite())
-            .fold(0.0, f64::max);
-        let factor = magnification.factor(length(&diagonal), largest);
-        let moved = picture.points.iter().zip(displacement);
-        let places = moved.map(|(x, u)| std::array::from_fn(|c| x[c] + factor * u[c]));
+        let (places, factor) = deformed(picture)?;
+        let faces = boundary(picture)?;
+        let part = parts(picture);
+        let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+        for p in picture.cells.iter().flat_map(|cell| &cell.points) {
+            let distance = dot(sum(picture.points[*p], -1.0, crack.point), crack.normal);
+            *sums.entry(part[*p]).or_default() += distance;
+        }
+        let apart = sums.len() > 1;
+        let is_behind = |p: usize| !apart || sums.get(&part[p]).is_some_and(|total| *total < 0.0);
+        let values = |c: usize| picture.points.iter().map(move |p| p[c]);
+        let low: Vec3 = std::array::from_fn(|c| values(c).fold(f64::INFINITY, f64::min));
+        let high: Vec3 = std::array::from_fn(|c| values(c).fold(f64::NEG_INFINITY, f64::max));
+        let slack = NEAR * (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+        // Crack faces do not lie on the box around the body, nor does what the cells at a front leave open.
+        let on_box = |face: &&Vec<usize>| {
+            let on = |c: usize, end: f64| {
+                face.iter()
+                    .all(|p| (picture.points[*p][c] - end).abs() <= slack)
+            };
+            (0..3).any(|c| on(c, low[c]) || on(c, high[c]))
+        };
+        let seen = |face: &[usize]| dot(area(&places, face), VIEW) > 0.0;
+        let (mut body, open): (Vec<Vec<usize>>, Vec<Vec<usize>>) = faces
+            .into_iter()
+            .partition(|face| apart && is_behind(face[0]));
+        body.retain(|face| seen(face));
+        let depth = |face: &Vec<usize>| {
+            let total: f64 = face.iter().map(|p| dot(places[*p], VIEW)).sum();
+            total / face.len() as f64
+        };
+        body.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+        // Edges where faces meet under an angle, in sight if one of them looks at the viewer.
+        let mut meeting: BTreeMap<[usize; 2], (Vec<Vec3>, bool)> = BTreeMap::new();
+        for face in open.iter().filter(on_box) {
+            for [a, b] in sides(face) {
+                let (normals, any) = meeting.entry([a.min(b), a.max(b)]).or_default();
+                normals.push(normal(&picture.points, face));
+                *any |= seen(face);
+            }
+        }
+        let sharp = |normals: &[Vec3]| {
+            normals.len() == 1 || normals.iter().any(|n| dot(*n, normals[0]) < SMOOTH)
+        };
+        let edges = meeting
+            .into_iter()
+            .filter(|(_, (normals, _))| sharp(normals));
+        let edges = edges.map(|(edge, (_, seen))| (edge, seen)).collect();
+        let points = picture.points.iter().zip(&places).enumerate();
+        let behind =
+            points.filter(|(p, (_, place))| is_behind(*p) && place.iter().all(|c| c.is_finite()));
+        let behind = behind.map(|(_, (x, place))| [*x, *place]).collect();
         Ok(Self {
             factor,
-            places: places.collect(),
-            patches,
+            places,
+            body,
+            edges,
+            behind,
+            slack,
         })
     }
 
-    /// Whether a patch has a place and looks at the viewer.
-    pub fn faces_viewer(&self, patch: &Patch) -> bool {
-        let places = || patch.faces.iter().flatten().map(|p| self.places[*p]);
-        let first = patch.faces[0].iter().map(|p| project(self.places[*p]));
-        !patch.outline.is_empty() && places().all(finite) && twice_area(first) > 0.0
-    }
-
-    /// The patches that look at the viewer, from back to front.
-    pub fn visible(&self) -> Vec<&Patch> {
-        let mut visible: Vec<(f64, &Patch)> = self
-            .patches
+    /// Where a point of the crack goes with the part behind it: the mean over the body's points in its place, or with the
+    /// nearest one [m].
+    pub fn moved(&self, x: Vec3) -> Vec3 {
+        let away = |y: Vec3| {
+            let d = sum(x, -1.0, y);
+            dot(d, d).sqrt()
+        };
+        let nearest = self
+            .behind
             .iter()
-            .filter(|patch| self.faces_viewer(patch))
-            .map(|patch| {
-                let corners = patch.outline.iter().flatten();
-                let total: f64 = corners.map(|p| depth(self.places[*p])).sum();
-                (total / (2 * patch.outline.len()) as f64, patch)
-            })
-            .collect();
-        visible.sort_by(|a, b| a.0.total_cmp(&b.0));
-        visible.into_iter().map(|(_, patch)| patch).collect()
+            .map(|[y, _]| away(*y))
+            .fold(f64::INFINITY, f64::min);
+        let near = self
+            .behind
+            .iter()
+            .filter(|[y, _]| away(*y) <= nearest.max(self.slack));
+        let moves: Vec<Vec3> = near.map(|[y, place]| sum(*place, -1.0, *y)).collect();
+        let total = moves.iter().fold([0.0; 3], |total, u| sum(total, 1.0, *u));
+        sum(x, 1.0 / moves.len().max(1) as f64, total)
     }
 }
 
-/// Where the projection lies on paper.
-pub struct Sheet {
-    /// What is shown of the projection [m].
-    pub shown: Box2,
-    /// Millimetres per metre.
-    pub scale: f64,
-    /// Lower left corner [mm].
-    pub left: f64,
-    pub bottom: f64,
-}
-
-impl Sheet {
-    /// A place of the body on paper [mm].
-    pub fn at(&self, place: [f64; 3]) -> [f64; 2] {
-        let [x, y] = project(place);
-        [
-            self.left + self.scale * (x - self.shown.low[0]),
-            self.bottom - self.scale * (y - self.shown.low[1]),
-        ]
+/// Faces of exactly one solid cell, with outward normals.
+fn boundary(picture: &FieldMesh) -> Result<Vec<Vec<usize>>, ReportError> {
+    let mut found: BTreeMap<Vec<usize>, Vec<Vec<usize>>> = BTreeMap::new();
+    for (index, cell) in picture.cells.iter().enumerate() {
+        let (needed, faces): (usize, &[&[usize]]) = match cell.shape {
+            CellShape::Hexahedron => (8, &HEXAHEDRON),
+            CellShape::Tetra => (4, &TETRA),
+            _ => continue,
+        };
+        if cell.points.len() != needed || cell.points.iter().any(|p| *p >= picture.points.len()) {
+            return Err(ReportError::field_mesh(
+                "cells",
+                format!("cell {index} has wrong points"),
+            ));
+        }
+        // The points of a tetrahedron may come in either orientation.
+        let edge = |i: usize| {
+            sum(
+                picture.points[cell.points[i]],
+                -1.0,
+                picture.points[cell.points[0]],
+            )
+        };
+        let mirrored = needed == 4 && dot(edge(1), cross(edge(2), edge(3))) < 0.0;
+        for face in faces {
+            let mut points: Vec<usize> = face.iter().map(|i| cell.points[*i]).collect();
+            if mirrored {
+                points.reverse();
+            }
+            let mut set = points.clone();
+            set.sort_unstable();
+            found.entry(set).or_default().push(points);
+        }
+    }
+    match found.is_empty() {
+        true => Err(ReportError::field_mesh(
+            "cells",
+            "no hexahedron or tetrahedron".into(),
+        )),
+        false => Ok(found
+            .into_values()
+            .filter(|equal| equal.len() == 1)
+            .flatten()
+            .collect()),
     }
 }
 
-fn finite(place: [f64; 3]) -> bool {
-    place.iter().all(|c| c.is_finite())
-}
-
-/// Isometric projection: right and up on the paper [m].
-pub fn project([x, y, z]: [f64; 3]) -> [f64; 2] {
-    [(y - x) / 2f64.sqrt(), (2.0 * z - x - y) / 6f64.sqrt()]
-}
-
-/// Distance towards the viewer.
-fn depth([x, y, z]: [f64; 3]) -> f64 {
-    (x + y + z) / 3f64.sqrt()
-}
-
-/// Twice the area of a projected outline, positive if it runs counterclockwise, that is if its outward normal points to
-/// the viewer.
-fn twice_area(corners: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let corners: Vec<[f64; 2]> = corners.collect();
-    let n = corners.len();
-    let part = |i: usize| {
-        let (a, b) = (corners[i], corners[(i + 1) % n]);
-        a[0] * b[1] - b[0] * a[1]
-    };
-    (0..n).map(part).sum()
-}
-
-/// The three axes with their names.
-pub fn draw_triad(canvas: &mut Canvas, origin: [f64; 2]) {
-    const LENGTH: f64 = 5.0;
-    for (direction, name) in [
-        ([1.0, 0.0, 0.0], "x"),
-        ([0.0, 1.0, 0.0], "y"),
-        ([0.0, 0.0, 1.0], "z"),
-    ] {
-        let [x, y] = project(direction);
-        let at = |length: f64| [origin[0] + length * x, origin[1] - length * y];
-        canvas.line(&[origin, at(LENGTH)], BLACK, 0.25);
-        canvas.text(
-            &italic(name),
-            at(LENGTH + 2.0),
-            TICK_PT,
-            Anchor::Middle,
-            BLACK,
-        );
+/// Number of the connected part of every point: cells that share a point belong together.
+fn parts(picture: &FieldMesh) -> Vec<usize> {
+    fn root(parent: &mut [usize], mut p: usize) -> usize {
+        while parent[p] != p {
+            parent[p] = parent[parent[p]];
+            p = parent[p];
+        }
+        p
     }
+    let mut parent: Vec<usize> = (0..picture.points.len()).collect();
+    for pair in picture.cells.iter().flat_map(|cell| cell.points.windows(2)) {
+        let (a, b) = (root(&mut parent, pair[0]), root(&mut parent, pair[1]));
+        parent[a.max(b)] = a.min(b);
+    }
+    (0..parent.len()).map(|p| root(&mut parent, p)).collect()
 }

@@ -1,15 +1,58 @@
-//! How curves look: colours, dashes, widths, markers.
+//! How things look: colours, dashes, markers, and which methods stand out.
 
-use super::canvas::Canvas;
-use super::colour::{self, METHOD_COLOURS, Rgb, WHITE};
+use super::canvas::{Canvas, plain};
+use crate::run::registry::methods;
 
-const CURVE_MM: f64 = 0.3;
-/// 1.3 pt: equal for all methods.
-const METHOD_MM: f64 = 0.45;
-const MARKER_MM: f64 = 0.85;
+/// Red, green, blue.
+pub type Rgb = [u8; 3];
 
-/// Difference that can be seen, as a fraction of the range.
-const VISIBLE: f64 = 0.01;
+pub const BLACK: Rgb = [0, 0, 0];
+pub const WHITE: Rgb = [255, 255, 255];
+/// Captions and reference lines.
+pub const GREY: Rgb = [96, 96, 96];
+/// What stands behind: bands of agreeing methods, methods that do not stand out.
+pub const MIDDLE: Rgb = [165, 165, 165];
+/// Grid lines, undeformed outlines.
+pub const LIGHT: Rgb = [215, 215, 215];
+
+/// Okabe and Ito (2008) without the yellow, which vanishes on white paper.
+const CURVES: [Rgb; 6] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+];
+
+/// viridis (van der Walt and Smith 2015) at 0, 0.1, …, 1: its lightness rises steadily, so it orders in grey too.
+const VIRIDIS: [Rgb; 11] = [
+    [68, 1, 84],
+    [72, 36, 117],
+    [65, 68, 135],
+    [53, 95, 141],
+    [42, 120, 142],
+    [33, 145, 140],
+    [34, 168, 132],
+    [68, 191, 112],
+    [122, 209, 81],
+    [189, 223, 38],
+    [253, 231, 37],
+];
+
+/// Colour of a field at `fraction` of its range.
+pub fn field(fraction: f64) -> Rgb {
+    let position = fraction.clamp(0.0, 1.0) * 10.0;
+    let index = (position.floor() as usize).min(9);
+    between(VIRIDIS[index], VIRIDIS[index + 1], position - index as f64)
+}
+
+/// Mixture of two colours, `part` of the second.
+pub fn between(a: Rgb, b: Rgb, part: f64) -> Rgb {
+    std::array::from_fn(|c| {
+        (f64::from(a[c]) + part * (f64::from(b[c]) - f64::from(a[c]))).round() as u8
+    })
+}
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,51 +61,24 @@ pub enum Marker {
     Square,
     Triangle,
     Diamond,
-    Cross,
     TriangleDown,
+    Cross,
     Plus,
-    Star,
 }
 
-const MARKERS: [Marker; 8] = [
+const MARKERS: [Marker; 6] = [
     Marker::Disc,
     Marker::Square,
     Marker::Triangle,
     Marker::Diamond,
     Marker::TriangleDown,
-    Marker::Cross,
     Marker::Plus,
-    Marker::Star,
 ];
 
-/// Markers that are told from their filled twins, in an order in which they do not meet a twin of their own colour.
-const HOLLOW: [Marker; 5] = [
-    Marker::Diamond,
-    Marker::Disc,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::TriangleDown,
-];
+const MARKER_MM: f64 = 0.85;
 
-/// Dashes of exact methods by their round through the colours, and of approximate methods [mm].
-const ROUNDS: [&[f64]; 3] = [&[], &[3.0, 0.7, 0.7, 0.7], &[3.0, 0.7, 0.7, 0.7, 0.7, 0.7]];
-const APPROXIMATE: &[f64] = &[1.5, 0.9];
-
-/// Dashes of curves that lie on each other and take turns [mm]: the drawn parts of one fill gaps of the others.
-const TURNS: [&[f64]; 3] = [&[1.7, 3.4], &[0.0, 1.7, 1.7, 1.7], &[0.0, 3.4, 1.7, 0.0]];
-
-/// Dash patterns: drawn and left out in turn [mm].
-const DASHES: [&[f64]; 7] = [
-    &[],
-    &[2.2, 1.0],
-    &[0.7, 0.7],
-    &[3.0, 0.8, 0.7, 0.8],
-    &[1.3, 0.6],
-    &[4.0, 1.0],
-    &[2.0, 0.6, 0.6, 0.6, 0.6, 0.6],
-];
-
-/// Dashes [mm], marker, its size [mm] and filling of curves that may lie on each other.
+/// Dashes [mm], marker, its size [mm] and filling of curves that may lie on each other: what is drawn later leaves the
+/// earlier ones visible.
 const OVER: [(&[f64], Marker, f64, bool); 4] = [
     (&[], Marker::Disc, 1.35, false),
     (&[4.0, 0.8], Marker::Square, 0.95, false),
@@ -70,214 +86,146 @@ const OVER: [(&[f64], Marker, f64, bool); 4] = [
     (&[0.8, 1.6], Marker::Disc, 0.55, true),
 ];
 
-/// Every n-th point of a curve, from the given one on.
-#[derive(Debug, Clone, Copy)]
-pub struct Stagger {
-    every: usize,
-    from: usize,
-}
-
-impl Stagger {
-    const EVERY_POINT: Self = Self { every: 1, from: 0 };
-
-    /// Whether the point with this index is meant.
-    pub fn picks(self, index: usize) -> bool {
-        index % self.every == self.from
-    }
-}
-
-/// How a curve looks: colour, dashes, marker and whether the marker is filled.
-#[derive(Debug, Clone)]
+/// How a curve looks.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Style {
     pub colour: Rgb,
+    /// Drawn and left out in turn [mm]; empty for a solid line.
     pub dashes: &'static [f64],
+    /// Of the line [mm]; 0 for none.
     pub width: f64,
     pub marker: Option<Marker>,
     /// Radius of the marker, about [mm].
     pub size: f64,
     pub filled: bool,
-    /// Which points get markers.
-    pub stagger: Stagger,
+    /// Whether it stands behind all others.
+    pub behind: bool,
 }
 
 impl Style {
-    /// Look of the n-th curve of a figure. Later curves are thinner, so one that covers another leaves its edges visible.
-    pub fn of_curve(index: usize) -> Self {
-        Self {
-            colour: colour::curve(index),
-            dashes: DASHES[index % DASHES.len()],
-            width: (CURVE_MM + 0.25 - 0.08 * index as f64).max(CURVE_MM - 0.05),
-            marker: Some(MARKERS[index % 7]),
-            size: MARKER_MM,
-            filled: index.is_multiple_of(2),
-            stagger: Stagger::EVERY_POINT,
-        }
-    }
-
-    /// Look of the n-th curve over common points. Where the first four lie on each other all of them stay visible: markers
-    /// are smaller one after the other, and so are the parts of a common period that the dashes fill.
-    pub fn over_common_points(index: usize) -> Self {
-        let look = OVER.get(index);
-        let (dashes, marker, size, filled) = look.copied().unwrap_or((
-            DASHES[index % DASHES.len()],
-            MARKERS[index % MARKERS.len()],
-            MARKER_MM,
-            true,
-        ));
-        // Black as the fourth: the lightest of the first four colours is lost in grey.
-        let colour = match index {
-            3 => colour::BLACK,
-            _ => colour::curve(index - usize::from(index > 3)),
-        };
+    /// A line without markers.
+    pub fn line(colour: Rgb, width: f64, dashes: &'static [f64]) -> Self {
         Self {
             colour,
             dashes,
-            width: METHOD_MM,
+            width,
+            marker: None,
+            size: MARKER_MM,
+            filled: true,
+            behind: false,
+        }
+    }
+
+    /// Look of the n-th curve of a figure; the first four stay visible where they lie on each other.
+    pub fn curve(index: usize) -> Self {
+        // Black as the fourth: its turn in the palette is lost in grey.
+        let colour = if index == 3 {
+            BLACK
+        } else {
+            CURVES[(index - usize::from(index > 3)) % 6]
+        };
+        let (dashes, marker, size, filled) = OVER.get(index).copied().unwrap_or((
+            &[2.5, 0.6, 0.6, 0.6],
+            MARKERS[index % 6],
+            MARKER_MM,
+            true,
+        ));
+        Self {
             marker: Some(marker),
             size,
             filled,
-            stagger: Stagger::EVERY_POINT,
+            ..Self::line(colour, 0.45, dashes)
         }
     }
 
-    /// Look of the n-th exact method: after the colours come the dashes, the filled markers have a period of their own, so
-    /// neither colour and marker nor marker and dashes come twice.
-    pub fn of_exact(index: usize) -> Self {
+    /// What several methods share: a wide band on which thin lines are seen.
+    pub fn band() -> Self {
         Self {
-            colour: colour::curve(index % METHOD_COLOURS),
-            dashes: ROUNDS[index / METHOD_COLOURS % ROUNDS.len()],
-            width: METHOD_MM,
-            marker: Some(MARKERS[index % MARKERS.len()]),
-            size: MARKER_MM,
-            filled: true,
-            stagger: Stagger::EVERY_POINT,
+            behind: true,
+            ..Self::line(MIDDLE, 1.1, &[])
         }
     }
 
-    /// Look of the n-th approximate method: short dashes and hollow markers.
-    pub fn of_approximate(index: usize) -> Self {
+    /// A method that does not stand out.
+    pub fn other() -> Self {
         Self {
-            colour: colour::curve((index + 1) % METHOD_COLOURS),
-            dashes: APPROXIMATE,
-            marker: Some(HOLLOW[index % HOLLOW.len()]),
-            filled: false,
-            ..Self::of_exact(0)
+            behind: true,
+            ..Self::line(MIDDLE, 0.25, &[])
         }
     }
 
-    /// A curve that stands for several methods.
-    pub fn shared() -> Self {
-        Self {
-            colour: colour::BLACK,
-            width: 1.6 * METHOD_MM,
-            ..Self::of_exact(0)
-        }
-    }
-
-    /// The same where a closed form is drawn over it: a band on which a thin black line is seen.
-    pub fn shared_below_exact() -> Self {
-        Self {
-            colour: colour::MIDDLE,
-            ..Self::shared()
-        }
-    }
-
-    /// Markers on a band are black, or they would be lost on it.
-    pub fn marker_colour(&self) -> Rgb {
-        if self.colour == colour::MIDDLE {
-            colour::BLACK
-        } else {
-            self.colour
-        }
-    }
-
-    /// A closed form: thin, black, without markers.
+    /// A closed form.
     pub fn exact() -> Self {
-        Self {
-            dashes: &[],
-            ..Self::reference(colour::BLACK)
-        }
+        Self::line(BLACK, 0.2, &[])
+    }
+
+    /// A bound that curves may reach, or a slope to compare with: dots.
+    pub fn limit() -> Self {
+        Self::line(GREY, 0.35, &[0.35, 0.65])
+    }
+
+    /// A tolerance.
+    pub fn level() -> Self {
+        Self::line(GREY, 0.2, &[1.5, 1.0])
     }
 
     /// A marker alone, black.
     pub fn mark(marker: Marker, filled: bool) -> Self {
         Self {
             marker: Some(marker),
-            size: MARKER_MM,
             filled,
-            ..Self::reference(colour::BLACK)
+            ..Self::line(BLACK, 0.0, &[])
         }
     }
 
-    /// The n-th of the curves drawn on a [`shared`](Self::shared) one: narrower, the dashes taking turns.
-    pub fn on_shared(self, index: usize) -> Self {
-        Self {
-            dashes: TURNS[index % TURNS.len()],
-            width: 0.8 * METHOD_MM,
-            ..self
-        }
-    }
-
-    /// Looks of curves given by their values, scaled to at most 1: nested where two of them lie on each other.
-    pub fn of_curves(values: &[Vec<f64>]) -> Vec<Self> {
-        let agree = |a: &[f64], b: &[f64]| {
-            a.len() == b.len() && a.iter().zip(b).all(|(x, y)| (x - y).abs() < VISIBLE)
+    /// Look of a method that stands out: colour and marker are its own in every figure; methods with laws of their own have
+    /// short dashes and hollow markers.
+    pub fn of_method(label: &str) -> Self {
+        let own = HIGHLIGHTED.iter().position(|name| *name == base(label));
+        let exact = is_exact(label);
+        let dashes: &[f64] = match own {
+            _ if !exact => &[1.5, 0.9],
+            Some(_) => &[],
+            None => &[3.0, 0.7, 0.7, 0.7],
         };
-        let count = values.len();
-        let hidden = (0..count).any(|i| (0..i).any(|j| agree(&values[i], &values[j])));
-        let style = |i| {
-            if hidden {
-                Self::nested(i, count)
-            } else {
-                Self::of_curve(i)
-            }
-        };
-        (0..count).map(style).collect()
-    }
-
-    /// Look of the n-th of `count` curves that lie on each other: each later one is drawn thinner and dashed on the earlier
-    /// ones, and they take turns with the markers.
-    fn nested(index: usize, count: usize) -> Self {
-        let outer = count.saturating_sub(index + 1) as f64;
+        let marker = own.map_or(Marker::Cross, |i| MARKERS[i]);
+        let line = Self::line(own.map_or(BLACK, |i| CURVES[i]), 0.45, dashes);
         Self {
-            width: 0.25 + 0.25 * outer,
-            stagger: Stagger {
-                every: count,
-                from: index,
-            },
-            ..Self::of_curve(index)
+            marker: Some(marker),
+            filled: exact,
+            ..line
         }
     }
+}
 
-    /// A horizontal line such as a tolerance.
-    pub fn level() -> Self {
-        Self {
-            dashes: &[1.5, 1.0],
-            ..Self::reference(colour::GREY)
-        }
-    }
+/// Methods that stand out in every figure: those of the founding paper, and the fast and the known ones beside them.
+pub const HIGHLIGHTED: [&str; 6] = [
+    "b-newton",
+    "hybrid",
+    "nsgs",
+    "latin",
+    "augmented-lagrangian",
+    "penalty",
+];
 
-    /// A bound that curves may reach: dots, no markers.
-    pub fn limit(colour: Rgb) -> Self {
-        Self {
-            dashes: &[0.35, 0.65],
-            width: 0.35,
-            ..Self::reference(colour)
-        }
-    }
+/// Name of a method in a label that may carry options in brackets.
+pub fn base(label: &str) -> &str {
+    label.split('[').next().unwrap_or(label)
+}
 
-    /// A thin line without markers.
-    pub fn reference(colour: Rgb) -> Self {
-        Self {
-            colour,
-            dashes: &[0.5, 0.5],
-            width: 0.2,
-            marker: None,
-            size: 0.0,
-            filled: false,
-            stagger: Stagger::EVERY_POINT,
-        }
-    }
+/// Order of methods in figures: that of the registry, then what it does not know.
+pub fn rank(label: &str) -> usize {
+    let place = methods()
+        .iter()
+        .position(|method| method.name == base(label));
+    place.unwrap_or(methods().len())
+}
+
+/// Whether the method solves the contact laws themselves; false for what the registry does not know.
+pub fn is_exact(label: &str) -> bool {
+    methods()
+        .iter()
+        .any(|method| method.name == base(label) && method.exact)
 }
 
 /// Marker of a contact status and whether it is filled.
@@ -289,67 +237,77 @@ pub fn status_marker(status: &str) -> (Marker, bool) {
     }
 }
 
-/// A marker centred at `at`; an unfilled one is white inside.
-pub fn draw_marker(canvas: &mut Canvas, at: [f64; 2], marker: Marker, filled: bool, colour: Rgb) {
-    draw_sized(canvas, at, MARKER_MM, marker, filled, colour);
-}
-
-/// The marker of a style in its size, if it has one.
-pub fn draw_mark(canvas: &mut Canvas, at: [f64; 2], style: &Style) {
-    if let Some(marker) = style.marker {
-        let colour = style.marker_colour();
-        draw_sized(canvas, at, style.size, marker, style.filled, colour);
-    }
-}
-
-fn draw_sized(
+/// A marker centred at `at`, `size` about its radius [mm]; an unfilled one is white inside.
+pub fn draw_marker(
     canvas: &mut Canvas,
     at: [f64; 2],
-    r: f64,
-    marker: Marker,
-    filled: bool,
+    (marker, filled): (Marker, bool),
+    size: f64,
     colour: Rgb,
 ) {
     let around = |offsets: &[[f64; 2]]| -> Vec<[f64; 2]> {
         offsets
             .iter()
-            .map(|o| [at[0] + r * o[0], at[1] + r * o[1]])
+            .map(|o| [at[0] + size * o[0], at[1] + size * o[1]])
             .collect()
     };
     let outline = match marker {
         Marker::Disc => {
-            canvas.disc(at, r, colour);
+            canvas.disc(at, size, colour);
             if !filled {
-                canvas.disc(at, r - 0.3, WHITE);
+                canvas.disc(at, size - 0.3, WHITE);
             }
             return;
         }
-        Marker::Cross => {
-            canvas.line(&around(&[[-0.9, -0.9], [0.9, 0.9]]), colour, CURVE_MM);
-            canvas.line(&around(&[[-0.9, 0.9], [0.9, -0.9]]), colour, CURVE_MM);
+        Marker::Cross | Marker::Plus => {
+            let lines = match marker {
+                Marker::Cross => [[[-0.9, -0.9], [0.9, 0.9]], [[-0.9, 0.9], [0.9, -0.9]]],
+                _ => [[[-1.1, 0.0], [1.1, 0.0]], [[0.0, -1.1], [0.0, 1.1]]],
+            };
+            lines
+                .iter()
+                .for_each(|line| canvas.line(&around(line), colour, 0.3));
             return;
         }
-        Marker::Plus => {
-            canvas.line(&around(&[[-1.1, 0.0], [1.1, 0.0]]), colour, CURVE_MM);
-            canvas.line(&around(&[[0.0, -1.1], [0.0, 1.1]]), colour, CURVE_MM);
-            return;
-        }
-        Marker::Star => (0..10)
-            .map(|k| {
-                let (angle, r) = (
-                    std::f64::consts::PI * f64::from(k) / 5.0,
-                    if k % 2 == 0 { 1.45 * r } else { 0.6 * r },
-                );
-                [at[0] + r * angle.sin(), at[1] - r * angle.cos()]
-            })
-            .collect(),
         Marker::Square => around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         Marker::Triangle => around(&[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]]),
         Marker::TriangleDown => around(&[[0.0, 1.2], [1.1, -0.8], [-1.1, -0.8]]),
         Marker::Diamond => around(&[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]]),
     };
     canvas.fill(&outline, if filled { colour } else { WHITE });
-    let mut closed = outline;
-    closed.push(closed[0]);
+    let closed: Vec<[f64; 2]> = outline.iter().chain(outline.first()).copied().collect();
     canvas.line(&closed, colour, 0.25);
+}
+
+/// Labels and looks of the curves of methods in one figure: [`HIGHLIGHTED`] methods and `further` ones stand out, all others
+/// share grey and one label.
+pub fn looks(labels: &[&str], further: &[&str]) -> Vec<(String, Style)> {
+    let mut taken: Vec<&str> = Vec::new();
+    let mut chosen: Vec<Option<Style>> = Vec::new();
+    let mut extra = 0;
+    for label in labels {
+        let named = HIGHLIGHTED.contains(&base(label)) && !taken.contains(&base(label));
+        taken.push(base(label));
+        chosen.push(if named {
+            Some(Style::of_method(label))
+        } else if further.contains(label) {
+            extra += 1;
+            let marker =
+                [Marker::Cross, Marker::Plus, Marker::Diamond, Marker::Square][(extra - 1) % 4];
+            Some(Style {
+                marker: Some(marker),
+                colour: BLACK,
+                ..Style::of_method(label)
+            })
+        } else {
+            None
+        });
+    }
+    let others = chosen.iter().filter(|style| style.is_none()).count();
+    let label = |(label, style): (&&str, Option<Style>)| match style {
+        Some(style) => (plain(label), style),
+        None if others == 1 => (plain(label), Style::other()),
+        None => (format!("{others} other methods"), Style::other()),
+    };
+    labels.iter().zip(chosen).map(label).collect()
 }

@@ -1,0 +1,70 @@
+//! Rows grouped by problem and run.
+
+use crate::report::number::value;
+use crate::report::plot::{italic, plain, rank};
+use crate::report::standard::problem_name;
+use crate::run::record::RunKey;
+use std::collections::BTreeMap;
+
+/// Rows of one run, in one increment.
+pub struct Run<'a, R> {
+    pub key: &'a RunKey,
+    pub rows: Vec<&'a R>,
+}
+
+impl<R> Run<'_, R> {
+    pub fn method(&self) -> &str {
+        &self.key.method
+    }
+}
+
+/// Rows of the last increment of every run by the name of its problem, runs in the order of the registry of methods.
+pub fn by_problem<'a, R>(
+    rows: &'a [R],
+    key: fn(&R) -> &RunKey,
+) -> BTreeMap<String, Vec<Run<'a, R>>> {
+    type Found<'a, R> = BTreeMap<(usize, &'a str), Run<'a, R>>;
+    let mut problems: BTreeMap<String, Found<'a, R>> = BTreeMap::new();
+    for row in rows {
+        let own = key(row);
+        let runs = problems.entry(problem_name(own)).or_default();
+        let run = runs.entry((rank(&own.method), &own.method));
+        let run = run.or_insert_with(|| Run {
+            key: own,
+            rows: Vec::new(),
+        });
+        if own.increment > run.key.increment {
+            *run = Run {
+                key: own,
+                rows: Vec::new(),
+            };
+        }
+        if own.increment == run.key.increment {
+            run.rows.push(row);
+        }
+    }
+    problems
+        .into_iter()
+        .map(|(name, runs)| (name, runs.into_values().collect()))
+        .collect()
+}
+
+/// Case, mesh, contact space and friction coefficient of a problem.
+pub fn problem(key: &RunKey) -> String {
+    format!("{}, {}", body(key), friction(key.friction))
+}
+
+/// Case, mesh and contact space.
+pub fn body(key: &RunKey) -> String {
+    plain(&format!("{}, {}, {}", key.case, key.mesh, key.space))
+}
+
+/// μ = 0.3.
+pub fn friction(mu: f64) -> String {
+    format!("{} = {}", italic("μ"), value(mu))
+}
+
+/// `1 method`, `2 methods`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

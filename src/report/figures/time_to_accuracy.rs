@@ -1,0 +1,114 @@
+//! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
+
+use super::quantity_name;
+use super::runs::friction;
+use super::{Bundle, Kind, ReportError};
+use crate::report::number::{significant, value};
+use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
+use crate::report::standard::file_name;
+use crate::studies::convergence::orders::{self, ErrorRow, ROUND_OFF};
+use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
+use crate::studies::sweep::analysis::problem_names;
+use crate::studies::sweep::cell::Problem;
+use crate::studies::sweep::record::Record;
+
+/// What it is.
+pub static KIND: Kind = Kind {
+    file: "time_to_accuracy.*.svg",
+    question: "How long does a wanted accuracy of the answer take, from mesh to method?",
+    shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per method; the triangle has the \
+            observed order if the time grows with the number of unknowns.",
+};
+
+/// Orders that a triangle may show.
+const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
+
+/// A figure per case, contact space and friction; `caveat`: what the caption says of a sweep that is not complete.
+///
+/// # Errors
+/// Those of drawing and of [`Bundle::add`].
+pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
+    let all = refinements(records);
+    let coarsest: Vec<Problem> = all.iter().map(|one| one.coarsest.clone()).collect();
+    for (one, name) in all.iter().zip(problem_names(&coarsest)) {
+        // The name tells everything but the mesh.
+        let name = name.replacen(&format!(".r{}.", one.coarsest.refine), ".", 1);
+        KIND.add(bundle, &file_name(&[&name]), figure(one, caveat).svg()?)?;
+    }
+    Ok(())
+}
+
+fn figure(one: &Refinement, caveat: &str) -> Figure {
+    // Against its own finest mesh a sequence says nothing.
+    let first = one
+        .orders
+        .iter()
+        .find(|row| row.kind != orders::Kind::Finest);
+    let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(orders::Kind::Finest);
+    let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
+    let mut methods: Vec<&str> = Vec::new();
+    for row in &shown {
+        if !methods.contains(&row.variant.method.as_str()) {
+            methods.push(&row.variant.method);
+        }
+    }
+    let finest = shown.iter().map(|row| row.refine).max();
+    let best = shown
+        .iter()
+        .filter(|row| Some(row.refine) == finest && row.seconds.total() > 0.0);
+    let best = best.min_by(|a, b| a.seconds.total().total_cmp(&b.seconds.total()));
+    let further: Vec<&str> = best.iter().map(|row| row.variant.method.as_str()).collect();
+    let name = first.map_or_else(String::new, |row| {
+        quantity_name::name(&row.quantity, &row.at)
+    });
+    let mut panel = Panel::new(
+        Axis::log("total time [s]"),
+        Axis::log(&format!("error: {name}")),
+        56.0,
+    );
+    for (method, (label, style)) in methods.iter().zip(looks(&methods, &further)) {
+        let own = shown.iter().filter(|row| row.variant.method == *method);
+        panel.series.push(Series::new(
+            label,
+            style,
+            own.map(|row| [row.seconds.total(), row.error]).collect(),
+        ));
+    }
+    let observed = first.map_or(f64::NAN, |row| row.order);
+    let off = |order: &f64| (order - observed).abs();
+    let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let nearest = nearest.filter(|order| off(order) < 0.5 * order);
+    let guide = |order: f64| Guide {
+        rise: -order,
+        run: one.dim as f64,
+        label: String::new(),
+    };
+    panel.guides = nearest.map(guide).into_iter().collect();
+    let title = best.map_or("Time to accuracy".to_owned(), |row| {
+        let (error, seconds) = (
+            significant(row.error, 2),
+            significant(row.seconds.total(), 2),
+        );
+        format!(
+            "{} is first at an error of {error}, in {seconds} s",
+            plain(&row.variant.method)
+        )
+    });
+    let against = match first.map(|row| row.kind) {
+        Some(orders::Kind::Exact) => "closed form",
+        _ => "extrapolated limit",
+    };
+    let triangle = nearest.map_or(String::new(), |order| {
+        format!(
+            "; triangle: order {} in h, time proportional to the unknowns",
+            value(order)
+        )
+    });
+    let caption = format!(
+        "{}, {}, {}, error against the {against}{caveat}{triangle}",
+        one.coarsest.case,
+        first.map_or("", |row| row.variant.space.as_str()),
+        friction(one.coarsest.friction.first().copied().unwrap_or(0.0)),
+    );
+    Figure::new(title, caption, vec![panel])
+}
