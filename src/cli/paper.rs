@@ -15,7 +15,7 @@ use crate::studies::paper::{self, Extent};
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Folder for the report
-    #[arg(long, default_value = "reports")]
+    #[arg(long, default_value = "results")]
     out: PathBuf,
     /// Runs at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -28,7 +28,7 @@ pub struct Arguments {
 impl Default for Arguments {
     fn default() -> Self {
         Self {
-            out: "reports".into(),
+            out: "results".into(),
             jobs: 1,
             full: false,
         }

@@ -14,7 +14,6 @@ pub use lookup::PaperError;
 
 use crate::case::shipped;
 use crate::run::record::Results;
-use crate::run::registry::method;
 use crate::run::run_case::{Fields, Progress, Settings, run_case};
 
 use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
@@ -22,7 +21,7 @@ use lookup::{case, choice};
 use plate_series::{
     LimitRow, PenaltyRow, RefinementRow, limit_rows, penalty_rows, refinement_rows,
 };
-use printed_tables::{Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
+use printed_tables::{PAPER_METHODS, Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
 use variants::{VariantRow, variant_rows};
 
 /// Cases that take longer than all others together.
@@ -36,9 +35,6 @@ pub const CASES: [&str; 5] = [
     "beam_model1_gauss6",
     "beam_model2",
 ];
-
-/// Methods whose tables are shown at once: the paper's own and the three it is compared with most.
-const FIRST: [&str; 4] = ["b-newton", "augmented-lagrangian", "latin", "penalty"];
 
 /// Everything the main job found.
 #[derive(Debug, Default)]
@@ -81,7 +77,7 @@ pub enum Extent {
     Full,
 }
 
-/// Tables 1 and 2 by the methods that are shown at once.
+/// Tables 1 and 2, at once.
 ///
 /// # Errors
 /// Of the cases or their discretisation.
@@ -89,10 +85,8 @@ pub fn first_tables(
     settings: Settings,
     progress: &dyn Progress,
 ) -> Result<(Vec<Table1Row>, Vec<Table2Row>), PaperError> {
-    // Without a method of the list, in a program with another registry, the tables have fewer lines.
-    let known = FIRST.into_iter().filter(|name| method(name).is_some());
-    let choices = known.map(|name| choice(name, &[]));
-    let choices = choices.collect::<Result<Vec<_>, _>>()?;
+    let choices = PAPER_METHODS.map(|name| choice(name, &[]));
+    let choices = choices.into_iter().collect::<Result<Vec<_>, _>>()?;
     let settings = Settings {
         fields: Fields::None,
         ..settings

@@ -175,7 +175,7 @@ fn section_markup(section: &Section) -> Markup {
     html! {
         section #(section.id) {
             h2 { (section.title) }
-            p.lead { (section.lead) }
+            p.lead { (section.lead.replace('`', "")) }
             @for block in &section.blocks { (block_markup(block)) "\n" }
         }
         "\n"
