@@ -1,12 +1,8 @@
 //! Methods against each other, against their own parameters and against independent solvers.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use stickslip_methods::*;
-use toys::*;
 
 /// Open, stick or slip of every point, by the forces.
 fn states(system: &ContactSystem, p: &[f64]) -> Vec<u8> {

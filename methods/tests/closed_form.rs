@@ -1,11 +1,7 @@
 //! Every registered method against systems solved by hand or by enumeration.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 /// Forces and displacements of one run against the exact ones.
 fn expect(m: &Method, outcome: &Outcome, u: &[f64], p: &[f64], tolerance: f64) {

@@ -1,11 +1,7 @@
 //! Limits that every registered method must reach: no load, no friction, large friction, an open crack.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 #[test]
 fn no_load_means_no_motion_and_no_force() {

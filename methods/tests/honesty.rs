@@ -1,11 +1,7 @@
 //! What every registered method must say about itself: claims that hold, statuses, refusals.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 #[test]
 fn a_converged_claim_passes_the_judge_at_every_tier() {

@@ -1,11 +1,7 @@
 //! What must not change the answer of a method, and what its answers must conserve.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 /// Discrete energy identity of one increment, exact to the accuracy of the contact laws:
 /// f·Δu = ΔE + ½ Δu·K Δu + D + Σ P_n g_old with E = ½ u·K u and D = −Σ P_t·d >= 0, because P_n g = 0 at the end.

@@ -1,13 +1,9 @@
 //! The judge against states made to deceive it: what is wrong must read as wrong.
 
-#![allow(missing_docs)]
-
-mod toys;
-
 use std::sync::Arc;
 
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 /// Points of unit compliance without coupling, 2D, that one rigid motion along all normals leaves free.
 fn floating_points(count: usize) -> Arc<Elastic> {

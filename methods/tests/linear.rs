@@ -1,13 +1,9 @@
 //! The linear kernel on real elasticity: hex8 boxes with a crack patch of doubled nodes.
 
-#![allow(missing_docs)]
-
-mod toys;
-
 use std::collections::BTreeMap;
 
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 /// Stiffness of the unit cube, E = 1, ν = 0.3, 2 × 2 × 2 points; nodes in (x, y, z) binary order.
 fn cube() -> Vec<[f64; 24]> {

@@ -1,11 +1,7 @@
 //! The condensed increment that goes into interchange files.
 
-#![allow(missing_docs, non_snake_case)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

@@ -1,14 +1,10 @@
 //! The monolithic variants take the same iterates as the condensed ones; a body given by its Delassus operator has the
 //! same answers as the body it came from.
 
-#![allow(missing_docs)]
-
-mod toys;
-
 use std::sync::Arc;
 
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 /// Methods with a monolithic variant.
 fn variants() -> impl Iterator<Item = &'static Method> {

@@ -1,12 +1,8 @@
 //! A method from outside: written with what the package exports, added to its registry, held to what is fair.
 
-#![allow(missing_docs)]
-
-mod toys;
-
+use crate::toys::*;
 use stickslip_methods::law::return_map;
 use stickslip_methods::*;
-use toys::*;
 
 /// Uzawa's method without any refinement: P <- Π(P − r v), r = step/W_ii.
 struct Uzawa {

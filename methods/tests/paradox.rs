@@ -3,14 +3,10 @@
 //! Sources: Klarbring, Ing. Arch. 60 (1990) 529; Janovský 1981. One contact with W = [[1, −1], [−1, 2]] has exactly one
 //! solution for every load if and only if μ < W_nn/|W_nt| = 1.
 
-#![allow(missing_docs)]
-
-mod toys;
-
 use std::sync::Arc;
 
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 const W: [[f64; 2]; 2] = [[1.0, -1.0], [-1.0, 2.0]];
 

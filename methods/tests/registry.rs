@@ -1,7 +1,5 @@
 //! The registry lists every method file, and every entry is complete.
 
-#![allow(missing_docs)]
-
 use std::collections::BTreeSet;
 
 use stickslip_methods::*;

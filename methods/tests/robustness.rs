@@ -1,20 +1,16 @@
 //! How often methods solve random, strongly coupled systems, and in how many iterations: the source of the counts on the
 //! pages of the methods. Takes minutes, so it runs only when asked for:
 //! ```text
-//! cargo test --release -p stickslip-methods --test robustness -- --ignored --nocapture
+//! cargo test --release -p stickslip-methods --test all robustness -- --ignored --nocapture
 //! ```
 //! K = MᵀM/n + 0.05 I with n unknowns and M uniform in [−1, 1), B = I + 0.3 R with R likewise, off the diagonal, and a
 //! load uniform in [−1, 1): every point feels every other, and its normal and tangential rows are as strongly coupled as
 //! rows of different points. Counts hold for this family; other random systems are harder or kinder.
 
-#![allow(missing_docs)]
-
-mod toys;
-
 use std::sync::Arc;
 
+use crate::toys::*;
 use stickslip_methods::*;
-use toys::*;
 
 const SYSTEMS: u64 = 100;
 const POINTS: usize = 12;

@@ -4,13 +4,9 @@
 //! ```
 //! It tells a wrong answer of a solver from a difficulty of Coulomb's law, and an independent code can solve it.
 
-#![allow(missing_docs, non_snake_case)]
-
-mod toys;
-
+use crate::toys::*;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use stickslip_methods::*;
-use toys::*;
 
 /// W and q of a random body under a random load.
 struct Problem {

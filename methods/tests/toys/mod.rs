@@ -1,7 +1,5 @@
 //! Small systems with known answers, and the way tests run methods on them.
 
-#![allow(dead_code, missing_docs, non_snake_case)]
-
 use std::sync::Arc;
 
 use clarabel::algebra::CscMatrix;

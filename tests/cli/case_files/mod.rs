@@ -1,0 +1,250 @@
+//! Case files: every shipped case is accepted and says what its sources say; every fault is refused at its place.
+
+mod cracks;
+mod loads;
+mod refusals;
+mod robustness;
+mod shipped;
+
+use stickslip::case::{
+    self, Amount, Case, CaseError, ContactSpace, CrackShape, ExpectKind, History, LoadKind, Model,
+    Quadrature, Tip, Tolerance,
+};
+
+/// A 2D case with every table.
+const PLANE: &str = r#"title = "Plate"
+model = "plane-strain"
+quadrature = "sub-cells"
+tier = "mid"
+
+[material]
+young_pa = 1e10
+poisson = 0.3
+
+[mesh.box]
+min_m = [-10, -10]
+max_m = [10, 10]
+cells = [22, 23]
+
+[mesh.follow]
+point_m = [0, 0]
+angle_deg = 45
+half_length_m = 5.5
+
+[[crack]]
+points_m = [[-4, -4], [4, 4]]
+friction = 0.1
+tip = "branch"
+contact = "edge-pairs"
+
+[[support]]
+on = "bottom"
+displacement_m = [0, 0]
+
+[[support]]
+on = ["left", "top"]
+where = "x <= 1 and y > 2"
+displacement_m = ["free", -0.1]
+history = [[0, 0], [1, 2.5]]
+
+[[load]]
+on = "left"
+pressure_pa = 1e5
+history = "constant"
+
+[[load]]
+body_n_per_m3 = [0, -1e4]
+
+[path]
+increments = 4
+end = 2.0
+
+[sweep]
+friction = [0.1, 0.8]
+refine = [1, 3]
+
+[[method]]
+name = "b-newton"
+regularisation = 1e-12
+max_iterations = 50
+
+[[probe]]
+name = "centre"
+point_m = [0, 0]
+
+[[expect]]
+quantity = "reaction"
+at = "top"
+component = "y"
+friction = 0.8
+refine = 3
+method = "b-newton"
+increment = 2
+value = -9.7e8
+unit = "N/m"
+relative = 1e-3
+kind = "published"
+source = "A book, page 3"
+assumptions = ["plane strain"]
+"#;
+
+/// A 3D case, as short as they come.
+const SOLID: &str = r#"title = "Beam"
+model = "solid"
+material = { young_pa = 1, poisson = 0 }
+
+[mesh]
+lines_m = [[0, 1], [0, 1, 2], [0, 0.5, 1]]
+
+[[crack]]
+plane = { point_m = [0, 0, 0.7], normal = [0, 3, 4] }
+friction = 0
+
+[[load]]
+on = ["back", "top"]
+line_n_per_m = [-1, 0, 2.5]
+"#;
+
+fn accepted(text: &str) -> Case {
+    case::parse("plate.toml", text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn refused(text: &str) -> CaseError {
+    case::parse("bad.toml", text).expect_err("the text must be refused")
+}
+
+/// Line and column, from 1, of the byte `at`.
+fn place(text: &str, at: usize) -> (usize, usize) {
+    let line = text[..at].split('\n').count();
+    let column = text[..at]
+        .split('\n')
+        .next_back()
+        .map_or(0, |l| l.chars().count())
+        + 1;
+    (line, column)
+}
+
+#[test]
+fn every_table_arrives_in_the_case() {
+    let case = accepted(PLANE);
+    assert_eq!(
+        (case.name.as_str(), case.title.as_str()),
+        ("plate", "Plate")
+    );
+    assert_eq!(
+        (case.model, case.quadrature),
+        (Model::PlaneStrain, Quadrature::SubCells)
+    );
+    assert_eq!((case.material.young, case.material.poisson), (1e10, 0.3));
+    assert_eq!(
+        case.mesh
+            .grid
+            .lines
+            .iter()
+            .map(Vec::len)
+            .collect::<Vec<_>>(),
+        [23, 24]
+    );
+    assert_eq!(
+        (
+            case.mesh.grid.lines[0][0],
+            case.mesh.grid.lines[0][11],
+            case.mesh.grid.lines[0][22]
+        ),
+        (-10.0, 0.0, 10.0)
+    );
+    let follow = case.mesh.grid.follow.as_ref().unwrap();
+    assert_eq!(
+        (follow.angle, follow.half_length),
+        (std::f64::consts::FRAC_PI_4, 5.5)
+    );
+    assert_eq!(
+        case.cracks[0].geometry,
+        CrackShape::Polyline(vec![[-4.0, -4.0], [4.0, 4.0]])
+    );
+    assert_eq!(case.cracks[0].tip, Tip::Branch);
+    assert_eq!(case.cracks[0].contact, ContactSpace::EdgePairs);
+    let support = &case.supports[1];
+    assert_eq!(support.on.sides, ["left", "top"]);
+    assert_eq!(support.displacement, [None, Some(Amount::Number(-0.1))]);
+    assert_eq!(
+        support.history,
+        History::Points(vec![[0.0, 0.0], [1.0, 2.5]])
+    );
+    let condition = support.on.condition.as_ref().unwrap();
+    assert!(condition.holds(&[1.0, 2.1, 0.0]) && !condition.holds(&[1.0, 2.0, 0.0]));
+    assert!(
+        matches!(&case.loads[0].kind, LoadKind::Pressure(on, p) if on.sides == ["left"] && p.at(&[3.0; 3]) == 1e5)
+    );
+    assert!(matches!(&case.loads[1].kind, LoadKind::Body(f, None) if *f == [0.0, -1e4]));
+    assert_eq!((case.path.increments, case.path.end), (4, 2.0));
+    assert_eq!(
+        (&case.sweep.friction[..], &case.sweep.refine[..]),
+        (&[0.1, 0.8][..], &[1, 3][..])
+    );
+    let method = &case.methods[0];
+    // In file order, which is not the alphabetical one.
+    assert_eq!(
+        method.options,
+        [
+            ("regularisation".into(), 1e-12),
+            ("max_iterations".into(), 50.0)
+        ]
+    );
+    assert_eq!(&case.source[method.option_spans[0].clone()], "1e-12");
+    let expect = &case.expects[0];
+    assert_eq!(
+        (expect.value, expect.tolerance, expect.kind),
+        (-9.7e8, Tolerance::Relative(1e-3), ExpectKind::Published)
+    );
+    assert_eq!(
+        (expect.friction, expect.refine, expect.increment),
+        (Some(0.8), Some(3), Some(2))
+    );
+    assert_eq!(expect.assumptions, ["plane strain"]);
+}
+
+#[test]
+fn absent_keys_take_their_documented_defaults() {
+    let case = accepted(SOLID);
+    assert_eq!(
+        (case.quadrature, case.tier.as_str()),
+        (Quadrature::SubCells, "high")
+    );
+    assert_eq!((case.path.increments, case.path.end), (1, 1.0));
+    assert!(case.sweep.friction.is_empty() && case.sweep.refine == [1]);
+    assert_eq!(case.cracks[0].tip, Tip::None);
+    assert_eq!(case.cracks[0].contact, ContactSpace::Star);
+    assert_eq!(case.loads[0].history, History::Ramp);
+    let plane = CrackShape::Plane {
+        point: [0.0, 0.0, 0.7],
+        normal: [0.0, 0.6, 0.8],
+    };
+    assert_eq!(case.cracks[0].geometry, plane);
+    let plate = accepted(&PLANE.replace("tip = \"branch\"\n", ""));
+    assert_eq!(plate.cracks[0].tip, Tip::Branch);
+}
+
+#[test]
+fn the_documented_example_is_accepted() {
+    let document = include_str!("../../../docs/case-format.md");
+    let (_, example) = document.split_once("```toml\n").unwrap();
+    let (example, _) = example.split_once("```").unwrap();
+    let case = accepted(example);
+    assert_eq!(
+        (case.cracks.len(), case.supports.len(), case.expects.len()),
+        (1, 2, 1)
+    );
+}
+
+#[test]
+fn comments_line_endings_and_a_byte_order_mark_change_nothing() {
+    let windows = format!("\u{feff}# a comment\r\n{}", SOLID.replace('\n', "\r\n"));
+    assert_eq!(
+        accepted(&windows).mesh.grid.lines,
+        accepted(SOLID).mesh.grid.lines
+    );
+    let error = refused(&windows.replace("friction = 0", "friction = -1"));
+    assert_eq!((error.line(), error.column()), (11, 12), "{error}");
+    assert_eq!(error.source_line(), "friction = -1");
+}

@@ -1,0 +1,319 @@
+//! Numbers that must not depend on where the body lies, in which units, and on how many threads it is computed.
+
+use crate::common::*;
+use stickslip::case::shipped;
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::Results;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+
+/// Rounding times the conditioning of a plate of a few hundred unknowns.
+const EQUAL: f64 = 1e-10;
+
+/// With tips: the triangles of the cells around a tip start at their first corner, which turns with the body, and their
+/// rule is good to 1e-10; contact forces feel that most.
+const EQUAL_WITH_TIPS: f64 = 1e-8;
+
+/// A change of coordinates: a signed permutation with determinant ±1, a factor and a shift; and a factor on stresses.
+struct Change {
+    /// Column a: image of axis a, as (axis, sign).
+    axes: [(usize, f64); 2],
+    length: f64,
+    shift: [f64; 2],
+    stress: f64,
+}
+
+impl Change {
+    fn vector(&self, v: [f64; 2]) -> [f64; 2] {
+        let mut w = [0.0; 2];
+        for a in 0..2 {
+            w[self.axes[a].0] += self.axes[a].1 * v[a];
+        }
+        w
+    }
+
+    fn place(&self, x: [f64; 2]) -> [f64; 2] {
+        let v = self.vector(x);
+        [0, 1].map(|a| self.length * v[a] + self.shift[a])
+    }
+
+    /// Name of the side with outward normal `n` before the change.
+    fn side(&self, n: [f64; 2]) -> &'static str {
+        match self.vector(n) {
+            [x, _] if x > 0.5 => "right",
+            [x, _] if x < -0.5 => "left",
+            [_, y] if y > 0.0 => "top",
+            _ => "bottom",
+        }
+    }
+
+    /// A plate 1.5 × 1.2 with an inclined crack with two tips and one that runs through, pushed, sheared and loaded.
+    fn case(&self, tip: &str) -> String {
+        let (low, high) = (self.place([0.0, 0.0]), self.place([1.5, 1.2]));
+        let min = [0, 1].map(|a| low[a].min(high[a]));
+        let max = [0, 1].map(|a| low[a].max(high[a]));
+        let swapped = self.axes[0].0 == 1;
+        let cells = if swapped { [8, 10] } else { [10, 8] };
+        let cracks = [
+            ([0.31, 0.27], [1.02, 0.43], 0.4, tip),
+            ([-0.2, 0.88], [1.7, 0.81], 0.2, "none"),
+        ];
+        let displacement = self.vector([1e-3, -2e-3]).map(|v| self.length * v);
+        let traction = self.vector([0.0, 3e-4]).map(|v| self.stress * v);
+        let rest = cracks
+            .iter()
+            .map(|&(p, q, mu, tip)| crack(self.place(p), self.place(q), mu, tip))
+            .collect::<String>()
+            + &support(&format!("{:?}", self.side([0.0, -1.0])), "[0, 0]")
+            + &support(
+                &format!("{:?}", self.side([0.0, 1.0])),
+                &format!("{displacement:?}"),
+            )
+            + &load(
+                self.side([1.0, 0.0]),
+                &format!("traction_pa = {traction:?}"),
+            );
+        let text = plane(min, max, cells, &rest);
+        text.replace("young_pa = 1", &format!("young_pa = {:e}", self.stress))
+    }
+
+    /// Reaction at the former top, in former axes, over E L; forces over E L; jumps over L.
+    fn numbers(&self, tip: &str) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let found = solve(&self.case(tip));
+        let force = self.stress * self.length;
+        let reaction = [0, 1].map(|a| {
+            let (axis, sign) = self.axes[a];
+            sign * found.reaction(self.side([0.0, 1.0]), axis) / force
+        });
+        (
+            reaction.to_vec(),
+            found.p().iter().map(|p| p / force).collect(),
+            found.jump.iter().map(|j| j / self.length).collect(),
+        )
+    }
+}
+
+const PLAIN: Change = Change {
+    axes: [(0, 1.0), (1, 1.0)],
+    length: 1.0,
+    shift: [0.0, 0.0],
+    stress: 1.0,
+};
+
+/// Source: objectivity, dimensional analysis. Goal: turned by 90, 180 and 270 degrees, shifted, in mm, in Pa, and all at
+/// once: the same dimensionless reactions, contact forces and jumps, point by point.
+#[test]
+fn a_turned_shifted_and_rescaled_body_gives_the_same_numbers() {
+    let turned = |axes, length, shift, stress| Change {
+        axes,
+        length,
+        shift,
+        stress,
+    };
+    let plain = PLAIN.axes;
+    let quarter = [(1, 1.0), (0, -1.0)];
+    let half = [(0, -1.0), (1, -1.0)];
+    let three = [(1, -1.0), (0, 1.0)];
+    let changes = [
+        turned(quarter, 1.0, [0.0, 0.0], 1.0),
+        turned(half, 1.0, [0.0, 0.0], 1.0),
+        turned(three, 1.0, [0.0, 0.0], 1.0),
+        turned(plain, 1e3, [0.0, 0.0], 1.0),
+        turned(plain, 1e-3, [0.0, 0.0], 1.0),
+        turned(plain, 1.0, [0.0, 0.0], 1e10),
+        turned(plain, 1.0, [17.3, -5.1], 1.0),
+        turned(three, 1e3, [-4e3, 9e2], 2.1e11),
+    ];
+    for (tip, equal) in [("none", EQUAL), ("branch", EQUAL_WITH_TIPS)] {
+        let (reaction, forces, jumps) = PLAIN.numbers(tip);
+        for change in &changes {
+            let (r, p, j) = change.numbers(tip);
+            let differences = [(r, &reaction), (p, &forces), (j, &jumps)]
+                .map(|(found, exact)| relative_difference(&found, exact));
+            let name = format!("{:?} {:e} {:e}", change.axes, change.length, change.stress);
+            println!("{tip} {name}: {differences:?}");
+            assert!(
+                differences.iter().all(|d| *d < equal),
+                "{tip} {name}: {differences:?}"
+            );
+        }
+    }
+}
+
+/// Source: objectivity. Goal: in the mirror the crack turns its other side up: pressure and gap stay, shear and slip
+/// change sign.
+#[test]
+fn a_mirrored_body_gives_mirrored_numbers() {
+    let mirror = Change {
+        axes: [(0, -1.0), (1, 1.0)],
+        ..PLAIN
+    };
+    let (reaction, forces, jumps) = PLAIN.numbers("branch");
+    let (r, p, j) = mirror.numbers("branch");
+    let flip = |v: Vec<f64>| -> Vec<f64> {
+        v.into_iter()
+            .enumerate()
+            .map(|(i, v)| if i % 2 == 1 { -v } else { v })
+            .collect()
+    };
+    for (found, exact) in [(r, reaction), (flip(p), forces), (flip(j), jumps)] {
+        let change = relative_difference(&found, &exact);
+        assert!(change < EQUAL_WITH_TIPS, "{change:e}");
+    }
+}
+
+/// Source: objectivity. Goal: a solid with its axes renamed x → y → z → x gives the same reactions and point forces.
+/// An oblique plane with friction; the frame (n, a, b) of a plane is chosen by axes, so P_n and |P_t| are compared.
+#[test]
+fn a_solid_with_renamed_axes_gives_the_same_numbers() {
+    let numbers = |turns: usize| {
+        let turn = |v: [f64; 3]| {
+            let mut w = v;
+            w.rotate_right(turns);
+            w
+        };
+        let names = [["left", "right"], ["front", "back"], ["bottom", "top"]];
+        let side = |axis: usize, end: usize| names[(axis + turns) % 3][end];
+        let cells = {
+            let mut c = [3, 2, 4];
+            c.rotate_right(turns);
+            c
+        };
+        let planes = [(turn([0.6, 0.4, 0.9]), turn([0.13, 0.07, 1.0]), 0.2)];
+        let top = side(2, 1);
+        let rest = support(&format!("{:?}", side(2, 0)), "[0, 0, 0]")
+            + &support(
+                &format!("{top:?}"),
+                &format!("{:?}", turn([1e-3, 4e-4, -2e-3])),
+            )
+            + &load(
+                side(0, 1),
+                &format!("traction_pa = {:?}", turn([-1e-4, 2e-4, 0.0])),
+            );
+        let found = solve(&solid(turn([1.2, 0.8, 1.6]), cells, &planes, &rest));
+        let reaction: Vec<f64> = (0..3)
+            .map(|a| found.reaction(top, (a + turns) % 3))
+            .collect();
+        let mut forces: Vec<[f64; 2]> = found
+            .p()
+            .chunks_exact(3)
+            .map(|p| [p[0], p[1].hypot(p[2])])
+            .collect();
+        // The points come in the order of their coordinates.
+        forces.sort_by(|p, q| p[0].total_cmp(&q[0]));
+        (reaction, forces.concat())
+    };
+    let (reaction, forces) = numbers(0);
+    for turns in [1, 2] {
+        let (r, p) = numbers(turns);
+        let change = relative_difference(&r, &reaction).max(relative_difference(&p, &forces));
+        assert!(change < EQUAL, "{turns}: {change:e}");
+    }
+}
+
+/// All numbers of results but times, as bits; text beside them.
+fn bits(results: &Results) -> (Vec<u64>, Vec<String>) {
+    let mut numbers = Vec::new();
+    let mut words = Vec::new();
+    for r in &results.runs {
+        numbers.extend([r.natural_map, r.equilibrium].map(f64::to_bits));
+        words.push(format!(
+            "{:?} {} {} {} {} {}",
+            r.key, r.verdict, r.iterations, r.factorisations, r.solves, r.unknowns
+        ));
+    }
+    for q in &results.quantities {
+        numbers.push(q.quantity.value.to_bits());
+        words.push(format!(
+            "{:?} {} {} {}",
+            q.key, q.quantity.name, q.quantity.at, q.quantity.component
+        ));
+    }
+    for p in &results.points {
+        let values = [
+            p.point.x_m,
+            p.point.y_m,
+            p.point.z_m,
+            p.point.s_m,
+            p.point.weight,
+            p.point.gap_m,
+            p.point.slip_a_m,
+        ];
+        numbers.extend(values.map(f64::to_bits));
+        numbers.extend([p.point.slip_b_m, p.point.p_n, p.point.p_a, p.point.p_b].map(f64::to_bits));
+        words.push(format!(
+            "{:?} {} {} {}",
+            p.key, p.point.crack, p.point.number, p.point.status
+        ));
+    }
+    for h in &results.history {
+        numbers.push(h.natural_map.to_bits());
+        words.push(format!("{:?} {}", h.key, h.iteration));
+    }
+    (numbers, words)
+}
+
+/// Source: every entry is summed in one order. Goal: stiffness, jump operator and everything a run reports have the same
+/// bits for 1, 2 and 5 threads: a plate with tips by all exact methods, a sliding block, and a solid.
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    let block = solid(
+        [1.0, 1.0, 1.0],
+        [4, 4, 5],
+        &[([0.5, 0.5, 0.5], [0.1, 0.2, 1.0], 0.3)],
+        &(support("\"bottom\"", "[0, 0, 0]") + &support("\"top\"", "[1e-3, 5e-4, -1e-3]")),
+    );
+    let mut plate = shipped::find("plate_mesh1").unwrap().unwrap();
+    plate.sweep.friction = vec![0.1];
+    let cases = [
+        (plate, vec!["b-newton", "latin", "augmented-lagrangian"]),
+        (parse(&block), vec!["b-newton"]),
+    ];
+    for (case, methods) in &cases {
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| {
+                let body = Body::new(case, 1, Needs::default()).unwrap();
+                let k = body.elastic.stiffness().unwrap().values();
+                let k: Vec<u64> = k.iter().map(|v| v.to_bits()).collect();
+                (k, bits(&run(case, methods)))
+            })
+        };
+        let one = on(1);
+        for threads in [2, 5] {
+            assert!(on(threads) == one, "{}: {threads} threads", case.name);
+        }
+    }
+}
+
+/// Goal: runs at the same time give the rows of runs one after the other, without times.
+#[test]
+fn jobs_change_nothing_but_the_times() {
+    let case = shipped::find("sliding_block_embedded").unwrap().unwrap();
+    let methods = choices(&["penalty", "latin"]);
+    let rows = |jobs| {
+        run_case(
+            &case,
+            &methods,
+            Settings {
+                tier: None,
+                jobs,
+                fields: Fields::None,
+            },
+            &Quiet,
+        )
+        .unwrap()
+    };
+    let (one, two) = (rows(1), rows(2));
+    assert!(bits(&one) == bits(&two));
+    assert!(one.runs.iter().any(|r| r.solve_s.is_finite()));
+    assert!(
+        two.runs
+            .iter()
+            .all(|r| r.solve_s.is_nan() && r.setup_s.is_nan())
+    );
+    let shown = |r: &Results| format!("{:?}", r.expectations);
+    assert_eq!(shown(&one), shown(&two));
+}

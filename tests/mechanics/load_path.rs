@@ -1,0 +1,228 @@
+//! Load paths: the state is the whole history; the discrete energy balance holds in every increment.
+
+use std::sync::Arc;
+
+use crate::common::*;
+use stickslip::case::{Case, shipped};
+use stickslip::model::body::{Body, Needs};
+use stickslip::run::record::Results;
+use stickslip::run::registry::methods;
+use stickslip::run::verdict::Verdict;
+use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
+
+/// One body, one method, increments by hand.
+struct Path {
+    case: Case,
+    body: Body,
+    system: Arc<ContactSystem>,
+}
+
+impl Path {
+    fn new(case: Case) -> Self {
+        let needs = Needs {
+            traction: true,
+            ..Needs::default()
+        };
+        let body = Body::new(&case, 1, needs).unwrap();
+        let friction = friction(&case, &body);
+        let system = ContactSystem::new(body.elastic.clone(), friction).unwrap();
+        Path {
+            case,
+            body,
+            system: Arc::new(system),
+        }
+    }
+
+    /// Solves increment `index` (from 0) of the path by a new instance of a method.
+    fn step(&self, method: &str, index: usize, start: &ContactState) -> Outcome {
+        let loading = loading(&self.body, &self.case);
+        let method = stickslip::run::registry::method(method).unwrap();
+        let mut enforcement = (method.build)(&Options::new(method.options, &[]).unwrap());
+        let before = if index == 0 {
+            no_load(&self.body)
+        } else {
+            loading.at(index)
+        };
+        let increment = Increment {
+            system: &self.system,
+            load: &loading.at(index + 1),
+            start_load: &before,
+            start,
+            index,
+            tolerance: self.case.tolerance,
+        };
+        let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
+        assert_eq!(outcome.status, Status::Converged);
+        outcome
+    }
+}
+
+fn bits(state: &ContactState) -> Vec<u64> {
+    state
+        .u
+        .iter()
+        .chain(&state.p)
+        .map(|v| v.to_bits())
+        .collect()
+}
+
+/// Goal: a method keeps no history: the path in one go, and every increment again from its stored start by a method that
+/// never saw the others, in reverse order, give the same bits; and those of the harness's own run.
+#[test]
+fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
+    for name in ["sliding_block_cycle", "cyclic"] {
+        let mut case = shipped::find(name).unwrap().unwrap();
+        if name == "cyclic" {
+            case.mesh.grid.lines =
+                vec![(0..=9).map(|i| -2.0 + 4.0 * f64::from(i) / 9.0).collect(); 2];
+        }
+        let path = Path::new(case);
+        let increments = path.case.path.increments;
+        for method in methods() {
+            let mut states = vec![ContactState::zero(&path.system)];
+            for index in 0..increments {
+                states.push(path.step(method.name, index, &states[index]).state);
+            }
+            for index in (0..increments).rev() {
+                let again = path.step(method.name, index, &states[index]).state;
+                assert!(
+                    bits(&again) == bits(&states[index + 1]),
+                    "{name} {} {index}",
+                    method.name
+                );
+            }
+            let results = run(&path.case, &[method.name]);
+            let last = results
+                .points
+                .iter()
+                .filter(|p| p.key.increment == increments);
+            let forces: Vec<f64> = last.flat_map(|p| [p.point.p_n, p.point.p_a]).collect();
+            assert_eq!(forces, states[increments].p, "{name} {}", method.name);
+        }
+    }
+}
+
+/// Source: numerics, monotone loading of the confined block: slip never turns back. Goal: one increment gives what 2, 5
+/// and 16 equal ones give.
+/// Tolerance 1e-10: each increment ends within 1e-13 of equilibrium.
+#[test]
+fn monotone_loading_does_not_depend_on_the_number_of_increments() {
+    let mut case = shipped::find("sliding_block_embedded").unwrap().unwrap();
+    case.sweep.refine = vec![1];
+    case.sweep.friction = vec![0.2];
+    case.expects.clear();
+    // Side pressure from the first increment on, as the file says; the push grows.
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for increments in [1, 2, 5, 16] {
+        case.path.increments = increments;
+        let results = run(&case, &[METHOD]);
+        let last = |q: [&str; 3]| value(&results, |k| k.increment == increments, q);
+        found.push(vec![
+            last(["reaction", "top", "y"]),
+            last(["contact_force", "crack-1", "n"]),
+            last(["contact_force", "crack-1", "a"]),
+            last(["max_slip", "crack-1", ""]),
+            last(["strain_energy", "", ""]),
+        ]);
+    }
+    for other in &found[1..] {
+        for (a, b) in other.iter().zip(&found[0]) {
+            assert!((a - b).abs() < 1e-10 * b.abs(), "{a:e} {b:e}");
+        }
+    }
+}
+
+/// Source: numerics E7. 0 → 0.06 → 0.01 → 0.06 with q = 0.01, th = 25 degrees, μ = 0.2: one cycle dissipates
+/// w (s_f − s_r) ds sin th = 4.9083688066e-4 J/m. Both the embedded and the conforming interface, all exact methods.
+/// Tolerance: the printed digits.
+#[test]
+fn a_cycle_of_the_sliding_block_dissipates_its_closed_form() {
+    for name in ["sliding_block_cycle", "sliding_block_cycle_conforming"] {
+        let mut case = shipped::find(name).unwrap().unwrap();
+        case.expects.clear();
+        for method in methods().iter().filter(|m| m.exact) {
+            let results = run(&case, &[method.name]);
+            let at = |increment| {
+                value(
+                    &results,
+                    |k| k.increment == increment,
+                    ["dissipation", "", ""],
+                )
+            };
+            let cycle = at(16) - at(6);
+            assert!(
+                (cycle - 4.9083688066e-4).abs() < 1e-13,
+                "{name} {}: {cycle:e}",
+                method.name
+            );
+        }
+    }
+}
+
+/// Per run: values of a quantity by increment.
+fn histories(results: &Results, quantity: &str) -> Vec<(String, Vec<f64>)> {
+    let mut found: Vec<(String, Vec<f64>)> = Vec::new();
+    for q in results
+        .quantities
+        .iter()
+        .filter(|q| q.quantity.name == quantity)
+    {
+        let k = &q.key;
+        let run = format!("{} {} {} {}", k.case, k.mesh, k.method, k.friction);
+        match found.last_mut() {
+            Some((name, values)) if *name == run => values.push(q.quantity.value),
+            _ => found.push((run, vec![q.quantity.value])),
+        }
+    }
+    found
+}
+
+/// Source: numerics, step invariants. Goal: in every increment of every 2D case, by every method,
+/// F·du = dE + ½ du·K du + D + P_n g_old holds, whatever the quality of the contact solution for the exact methods;
+/// and friction only takes energy.
+///
+/// For a penalised answer P_n g is not 0, so its balance is off by its modelling error; it is not asked for here.
+/// Tolerance: b-newton ends in rounding, 1e-10 of the work; the others end with P_n g within their tolerance of 1e-9,
+/// and that is what their balance is off by. Dissipation may fall by the slip of sticking points, within tolerance too.
+#[test]
+fn energy_balances_and_friction_only_dissipates_in_every_2d_case() {
+    let exact: Vec<&str> = methods()
+        .iter()
+        .filter(|m| m.exact)
+        .map(|m| m.name)
+        .collect();
+    let (mut increments, mut dissipating) = (0, 0);
+    for (name, _) in shipped::CASES {
+        let mut case = shipped::find(name).unwrap().unwrap();
+        if case.model.dim() == 3 {
+            continue;
+        }
+        case.sweep.refine = vec![1];
+        let results = run(&case, &exact);
+        for row in &results.runs {
+            assert_eq!(row.verdict, Verdict::Solved, "{:?}", row.key);
+        }
+        for (run, values) in histories(&results, "energy_identity") {
+            assert_eq!(values.len(), case.path.increments, "{run}");
+            for value in values {
+                increments += 1;
+                let allowed = if run.contains(METHOD) { 1e-10 } else { 1e-9 };
+                assert!(value < allowed, "{run}: {value:e}");
+            }
+        }
+        let stored = histories(&results, "strain_energy");
+        for ((run, values), (_, energy)) in histories(&results, "dissipation").iter().zip(&stored) {
+            let size = energy.iter().fold(0.0f64, |m, e| m.max(*e));
+            let mut before = 0.0;
+            for &value in values {
+                assert!(value >= before - 1e-9 * size, "{run}: {before:e} {value:e}");
+                dissipating += usize::from(value > before + 1e-3 * size);
+                before = value;
+            }
+        }
+    }
+    assert!(
+        increments > 100 && dissipating > 20,
+        "{increments} {dissipating}"
+    );
+}

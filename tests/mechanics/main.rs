@@ -1,0 +1,26 @@
+//! The whole chain against mechanics: closed forms, patch tests, invariance, published numbers.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod closed_crack;
+mod conforming;
+mod errors;
+mod exact;
+mod exact_curve;
+mod fronts;
+mod intensity;
+mod invariance;
+mod junctions;
+mod load_path;
+mod loads;
+mod nitsche;
+mod patch;
+mod penetration;
+mod published;
+mod robust;
+mod skips;
+mod spaces;
+mod tips;
+mod traction;

@@ -1,0 +1,83 @@
+//! Bodies and supports that once went wrong: slender bodies, floating blocks on a slope, supports that overlap.
+
+use crate::common::*;
+use stickslip::run::verdict::Verdict;
+
+const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
+
+fn assert_solved(text: &str) {
+    let results = run(&parse(text), &EXACT);
+    for row in &results.runs {
+        assert_eq!(row.verdict, Verdict::Solved, "{}: {row:?}", row.key.method);
+    }
+    assert_eq!(results.runs.len(), EXACT.len());
+}
+
+/// Source: rounding of K u is relative to |K| |u|. Goal: a cantilever, whose |K| |u| is 10⁶ times |K u|, is solved and
+/// judged so. 20 × 1.1 m, 200 × 11 cells, crack along the middle, pressure on the top.
+#[test]
+fn a_slender_body_is_judged_by_its_backward_error() {
+    let rest = crack([5.0, 0.55], [10.0, 0.55], 0.3, "branch")
+        + &support("\"left\"", "[0, 0]")
+        + &load("top", "pressure_pa = 1e-6");
+    assert_solved(&plane([0.0, 0.0], [20.0, 1.1], [200, 11], &rest));
+}
+
+/// Source: Coulomb friction on a slope is not convex. Goal: the upper block of a cube, free in x, pushed down and
+/// sideways on a plane through its centre, sticks; Newton's method must not follow a slide that never ends.
+#[test]
+fn a_floating_block_pushed_on_a_slope_is_held_by_every_exact_method() {
+    assert_solved(
+        r#"
+title = "cube"
+model = "solid"
+[material]
+young_pa = 1e9
+poisson = 0.2
+[mesh.box]
+min_m = [0, 0, 0]
+max_m = [1, 1, 1]
+cells = [5, 5, 5]
+[[crack]]
+plane = { point_m = [0.5, 0.5, 0.5], normal = [0.2, 0.1, 1] }
+friction = 0.3
+contact = "edge-pairs"
+[[support]]
+on = "bottom"
+displacement_m = [0, 0, 0]
+[[support]]
+on = "top"
+displacement_m = ["free", 0, -1e-3]
+[[load]]
+on = "left"
+traction_pa = [1e5, 0, 0]
+"#,
+    );
+}
+
+/// Source: statics. Goal: supports that share nodes and two supports on one side: every reaction is counted once, and
+/// all of them balance the load, 2 m × (3e-3, −1e-3) N/m².
+#[test]
+fn overlapping_supports_balance_the_load_once() {
+    let rest = crack([-0.45, 0.23], [0.68, 0.31], 0.3, "branch")
+        + &support("\"bottom\"", "[0, 0]")
+        + &support("\"left\"", "[0, \"free\"]")
+        + &support("\"right\"", "[\"free\", 0]")
+        + &support("\"right\"", "[1e-3, \"free\"]")
+        + &load("top", "traction_pa = [3e-3, -1e-3]");
+    let results = run(
+        &parse(&plane([-1.0, -1.0], [1.0, 1.0], [8, 8], &rest)),
+        &["b-newton"],
+    );
+    for (component, applied) in [("x", 6e-3), ("y", -2e-3)] {
+        let rows = || {
+            let all = results.quantities.iter();
+            all.filter(|q| q.quantity.name == "reaction" && q.quantity.component == component)
+        };
+        let total: f64 = rows().map(|q| q.quantity.value).sum();
+        assert!((total + applied).abs() < 1e-14, "{component}: {total:e}");
+        let places: std::collections::BTreeSet<&str> =
+            rows().map(|q| q.quantity.at.as_str()).collect();
+        assert_eq!(places.len(), rows().count(), "one row per place");
+    }
+}

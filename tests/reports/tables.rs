@@ -1,0 +1,398 @@
+//! Reports say what the documentation says, read back as what was written, and appear as a whole or not at all.
+
+use crate::report_data::{METHODS, key, results};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use stickslip::report::csv::Row;
+use stickslip::report::infsup::InfSupRow;
+use stickslip::report::paper::{self, Digits};
+use stickslip::report::tables::{Align, Column, Table};
+use stickslip::report::timings::TimingRow;
+use stickslip::report::{Bundle, Provenance, ReportError, csv, standard};
+use stickslip::run::record::RunRow;
+use stickslip::run::verdict::Verdict;
+use stickslip::studies::convergence::orders::{ErrorRow, OrderRow};
+use stickslip::studies::paper::comparison::ComparisonRow;
+use stickslip::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use stickslip::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
+use stickslip::studies::paper::variants::VariantRow;
+use stickslip::studies::spaces::patch::PatchRow;
+use stickslip::studies::stress::robustness::{FailureRow, RobustnessRow};
+use stickslip_methods::Status;
+
+fn text(bundle: &Bundle, path: &str) -> String {
+    let bytes = bundle
+        .get(path)
+        .unwrap_or_else(|| panic!("{path} is missing"));
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn csv_bundle() -> Bundle {
+    let mut bundle = Bundle::new();
+    csv::add_to(&mut bundle, &results()).expect("CSV");
+    paper::add_table1(&mut bundle, &table1_rows()).expect("Table 1");
+    paper::add_table2(&mut bundle, &table2_rows()).expect("Table 2");
+    let file = |name, contents: Result<Vec<u8>, ReportError>| (name, contents.expect("CSV"));
+    for (name, contents) in [
+        file(PenaltyRow::FILE, csv::file::<PenaltyRow>(&[])),
+        file(RefinementRow::FILE, csv::file::<RefinementRow>(&[])),
+        file(LimitRow::FILE, csv::file::<LimitRow>(&[])),
+        file(RobustnessRow::FILE, csv::file::<RobustnessRow>(&[])),
+        file(FailureRow::FILE, csv::file::<FailureRow>(&[])),
+        file(ComparisonRow::FILE, csv::file::<ComparisonRow>(&[])),
+        file(VariantRow::FILE, csv::file::<VariantRow>(&[])),
+        file(ErrorRow::FILE, csv::file::<ErrorRow>(&[])),
+        file(OrderRow::FILE, csv::file::<OrderRow>(&[])),
+        file(PatchRow::FILE, csv::file::<PatchRow>(&[])),
+        file(InfSupRow::FILE, csv::file::<InfSupRow>(&[])),
+        file(SequenceRow::FILE, csv::file::<SequenceRow>(&[])),
+        file(ConvergedRow::FILE, csv::file::<ConvergedRow>(&[])),
+        file(TimingRow::FILE, csv::file::<TimingRow>(&[])),
+    ] {
+        bundle.add(name, contents).expect("a name of its own");
+    }
+    bundle
+}
+
+fn table1_rows() -> Vec<Table1Row> {
+    vec![
+        Table1Row::new(
+            "II",
+            0.8,
+            "b-newton",
+            Some(1_108.412_345),
+            Some(1108.8),
+            Some(Verdict::Solved),
+        ),
+        Table1Row::new(
+            "I",
+            1.2,
+            "penalty",
+            None,
+            Some(1137.5),
+            Some(Verdict::GaveUp(Status::MaxIterations)),
+        ),
+        Table1Row::new(
+            "I",
+            0.1,
+            "b-newton",
+            Some(973.543_21),
+            Some(973.3),
+            Some(Verdict::Solved),
+        ),
+    ]
+}
+
+fn table2_rows() -> Vec<Table2Row> {
+    let p = [
+        -0.2448591, -0.0981012, 0.0265221, 0.1475015, 0.2680483, 0.3910484, 0.5294690,
+    ];
+    let printed = Table2Row::printed("I", "as-printed", "y", p);
+    let mut ours = p;
+    ours[3] += 4.2e-7;
+    let computed = |method, p, verdict| Table2Row::computed(&printed, method, p, Some(verdict));
+    let solved = computed("b-newton", ours, Verdict::Solved);
+    let diverged = Verdict::GaveUp(Status::Diverged);
+    let failed = computed("a-fails", [f64::NAN; 7], diverged);
+    vec![solved, failed, printed]
+}
+
+/// Columns that docs/schema.md lists, by file.
+fn documented_columns() -> BTreeMap<String, Vec<String>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/schema.md");
+    let page = fs::read_to_string(path).expect("docs/schema.md");
+    let mut columns: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut file = None;
+    for line in page.lines() {
+        if let Some(heading) = line.strip_prefix("## ") {
+            file = heading
+                .strip_prefix('`')
+                .and_then(|h| h.strip_suffix('`'))
+                .map(str::to_owned);
+        } else if let (Some(file), Some(row)) = (&file, line.strip_prefix("| `")) {
+            let name = row.split('`').next().unwrap_or_default();
+            columns
+                .entry(file.clone())
+                .or_default()
+                .push(name.to_owned());
+        }
+    }
+    columns
+}
+
+#[test]
+fn headers_are_exactly_those_of_the_documentation() {
+    let bundle = csv_bundle();
+    let documented = documented_columns();
+    let files: Vec<&str> = bundle
+        .paths()
+        .filter(|path| path.ends_with(".csv"))
+        .collect();
+    assert_eq!(
+        files,
+        documented.keys().map(String::as_str).collect::<Vec<_>>()
+    );
+    for (file, columns) in &documented {
+        let header = text(&bundle, file)
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        assert_eq!(header, columns.join(","), "{file}");
+    }
+}
+
+#[test]
+fn headers_are_the_field_names_of_the_rows() {
+    // The row types are serialisable; their own names are the reference.
+    let run = toml::Value::try_from(&results().runs[0]).expect("a serialisable row");
+    let names: Vec<&String> = run.as_table().expect("a table").keys().collect();
+    let mut header = csv::header::<RunRow>();
+    header.sort_unstable();
+    let mut names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    names.sort_unstable();
+    assert_eq!(header, names);
+}
+
+#[test]
+fn rows_are_sorted_whatever_the_order_they_came_in() {
+    let forward = results();
+    let mut backward = forward.clone();
+    backward.runs.reverse();
+    backward.quantities.reverse();
+    backward.history.reverse();
+    backward.points.reverse();
+    backward.expectations.reverse();
+    let (mut a, mut b) = (Bundle::new(), Bundle::new());
+    csv::add_to(&mut a, &forward).expect("CSV");
+    csv::add_to(&mut b, &backward).expect("CSV");
+    for path in [
+        "runs.csv",
+        "quantities.csv",
+        "history.csv",
+        "points.csv",
+        "expectations.csv",
+    ] {
+        assert_eq!(text(&a, path), text(&b, path), "{path}");
+    }
+    let mut reader = ::csv::Reader::from_reader(a.get("history.csv").expect("history.csv"));
+    let keys: Vec<(String, f64, usize)> = reader
+        .records()
+        .map(|row| row.expect("a record"))
+        .map(|row| {
+            let number = |i: usize| row[i].parse::<f64>().expect("a number");
+            (row[3].to_owned(), number(4), number(6) as usize)
+        })
+        .collect();
+    assert!(
+        keys.windows(2).all(|pair| pair[0] < pair[1]),
+        "method, friction, iteration ascend"
+    );
+    assert!(
+        keys.iter().any(|k| k.2 > 9),
+        "iterations beyond 9 prove that the order is numeric"
+    );
+}
+
+#[test]
+fn points_read_back_to_ten_digits() {
+    let bundle = csv_bundle();
+    let mut reader = ::csv::Reader::from_reader(bundle.get("points.csv").expect("points.csv"));
+    let header = reader.headers().expect("a header").clone();
+    let column = |name: &str| header.iter().position(|h| h == name).expect("a column");
+    let mut expected = results().points;
+    expected.sort_by(|a, b| {
+        csv::compare_keys(&a.key, &b.key).then(a.point.number.cmp(&b.point.number))
+    });
+    let rows: Vec<::csv::StringRecord> = reader.records().map(|r| r.expect("a record")).collect();
+    assert_eq!(rows.len(), expected.len());
+    for (row, point) in rows.iter().zip(&expected) {
+        assert_eq!(row[column("method")], point.key.method);
+        assert_eq!(row[column("status")], point.point.status);
+        for (name, value) in [
+            ("p_n", point.point.p_n),
+            ("p_a", point.point.p_a),
+            ("slip_a_m", point.point.slip_a_m),
+            ("x_m", point.point.x_m),
+        ] {
+            let found: f64 = row[column(name)].parse().expect("a number");
+            assert!(
+                (found - value).abs() <= 5.1e-10 * value.abs(),
+                "{name}: {found} and {value}"
+            );
+        }
+    }
+}
+
+#[test]
+fn quotes_and_commas_survive_the_csv() {
+    let bundle = csv_bundle();
+    let mut reader = ::csv::Reader::from_reader(bundle.get("expectations.csv").expect("a file"));
+    let row = reader.records().next().expect("a row").expect("a record");
+    assert_eq!(row[14], results().expectations[0].source);
+}
+
+#[test]
+fn negative_zero_and_round_off_residuals_print_as_zero() {
+    let bundle = csv_bundle();
+    assert!(text(&bundle, "quantities.csv").contains(",reaction,top,x,0,N/m\n"));
+    let mut reader = ::csv::Reader::from_reader(bundle.get("runs.csv").expect("a file"));
+    let header = reader.headers().expect("a header").clone();
+    let column = header.iter().position(|name| name == "equilibrium");
+    let column = column.expect("documented");
+    let rows: Vec<_> = reader.records().map(|row| row.expect("a row")).collect();
+    assert!(!rows.is_empty());
+    assert!(
+        rows.iter().all(|row| &row[column] == "0"),
+        "equilibrium 3.2e-14 is 0"
+    );
+}
+
+#[test]
+fn paper_tables_show_printed_values_beside_ours() {
+    let bundle = csv_bundle();
+    let expected = "mesh,friction,method,reaction_mn_per_m,printed_mn_per_m,relative_difference,verdict\n\
+                    I,0.1,b-newton,973.54321,973.3,0.00025,solved\n\
+                    I,1.2,penalty,,1137.5,,gave-up: max-iterations\n\
+                    II,0.8,b-newton,1108.412345,1108.8,-0.00035,solved\n";
+    assert_eq!(text(&bundle, "table1.csv"), expected);
+    let table2 = text(&bundle, "table2.csv");
+    let methods: Vec<&str> = table2
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').nth(3))
+        .collect();
+    assert_eq!(
+        methods,
+        ["printed", "a-fails", "b-newton"],
+        "the printed line comes first"
+    );
+    assert!(table2.contains(",0.14750192,"), "{table2}");
+    assert!(table2.contains(",4.2e-7,solved"), "{table2}");
+    assert!(
+        table2.contains(",NaN,,gave-up: diverged"),
+        "no solution has no difference: {table2}"
+    );
+
+    let markdown = text(&bundle, "table1.md");
+    assert!(
+        markdown.contains("| I | 0.1 | b-newton | 973.543 | 973.3 | 2.5e-4 | solved |"),
+        "{markdown}"
+    );
+    // Seven printed decimals, nine of ours, the points below each other.
+    let latex = text(&bundle, "table2.tex");
+    assert!(latex.contains("S[table-format=1.9]"), "{latex}");
+    assert!(latex.contains(" & 0.1475015 & "), "{latex}");
+    assert!(latex.contains(" & 0.147501920 & "), "{latex}");
+    let terminal = paper::table2(&table2_rows(), Digits::Printed)
+        .expect("a table")
+        .terminal();
+    assert!(
+        terminal.contains("0.1475019") && !terminal.contains("0.14750192"),
+        "{terminal}"
+    );
+    assert!(
+        terminal.lines().all(|line| line.chars().count() < 145),
+        "{terminal}"
+    );
+}
+
+#[test]
+fn tables_refuse_rows_of_another_length() {
+    let mut table = Table::new("t", vec![Column::new("a", "", Align::Left)]);
+    let error = table
+        .push(vec!["1".into(), "2".into()])
+        .expect_err("two cells for one column");
+    assert!(matches!(
+        error,
+        ReportError::TableShape {
+            row: 1,
+            found: 2,
+            expected: 1,
+            ..
+        }
+    ));
+}
+
+#[test]
+fn pipes_do_not_break_markdown_rows() {
+    let mut table = Table::new("t", vec![Column::new("|p_t|", "", Align::Left)]);
+    table.push(vec!["a|b".into()]).expect("a row");
+    for line in table
+        .markdown()
+        .lines()
+        .filter(|line| line.starts_with('|'))
+    {
+        assert_eq!(line.replace("\\|", "").matches('|').count(), 2, "{line}");
+    }
+}
+
+#[test]
+fn wrong_answers_have_no_profile_and_no_time() {
+    let mut results = results();
+    for row in results
+        .runs
+        .iter_mut()
+        .filter(|row| row.key.method == "latin")
+    {
+        row.verdict = Verdict::FalseClaim;
+    }
+    let bundle = standard::bundle(&results, &Provenance::collect(1)).expect("a bundle");
+    let profile = text(
+        &bundle,
+        "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.crack-1.slip.svg",
+    );
+    assert!(profile.contains("b-newton") && !profile.contains("latin"));
+    let history = text(
+        &bundle,
+        "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.residual.svg",
+    );
+    assert!(
+        history.contains("latin"),
+        "a failure is shown where it is one"
+    );
+    let runs = text(&bundle, "runs.md");
+    assert!(
+        runs.lines()
+            .filter(|line| line.contains("false-claim"))
+            .all(|line| line.ends_with("| – |"))
+    );
+    assert_eq!(runs.matches("| – |").count(), 3);
+}
+
+#[test]
+fn provenance_is_in_its_own_file_only() {
+    let provenance = Provenance::collect(3).with_option("tier", "high");
+    let bundle = standard::bundle(&results(), &provenance).expect("a bundle");
+    let parsed: toml::Table = text(&bundle, "provenance.toml").parse().expect("TOML");
+    assert_eq!(parsed["version"].as_str(), Some(env!("CARGO_PKG_VERSION")));
+    assert_eq!(parsed["threads"].as_integer(), Some(3));
+    assert_eq!(parsed["options"]["tier"].as_str(), Some("high"));
+    for name in ["commit", "dirty", "rustc", "target", "profile", "os", "cpu"] {
+        assert!(
+            parsed[name].as_str().is_some_and(|text| !text.is_empty()),
+            "{name}"
+        );
+    }
+    for path in bundle.paths().filter(|path| *path != "provenance.toml") {
+        let contents = text(&bundle, path);
+        assert!(!contents.contains(&provenance.rustc), "{path}");
+        assert!(
+            provenance.commit == "unknown" || !contents.contains(&provenance.commit),
+            "{path}"
+        );
+    }
+}
+
+#[test]
+fn file_names_hold_no_separators() {
+    let mut odd = key(METHODS[0], 0.1);
+    (odd.space, odd.method) = ("edge-pairs/gauss-6".into(), "penalty[k=1e12, μ]".into());
+    let stem = standard::stem(&odd);
+    assert_eq!(
+        stem,
+        "plate_mesh1.22x22.edge-pairs-gauss-6.penalty-k=1e12----.mu-0.1"
+    );
+}

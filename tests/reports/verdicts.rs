@@ -1,0 +1,417 @@
+//! Every kind of verdict through every table that shows one and into the exit code, and what running out of memory is.
+
+use std::fs;
+use std::path::Path;
+
+use crate::report_data::results;
+use stickslip::case;
+use stickslip::report::comparison;
+use stickslip::report::csv::{self, Row};
+use stickslip::report::paper::converged_reactions::sequence_table;
+use stickslip::report::paper::plate_series::{penalty_table, refinement_table};
+use stickslip::report::paper::{Digits, table1, table2};
+use stickslip::report::tables::Table;
+use stickslip::report::timings::{self, BenchmarkName, TimingRow};
+use stickslip::report::{Bundle, Provenance, convergence, page, standard};
+use stickslip::run::choice::Choice;
+use stickslip::run::record::{Results, RunRow};
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::run::verdict::{Verdict, VerdictKind};
+use stickslip::studies::convergence::orders::{self, ErrorRow};
+use stickslip::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
+use stickslip::studies::paper::comparison::{ComparisonRow, comparison};
+use stickslip::studies::paper::converged_reactions::SequenceRow;
+use stickslip::studies::paper::plate_series::{PenaltyRow, RefinementRow};
+use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
+use stickslip::studies::paper::variants::VariantRow;
+use stickslip::studies::spaces::patch::{Loaded, PatchRow, State};
+use stickslip::studies::stress::robustness::FailureRow;
+use stickslip::studies::sweep::statistics::Timing;
+use stickslip_methods::{
+    ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Status,
+    Tier,
+};
+
+/// One of each kind, with details that need quotes in a table of commas.
+fn of_kind(kind: VerdictKind) -> Verdict {
+    match kind {
+        VerdictKind::Solved => Verdict::Solved,
+        VerdictKind::Approximate => Verdict::Approximate(Some(Tier::Mid)),
+        VerdictKind::FalseClaim => Verdict::FalseClaim,
+        VerdictKind::GaveUp => Verdict::GaveUp(Status::SingularTangent),
+        VerdictKind::Refused => Verdict::Refused("no: \"friction\", or none".into()),
+        VerdictKind::Crashed => Verdict::Crashed("out of memory, it says: 1, 2".into()),
+        VerdictKind::TimedOut => Verdict::TimedOut,
+        VerdictKind::OutOfMemory => Verdict::OutOfMemory,
+    }
+}
+
+/// A run of each kind, every one on a case of its own.
+fn runs() -> Vec<RunRow> {
+    let run = |kind: &VerdictKind| {
+        let mut row = results().runs.swap_remove(0);
+        row.key.case = format!("case-{}", kind.name());
+        row.verdict = of_kind(*kind);
+        row
+    };
+    VerdictKind::ALL.iter().map(run).collect()
+}
+
+/// What a file says in a column, read back as a reader would.
+fn read_back<R: Row>(row: R, column: &str) -> Verdict {
+    let bytes = csv::file(&[row]).unwrap();
+    let mut reader = ::csv::Reader::from_reader(bytes.as_slice());
+    let place = reader.headers().unwrap().iter().position(|c| c == column);
+    let record = reader.records().next().unwrap().unwrap();
+    record[place.unwrap()].parse().unwrap()
+}
+
+fn shows(table: Table, verdict: &Verdict) {
+    let text = verdict.to_string();
+    assert!(table.rows()[0].contains(&text), "{text}: {table:?}");
+}
+
+#[test]
+fn every_kind_stands_in_every_table() {
+    for run in runs() {
+        let (verdict, key) = (run.verdict.clone(), run.key.clone());
+        let variant = |verdict| VariantRow {
+            case: key.case.clone(),
+            friction: 0.1,
+            method: key.method.clone(),
+            verdict,
+            quantity: "reaction top y".into(),
+            value: f64::NAN,
+            deviation: f64::NAN,
+            natural_map: f64::NAN,
+            iterations: 0,
+            tangent_factorisations: 0,
+            global_factorisations: 0,
+            solve_s: 1e-3,
+        };
+        let table1_row = |verdict| Table1Row::new("I", 0.1, "latin", None, Some(973.3), verdict);
+        let table2_row = |verdict| {
+            let printed = Table2Row::printed("I", "as-printed", "y", [0.1; 7]);
+            Table2Row::computed(&printed, "latin", [f64::NAN; 7], verdict)
+        };
+        let penalty = |verdict| PenaltyRow {
+            friction: 0.1,
+            parameter: 1.0,
+            reaction_mn_per_m: f64::NAN,
+            relative_error: f64::NAN,
+            max_penetration_m: f64::NAN,
+            natural_map: f64::NAN,
+            verdict,
+        };
+        let refinement = || RefinementRow {
+            family: "I".into(),
+            mesh: key.mesh.clone(),
+            h_m: 0.5,
+            friction: 0.1,
+            dofs: 2,
+            reaction_mn_per_m: f64::NAN,
+            verdict: verdict.clone(),
+        };
+        let sequence = || SequenceRow {
+            mesh: "I".into(),
+            cells: key.mesh.clone(),
+            h_m: 0.5,
+            friction: 0.1,
+            dofs: 2,
+            points: 1,
+            reaction_mn_per_m: f64::NAN,
+            order: f64::NAN,
+            verdict: verdict.clone(),
+        };
+        let timing = || TimingRow {
+            name: BenchmarkName::new("g", "solve", "latin"),
+            verdict: Some(verdict.clone()),
+            timing: Timing::of(&[1.0, 1.0]).unwrap(),
+        };
+        let failure = FailureRow {
+            seed: 1,
+            dimension: 2,
+            problem: 0,
+            friction: 0.1,
+            method: key.method.clone(),
+            verdict: verdict.clone(),
+            natural_map: f64::NAN,
+            unique: true,
+            points: 1,
+        };
+        let patch = PatchRow {
+            state: State::Stick,
+            loaded: Loaded::Displacement,
+            dimension: 2,
+            crack: "27°".into(),
+            mesh: "regular".into(),
+            distance: 0.1,
+            space: "star".into(),
+            points: 1,
+            verdict: verdict.clone(),
+            traction: f64::NAN,
+            displacement: f64::NAN,
+        };
+        let error = || -> ErrorRow {
+            let sample = Sample {
+                variant: Variant {
+                    case: key.case.clone(),
+                    space: "star".into(),
+                    tip: "branch".into(),
+                    method: key.method.clone(),
+                    friction: 0.1,
+                },
+                regularity: Regularity::Tip,
+                mesh: key.mesh.clone(),
+                refine: 1,
+                h: 0.5,
+                dim: 2,
+                dofs: 2,
+                points: 1,
+                verdict: verdict.clone(),
+                seconds: Seconds::NONE,
+                measured: Measured::Nothing,
+            };
+            orders::rows(&[sample]).0.swap_remove(0)
+        };
+        let compared = || comparison(std::slice::from_ref(&run)).swap_remove(0);
+        let known = || Some(verdict.clone());
+        for found in [
+            read_back(run.clone(), "verdict"),
+            read_back(compared(), "verdict"),
+            read_back(variant(known()), "verdict"),
+            read_back(table1_row(known()), "verdict"),
+            read_back(table2_row(known()), "verdict"),
+            read_back(penalty(known()), "verdict"),
+            read_back(refinement(), "verdict"),
+            read_back(sequence(), "verdict"),
+            read_back(error(), "verdict"),
+            read_back(timing(), "verdict"),
+            read_back(failure, "verdict"),
+            read_back(patch, "run"),
+        ] {
+            assert_eq!(found, verdict);
+        }
+        for table in [
+            standard::runs_table(std::slice::from_ref(&run)),
+            comparison::comparison_table(&[compared()]),
+            comparison::variant_table(&[variant(known())]),
+            table1(&[table1_row(known())]),
+            table2(&[table2_row(known())], Digits::Printed),
+            penalty_table(&[penalty(known())]),
+            refinement_table(&[refinement()]),
+            sequence_table(&[sequence()]),
+            convergence::error_table(&[error()]),
+            timings::table(&[timing()]),
+        ] {
+            shows(table.unwrap(), &verdict);
+        }
+        for cells in [
+            variant(None).cells(),
+            table1_row(None).cells(),
+            table2_row(None).cells(),
+            penalty(None).cells(),
+        ] {
+            assert!(cells.contains(&"not run".to_owned()), "{cells:?}");
+        }
+    }
+}
+
+/// The folder of a report on these runs.
+fn folder_of(runs: &[RunRow]) -> tempfile::TempDir {
+    let (dir, mut bundle) = (tempfile::tempdir().unwrap(), Bundle::new());
+    let compared = comparison(runs);
+    bundle.add(RunRow::FILE, csv::file(runs).unwrap()).unwrap();
+    bundle
+        .add(ComparisonRow::FILE, csv::file(&compared).unwrap())
+        .unwrap();
+    bundle.commit(dir.path()).unwrap();
+    dir
+}
+
+/// Counts at the top of a page with their labels.
+fn facts(page: &str) -> Vec<(String, usize)> {
+    let facts = page.split("<strong>").skip(1).filter_map(|rest| {
+        let (count, rest) = rest.split_once("</strong> <span>")?;
+        let label = rest.split_once("</span>")?.0;
+        Some((label.to_owned(), count.parse().ok()?))
+    });
+    facts.collect()
+}
+
+#[test]
+fn every_kind_is_counted_once_on_the_page() {
+    let all = runs();
+    let html = page::of_folder(folder_of(&all).path()).unwrap();
+    let (increments, counts) = (facts(&html)[0].clone(), &facts(&html)[1..]);
+    assert_eq!(increments, ("increments run".into(), all.len()));
+    let sum: usize = counts.iter().map(|(_, count)| count).sum();
+    assert_eq!(sum, all.len(), "{counts:?}");
+    for (label, count) in [
+        ("gave up or crashed", 2),
+        ("timed out", 1),
+        ("out of memory", 1),
+    ] {
+        assert!(counts.contains(&(label.into(), count)), "{counts:?}");
+    }
+    for kind in VerdictKind::ALL {
+        assert!(html.contains(&format!("<dt>{}</dt>", kind.name())));
+        let colour = match kind {
+            VerdictKind::Solved => "good",
+            VerdictKind::Approximate => "fair",
+            VerdictKind::Refused => "none",
+            _ => "bad",
+        };
+        let text = of_kind(*kind).to_string().replace('"', "&quot;");
+        let cell = format!("<span class=\"v {colour}\">{text}</span>");
+        assert!(html.contains(&cell), "{cell}");
+    }
+    // One method: its cases by their worst verdict are the same counts.
+    let heading = "<th scope=\"col\" class=\"n\">out of memory</th></tr></thead><tbody><tr>";
+    let row = html.split_once(heading).expect("a table of counts").1;
+    let row = row.split_once("</tr>").unwrap().0;
+    let cells: Vec<usize> = row
+        .split("<td class=\"n\">")
+        .skip(1)
+        .map(|cell| cell.split_once("</td>").unwrap().0.parse().unwrap())
+        .collect();
+    assert_eq!(cells, counts.iter().map(|c| c.1).collect::<Vec<_>>());
+
+    // Who met no limit reads nothing of limits.
+    let mut within = all.clone();
+    within.retain(|run| !run.verdict.kind().is_limit());
+    let html = page::of_folder(folder_of(&within).path()).unwrap();
+    assert!(!html.contains("out of memory</") && !html.contains("timed"));
+    assert_eq!(facts(&html).len(), 6);
+}
+
+#[test]
+fn every_failure_is_one_in_the_exit_code() {
+    for run in runs() {
+        let expected = match run.verdict.kind() {
+            VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::Refused => 0,
+            _ => 1,
+        };
+        let name = run.verdict.to_string();
+        let results = Results {
+            runs: vec![run],
+            ..Results::default()
+        };
+        assert_eq!(results.failures(), expected, "{name}");
+        assert_eq!(results.as_expected(), expected == 0, "{name}");
+        let said = format!("{expected} failed;");
+        assert!(standard::summary(&results).contains(&said), "{name}");
+    }
+    let mut missed = results();
+    assert!(missed.as_expected());
+    missed.expectations[0].verdict = "missed".into();
+    assert!(missed.failures() == 0 && !missed.as_expected());
+}
+
+/// A method whose factorisation finds no memory, in its preparation or later.
+struct Denied {
+    at_once: bool,
+}
+
+const DENIED: MethodError = MethodError::OutOfMemory {
+    what: "factorisation",
+};
+
+impl Enforcement for Denied {
+    fn prepare(&mut self, _: &ContactSystem) -> Result<(), MethodError> {
+        if self.at_once { Err(DENIED) } else { Ok(()) }
+    }
+
+    fn solve(&mut self, _: &Increment<'_>, _: &mut dyn Monitor) -> Result<Outcome, MethodError> {
+        Err(DENIED)
+    }
+}
+
+const fn denied(name: &'static str, build: fn(&Options) -> Box<dyn Enforcement>) -> Method {
+    Method {
+        name,
+        label: name,
+        reference: "",
+        summary: "",
+        exact: true,
+        options: &[],
+        source: "",
+        build,
+    }
+}
+
+static AT_ONCE: Method = denied("at-once", |_| Box::new(Denied { at_once: true }));
+static LATER: Method = denied("later", |_| Box::new(Denied { at_once: false }));
+
+/// A box in two parts, pressed together: nothing is expected of it. With 24 cells in every direction its factor takes
+/// more than 600 MB and everything before it less than 160 MB.
+fn pressed(cells: usize) -> String {
+    format!(
+        "title = \"A box in two parts\"\nmodel = \"solid\"\n\
+         [material]\nyoung_pa = 1e10\npoisson = 0.3\n\
+         [mesh.box]\nmin_m = [0, 0, 0]\nmax_m = [1, 1, 1]\ncells = [{cells}, {cells}, {cells}]\n\
+         [[crack]]\nplane = {{ point_m = [0.5, 0.5, 0.517], normal = [0, 0, 1] }}\nfriction = 0.3\n\
+         [[support]]\non = \"bottom\"\ndisplacement_m = [0, 0, 0]\n\
+         [[support]]\non = \"top\"\ndisplacement_m = [0.0001, 0, -0.001]\n"
+    )
+}
+
+#[test]
+fn an_error_of_memory_is_told_by_its_type_and_fails_the_run() {
+    let case = case::parse("pressed.toml", pressed(3)).unwrap();
+    assert!(case.expects.is_empty());
+    let settings = Settings {
+        tier: None,
+        jobs: 1,
+        fields: Fields::None,
+    };
+    for method in [&AT_ONCE, &LATER] {
+        let choice = Choice::new(method, &[]).unwrap();
+        let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
+        assert_eq!(results.runs.len(), 1);
+        assert_eq!(results.runs[0].verdict, Verdict::OutOfMemory);
+        assert!(!results.as_expected());
+        let dir = tempfile::tempdir().unwrap();
+        standard::write(dir.path(), &results, &Provenance::collect(1)).unwrap();
+        says_so(dir.path());
+    }
+}
+
+/// A folder of one run that ended without memory.
+fn says_so(dir: &Path) {
+    let runs = fs::read_to_string(dir.join("runs.csv")).unwrap();
+    assert_eq!(runs.matches(",out-of-memory,").count(), 1, "{runs}");
+    let readable = fs::read_to_string(dir.join("runs.md")).unwrap();
+    assert!(readable.contains("| out-of-memory "), "{readable}");
+    let html = page::of_folder(dir).unwrap();
+    assert!(html.contains("<span class=\"v bad\">out-of-memory</span>"));
+    assert!(facts(&html).contains(&("out of memory".into(), 1)));
+}
+
+/// Through the program, in an address space that holds the matrix and not its factor.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_whose_factorisation_finds_no_memory_exits_with_1_and_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("pressed.toml"), pressed(24)).unwrap();
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    let limited = format!("ulimit -v 320000 && exec '{program}' run pressed.toml --method hybrid");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &limited])
+        .current_dir(dir.path())
+        // The C library reserves address space per thread.
+        .env("RAYON_NUM_THREADS", "1")
+        .env("MALLOC_ARENA_MAX", "1")
+        .env("RUST_BACKTRACE", "0")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    let complaints = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{text}{complaints}");
+    assert!(text.contains(" out-of-memory "), "{text}");
+    assert!(
+        text.contains("0 solved, 0 approximate, 0 refused, 1 failed"),
+        "{text}"
+    );
+    says_so(&dir.path().join("results"));
+}

@@ -1,0 +1,427 @@
+//! Exported problems, solved again from their files, give what the case itself gives; bad files give exit code 2.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::common::*;
+use assert_cmd::Command;
+use stickslip::case::Case;
+use stickslip::case::shipped;
+use stickslip::files::interchange::{Problem, fclib, matrix_market};
+use stickslip::run::choice::Choice;
+use stickslip::run::registry::methods;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip_methods::Tier;
+use tempfile::TempDir;
+
+/// Largest difference of contact forces, relative to the largest, where a method takes the same steps.
+const SAME_STEPS: f64 = 1e-8;
+
+/// The same where iterations begin at other contact forces, which a file does not hold: a natural map of 1e-9, amplified.
+const OTHER_STEPS: f64 = 1e-6;
+
+fn stickslip(arguments: &[&str], dir: &Path) -> Output {
+    let mut program = Command::cargo_bin("stickslip").unwrap();
+    program.args(arguments).current_dir(dir).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Exports into `problems/` of a new folder: the folder and the common name of the files.
+fn exported(arguments: &[&str]) -> (TempDir, String) {
+    let dir = tempfile::tempdir().unwrap();
+    let output = stickslip(&[&["export"], arguments].concat(), dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let first = text(&output.stdout).lines().next().unwrap().to_owned();
+    (dir, first.strip_prefix("problems/").unwrap().to_owned())
+}
+
+/// Contact forces of a direct run by the method of that name, point by point.
+fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64> {
+    let mut case = case.clone();
+    case.sweep.friction = vec![friction];
+    case.sweep.refine.truncate(1);
+    case.expects.clear();
+    let choice = Choice::new(stickslip::run::registry::method(method).unwrap(), &[]).unwrap();
+    let settings = Settings {
+        tier: Some(Tier::High),
+        jobs: 1,
+        fields: Fields::None,
+    };
+    let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
+    let own = (results.points.iter()).filter(|row| row.key.increment == increment);
+    let dim = case.model.dim();
+    own.flat_map(|row| {
+        [row.point.p_n, row.point.p_a, row.point.p_b]
+            .into_iter()
+            .take(dim)
+    })
+    .collect()
+}
+
+fn vector(path: &Path) -> Vec<f64> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    matrix_market::parse(path, &text).unwrap().column(0)
+}
+
+/// The verdict of one row of `runs.csv`.
+fn verdict(dir: &Path, case: &str, method: &str) -> String {
+    let mut rows = csv::Reader::from_path(dir.join("results/runs.csv")).unwrap();
+    let header = rows.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let (case_at, method_at, verdict_at) = (at("case"), at("method"), at("verdict"));
+    let rows: Vec<_> = rows.records().map(Result::unwrap).collect();
+    let row = (rows.iter()).find(|row| &row[case_at] == case && &row[method_at] == method);
+    row.unwrap_or_else(|| panic!("{case} {method}"))[verdict_at].to_owned()
+}
+
+/// Exports one increment, solves its files with every method and compares with direct runs.
+fn files_give_what_the_case_gives(name: &str, friction: f64, increment: usize) {
+    let case = shipped::find(name).unwrap().unwrap();
+    let (mu, k) = (friction.to_string(), increment.to_string());
+    let (dir, stem) = exported(&[name, "--friction", &mu, "--increment", &k]);
+    let floating = dir.path().join(format!("problems/{stem}.V.mtx")).exists();
+    let kinds: &[&str] = if floating {
+        &["local"]
+    } else {
+        &["local", "global"]
+    };
+    let files: Vec<String> = (kinds.iter())
+        .map(|kind| format!("problems/{stem}.{kind}.hdf5"))
+        .collect();
+    let mut arguments = vec!["solve"];
+    arguments.extend(files.iter().map(String::as_str));
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(dir.path().join("results/history.csv").exists());
+    let close = if increment == 1 {
+        SAME_STEPS
+    } else {
+        OTHER_STEPS
+    };
+    let exact = vector_of_solution(&dir.path().join(&files[0]));
+    for method in methods() {
+        let expected = direct(&case, method.name, friction, increment);
+        for kind in kinds {
+            let problem = format!("{stem}.{kind}");
+            let verdict = verdict(dir.path(), &problem, method.name);
+            if let Some(reason) = verdict.strip_prefix("refused: ") {
+                assert!(
+                    !reason.is_empty() && !method.exact,
+                    "{}: {verdict}",
+                    method.name
+                );
+                continue;
+            }
+            // The export starts where an exact method has led; an approximate one has led elsewhere.
+            if increment > 1 && !method.exact {
+                assert!(
+                    verdict.starts_with("approximate"),
+                    "{}: {verdict}",
+                    method.name
+                );
+                continue;
+            }
+            let run = format!(
+                "solutions/{problem}.{kind}.fclib.{}.mu-{mu}.r.mtx",
+                method.name
+            );
+            let found = vector(&dir.path().join("results").join(run));
+            let difference = relative_difference(&found, &expected);
+            assert!(
+                difference <= close,
+                "{} {kind}: {difference:e}",
+                method.name
+            );
+            if method.exact {
+                assert_eq!(verdict, "solved", "{} {kind}", method.name);
+                assert!(
+                    relative_difference(&found, &exact) <= OTHER_STEPS,
+                    "{}",
+                    method.name
+                );
+            }
+        }
+    }
+}
+
+fn vector_of_solution(path: &Path) -> Vec<f64> {
+    match fclib::read(path).unwrap() {
+        Problem::Local(problem) => problem.solution.unwrap().r,
+        Problem::Global(problem) => problem.solution.unwrap().r,
+    }
+}
+
+#[test]
+fn plate() {
+    files_give_what_the_case_gives("plate_mesh1", 0.8, 1);
+}
+
+#[test]
+fn beam() {
+    files_give_what_the_case_gives("beam_model1", 0.1, 1);
+}
+
+#[test]
+fn later_increments_start_where_the_path_has_led() {
+    files_give_what_the_case_gives("cyclic", 0.3, 4);
+}
+
+#[test]
+fn floating_block_with_its_rigid_motions() {
+    files_give_what_the_case_gives("sliding_block_embedded", 0.2, 1);
+    let (dir, stem) = exported(&["sliding_block_embedded", "--friction", "0.2"]);
+    let output = stickslip(
+        &["solve", &format!("problems/{stem}.global.hdf5")],
+        dir.path(),
+    );
+    assert_eq!(output.status.code(), Some(2));
+    let error = text(&output.stderr);
+    assert!(
+        error.contains("M is singular") && error.contains("local problem"),
+        "{error}"
+    );
+    assert!(!dir.path().join("results").exists());
+}
+
+#[test]
+fn frictionless_cases_keep_all_rows() {
+    let (dir, stem) = exported(&["frictionless"]);
+    let path = dir.path().join(format!("problems/{stem}.local.hdf5"));
+    let Problem::Local(problem) = fclib::read(&path).unwrap() else {
+        panic!("a global problem");
+    };
+    assert_eq!(problem.w.rows(), 2 * problem.points());
+    assert!(problem.mu.iter().all(|&mu| mu == 0.0));
+    let solution = problem.solution.unwrap();
+    assert!(solution.r.iter().step_by(2).any(|&p| p > 0.0));
+    assert!(solution.r.iter().skip(1).step_by(2).all(|&p| p == 0.0));
+    let output = stickslip(&["solve", path.to_str().unwrap()], dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
+/// The equations of both problems, from the files alone.
+#[test]
+fn exported_solutions_fulfil_the_equations_of_the_format() {
+    for arguments in [
+        &["cyclic", "--increment", "4"][..],
+        &["sliding_block_embedded", "--friction", "0.2"],
+    ] {
+        let (dir, stem) = exported(arguments);
+        let file = |end: &str| dir.path().join(format!("problems/{stem}.{end}"));
+        let Problem::Local(local) = fclib::read(&file("local.hdf5")).unwrap() else {
+            panic!("a global problem");
+        };
+        let solution = local.solution.unwrap();
+        let mut u = local.q.clone();
+        let mut size = 0.0;
+        for (i, j, w) in local.w.entries() {
+            u[i] += w * solution.r[j];
+            size += (w * solution.r[j]).abs();
+        }
+        if let Some(equality) = &local.equality {
+            let mut balance = equality.s.clone();
+            for (i, j, v) in equality.v.entries() {
+                u[i] += v * solution.l[j];
+                balance[j] += v * solution.r[i];
+            }
+            let force = solution.r.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+            assert!(
+                balance.iter().all(|b| b.abs() <= 1e-11 * force),
+                "{balance:?}"
+            );
+        }
+        let close = |a: &[f64], b: &[f64], size: f64| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-11 * size)
+        };
+        assert!(close(&u, &solution.u, size), "{u:?}\n{:?}", solution.u);
+
+        let Problem::Global(global) = fclib::read(&file("global.hdf5")).unwrap() else {
+            panic!("a local problem");
+        };
+        let solution = global.solution.unwrap();
+        let mut residual: Vec<f64> = global.f.iter().map(|f| -f).collect();
+        let mut size = 0.0;
+        for (i, j, m) in global.m.entries() {
+            residual[i] += m * solution.v[j];
+            size += (m * solution.v[j]).abs();
+        }
+        let mut u = global.w.clone();
+        for (i, j, h) in global.h.entries() {
+            residual[i] -= h * solution.r[j];
+            u[j] += h * solution.v[i];
+        }
+        assert!(
+            residual.iter().all(|r| r.abs() <= 1e-13 * size),
+            "{residual:?}"
+        );
+        let largest = solution.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        assert!(close(&u, &solution.u, largest));
+        // The text files are the same numbers.
+        assert_eq!(vector(&file("f.mtx")), global.f);
+        assert_eq!(vector(&file("q.mtx")), local.q);
+        for (part, matrix) in [
+            ("K", &global.m),
+            ("B", &global.h.transposed()),
+            ("W", &local.w),
+        ] {
+            let path = file(&format!("{part}.mtx"));
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert_eq!(
+                &matrix_market::parse(&path, &text).unwrap(),
+                matrix,
+                "{part}"
+            );
+        }
+    }
+}
+
+#[test]
+fn reactions_of_other_programs_are_judged() {
+    let (dir, stem) = exported(&["plate_mesh1", "--friction", "0.8"]);
+    let file = format!("problems/{stem}.local.hdf5");
+    let reaction = vector_of_solution(&dir.path().join(&file));
+    let write = |name: &str, values: &[f64]| {
+        std::fs::write(dir.path().join(name), matrix_market::vector(values)).unwrap();
+    };
+    write("good.mtx", &reaction);
+    write("zero.mtx", &vec![0.0; reaction.len()]);
+    let rough: Vec<f64> = reaction.iter().map(|r| r * (1.0 + 1e-5)).collect();
+    write("rough.mtx", &rough);
+    write("short.mtx", &reaction[1..]);
+    // More entries than a number can count.
+    let huge = "%%MatrixMarket matrix coordinate real general\n18446744073709551615 2 0\n";
+    std::fs::write(dir.path().join("huge.mtx"), huge).unwrap();
+    for (arguments, code) in [
+        (&["good.mtx"][..], 0),
+        (&["good.mtx", "zero.mtx"], 1),
+        (&["rough.mtx"], 1),
+        (&["rough.mtx", "--tier", "low"], 0),
+        (&["short.mtx"], 2),
+        (&["huge.mtx"], 2),
+        (&["nowhere.mtx"], 2),
+    ] {
+        let output = stickslip(&[&["judge", &file], arguments].concat(), dir.path());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    }
+    let output = stickslip(&["judge", &file, "huge.mtx"], dir.path());
+    let error = text(&output.stderr);
+    let shape = format!("18446744073709551615 × 2, expected {} × 1", reaction.len());
+    assert!(error.contains(&shape), "{error}");
+    // The global file says the same, within its own rounding.
+    let global = format!("problems/{stem}.global.hdf5");
+    let output = stickslip(&["judge", &global, "good.mtx"], dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("equilibrium"));
+
+    let (dir, stem) = exported(&["sliding_block_embedded", "--friction", "0.2"]);
+    let arguments = ["judge", &format!("problems/{stem}.local.hdf5")];
+    let reaction = format!("problems/{stem}.q.mtx");
+    let output = stickslip(&[&arguments[..], &[&reaction]].concat(), dir.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("the body floats"));
+}
+
+fn shipped_file(name: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    root.join("tests/data/fclib").join(name)
+}
+
+#[test]
+fn files_of_other_writers_are_solved() {
+    let dir = tempfile::tempdir().unwrap();
+    let files = ["local_csr.hdf5", "local_gzip.hdf5"].map(shipped_file);
+    let mut arguments = vec!["solve", "-m", METHOD];
+    arguments.extend(files.iter().map(|file| file.to_str().unwrap()));
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for name in ["local_csr", "local_gzip"] {
+        assert_eq!(verdict(dir.path(), name, METHOD), "solved");
+    }
+}
+
+#[test]
+fn what_needs_the_stiffness_refuses_local_files() {
+    let (dir, stem) = exported(&["plate_mesh1", "--friction", "0.8"]);
+    let files = ["local", "global"].map(|kind| format!("problems/{stem}.{kind}.hdf5"));
+    let arguments = [
+        "solve",
+        &files[0],
+        &files[1],
+        "-m",
+        "newton-ac:monolithic=1",
+    ];
+    let output = stickslip(&arguments, dir.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let found = |kind: &str| {
+        let case = format!("{stem}.{kind}");
+        verdict(dir.path(), &case, "newton-ac[monolithic=1e0]")
+    };
+    assert!(
+        found("local").starts_with("refused: "),
+        "{}",
+        found("local")
+    );
+    assert_eq!(found("global"), "solved");
+}
+
+#[test]
+fn bad_files_give_exit_code_2_and_leave_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let good = std::fs::read(shipped_file("local_csr.hdf5")).unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
+    write("good.hdf5", &good);
+    write("short.hdf5", &good[..good.len() / 2]);
+    write("empty.hdf5", b"");
+    write("text.hdf5", b"%%MatrixMarket matrix array real general\n");
+    let constraints = shipped_file("global.hdf5");
+    for (arguments, part) in [
+        (vec!["short.hdf5"], "short.hdf5"),
+        (vec!["empty.hdf5"], "not readable as HDF5"),
+        (vec!["text.hdf5"], "not readable as HDF5"),
+        (vec!["nowhere.hdf5"], "cannot read `nowhere.hdf5`"),
+        (vec!["good.hdf5", "short.hdf5"], "short.hdf5"),
+        (
+            vec!["good.hdf5", "good.hdf5"],
+            "problem `good` is given twice",
+        ),
+        (vec!["good.hdf5", "-m", "none"], "unknown method `none`"),
+        (vec![constraints.to_str().unwrap()], "G is present"),
+    ] {
+        let output = stickslip(&[&["solve"], &arguments[..]].concat(), dir.path());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        assert!(error.contains(part), "{arguments:?}: {error}");
+        assert!(!dir.path().join("results").exists(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn questions_without_an_answer_are_not_exported() {
+    let dir = tempfile::tempdir().unwrap();
+    for (arguments, part) in [
+        (
+            &["plate_mesh1"][..],
+            "0.1, 0.8, 1.2: choose one with --friction",
+        ),
+        (
+            &["plate_mesh1", "--friction", "0.1", "--increment", "2"],
+            "increments 1 to 1",
+        ),
+        (&["plate_mesh1", "--friction=-1"], "not negative"),
+        (
+            &["plate_mesh1", "--friction", "0.1", "-m", "penalty"],
+            "not solved by penalty",
+        ),
+        (&["nothing"], "unknown case"),
+    ] {
+        let output = stickslip(&[&["export"], arguments].concat(), dir.path());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        assert!(error.contains(part), "{arguments:?}: {error}");
+        assert!(!dir.path().join("problems").exists(), "{arguments:?}");
+    }
+}

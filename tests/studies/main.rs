@@ -1,0 +1,14 @@
+//! The studies, random bodies, and the files other programs read and write.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod converge;
+mod fclib;
+mod infsup;
+mod interchange;
+mod measure;
+mod random;
+mod stress;
+mod sweep;
+mod timings;
