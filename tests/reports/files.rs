@@ -4,7 +4,14 @@ use crate::report_data::results;
 use std::fs;
 use std::path::Path;
 use stickslip::files::bundle::FolderError;
-use stickslip::report::{Bundle, Provenance, ReportError, csv, prepare_output, standard};
+use stickslip::report::{Bundle, Provenance, ReportError, prepare_output, standard};
+
+/// Writes the tables, all or none.
+fn write_tables(dir: &Path) -> Result<(), ReportError> {
+    let mut bundle = Bundle::new();
+    standard::add_tables(&mut bundle, &results())?;
+    Ok(bundle.commit(dir)?)
+}
 
 fn temporary() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
@@ -24,11 +31,8 @@ fn one_command_writes_all_kinds_and_twice_the_same() {
     }
     let of = |end: &str| files.iter().filter(|file| file.ends_with(end)).count();
     // Three friction values with all methods, and all friction values by the first exact method.
-    assert_eq!(
-        [of(".residual.svg"), of(".traction.svg"), of(".slip.svg")],
-        [3, 4, 4]
-    );
-    let sweep = "figures/plate_mesh1.22x22.edge-pairs.b-newton.crack-1.slip.svg".to_owned();
+    assert_eq!([of(".residual.svg"), of(".profile.svg")], [3, 4]);
+    let sweep = "figures/plate_mesh1.22x22.edge-pairs.b-newton.crack-1.profile.svg".to_owned();
     assert!(files.contains(&sweep), "{files:?}");
     assert_eq!([of(".displacement.svg"), of(".vtu"), of(".pvd")], [1, 4, 1]);
     assert_eq!(
@@ -38,7 +42,7 @@ fn one_command_writes_all_kinds_and_twice_the_same() {
     );
     assert_eq!(
         [of(".csv"), of(".md"), of(".tex"), of("provenance.toml")],
-        [6, 2, 2, 1]
+        [7, 1, 1, 1]
     );
 }
 
@@ -53,7 +57,7 @@ fn folders_that_cannot_be_written_are_named_before_anything_is_computed() {
             error.to_string().contains(&target.display().to_string()),
             "{error}"
         );
-        let error = csv::write_all(&target, &results()).expect_err("a file is no folder");
+        let error = write_tables(&target).expect_err("a file is no folder");
         assert!(
             matches!(error, ReportError::Folder(FolderError::Io { .. })),
             "{error}"
@@ -81,7 +85,7 @@ fn a_failure_leaves_the_folder_as_it_was() {
     // The last of the five names is taken by a folder, the write fails after others were put in place.
     fs::create_dir_all(dir.path().join("runs.csv/inside")).expect("a folder in the way");
     let before = files_below(dir.path());
-    let error = csv::write_all(dir.path(), &results()).expect_err("runs.csv is a folder");
+    let error = write_tables(dir.path()).expect_err("runs.csv is a folder");
     assert!(error.to_string().contains("runs.csv"), "{error}");
     assert_eq!(files_below(dir.path()), before);
     assert_eq!(
@@ -99,11 +103,14 @@ fn success_replaces_old_files_and_leaves_no_traces() {
     let dir = temporary();
     fs::write(dir.path().join("runs.csv"), "old").expect("an old file");
     fs::write(dir.path().join("mine.txt"), "mine").expect("another file");
-    csv::write_all(dir.path(), &results()).expect("written");
+    write_tables(dir.path()).expect("written");
     let names = files_below(dir.path());
     let expected = [
         "exact.csv",
         "expectations.csv",
+        "expectations_by_case.csv",
+        "expectations_by_case.md",
+        "expectations_by_case.tex",
         "history.csv",
         "mine.txt",
         "points.csv",

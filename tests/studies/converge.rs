@@ -7,7 +7,7 @@ use crate::common::*;
 use assert_cmd::Command;
 use stickslip::case::{Case, ContactSpace, Tip};
 use stickslip::model::errors::Deviation;
-use stickslip::report::{Provenance, csv as table};
+use stickslip::report::{Provenance, table};
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
 use stickslip::run::verdict::Verdict;
@@ -384,8 +384,8 @@ fn rows_are_sorted() {
     let mut samples = samples(&case, &study("hybrid", Some(vec![Tip::None, Tip::Branch])));
     let files = |samples: &[Sample]| {
         let (errors, orders) = orders::rows(samples);
-        let errors = table::file::<ErrorRow>(&errors).unwrap();
-        [errors, table::file::<OrderRow>(&orders).unwrap()]
+        let errors = table::csv::<ErrorRow>(&errors).unwrap();
+        [errors, table::csv::<OrderRow>(&orders).unwrap()]
     };
     let before = files(&samples);
     samples.reverse();
