@@ -8,10 +8,8 @@ use stickslip_methods::Tier;
 
 use super::number::{fixed, significant};
 use super::table::{self, Readable, readable};
-use super::tables::sweep::{
-    AccuracyRow, CellRow, ChangeRow, DeviationRow, IncrementRow, PointRow, ProfileRow, RankingRow,
-    SummaryRow, TimeRow,
-};
+use super::tables::ranks::{AccuracyRow, ChangeRow, PointRow, ProfileRow, RankingRow};
+use super::tables::sweep::{CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow};
 use super::{Bundle, Provenance, ReportError, figures};
 use crate::studies::sweep::analysis::accuracy::{refinements, sequences};
 use crate::studies::sweep::analysis::costs::Costs;

@@ -2,6 +2,7 @@
 
 pub mod convergence;
 pub mod paper;
+pub mod ranks;
 pub mod runs;
 pub mod spaces;
 pub mod stress;
@@ -148,17 +149,17 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     ];
     let study = vec![
         Description::of::<Recommendation>(),
-        Description::of::<sweep::RankingRow>(),
+        Description::of::<ranks::RankingRow>(),
         Description::of::<SuccessRow>(),
         Description::of::<sweep::SummaryRow>(),
-        Description::of::<sweep::ProfileRow>(),
-        Description::of::<sweep::PointRow<'_>>(),
-        Description::of::<sweep::AccuracyRow<'_>>(),
+        Description::of::<ranks::ProfileRow>(),
+        Description::of::<ranks::PointRow<'_>>(),
+        Description::of::<ranks::AccuracyRow<'_>>(),
         Description::of::<sweep::CellRow<'_>>(),
         Description::of::<sweep::IncrementRow<'_>>(),
         Description::of::<sweep::DeviationRow<'_>>(),
         Description::of::<sweep::TimeRow<'_>>(),
-        Description::of::<sweep::ChangeRow<'_>>(),
+        Description::of::<ranks::ChangeRow<'_>>(),
     ];
     let robustness = vec![
         Description::of::<RobustnessRow>(),

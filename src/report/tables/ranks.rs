@@ -1,0 +1,309 @@
+//! What a study says of the methods: rates, ranks, profiles, curves, recommendations, changes.
+
+use std::cmp::Ordering;
+
+use stickslip_methods::Tier;
+
+use super::convergence::{OfError, of_error};
+use super::words::*;
+use crate::report::table::{Column, Order, Row, columns};
+use crate::studies::convergence::orders::ErrorRow;
+use crate::studies::sweep::analysis::compare_methods;
+use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing};
+use crate::studies::sweep::analysis::recommendation::Recommendation;
+use crate::studies::sweep::analysis::series::{Point, Swept};
+use crate::studies::sweep::analysis::success::SuccessRow;
+use crate::studies::sweep::compare::Change;
+use crate::studies::sweep::record::IncrementFound;
+use crate::studies::sweep::statistics::Timing;
+
+/// Order of tiers, from coarse to fine.
+fn compare_tiers(a: Tier, b: Tier) -> Ordering {
+    b.tolerance().total_cmp(&a.tolerance())
+}
+
+impl Row for SuccessRow {
+    const NAME: &'static str = "success";
+    const TITLE: &'static str = "What methods claim, and what the judge confirms, by accuracy, with Wilson's 95 % intervals";
+    const QUESTION: &'static str = "Which method is right how often, and how does it fail?";
+    const NOTES: &'static str = "Every problem counts, refused ones as not solved.";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        compare_methods(&a.method, &b.method).then_with(|| compare_tiers(a.tier, b.tier))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "method" "" .shown() = r.method.clone(), METHOD;
+            "exact" "" = r.exact, "whether its limit are the contact laws";
+            "defaults" "" = r.defaults, "whether all options have their default";
+            "tier" "" .shown() = r.tier.to_string(), "accuracy asked for";
+            "cells" "" .named("problems") = r.cells, "cells, each on a problem of its own";
+            "claimed" "" .shown() = r.claimed, "cells that end with a claim, right or wrong: verdicts `solved`, `approximate`, `false-claim`";
+            "success_rate" "–" .significant(4) = r.success()[0], "claimed / cells";
+            "success_low" "–" .significant(4) = r.success()[1], "lower end of its interval";
+            "success_high" "–" .significant(4) = r.success()[2], "upper end";
+            "correct" "" .named("right") = r.correct, "cells that are right to the tier";
+            "correct_rate" "–" .significant(4).named("right").percent(1) = r.correctness()[0], "correct / cells";
+            "correct_low" "–" .significant(4).named("from").percent(1) = r.correctness()[1], "lower end of its interval";
+            "correct_high" "–" .significant(4).named("to").percent(1) = r.correctness()[2], "upper end";
+            "inaccurate" "" .shown() = r.failures[0], "not right for another reason than those that follow: laws of its own, solved as claimed";
+            "false_claim" "" .named("false claims") = r.failures[1], "claims that the judge refuted";
+            "max_iterations" "" .shown() = r.failures[2], "ended without a claim at the limit of iterations";
+            "stalled" "" .shown() = r.failures[3], "ended without progress";
+            "singular_tangent" "" = r.failures[4], "ended at a matrix that cannot be factored";
+            "mechanism" "" = r.failures[5], "ended at a body that is held by nothing";
+            "diverged" "" = r.failures[6], "ended with numbers that grew without bound";
+            "stopped" "" = r.failures[7], "was stopped";
+            "refused" "" .shown() = r.failures[8], "declined";
+            "crashed" "" .shown() = r.failures[9], "failed with an error";
+            "timed_out" "" = r.failures[10], "stopped at the time limit";
+            "out_of_memory" "" = r.failures[11], "denied memory, by the limit or by the system";
+        }
+    }
+}
+
+/// A step of a performance profile.
+pub struct ProfileRow {
+    /// Accuracy asked for.
+    pub tier: Tier,
+    /// Method.
+    pub method: String,
+    /// Ratio, and fraction from there on.
+    pub step: [f64; 2],
+    /// Problems of the tier.
+    pub problems: usize,
+}
+
+impl Row for ProfileRow {
+    const NAME: &'static str = "time_profiles";
+    const TITLE: &'static str = "Performance profiles of the time of the method (Dolan & Moré, Math. Program. 91 (2002) 201): the fraction of problems that a method solves within τ times the least time of all methods";
+    const QUESTION: &'static str = "How often is a method how far from the fastest?";
+    const NOTES: &'static str = "A row where the fraction jumps up. Ratios below 1 + the width of the intervals mean nothing.";
+    const READABLE: bool = false;
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        compare_tiers(a.tier, b.tier)
+            .then_with(|| compare_methods(&a.method, &b.method))
+            .then(a.step[0].total_cmp(&b.step[0]))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "tier" "" = r.tier.to_string(), "accuracy asked for";
+            "method" "" = r.method.clone(), METHOD;
+            "tau" "–" .significant(6) = r.step[0], "bound on time / least time";
+            "fraction" "–" .significant(6) = r.step[1], "fraction of the problems within it, those that no method solves included";
+            "problems" "" = r.problems, "problems";
+        }
+    }
+}
+
+/// A method among all at one tier.
+pub struct RankingRow {
+    /// Accuracy asked for.
+    pub tier: Tier,
+    /// Method.
+    pub method: String,
+    /// First and last rank that its interval allows.
+    pub rank: [usize; 2],
+    /// Mean, lower and upper end [s].
+    pub mean: [f64; 3],
+    problems: usize,
+    correct: usize,
+    unsolved: usize,
+    width: f64,
+    shift: f64,
+    penalty: f64,
+}
+
+impl RankingRow {
+    /// Those of a tier.
+    pub fn of(tier: Tier, ranking: &Ranking<'_>) -> Vec<Self> {
+        let of = |s: &Standing<'_>| Self {
+            tier,
+            method: s.method.to_owned(),
+            rank: s.rank,
+            mean: [s.mean.value, s.mean.low, s.mean.high],
+            problems: ranking.problems,
+            correct: s.correct,
+            unsolved: ranking.unsolved,
+            width: s.width,
+            shift: ranking.shift,
+            penalty: PENALTY,
+        };
+        ranking.standings.iter().map(of).collect()
+    }
+}
+
+impl Row for RankingRow {
+    const NAME: &'static str = "ranking";
+    const TITLE: &'static str = "Shifted geometric mean of the time of the method over all problems; methods whose intervals overlap share a rank";
+    const QUESTION: &'static str = "Which method is fastest at which accuracy?";
+    const NOTES: &'static str = "exp(mean ln(t + shift)) − shift (Achterberg 2007). A method without any right answer has no rank.";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        compare_tiers(a.tier, b.tier)
+            .then(a.mean[0].total_cmp(&b.mean[0]))
+            .then_with(|| compare_methods(&a.method, &b.method))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "tier" "" .shown() = r.tier.to_string(), "accuracy asked for";
+            "method" "" .shown() = r.method.clone(), METHOD;
+            "rank_first" "" .named("rank from") = r.rank[0], "1 + number of methods whose interval lies below its own";
+            "rank_last" "" .named("to") = r.rank[1], "number of methods − number whose interval lies above its own";
+            "mean_s" "s" .time().digits(3) = r.mean[0], "shifted geometric mean of the medians";
+            "low_s" "s" .time().named("from").digits(3) = r.mean[1], "that of the lower ends";
+            "high_s" "s" .time().named("to").digits(3) = r.mean[2], "that of the upper ends";
+            "problems" "" .shown() = r.problems, "problems in the mean";
+            "correct" "" .named("right") = r.correct, "of these, with a right answer";
+            "unsolved" "" = r.unsolved, "problems that no method solves, left out";
+            "interval_width" "–" .significant(3).named("median interval").percent(0) = r.width, "median over the problems of (high − low) / median of the time";
+            "shift_s" "s" .time() = r.shift, "shift: the power of ten at or below the median over the problems of the fastest right time, so that problems that take no time do not rule the mean";
+            "penalty" "–" .significant(3) = r.penalty, "a problem without right answer enters with so many times the slowest right time of any method on it (PAR10: Hutter et al. 2009)";
+        }
+    }
+}
+
+/// A point of a curve of solver error against work.
+pub struct PointRow<'a> {
+    /// Name of the problem.
+    pub problem: String,
+    /// Name of the curve.
+    pub label: String,
+    /// What varies along it.
+    pub swept: Swept,
+    /// Whether the limit of the method are the contact laws.
+    pub exact: bool,
+    /// The point.
+    pub point: Point<'a>,
+}
+
+impl PointRow<'_> {
+    fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
+        self.point.record.found.sum(counter)
+    }
+
+    fn time(&self, of: fn(&Timing) -> f64) -> f64 {
+        self.point.time.as_ref().map_or(f64::NAN, of)
+    }
+}
+
+impl Row for PointRow<'_> {
+    const NAME: &'static str = "work_precision";
+    const TITLE: &'static str = "Solver error against work: a row per point of a curve, only honest verdicts with a solver error";
+    const QUESTION: &'static str = "What does a method spend for which accuracy?";
+    const READABLE: bool = false;
+    // They come by problem, series and value.
+    const ORDER: Order<Self> = Order::Given;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "problem" "" = r.problem.clone(), "case, refinement, contact space, friction";
+            "series" "" = r.label.clone(), "method of the curve; options along which it goes in brackets, then others that are not the default";
+            "swept" "" = r.swept.name(), "`tolerance`, or the option that takes most values and those that follow from it";
+            "value" "–" = r.point.value, "tolerance, or value of the option; the defaults stand among them";
+            "exact" "" = r.exact, "whether the limit of the method are the contact laws";
+            "id" "" = r.point.record.id.clone(), "as in `cells.csv`, like the five that follow";
+            "verdict" "" = &r.point.record.found.verdict, "verdict";
+            "error_energy" "–" .residual() = r.point.error, "solver error in the energy norm";
+            "iterations" "" = r.sum(|i| i.iterations), ITERATIONS;
+            "local_solves" "" = r.sum(|i| i.local_solves), LOCALS;
+            "tangent_factorisations" "" = r.sum(|i| i.tangent_factorisations), TANGENTS;
+            "method_median_s" "s" .time() = r.time(|t| t.median_s), "as in `times.csv`, like the two that follow";
+            "method_low_s" "s" .time() = r.time(|t| t.low_s), "lower end";
+            "method_high_s" "s" .time() = r.time(|t| t.high_s), "upper end";
+        }
+    }
+}
+
+/// The discretisation error of a mesh with the time to the answer.
+pub struct AccuracyRow<'a>(pub &'a ErrorRow);
+
+impl OfError for AccuracyRow<'_> {
+    fn error(&self) -> &ErrorRow {
+        self.0
+    }
+}
+
+impl Row for AccuracyRow<'_> {
+    const NAME: &'static str = "time_to_accuracy";
+    const TITLE: &'static str = "Discretisation error beside the time to the answer, mesh by mesh";
+    const QUESTION: &'static str = "What does an accurate answer take, mesh and method together?";
+    const NOTES: &'static str = "Exact methods with default options, at the finest tolerance that was asked for on every mesh of the sequence. The energy norm of the error where there is a closed form, otherwise the strain energy or the first followed quantity against its limit. Times are medians where there are repetitions; those of the body are the least of all cells on the mesh, which build the same one.";
+    const READABLE: bool = false;
+    const ORDER: Order<Self> = Order::By(|a, b| match ErrorRow::ORDER {
+        Order::By(compare) => compare(a.0, b.0),
+        _ => Ordering::Equal,
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        let mut columns = of_error();
+        // The records do not know the enrichment of the tips.
+        columns.retain(|column| column.about.name != "tip");
+        columns
+    }
+}
+
+/// What stands for "anything".
+const ANY: &str = "any";
+
+/// The fastest methods.
+fn fastest(row: &Recommendation) -> String {
+    let names = row.fastest.iter().map(|f| f.method.as_str());
+    names.collect::<Vec<_>>().join("; ")
+}
+
+impl Row for Recommendation {
+    const NAME: &'static str = "recommendations";
+    const TITLE: &'static str =
+        "Fastest methods among those that are right most often, by accuracy and class of problems";
+    const QUESTION: &'static str = "Which method should I use?";
+    const NOTES: &'static str = "From all problems down to classes of one kind; classes that hold the same problems as a coarser one are left out.";
+    // They come from coarse to fine.
+    const ORDER: Order<Self> = Order::Given;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "tier" "" .shown() = r.tier.to_string(), "accuracy asked for";
+            "dimension" "" .named("dim") = r.class.dim.map_or_else(|| ANY.into(), |dim| dim.to_string()), "2, 3 or `any`";
+            "friction" "" .shown() = r.class.friction.map_or_else(|| ANY.into(), |friction| friction.to_string()), "`frictionless`, `slip`, `stick` (nothing slips) or `any`";
+            "loading" "" .shown() = r.class.path.map_or(ANY, |path| if path { "path" } else { "single increment" }), "`single increment`, `path` or `any`";
+            "unknowns" "" .shown() = r.class.size.map_or_else(|| ANY.into(), |size| size.to_string()), "contact unknowns: `up to 100`, `101 to 1000`, `over 1000` or `any`";
+            "problems" "" .shown() = r.problems, "problems of the class";
+            "timed" "" = r.timed, "of these, solved by some method, with times that can be compared";
+            "fastest" "" .shown() = fastest(r), "among the methods that are right most often those that none is faster than beyond the intervals of the means in `ranking.csv`, separated by `; `; first the one that is among the fastest of all methods on most problems; empty without times";
+            "among" "" .named("first among the fastest on") = r.fastest.first().map_or(0, |first| first.among), "problems on which no method is faster than the first beyond the intervals";
+            "alone" "" = r.fastest.first().map_or(0, |first| first.alone), "of these, problems on which it is faster than all others";
+            "evidence" "" = r.evidence(), "the same in words, with the next ones";
+            "confidence" "" .shown() = r.confidence.to_string(), "of the first, with k = among of n = timed: `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n ≥ 3, `open` otherwise";
+            "reliable" "" = r.reliable.join("; "), "methods that are right most often, separated by `; `";
+            "correct" "" .named("right on") = r.correct, "problems that they solve";
+            "correct_rate" "–" .significant(4) = r.rate()[0], "correct / problems";
+            "correct_low" "–" .significant(4) = r.rate()[1], "lower end of Wilson's 95 % interval";
+            "correct_high" "–" .significant(4) = r.rate()[2], "upper end";
+        }
+    }
+}
+
+/// What changed from one set of records to another.
+pub struct ChangeRow<'a>(pub &'a Change);
+
+impl Row for ChangeRow<'_> {
+    const NAME: &'static str = "compare";
+    const TITLE: &'static str = "What changed from A to B";
+    const QUESTION: &'static str = "What is better or worse than before?";
+    const NOTES: &'static str = "A time changed if the intervals of the two medians are disjoint, the drift taken out, and |ln(b/a) − drift| > max(3 noise, ln 1.1); drift is the median of ln(b/a) over all cells, noise 1.4826 times the median absolute deviation from it. Times are compared where machine and build profile agree.";
+    const READABLE: bool = false;
+    const ORDER: Order<Self> = Order::By(|a, b| a.0.id.cmp(&b.0.id));
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "id" "" .named("cell") = r.0.id.clone(), "cell";
+            "what" "" .shown() = r.0.what.name(), "`only in A`, `only in B`, `verdict`, a counter of `cells.csv`, `solver_error` (by more than 1 %), `time`, or `bits`: something else in what was found";
+            "direction" "" .shown() = r.0.direction.name(), "`better`, `worse` or `other`";
+            "a" "" .named("A") = r.0.a.clone(), "in A";
+            "b" "" .named("B") = r.0.b.clone(), "in B";
+            "ratio" "–" .significant(4).digits(3) = r.0.ratio, "B / A; of times with the drift of the machine taken out";
+        }
+    }
+}
