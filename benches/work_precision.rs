@@ -1,5 +1,5 @@
-//! Gathers what the benchmarks measured into `reports/bench/`, runs the study of run time against error into
-//! `reports/study/`, and shows all of `reports/` as one page, `reports/index.html`.
+//! Gathers what the benchmarks measured into `results/bench/`, runs the study of run time against error into
+//! `results/study/`, and shows all of `results/` as one page, `results/index.html`.
 //!
 //! The study is measured afresh every time; its records lie in `target/tmp/study`. It is left out where a filter asks for
 //! some benchmarks only.
@@ -41,10 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scratch = tempfile::tempdir()?;
     let full = given("--bench") && !given("--test");
     let (problems, home, out) = if full {
-        let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/bench");
-        (&PROBLEMS[..], criterion_home(), reports)
+        let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/bench");
+        (&PROBLEMS[..], criterion_home(), results)
     } else {
-        let out = scratch.path().join("reports/bench");
+        let out = scratch.path().join("results/bench");
         (&PROBLEMS[4..], scratch.path().join("criterion"), out)
     };
     prepare_output(&out)?;

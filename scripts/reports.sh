@@ -1,26 +1,57 @@
 #!/usr/bin/env bash
-# Regenerates reports/: the main job, errors against exact solutions, contact spaces, random problems, and by `cargo bench` the
-# timings, the study of run time against error and the page. About half an hour on two cores; the machine should do
-# nothing else. An argument names parts to run instead of all: paper accuracy spaces robustness bench page.
+# Makes everything anew in results/ and keeps in reports/ what is committed: the paper's tables, summaries, provenance, a figure of
+# every kind and one page. About half an hour on two cores; the machine should do nothing else. An argument names parts to run
+# instead of all: paper accuracy spaces robustness bench keep.
 set -euo pipefail
+shopt -s nullglob
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-parts=${*:-paper accuracy spaces robustness bench page}
+parts=${*:-paper accuracy spaces robustness bench keep}
 cargo build --locked --release
 stickslip=target/release/stickslip
+
+# What is committed of a folder: tables by name (all forms, or with .csv that one), then figures.
+keep() {
+    local from=results/$1 to=reports/$1 name
+    shift
+    mkdir -p "$to/figures"
+    for name in "$@" provenance.toml; do
+        case $name in
+            *.svg) cp "$from"/figures/$name "$to/figures/" ;;
+            *.*) cp "$from/$name" "$to/" ;;
+            *) cp "$from/$name".{csv,md,tex} "$to/" ;;
+        esac
+    done
+    rmdir --ignore-fail-on-non-empty "$to/figures"
+}
 
 for part in $parts; do
     echo "== $part"
     case $part in
-        paper) "$stickslip" paper --out reports ;;
+        paper) "$stickslip" paper --full --out results ;;
         accuracy)
             "$stickslip" converge inclined_crack partial_slip partial_opening closing_crack manufactured_slip \
                 manufactured_slip_rotated circular_interface --refine 1,2,4,8 --spaces star,facet,p0,edge-pairs \
-                --tips none,branch,0.2 --out reports/accuracy || [[ $? == 1 ]] ;; # 1: a mesh is not solved, which the tables show
-        spaces) "$stickslip" spaces --out reports/spaces ;;
-        robustness) "$stickslip" stress --problems 200 --out reports/robustness ;;
+                --tips none,branch,0.2 --out results/accuracy || [[ $? == 1 ]] ;; # 1: a mesh is not solved, which the tables show
+        spaces) "$stickslip" spaces --out results/spaces ;;
+        robustness) "$stickslip" stress --problems 200 --out results/robustness ;;
         bench) cargo bench --locked ;;
-        page) "$stickslip" page reports ;;
+        keep)
+            # Written by hand: other programs on the same problems.
+            find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
+            keep . table1 table2 converged converged_meshes.csv limits refinement penalty comparison.csv variants.csv \
+                expectations_by_case table1.svg converged.svg penalty.svg cost.svg \
+                'beam_model1.6x18x9.edge-pairs.*.mu-0.1.contact.svg' 'penny_crack.*.contact.svg' \
+                'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
+                'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg' \
+                'plate_mesh1.22x22.edge-pairs.*.mu-0.1.von-mises.svg'
+            keep accuracy orders.csv orders.md 'partial_slip.*.energy.error.svg'
+            keep spaces infsup_by_space patch_by_space infsup.svg
+            keep robustness robustness failures.csv robustness.svg
+            keep study recommendations ranking success study.csv cells.csv fastest.svg profile.time.svg \
+                'work_precision.plate_mesh1*.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'
+            keep bench timings
+            "$stickslip" page reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
     esac
 done

@@ -10,7 +10,7 @@ use crate::report::page;
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Folder of a report, or of several in folders below it; the page is written into it
-    #[arg(default_value = "reports")]
+    #[arg(default_value = "results")]
     dir: PathBuf,
 }
 

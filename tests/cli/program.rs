@@ -409,7 +409,7 @@ fn paper_shows_and_writes_both_tables_and_is_what_runs_without_a_verb() {
     assert_eq!(plain.status.code(), Some(0), "{}", text(&plain.stderr));
     let (named, plain) = (
         files(&dir.path().join("named")),
-        files(&dir.path().join("reports")),
+        files(&dir.path().join("results")),
     );
     assert_eq!(
         named.keys().collect::<Vec<_>>(),
