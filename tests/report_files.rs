@@ -26,11 +26,8 @@ fn one_command_writes_all_kinds_and_twice_the_same() {
     }
     let of = |end: &str| files.iter().filter(|file| file.ends_with(end)).count();
     // Three friction values with all methods, and all friction values by the first exact method.
-    assert_eq!(
-        [of(".residual.svg"), of(".traction.svg"), of(".slip.svg")],
-        [3, 4, 4]
-    );
-    let sweep = "figures/plate_mesh1.22x22.edge-pairs.b-newton.crack-1.slip.svg".to_owned();
+    assert_eq!([of(".residual.svg"), of(".profile.svg")], [3, 4]);
+    let sweep = "figures/plate_mesh1.22x22.edge-pairs.b-newton.crack-1.profile.svg".to_owned();
     assert!(files.contains(&sweep), "{files:?}");
     assert_eq!([of(".displacement.svg"), of(".vtu"), of(".pvd")], [1, 4, 1]);
     assert_eq!(

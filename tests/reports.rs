@@ -344,7 +344,7 @@ fn wrong_answers_have_no_profile_and_no_time() {
     let bundle = standard::bundle(&results, &Provenance::collect(1)).expect("a bundle");
     let profile = text(
         &bundle,
-        "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.crack-1.slip.svg",
+        "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.crack-1.profile.svg",
     );
     assert!(profile.contains("b-newton") && !profile.contains("latin"));
     let history = text(

@@ -11,7 +11,6 @@ pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
 pub mod infsup;
-pub mod penalty;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
@@ -56,7 +55,7 @@ impl Kind {
 }
 
 /// All kinds: the comparison of methods, problems, the founding paper, studies.
-pub static CATALOGUE: [&Kind; 18] = [
+pub static CATALOGUE: [&Kind; 17] = [
     &cost::KIND,
     &residual::KIND,
     &profile::KIND,
@@ -66,7 +65,6 @@ pub static CATALOGUE: [&Kind; 18] = [
     &fields::VON_MISES,
     &table1::KIND,
     &converged::KIND,
-    &penalty::KIND,
     &robustness::KIND,
     &infsup::KIND,
     &error::KIND,

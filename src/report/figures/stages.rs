@@ -16,8 +16,8 @@ use crate::studies::sweep::record::{Record, Spent};
 pub static KIND: Kind = Kind {
     file: "stages.*.svg",
     question: "Where does the time of a run go?",
-    shows: "Shares of the stages of a run in its total time: on every mesh by the fastest method, and on the finest mesh by every method, \
-            at the finest tolerance at which something was solved on every mesh.",
+    shows: "Shares of the stages of a run in its total time: on every mesh by the fastest method, and on the finest \
+            mesh by every method, at the finest tolerance at which something was solved on every mesh.",
 };
 
 /// Stages in the order in which they come, with their tints: neighbours differ in lightness.
@@ -82,55 +82,57 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
 
 fn figure(group: &[(&Record, &Spent)], records: &[Record], caveat: &str) -> Figure {
     let median = |row: &&(&Record, &Spent)| method_time(row.1).median_s;
-    let mut fastest = Vec::new();
-    let mut last = None;
+    let mut bars = [Vec::new(), Vec::new()];
     for mesh in group.chunk_by(|a, b| a.0.cell.refine == b.0.cell.refine) {
         let best = mesh.iter().min_by(|a, b| median(a).total_cmp(&median(b)));
-        fastest.extend(best.map(|row| {
+        bars[0].extend(best.map(|row| {
             let mesh = row
                 .0
                 .found
                 .problem
                 .as_ref()
                 .map_or("?", |p| p.mesh.as_str());
-            (
-                format!("{mesh}, {}", row.0.found.method),
-                stages(row, records),
-            )
+            let label = format!("{mesh}, {}", row.0.found.method);
+            (label, stages(row, records))
         }));
-        last = Some(mesh);
+        let own = |row: &(&Record, &Spent)| (row.0.found.method.clone(), stages(row, records));
+        bars[1] = mesh.iter().map(own).collect();
     }
-    let finest = last.unwrap_or_default().iter();
-    let finest: Vec<Bar> = finest
-        .map(|row| (row.0.found.method.clone(), stages(row, records)))
-        .collect();
-    let title = fastest.last().map_or(String::new(), |(label, stages)| {
-        let total: f64 = stages.iter().sum();
-        let most = (0..STAGES.len())
+    let title = bars[0].last().map_or(String::new(), |(label, stages)| {
+        let most = (0..7)
             .max_by(|a, b| stages[*a].total_cmp(&stages[*b]))
             .unwrap_or(0);
+        let share = fixed(100.0 * stages[most] / stages.iter().sum::<f64>(), 0);
+        let stage = STAGES[most].0;
         format!(
-            "{} takes {} % of the time on the finest mesh ({})",
-            STAGES[most].0,
-            fixed(100.0 * stages[most] / total, 0),
+            "On the finest mesh, {stage} takes {share} % of the time ({})",
             plain(label)
         )
     });
-    let (first, size) = (group[0].0, group[0].0.found.problem.as_ref());
+    let first = group[0].0;
+    let space = first
+        .found
+        .problem
+        .as_ref()
+        .map_or("", |p| p.space.as_str());
     let caption = format!(
-        "{}, {}, {}, solved to a natural map of {}{caveat}",
+        "{}, {space}, {}, solved to a natural map of {}{caveat}",
         first.cell.case,
-        size.map_or("", |p| p.space.as_str()),
         friction(first.cell.mu()),
         value(first.cell.tolerance),
     );
-    let panels = vec![
-        panel("each mesh, least median of all methods", &fastest),
-        panel("finest mesh, each method", &finest),
+    let headings = [
+        "each mesh, least median of all methods",
+        "finest mesh, each method",
     ];
+    let panels = headings
+        .iter()
+        .zip(&bars)
+        .map(|(heading, bars)| panel(heading, bars));
+    let figure = Figure::new(&title, &caption, 1, panels.collect());
     Figure {
         wide: true,
-        ..Figure::new(title, caption, panels)
+        ..figure
     }
 }
 
@@ -138,26 +140,13 @@ fn figure(group: &[(&Record, &Spent)], records: &[Record], caveat: &str) -> Figu
 type Bar = (String, [f64; 7]);
 
 fn stages((record, spent): &(&Record, &Spent), records: &[Record]) -> [f64; 7] {
-    let [setup, assembly, factorisation] = body_times(record, records).unwrap_or([
+    let [a, b, c] = body_times(record, records).unwrap_or([
         spent.setup_s,
         spent.assembly_s,
         spent.factorisation_s,
     ]);
-    let own = [
-        spent.condensation_s,
-        spent.prepare.median_s,
-        spent.solve.median_s,
-        spent.output_s,
-    ];
-    let all = [
-        setup,
-        assembly,
-        factorisation,
-        own[0],
-        own[1],
-        own[2],
-        own[3],
-    ];
+    let [d, e] = [&spent.prepare, &spent.solve].map(|timing| timing.median_s);
+    let all = [a, b, c, spent.condensation_s, d, e, spent.output_s];
     all.map(|seconds| {
         if seconds.is_finite() {
             seconds.max(0.0)
@@ -168,29 +157,24 @@ fn stages((record, spent): &(&Record, &Spent), records: &[Record]) -> [f64; 7] {
 }
 
 fn panel(heading: &str, bars: &[Bar]) -> Panel {
+    let total = |stages: &[f64]| stages.iter().sum::<f64>();
     let label = |(label, stages): &Bar| {
-        format!(
-            "{}: {} s",
-            plain(label),
-            significant(stages.iter().sum(), 3)
-        )
+        let seconds = significant(total(stages), 3);
+        format!("{}: {seconds} s", plain(label))
     };
-    // Labels of their own: the rows of the two panels are not the same.
-    let y = Axis::names("", bars.iter().map(label));
-    let mut panel = Panel::new(Axis::linear("share of the total time [%]"), y, 0.0);
+    let x = Axis::linear("share of the total time [%]").through(&[0.0, 100.0]);
+    let y = Axis::names("", bars.iter().map(label).collect());
+    let mut panel = Panel::new(x, y, 0.0);
     panel.heading = heading.to_owned();
     for (stage, (name, tint)) in STAGES.into_iter().enumerate() {
-        let ends = |(_, stages): &Bar| {
-            let total = stages.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-            let before: f64 = stages[..stage].iter().sum();
-            [
-                100.0 * before / total,
-                100.0 * (before + stages[stage]) / total,
-            ]
-        };
-        let rows = bars.iter().enumerate();
-        let points = rows.map(|(row, bar)| [ends(bar)[0], row as f64]).collect();
-        let mut series = Series::new(name, Style::line(tint, 0.0, &[]), points);
+        let share =
+            |parts: &[f64], all: &[f64]| 100.0 * total(parts) / total(all).max(f64::MIN_POSITIVE);
+        let ends = |(_, all): &Bar| [stage, stage + 1].map(|end| share(&all[..end], all));
+        let points = bars
+            .iter()
+            .enumerate()
+            .map(|(row, bar)| [ends(bar)[0], row as f64]);
+        let mut series = Series::new(name, Style::line(tint, 0.0, &[]), points.collect());
         series.draw = Draw::Bars;
         series.intervals = bars.iter().map(ends).collect();
         series.texts = series

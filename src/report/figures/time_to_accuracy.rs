@@ -1,7 +1,7 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 
 use super::quantity_name;
-use super::runs::friction;
+use super::runs::{distinct, friction};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
@@ -16,8 +16,8 @@ use crate::studies::sweep::record::Record;
 pub static KIND: Kind = Kind {
     file: "time_to_accuracy.*.svg",
     question: "How long does a wanted accuracy of the answer take, from mesh to method?",
-    shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per method; the triangle has the \
-            observed order if the time grows with the number of unknowns.",
+    shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per \
+            method; the triangle has the observed order if the time grows with the number of unknowns.",
 };
 
 /// Orders that a triangle may show.
@@ -46,12 +46,7 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
         .find(|row| row.kind != orders::Kind::Finest);
     let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(orders::Kind::Finest);
     let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
-    let mut methods: Vec<&str> = Vec::new();
-    for row in &shown {
-        if !methods.contains(&row.variant.method.as_str()) {
-            methods.push(&row.variant.method);
-        }
-    }
+    let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
     let best = shown
         .iter()
@@ -110,5 +105,5 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
         first.map_or("", |row| row.variant.space.as_str()),
         friction(one.coarsest.friction.first().copied().unwrap_or(0.0)),
     );
-    Figure::new(title, caption, vec![panel])
+    Figure::new(&title, &caption, 1, vec![panel])
 }

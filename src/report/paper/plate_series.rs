@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use crate::report::csv::{self, Row};
 use crate::report::number::{fixed, residual, significant, value};
 use crate::report::tables::{self, Align, Column, Table};
-use crate::report::{Bundle, ReportError, figures};
+use crate::report::{Bundle, ReportError};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 
@@ -184,14 +184,13 @@ pub fn limit_table(rows: &[LimitRow]) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// Adds `penalty.csv`, `.md`, `.tex` and the figure of the error against the parameter.
+/// Adds `penalty.csv`, `.md` and `.tex`.
 ///
 /// # Errors
-/// Those of [`Bundle::add`] and of the figure.
+/// Those of [`Bundle::add`].
 pub fn add_penalty(bundle: &mut Bundle, rows: &[PenaltyRow]) -> Result<(), ReportError> {
     bundle.add(PenaltyRow::FILE, csv::file(rows)?)?;
-    tables::add_readable(bundle, "penalty", &penalty_table(rows)?)?;
-    figures::penalty::add(bundle, rows)
+    tables::add_readable(bundle, "penalty", &penalty_table(rows)?)
 }
 
 /// Adds `refinement.*` and `limits.*`; the figure of the converged reactions shows them.
