@@ -168,7 +168,7 @@ fn methods_that_agree_share_a_band_and_others_stand_out() {
     }
     let svg = one(&all, ".profile.svg");
     assert!(
-        svg.contains(&band(exact - 1, "4e-4")),
+        svg.contains(&band(exact - 1, "0.0004")),
         "one within the width of a line"
     );
     assert!(svg.contains(">latin<") && svg.contains("latin is off by up to 2 %"));

@@ -1,6 +1,6 @@
 //! Converged reactions of the paper's plate: distance from the limit against the cell width.
 
-use super::runs::{distinct, friction};
+use super::runs::{distinct, friction, least};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, Style, italic};
@@ -62,7 +62,7 @@ pub fn add(
     let off = limits
         .iter()
         .filter_map(|row| Some((row, row.printed_difference()?)));
-    let worst = off.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let worst = least(off, |row| -row.1.abs());
     let title = worst.map_or("The plate under refinement".to_owned(), |(row, off)| {
         let side = if off < 0.0 { "below" } else { "above" };
         let percent = significant(100.0 * off.abs(), 2);

@@ -1,5 +1,6 @@
 //! Performance profiles of the time of the methods, a panel per accuracy tier.
 
+use super::runs::least;
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, looks, plain};
@@ -33,14 +34,14 @@ pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<()
         let costs = Costs::new(set, Measure::Time);
         let curves = performance(&costs);
         let x = Axis::log("time of the method / least of all methods [-]").through(&[1.0]);
-        let y = Axis::linear("fraction of the problems [-]").through(&[0.0, 1.0]);
+        let y = Axis::linear("fraction of the problems [-]").through(&[0.0]);
         let mut panel = Panel::new(x, y, 60.0);
         panel.heading = heading(set.tier);
         let at_once = |steps: &[[f64; 2]]| steps.iter().find(|s| s[0] <= 1.0).map_or(0.0, |s| s[1]);
         let wins = curves
             .iter()
             .map(|curve| (at_once(&curve.steps), curve.method));
-        let best = wins.max_by(|a, b| a.0.total_cmp(&b.0));
+        let best = least(wins, |win| -win.0);
         // The sentence is that of the finest tier.
         if let Some((share, method)) = best {
             let (share, method) = (fixed(100.0 * share, 0), plain(method));

@@ -4,6 +4,7 @@ use crate::report::number::value;
 use crate::report::plot::{italic, plain, rank};
 use crate::report::standard::problem_name;
 use crate::run::record::RunKey;
+use crate::studies::sweep::record::Record;
 use std::collections::BTreeMap;
 
 /// A run with its rows, in one increment.
@@ -64,4 +65,16 @@ pub fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>) -> Vec<T> {
         }
     }
     found
+}
+
+/// The one with the least number, the first of equal ones.
+pub fn least<T>(all: impl IntoIterator<Item = T>, of: impl Fn(&T) -> f64) -> Option<T> {
+    let all = all.into_iter();
+    all.min_by(|a, b| of(a).total_cmp(&of(b)))
+}
+
+/// Mesh and contact space that a record was made with.
+pub fn made_with(record: &Record) -> (&str, &str) {
+    let problem = record.found.problem.as_ref();
+    problem.map_or(("?", ""), |p| (&p.mesh, &p.space))
 }

@@ -1,7 +1,7 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 
 use super::quantity_name;
-use super::runs::{distinct, friction};
+use super::runs::{distinct, friction, least};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
@@ -51,7 +51,7 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
     let best = shown
         .iter()
         .filter(|row| Some(row.refine) == finest && row.seconds.total() > 0.0);
-    let best = best.min_by(|a, b| a.seconds.total().total_cmp(&b.seconds.total()));
+    let best = least(best, |row| row.seconds.total());
     let further: Vec<&str> = best.iter().map(|row| row.variant.method.as_str()).collect();
     let name = first.map_or_else(String::new, |row| {
         quantity_name::name(&row.quantity, &row.at)
@@ -71,7 +71,7 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
     }
     let observed = first.map_or(f64::NAN, |row| row.order);
     let off = |order: &f64| (order - observed).abs();
-    let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let nearest = least(ORDERS, off);
     let nearest = nearest.filter(|order| off(order) < 0.5 * order);
     let guide = |order: f64| Guide {
         rise: -order,

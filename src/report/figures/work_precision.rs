@@ -1,6 +1,6 @@
 //! Work against precision: solver error against time and iterations, problem by problem.
 
-use super::runs::friction;
+use super::runs::{friction, least, made_with};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
@@ -58,7 +58,7 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
         let right = own.points.iter().filter(|p| p.error <= COMPARED);
         right.filter_map(move |p| Some((own.label.as_str(), p.time?.median_s)))
     });
-    let fastest = fastest.min_by(|a, b| a.1.total_cmp(&b.1));
+    let fastest = least(fastest, |own| own.1);
     let labels: Vec<&str> = shown.iter().map(|own| own.label.as_str()).collect();
     let further: Vec<&str> = fastest.iter().map(|(label, _)| *label).collect();
     let y = Axis::log(&format!("solver error, energy norm of {} [-]", italic("u")));
@@ -91,8 +91,7 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
         )
     });
     let first = found.iter().flat_map(|own| &own.points).next();
-    let size = first.and_then(|point| point.record.found.problem.as_ref());
-    let (mesh, space) = size.map_or(("", ""), |size| (&size.mesh, &size.space));
+    let (mesh, space) = first.map_or(("", ""), |point| made_with(point.record));
     let caption = format!(
         "{}, {mesh}, {space}, {}{caveat}; error: distance from the converged solution of the same discrete \
          problem, at {} also what is smaller; hollow: laws of their own",

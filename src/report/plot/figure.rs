@@ -13,7 +13,7 @@ use crate::report::ReportError;
 /// Room for the tick labels and the label of an x axis, and below a panel without them [mm].
 const AXIS_MM: f64 = 10.0;
 const BELOW_MM: f64 = 2.0;
-const GAP_MM: f64 = 3.0;
+const GAP_MM: f64 = 5.0;
 const HEADING_MM: f64 = 3.0;
 /// Height of a row of a named axis [mm].
 const ROW_MM: f64 = 4.4;

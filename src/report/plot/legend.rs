@@ -7,7 +7,9 @@ use super::style::{BLACK, draw_marker};
 const ROW_MM: f64 = 3.6;
 /// Room for the sample before a label, and between columns [mm].
 const SAMPLE_MM: f64 = 8.5;
-const GAP_MM: f64 = 3.0;
+const GAP_MM: f64 = 2.0;
+/// Least width of a column [mm].
+const COLUMN_MM: f64 = 27.0;
 
 /// What the labels of panels mean, each told once.
 pub struct Legend<'a> {
@@ -18,7 +20,7 @@ pub struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// Columns as far as the room [mm] goes; what stands behind comes last.
+    /// In rows as wide as the room [mm]; methods that do not stand out come last.
     pub fn of(panels: &[&'a Panel], room: f64) -> Self {
         let mut samples: Vec<&Series> = Vec::new();
         for series in panels.iter().flat_map(|panel| &panel.series) {
@@ -28,20 +30,21 @@ impl<'a> Legend<'a> {
             }
         }
         samples.sort_by_key(|s| s.style.width == super::style::OTHER_MM);
-        let widths = samples.iter().map(|s| text_width(&s.label, TICK_PT));
-        let column = SAMPLE_MM + widths.fold(0.0, f64::max) + GAP_MM;
-        let most = samples.len().max(1) as f64;
-        let columns = ((room + GAP_MM) / column).floor().clamp(1.0, most);
-        let share = room / columns;
-        let (mut entries, mut y, mut deepest) = (Vec::new(), 0.0, 0.0);
-        for (index, series) in samples.into_iter().enumerate() {
-            let column = index % columns as usize;
-            if column == 0 {
+        // Entries take as many columns as their labels need.
+        let column = room / (room / COLUMN_MM).floor().max(1.0);
+        let (mut entries, mut end) = (Vec::new(), 0.0);
+        let (mut y, mut deepest) = (0.0, 0.0);
+        for series in samples {
+            let width = SAMPLE_MM + text_width(&series.label, TICK_PT) + GAP_MM;
+            let width = (column * (width / column).ceil()).min(room);
+            if end + width > room + 1e-6 {
                 y += std::mem::take(&mut deepest);
+                end = 0.0;
             }
-            let lines = wrapped(&series.label, TICK_PT, share - SAMPLE_MM);
+            let lines = wrapped(&series.label, TICK_PT, width - SAMPLE_MM);
             deepest = f64::max(deepest, ROW_MM * lines.len() as f64);
-            entries.push((series, lines, [share * column as f64, y]));
+            entries.push((series, lines, [end, y]));
+            end += width;
         }
         let height = y + deepest + 0.5;
         Self { entries, height }
