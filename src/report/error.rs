@@ -29,14 +29,6 @@ pub enum ReportError {
         /// Columns of the table.
         expected: usize,
     },
-    /// Nothing to draw, e.g. no positive finite value for a logarithmic axis.
-    #[error("figure `{figure}`: {reason}")]
-    Figure {
-        /// Which figure.
-        figure: &'static str,
-        /// What is missing.
-        reason: String,
-    },
     /// The drawing library failed.
     #[error("drawing failed: {0}")]
     Drawing(String),
@@ -54,13 +46,6 @@ impl ReportError {
         Self::FieldMesh {
             name: name.to_owned(),
             reason,
-        }
-    }
-
-    pub(crate) fn figure(figure: &'static str, reason: impl Into<String>) -> Self {
-        Self::Figure {
-            figure,
-            reason: reason.into(),
         }
     }
 }

@@ -11,7 +11,6 @@ pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
 pub mod infsup;
-pub mod penalty;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
@@ -57,10 +56,9 @@ impl Kind {
 }
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 18] = [
+pub static CATALOGUE: [(Chapter, &Kind); 17] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
-    (Chapter::Paper, &penalty::KIND),
     (Chapter::Methods, &cost::KIND),
     (Chapter::Study, &fastest::KIND),
     (Chapter::Study, &work_precision::KIND),

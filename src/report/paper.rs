@@ -28,7 +28,6 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     table::add(&mut bundle, &paper.table2, "")?;
     figures::table1::add(&mut bundle, &paper.table1)?;
     table::add(&mut bundle, &paper.penalty, "")?;
-    figures::penalty::add(&mut bundle, &paper.penalty)?;
     table::add(&mut bundle, &paper.refinement, "")?;
     table::add(&mut bundle, &paper.limits, "")?;
     let comparison = comparison(&paper.results.runs);

@@ -172,7 +172,7 @@ mod tests {
                 "name" "" .key() = r.name, "name";
                 "h_m" "m" .key().named("h").fixed(2) = r.h, "size";
                 "error" "–" .significant(3).percent(1) = r.error, "error";
-                "hidden" "" = 7_usize, "not for reading";
+                "hidden" "" = r.name.len() + 6, "not for reading";
                 "solve_s" "s" .time().digits(2) = r.time, "time";
             }
         }
@@ -206,7 +206,7 @@ mod tests {
             "name,h_m,error,hidden,solve_s",
             "a,9,NaN,7,2e-7",
             "a,10,0.123,7,0.1235",
-            "b_1,10,,7,0.1235",
+            "b_1,10,,9,0.1235",
         ];
         assert_eq!(lines, expected);
 

@@ -27,9 +27,7 @@ fn column(align: Align, cells: &[&str]) -> (String, Vec<String>) {
     let rows: Vec<&[&str]> = cells.chunks(1).collect();
     let latex = latex("t", vec![heading("v", "", align)], &rows);
     let mut lines = latex.lines().map(str::trim);
-    let mut spec = lines.by_ref();
-    let spec = spec.find(|line| line.starts_with("\\begin{tabular}"));
-    assert!(spec.is_some());
+    assert!(lines.any(|line| line.starts_with("\\begin{tabular}")));
     let spec = lines.next().expect("a column").to_owned();
     let body = latex.split("\\midrule\n").nth(1).expect("a body");
     let body = body.lines().filter_map(|line| line.strip_suffix(" \\\\"));

@@ -7,7 +7,6 @@ mod figures;
 mod files;
 mod latex;
 mod method_pages;
-mod methods;
 mod page;
 mod report_data;
 mod rooms;

@@ -278,6 +278,7 @@ fn vanishing_numbers_can_be_shown() {
     let table = readable(&[InfSupSummary(&sequence)], "");
     let cells = ["2", "0", "0", "1", "inf", "0", "not stable"];
     assert_eq!(table.rows[0][3..], cells);
+    assert!(bundle.get("figures/infsup.svg").is_some());
     sequence.samples.clear();
     let table = readable(&[InfSupSummary(&sequence)], "");
     assert_eq!(table.rows[0][4..6], ["–", "–"]);

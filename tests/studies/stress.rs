@@ -198,7 +198,7 @@ fn the_program_writes_the_same_files_whatever_the_threads() {
         assert!((0..header.len()).all(|k| k == time || one[k] == two[k]));
     }
     assert!(text.contains("penalty[normal=1e3]"));
-    assert!(read("one", "figures/robustness.svg").contains("own laws kept, in 3D [%]"));
+    assert!(read("one", "figures/robustness.svg").contains("own laws kept [%]"));
 }
 
 #[test]

@@ -15,8 +15,6 @@ pub struct Agreement {
     pub curves: Vec<(usize, String, Style)>,
     /// What the curves say, as a sentence.
     pub title: String,
-    /// Who is meant.
-    pub caption: String,
 }
 
 /// Compares runs given by their methods and their values divided by the largest one. `alike`: whether two runs may share
@@ -26,104 +24,64 @@ pub fn agreement(
     scaled: &[Vec<f64>],
     alike: impl Fn(usize, usize) -> bool,
 ) -> Agreement {
-    let reference = methods
-        .iter()
-        .position(|method| is_exact(method))
-        .unwrap_or(0);
-    let off: Vec<f64> = scaled
-        .iter()
-        .map(|values| difference(&scaled[reference], values))
-        .collect();
-    let on_band = |i: &usize| off[*i] <= INVISIBLE && alike(reference, *i);
+    let first = methods.iter().position(|method| is_exact(method));
+    let first = first.unwrap_or(0);
+    let off = |i: usize| difference(&scaled[first], &scaled[i]);
+    let on_band = |i: &usize| off(*i) <= INVISIBLE && alike(first, *i);
     let (band, mut apart): (Vec<usize>, Vec<usize>) = (0..methods.len()).partition(on_band);
-    let names = |runs: &[usize]| {
-        runs.iter()
-            .map(|i| plain(methods[*i]))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     let (exact, own): (Vec<usize>, Vec<usize>) = band.iter().partition(|i| is_exact(methods[**i]));
-    let largest = |runs: &[usize]| runs.iter().map(|i| off[*i]).fold(0.0, f64::max);
-    let mut told = Vec::new();
-    let (mut title, mut caption) = (plain(methods[reference]), Vec::new());
-    if exact.len() > 1 {
-        title = format!(
+    let within = |runs: &[usize]| at_most(runs.iter().map(|i| off(*i)).fold(0.0, f64::max));
+    let mut title = match &exact[..] {
+        [] | [_] => plain(methods[first]),
+        all => format!(
             "{} agree to {}",
-            counted(exact.len(), "exact method"),
-            at_most(largest(&exact))
-        );
-        told.push(title.clone());
-        caption.push(format!("exact: {}", names(&exact)));
-    }
-    if !own.is_empty() {
-        let who = if own.len() == 1 {
-            names(&own)
-        } else {
-            format!("{} approximate ones", own.len())
-        };
-        told.push(format!(
-            "{who} {}within {}",
-            if exact.is_empty() { "" } else { "follow " },
-            at_most(largest(&own))
-        ));
-        if own.len() > 1 {
-            caption.push(format!("approximate: {}", names(&own)));
+            counted(all.len(), "exact method"),
+            within(all)
+        ),
+    };
+    let mut label = title.clone();
+    match &own[..] {
+        [one] if *one != first => {
+            label += &format!(", {} within {}", plain(methods[*one]), within(&own));
         }
+        [_, _, ..] => label += &format!(", {} approximate within {}", own.len(), within(&own)),
+        _ => {}
     }
-    let style = if band.len() > 1 {
-        Style::band()
-    } else {
-        Style::of_method(methods[reference])
+    let style = match band.len() {
+        1 => Style::of_method(methods[first], 0).bare(),
+        _ => Style::band(),
     };
-    let label = if told.is_empty() {
-        title.clone()
-    } else {
-        told.join(", ")
-    };
-    let mut curves = vec![(reference, label, style)];
-    apart.sort_by(|a, b| off[*b].total_cmp(&off[*a]));
+    let mut curves = vec![(first, label, style)];
+    apart.sort_by(|a, b| off(*b).total_cmp(&off(*a)));
+    if let Some(worst) = apart.first() {
+        let percent = 100.0 * off(*worst);
+        title += &match percent.is_finite() {
+            true => format!(
+                "; {} is off by up to {} %",
+                plain(methods[*worst]),
+                significant(percent, 2)
+            ),
+            false => format!("; {} has no values there", plain(methods[*worst])),
+        };
+    }
     let labels: Vec<&str> = apart.iter().map(|i| methods[*i]).collect();
     let found = looks(&labels, &labels[..labels.len().min(FEW)]);
-    if let Some(first) = apart.first() {
-        let percent = 100.0 * off[*first];
-        let much = if percent.is_finite() {
-            format!("up to {} %", significant(percent, 2))
-        } else {
-            "other points".into()
-        };
-        title += &format!("; {} is off by {much}", plain(methods[*first]));
-    }
-    for (run, (label, style)) in apart.into_iter().zip(found) {
-        // Markers tell the contact status here.
-        curves.push((
-            run,
-            label,
-            Style {
-                marker: None,
-                ..style
-            },
-        ));
-    }
-    if !caption.is_empty() {
-        caption.push("differences as fractions of the largest value".into());
-    }
-    Agreement {
-        curves,
-        title,
-        caption: caption.join("; "),
-    }
+    // Markers tell other things here.
+    let apart = apart.into_iter().zip(found);
+    curves.extend(apart.map(|(run, (label, style))| (run, label, style.bare())));
+    Agreement { curves, title }
 }
 
 /// Largest difference at a point; infinite where the curves have different points or a value is not a number.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
-    if a.len() != b.len() {
-        return f64::INFINITY;
-    }
     let differences = a.iter().zip(b).map(|(x, y)| (x - y).abs());
-    differences.fold(
-        0.0,
-        |m, d| if d.is_nan() { f64::INFINITY } else { d.max(m) },
-    )
+    let number = |d: f64| if d.is_nan() { f64::INFINITY } else { d };
+    let largest = differences.map(number).fold(0.0, f64::max);
+    if a.len() == b.len() {
+        largest
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// A difference in words: one digit, rounded up, and no round-off, which would differ between machines.
@@ -145,29 +103,18 @@ mod tests {
         let methods = [
             "b-newton", "hybrid", "nsgs", "penalty", "barrier", "nitsche",
         ];
-        let scaled = [0.0, 4e-10, 0.0, 5e-5, 0.2, f64::NAN].map(curve);
+        let scaled = [0.0, 3.2e-10, 0.0, 5e-5, 0.2, f64::NAN].map(curve);
         // The third slips where the first sticks.
         let found = agreement(&methods, &scaled, |a, b| (a == 2) == (b == 2));
-        let runs: Vec<usize> = found.curves.iter().map(|c| c.0).collect();
-        assert_eq!((runs[0], runs.len()), (0, 4), "a band and three others");
-        let band = &found.curves[0].1;
-        assert!(
-            band.starts_with("2 exact methods agree to ")
-                && band.contains("penalty follow within "),
-            "{band}"
-        );
-        assert!(
-            found.caption.contains("exact: b-newton, hybrid"),
-            "{}",
-            found.caption
-        );
-    }
-
-    #[test]
-    fn differences_are_rounded_up() {
+        let band = "2 exact methods agree to 4e-10, penalty within 5e-5";
+        assert_eq!(found.curves[0].1, band);
+        let mut others: Vec<&str> = found.curves[1..].iter().map(|c| c.1.as_str()).collect();
+        others.sort_unstable();
+        assert_eq!(others, ["barrier", "nitsche", "nsgs"]);
         assert_eq!(
-            [3.2e-10, 3e-10, 9.7e-4, 2e-16].map(at_most),
-            ["4e-10", "3e-10", "0.001", "1e-12"]
+            at_most(2e-16),
+            "1e-12",
+            "round-off differs between machines"
         );
     }
 }

@@ -1,7 +1,7 @@
 //! Errors under refinement against the number of unknowns, a panel per place and enrichment of the tips.
 
 use super::quantity_name;
-use super::runs::friction;
+use super::runs::{distinct, friction};
 use super::{Bundle, Kind, ReportError};
 use crate::case::ContactSpace;
 use crate::report::number::{fixed, significant, value};
@@ -14,9 +14,10 @@ use std::collections::BTreeMap;
 pub static KIND: Kind = Kind {
     file: "*.error.svg",
     question: "How fast does this quantity converge under refinement, with which contact space and enrichment?",
-    shows: "Error of a quantity against the number of unknowns, a curve per contact space with its observed order in h over the last \
-            two halvings, a panel per enrichment of the tips and place; dots and triangle have the order of theory, or order 1 \
-            where it is silent. Errors are those against a closed form, or relative to the extrapolated limit or the finest mesh.",
+    shows: "Error of a quantity against the number of unknowns, a curve per contact space with its observed order \
+            in h over the last two halvings, a panel per place and enrichment of the tips; dots and triangle have \
+            the order of theory, or order 1 where it is silent. Errors are those against a closed form, or relative \
+            to the extrapolated limit or the finest mesh.",
 };
 
 /// Panels of one figure; with more of them each place has a figure of its own.
@@ -144,15 +145,13 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     if rows.iter().any(|row| is_exact(&measured(row, errors))) {
         caption += &format!("; exact: error below {}", value(TOLERANCE));
     }
-    let tips = rows.iter().filter(|row| row.at == first.at);
-    let tips = tips
-        .map(|row| &row.variant.tip)
-        .collect::<std::collections::BTreeSet<_>>()
-        .len();
+    let tips = distinct(rows.iter().map(|row| &row.variant.tip)).len();
     let columns = if tips > 1 { tips } else { panels.len() }.min(3);
+    let own_legends = true;
+    let figure = Figure::new(&title, &caption, columns, panels);
     Figure {
-        own_legends: true,
-        ..Figure::new(title, caption, panels).columns(columns)
+        own_legends,
+        ..figure
     }
 }
 

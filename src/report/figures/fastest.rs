@@ -1,8 +1,8 @@
 //! Mean time of every method at every accuracy.
 
 use super::performance::heading;
+use super::runs::distinct;
 use super::{Bundle, Kind, ReportError};
-use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, plain};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, ranking};
@@ -13,9 +13,9 @@ use stickslip_methods::Tier;
 pub static KIND: Kind = Kind {
     file: "fastest.svg",
     question: "Which method is fastest at which accuracy?",
-    shows: "Shifted geometric mean of the time of every method over all problems with its interval, a panel per accuracy tier, methods \
-            in the order of the finest tier; in brackets the ranks that they may have there. A problem without right answer counts \
-            ten times the slowest right one.",
+    shows: "Shifted geometric mean of the time of every method over all problems with its interval, a panel per \
+            accuracy tier, methods in the order of the finest one; numbers: ranks that a method may have. A problem \
+            without right answer counts ten times the slowest right one.",
 };
 
 /// The figure of all tiers; `caveat`: what the caption says of a sweep that is not complete.
@@ -32,83 +32,64 @@ pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<()
     let Some((_, finest)) = found.last() else {
         return Ok(());
     };
-    let mut names: Vec<&str> = Vec::new();
-    for standing in found.iter().rev().flat_map(|(_, ranked)| &ranked.standings) {
-        if !names.contains(&standing.method) {
-            names.push(standing.method);
-        }
-    }
-    let rank = |name: &&str| match finest
-        .standings
-        .iter()
-        .find(|s| s.method == *name)
-        .map(|s| s.rank)
-    {
-        Some([first, last]) if first == last => format!("{} ({first})", plain(name)),
-        Some([first, last]) => format!("{} ({first}–{last})", plain(name)),
-        None => plain(name),
+    let standings = || {
+        found
+            .iter()
+            .rev()
+            .flat_map(|(_, ranking)| &ranking.standings)
     };
-    let y = Axis::names("", names.iter().map(rank));
-    let panel = |(tier, ranked): &(Tier, Ranking<'_>)| {
-        let mut panel = Panel::new(Axis::log("mean time of the method [s]"), y.clone(), 0.0);
+    let names = distinct(standings().map(|standing| standing.method));
+    let y = Axis::names("", names.iter().map(|name| plain(name)).collect());
+    let slowest = standings().map(|s| s.mean.high).fold(0.0, f64::max);
+    let mut panels = Vec::new();
+    for (tier, ranking) in &found {
+        // Room for the ranks behind the intervals.
+        let x = Axis::log("mean time of the method [s]").through(&[2.0 * slowest]);
+        let mut panel = Panel::new(x, y.clone(), 0.0);
         panel.heading = heading(*tier);
-        for standing in &ranked.standings {
-            let row = names
-                .iter()
-                .position(|name| *name == standing.method)
-                .unwrap_or(0);
+        for (row, name) in names.iter().enumerate() {
+            let own = ranking.standings.iter().find(|s| s.method == *name);
+            let Some(standing) = own else { continue };
+            let style = Style::of_method(name, 0);
             let style = Style {
                 width: 0.0,
-                ..Style::of_method(standing.method)
+                ..style
             };
             let point = [standing.mean.value, row as f64];
-            let best = standing.rank[0] == 1;
             let mut series = Series::new("", style, vec![point]);
             series.intervals = vec![[standing.mean.low, standing.mean.high]];
-            series.texts = vec![if best {
-                "fastest".into()
+            let [first, last] = standing.rank.map(|rank| rank.to_string());
+            let rank = if first == last {
+                first
             } else {
-                String::new()
-            }];
+                format!("{first}–{last}")
+            };
+            series.texts = vec![rank];
             panel.series.push(series);
         }
-        panel
+        panels.push(panel);
+    }
+    let told = |(tier, ranking): &(Tier, Ranking<'_>)| {
+        let tied = ranking.standings.iter().filter(|s| s.rank[0] == 1).count();
+        let first = ranking.standings.first().map_or("", |s| s.method);
+        let others = match tied {
+            0 | 1 => String::new(),
+            _ => format!(" (not apart from {} others)", tied - 1),
+        };
+        (plain(first), format!("{}{others} at {tier}", plain(first)))
     };
-    let first = |ranked: &Ranking<'_>| -> Vec<String> {
-        ranked
-            .standings
-            .iter()
-            .filter(|s| s.rank[0] == 1)
-            .map(|s| plain(s.method))
-            .collect()
-    };
-    let told: Vec<(String, String)> = found
-        .iter()
-        .map(|(tier, ranked)| (first(ranked).join(" or "), tier.to_string()))
-        .collect();
-    let title = match told.windows(2).all(|pair| pair[0].0 == pair[1].0) {
-        true => format!("{} is fastest at every accuracy", told[0].0),
-        false => {
-            let parts: Vec<String> = told
-                .iter()
-                .map(|(who, tier)| format!("{who} at {tier}"))
-                .collect();
-            format!("Fastest: {}", parts.join(", "))
+    let told: Vec<(String, String)> = found.iter().map(told).collect();
+    let title = match distinct(told.iter().map(|(first, _)| first))[..] {
+        [one] => format!("{one} has the least mean time at every accuracy"),
+        _ => {
+            let parts: Vec<&str> = told.iter().map(|(_, part)| part.as_str()).collect();
+            format!("Least mean time: {}", parts.join(", "))
         }
     };
     let caption = format!(
-        "shifted geometric mean over {} problems{caveat}; a problem without right answer counts {} times the slowest right one; in \
-         brackets: ranks at tier {}; methods whose intervals overlap share a rank",
+        "shifted geometric mean over {} problems with its interval{caveat}; a problem without right answer counts \
+         {PENALTY} times the slowest right one; numbers: ranks, which methods share whose intervals overlap",
         finest.problems,
-        significant(PENALTY, 2),
-        found
-            .last()
-            .map_or(String::new(), |(tier, _)| tier.to_string()),
     );
-    let panels: Vec<Panel> = found.iter().map(panel).collect();
-    KIND.add(
-        bundle,
-        "",
-        Figure::new(title, caption, panels).columns(3).svg()?,
-    )
+    KIND.add(bundle, "", Figure::new(&title, &caption, 3, panels).svg()?)
 }

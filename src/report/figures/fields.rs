@@ -10,24 +10,24 @@ use crate::run::record::RunFields;
 pub static DISPLACEMENT: Kind = Kind {
     file: "*.displacement.svg",
     question: "How does the plane body deform?",
-    shows: "Displacement u_x and u_y of a plane body in the last increment as bands on the deformed shape, enlarged by the \
-            factor in the caption; crack faces and boundary are black, the undeformed ones grey.",
+    shows: "Displacement u_x and u_y of a plane body in the last increment as bands on the deformed shape; boundary \
+            and crack faces are black, the undeformed ones grey.",
 };
 
 /// Stress of plane bodies.
 pub static VON_MISES: Kind = Kind {
     file: "*.von-mises.svg",
     question: "Where is the plane body under stress?",
-    shows: "Von Mises stress of a plane body in the last increment on the deformed shape. The colour bar ends where 98 % of the \
-            body lie below, with a point if the largest value is far above.",
+    shows: "Von Mises stress of a plane body in the last increment on the deformed shape. The colour bar ends where \
+            98 % of the body lie below, with a point if the largest value is far above.",
 };
 
 /// Contact status of solids.
 pub static CONTACT: Kind = Kind {
     file: "*.contact.svg",
     question: "Where is the crack inside the solid open, where does it stick, where and how does it slip?",
-    shows: "Status on the crack of a solid in the last increment by tint and marker, arrows for the slip of side 1 against side \
-            2, or for the tangential traction where nothing slips, on the deformed body behind the crack.",
+    shows: "Status on the crack of a solid in the last increment by tint and marker, arrows for the slip of side 1 \
+            against side 2, or for the tangential traction where nothing slips, on the deformed body behind the crack.",
 };
 
 /// The pictures of one run.

@@ -1,12 +1,11 @@
 //! Friction loops: the shear force that a plane crack carries against its mean slip, increment after increment.
 
 use super::agreement::agreement;
-use super::runs::problem;
+use super::runs::{Run, problem};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::significant;
-use crate::report::plot::{
-    Axis, Draw, Figure, Panel, Series, italic, plain, prefixed, rank, subscript,
-};
+use crate::report::plot::subscript;
+use crate::report::plot::{Axis, Draw, Figure, Panel, Series, italic, plain, prefixed, rank};
 use crate::report::standard::problem_name;
 use crate::run::record::{QuantityRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,15 +14,13 @@ use std::collections::{BTreeMap, BTreeSet};
 pub static KIND: Kind = Kind {
     file: "*.loop.svg",
     question: "How much energy does friction take on this load path, and do the methods agree on it?",
-    shows: "Shear force −P_a on a plane crack against its mean slip, from the unloaded crack through all increments; numbers are \
-            increments at which force or slip turn back. Drawn where there are at least four increments and something runs \
-            back; runs that end before the others are left out.",
+    shows: "Shear force −P_a on a plane crack against its mean slip, from the unloaded crack through all \
+            increments, where there are at least four and something runs back; runs that end before the others \
+            are left out.",
 };
 
 /// Paths of fewer increments are no loops.
 const LEAST: usize = 4;
-/// Paths of fewer increments have all of them numbered.
-const FEW: usize = 8;
 /// Changes below this fraction of the range are no turn.
 const NO_CHANGE: f64 = 1e-6;
 
@@ -35,185 +32,121 @@ type Path = Vec<[f64; 2]>;
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    // A solid has slip along b too, which is no loop in a plane.
-    let solid =
-        |row: &&QuantityRow| row.quantity.name == "mean_slip" && row.quantity.component == "b";
-    let solids = results.quantities.iter().filter(solid);
-    let solids: BTreeSet<String> = solids.map(|row| problem_name(&row.key)).collect();
-    type Runs<'a> = BTreeMap<(usize, &'a str), (&'a RunKey, BTreeMap<usize, [Option<f64>; 2]>)>;
+    // By problem and crack, then by method.
+    type Runs<'a> = BTreeMap<(usize, &'a str), Run<'a, QuantityRow>>;
     let mut found: BTreeMap<(String, &str), Runs<'_>> = BTreeMap::new();
-    for row in results
-        .quantities
-        .iter()
-        .filter(|row| row.quantity.component == "a")
-    {
-        let which = ["mean_slip", "contact_force"]
-            .iter()
-            .position(|name| *name == row.quantity.name);
-        let (Some(which), name) = (which, problem_name(&row.key)) else {
+    let mut solids = BTreeSet::new();
+    for row in &results.quantities {
+        let (quantity, method) = (&row.quantity, &row.key.method);
+        if !["mean_slip", "contact_force"].contains(&quantity.name.as_str()) {
             continue;
-        };
-        if !solids.contains(&name) && row.quantity.at.starts_with("crack-") {
-            let runs = found.entry((name, &row.quantity.at)).or_default();
-            let run = runs.entry((rank(&row.key.method), &row.key.method));
-            let (key, path) = run.or_insert_with(|| (&row.key, BTreeMap::new()));
-            *key = if row.key.increment > key.increment {
-                &row.key
-            } else {
-                *key
-            };
-            let sign = [1.0, -1.0][which];
-            path.entry(row.key.increment).or_default()[which] = Some(sign * row.quantity.value);
+        }
+        let name = problem_name(&row.key);
+        match quantity.component.as_str() {
+            "a" => {
+                let runs = found.entry((name, &quantity.at)).or_default();
+                let run = runs.entry((rank(method), method));
+                let (key, rows) = run.or_insert((&row.key, Vec::new()));
+                *key = if row.key.increment > key.increment {
+                    &row.key
+                } else {
+                    *key
+                };
+                rows.push(row);
+            }
+            // A solid has slip along b too, which is no loop in a plane.
+            "b" => _ = solids.insert(name),
+            _ => {}
         }
     }
     for ((name, crack), runs) in found {
-        let mut paths: Vec<(&RunKey, Path)> = Vec::new();
-        for (key, path) in runs.into_values() {
-            let after = path.into_values().map_while(|[x, y]| Some([x?, y?]));
-            let path: Path = std::iter::once([0.0; 2]).chain(after).collect();
-            if path.iter().flatten().all(|v| v.is_finite()) {
-                paths.push((key, path));
-            }
-        }
+        let paths = runs.into_values().map(|(key, rows)| (key, path(&rows)));
+        let mut paths: Vec<(&RunKey, Path)> = paths.collect();
         let longest = paths.iter().map(|(_, path)| path.len()).max().unwrap_or(0);
         paths.retain(|(_, path)| path.len() == longest);
-        let back = paths
-            .first()
-            .is_some_and(|(_, path)| !turns(path).is_empty());
-        if longest > LEAST && back {
-            KIND.add(
-                bundle,
-                &format!("{name}.{crack}"),
-                figure(&paths, crack, results).svg()?,
-            )?;
+        if longest > LEAST && runs_back(&paths[0].1) && !solids.contains(&name) {
+            let figure = figure(&paths, crack, results);
+            KIND.add(bundle, &format!("{name}.{crack}"), figure.svg()?)?;
         }
     }
     Ok(())
 }
 
+/// As far as both quantities are known.
+fn path(rows: &[&QuantityRow]) -> Path {
+    let mut values: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    for row in rows {
+        let place = values.entry(row.key.increment).or_insert([f64::NAN; 2]);
+        match row.quantity.name.as_str() {
+            "mean_slip" => place[0] = row.quantity.value,
+            _ => place[1] = -row.quantity.value,
+        }
+    }
+    let known = |p: &[f64; 2]| p.iter().all(|v| v.is_finite());
+    let after = values.into_values().take_while(known);
+    std::iter::once([0.0; 2]).chain(after).collect()
+}
+
+/// Whether slip or force turns back by more than round-off.
+fn runs_back(path: &Path) -> bool {
+    (0..2).any(|c| {
+        let changes = path.windows(2).map(|pair| pair[1][c] - pair[0][c]);
+        let largest = path.iter().map(|p| p[c].abs()).fold(0.0, f64::max);
+        let beyond = |sign: f64| changes.clone().any(|d| sign * d > NO_CHANGE * largest);
+        beyond(1.0) && beyond(-1.0)
+    })
+}
+
 fn figure(paths: &[(&RunKey, Path)], crack: &str, results: &Results) -> Figure {
     let all = || paths.iter().flat_map(|(_, path)| path);
     let largest = [0, 1].map(|c| all().map(|p| p[c].abs()).fold(f64::MIN_POSITIVE, f64::max));
-    let scaled = |path: &Path| {
+    let scaled = |(_, path): &(_, Path)| -> Vec<f64> {
         path.iter()
-            .flat_map(|p| [p[0] / largest[0], p[1] / largest[1]])
+            .flat_map(|p| [0, 1].map(|c| p[c] / largest[c]))
             .collect()
     };
-    let scaled: Vec<Vec<f64>> = paths.iter().map(|(_, path)| scaled(path)).collect();
+    let scaled: Vec<Vec<f64>> = paths.iter().map(scaled).collect();
     let methods: Vec<&str> = paths.iter().map(|(key, _)| key.method.as_str()).collect();
     let found = agreement(&methods, &scaled, |_, _| true);
-    let (slip, slip_unit) = prefixed(largest[0], "m");
-    let (force, force_unit) = prefixed(largest[1], "N/m");
+    let [slip, force] = [prefixed(largest[0], "m"), prefixed(largest[1], "N/m")];
     let y = format!(
-        "shear force −{}{} [{force_unit}]",
+        "shear force −{}{} [{}]",
         italic("P"),
-        subscript("a")
+        subscript("a"),
+        force.1
     );
-    let x = Axis::linear(&format!("mean slip [{slip_unit}]"));
+    let x = Axis::linear(&format!("mean slip [{}]", slip.1));
     let mut panel = Panel::new(x, Axis::linear(&y), 56.0);
-    for (index, (run, label, style)) in found.curves.into_iter().enumerate() {
-        let path = &paths[run].1;
-        let mut series = Series::new(
-            label,
-            style,
-            path.iter().map(|p| [p[0] * slip, p[1] * force]).collect(),
-        );
-        if index == 0 {
+    for (run, label, style) in found.curves {
+        let points = paths[run].1.iter().map(|p| [p[0] * slip.0, p[1] * force.0]);
+        let mut series = Series::new(label, style, points.collect());
+        if panel.series.is_empty() {
             series.draw = Draw::Path;
-            series.texts = numbers(path, largest);
         }
         panel.series.push(series);
     }
-    // Room for the numbers beside the points.
-    for corner in [-1.0, 1.0] {
-        let ends = [0, 1].map(|c| {
-            all()
-                .map(|p| corner * p[c])
-                .fold(f64::NEG_INFINITY, f64::max)
-        });
-        let at =
-            [0, 1].map(|c| corner * (ends[c] + [0.12, 0.08][c] * largest[c]) * [slip, force][c]);
-        panel.series.push(Series::new(
-            "",
-            super::super::plot::Style::line([255; 3], 0.0, &[]),
-            vec![at],
-        ));
-    }
-    let title = dissipation(paths[0].0, results).unwrap_or(found.title);
-    let caption = format!(
-        "{}, {}; numbers: increments\n{}",
-        problem(paths[0].0),
-        crack.replace('-', " "),
-        found.caption
-    );
-    Figure::new(title, caption, vec![panel])
+    let key = paths[0].0;
+    let title = dissipation(key, results).unwrap_or(found.title);
+    let path = format!("increments 1 to {}", key.increment);
+    let caption = format!("{}, {}, {path}", problem(key), crack.replace('-', " "));
+    Figure::new(&title, &caption, 1, vec![panel])
 }
 
-/// What the first method dissipates over the path, beside the closed form if the case states it.
+/// What a run dissipates over the path, beside the closed form if the case states it.
 fn dissipation(key: &RunKey, results: &Results) -> Option<String> {
     let own = |row: &&QuantityRow| row.key == *key && row.quantity.name == "dissipation";
-    let row = results.quantities.iter().find(own)?;
+    let quantity = &results.quantities.iter().find(own)?.quantity;
+    let found = significant(quantity.value, 4);
     let stated = results
         .expectations
         .iter()
         .find(|row| row.kind == "analytic" && row.quantity == "dissipation" && row.key == *key);
-    let (value, unit) = (
-        significant(row.quantity.value, 4),
-        plain(&row.quantity.unit),
-    );
-    let stated = stated.map_or(String::new(), |row| {
-        format!(", closed form {}", significant(row.expected, 4))
-    });
-    Some(format!("Friction takes {value} {unit}{stated}"))
-}
-
-/// Indices of the points behind which a coordinate changes the other way than before. Points that repeat a coordinate
-/// change nothing: on a hysteresis loop the force turns after it has rested.
-fn turns(path: &Path) -> Vec<usize> {
-    let mut turns = Vec::new();
-    for c in [0, 1] {
-        let ends = path
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
-                [a.min(p[c]), b.max(p[c])]
-            });
-        let mut before = 0.0;
-        for (index, pair) in path.windows(2).enumerate() {
-            let change = pair[1][c] - pair[0][c];
-            if change.abs() > NO_CHANGE * (ends[1] - ends[0]) {
-                if change * before < 0.0 {
-                    turns.push(index);
-                }
-                before = change;
-            }
-        }
-    }
-    turns.sort_unstable();
-    turns.dedup();
-    turns
-}
-
-/// Numbers of the increments to name, those in one place at the first of them.
-fn numbers(path: &Path, largest: [f64; 2]) -> Vec<String> {
-    let mut named = if path.len() <= FEW {
-        (0..path.len()).collect()
-    } else {
-        turns(path)
-    };
-    named.extend([0, path.len() - 1]);
-    named.sort_unstable();
-    named.dedup();
-    let mut texts = vec![String::new(); path.len()];
-    for index in named.iter().copied() {
-        let near = |other: &&usize| {
-            (0..2).all(|c| (path[**other][c] - path[index][c]).abs() < 0.05 * largest[c])
-        };
-        match named.iter().take_while(|other| **other < index).find(near) {
-            Some(first) => texts[*first] += &format!(", {index}"),
-            None => texts[index] = index.to_string(),
-        }
-    }
-    texts
+    let stated = stated.map(|row| format!(", closed form {}", significant(row.expected, 4)));
+    let unit = plain(&quantity.unit);
+    Some(format!(
+        "Friction takes {found} {unit}{}",
+        stated.unwrap_or_default()
+    ))
 }
 
 #[cfg(test)]
@@ -221,20 +154,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_path_turns_where_a_coordinate_runs_back() {
-        // A hysteresis loop: up, along the top, down, along the bottom, up.
-        let path = [
+    fn a_resting_force_does_not_run_back() {
+        assert!(!runs_back(&vec![
             [0.0, 0.0],
-            [0.0, 1.0],
             [1.0, 1.0],
-            [2.0, 1.0],
-            [2.0, -1.0],
-            [1.0, -1.0],
-            [1.0, 0.0],
-        ];
-        assert_eq!(turns(&path.to_vec()), [3, 4, 5]);
-        assert!(turns(&path[..4].to_vec()).is_empty());
-        // Round-off of a resting force is no turn.
-        assert!(turns(&vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.0 - 1e-9], [3.0, 2.0]]).is_empty());
+            [2.0, 1.0 - 1e-9],
+            [3.0, 2.0]
+        ]));
+        assert!(runs_back(&vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.5]]));
     }
 }

@@ -1,22 +1,14 @@
-//! Rows grouped by problem and run.
+//! Rows grouped by problem and run, and words for them.
 
 use crate::report::number::value;
 use crate::report::plot::{italic, plain, rank};
 use crate::report::standard::problem_name;
 use crate::run::record::RunKey;
+use crate::studies::sweep::record::Record;
 use std::collections::BTreeMap;
 
-/// Rows of one run, in one increment.
-pub struct Run<'a, R> {
-    pub key: &'a RunKey,
-    pub rows: Vec<&'a R>,
-}
-
-impl<R> Run<'_, R> {
-    pub fn method(&self) -> &str {
-        &self.key.method
-    }
-}
+/// A run with its rows, in one increment.
+pub type Run<'a, R> = (&'a RunKey, Vec<&'a R>);
 
 /// Rows of the last increment of every run by the name of its problem, runs in the order of the registry of methods.
 pub fn by_problem<'a, R>(
@@ -29,23 +21,18 @@ pub fn by_problem<'a, R>(
         let own = key(row);
         let runs = problems.entry(problem_name(own)).or_default();
         let run = runs.entry((rank(&own.method), &own.method));
-        let run = run.or_insert_with(|| Run {
-            key: own,
-            rows: Vec::new(),
-        });
-        if own.increment > run.key.increment {
-            *run = Run {
-                key: own,
-                rows: Vec::new(),
-            };
+        let (last, rows) = run.or_insert((own, Vec::new()));
+        if own.increment > last.increment {
+            (*last, *rows) = (own, Vec::new());
         }
-        if own.increment == run.key.increment {
-            run.rows.push(row);
+        if own.increment == last.increment {
+            rows.push(row);
         }
     }
+    let runs = |runs: Found<'a, R>| runs.into_values().collect();
     problems
         .into_iter()
-        .map(|(name, runs)| (name, runs.into_values().collect()))
+        .map(|(name, own)| (name, runs(own)))
         .collect()
 }
 
@@ -67,4 +54,27 @@ pub fn friction(mu: f64) -> String {
 /// `1 method`, `2 methods`.
 pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// In order, each once.
+pub fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for one in all {
+        if !found.contains(&one) {
+            found.push(one);
+        }
+    }
+    found
+}
+
+/// The one with the least number, the first of equal ones.
+pub fn least<T>(all: impl IntoIterator<Item = T>, of: impl Fn(&T) -> f64) -> Option<T> {
+    let all = all.into_iter();
+    all.min_by(|a, b| of(a).total_cmp(&of(b)))
+}
+
+/// Mesh and contact space that a record was made with.
+pub fn made_with(record: &Record) -> (&str, &str) {
+    let problem = record.found.problem.as_ref();
+    problem.map_or(("?", ""), |p| (&p.mesh, &p.space))
 }

@@ -1,6 +1,6 @@
 //! Stages of a run as shares of its time.
 
-use super::runs::friction;
+use super::runs::{friction, least, made_with};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Rgb, Series, Style, plain};
@@ -16,18 +16,18 @@ use crate::studies::sweep::record::{Record, Spent};
 pub static KIND: Kind = Kind {
     file: "stages.*.svg",
     question: "Where does the time of a run go?",
-    shows: "Shares of the stages of a run in its total time: on every mesh by the fastest method, and on the finest mesh by every method, \
-            at the finest tolerance at which something was solved on every mesh.",
+    shows: "Shares of the stages of a run in its total time: on every mesh by the fastest method, and on the finest \
+            mesh by every method, at the finest tolerance at which something was solved on every mesh.",
 };
 
-/// Stages in the order in which they come, with their tints: neighbours differ in lightness.
+/// Stages in the order in which they come, with their tints, no two of one lightness.
 const STAGES: [(&str, Rgb); 7] = [
     ("setup", [235, 235, 235]),
     ("assembly", [86, 180, 233]),
-    ("factorisation", [0, 90, 150]),
+    ("factorisation", [0, 114, 178]),
     ("condensation", [240, 228, 66]),
-    ("prepare", [150, 60, 0]),
-    ("solve", [230, 159, 0]),
+    ("prepare", [213, 94, 0]),
+    ("solve", [30, 30, 30]),
     ("output", [255, 255, 255]),
 ];
 
@@ -37,13 +37,12 @@ const STAGES: [(&str, Rgb); 7] = [
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
-    let solved =
-        |record: &Record| record.found.verdict == Verdict::Solved && has_defaults(&record.cell);
-    let timed = records.iter().filter(|record| solved(record));
-    let mut own: Vec<(&Record, &Spent)> = timed
+    let solved = |r: &&Record| r.found.verdict == Verdict::Solved && has_defaults(&r.cell);
+    let timed = records.iter().filter(solved);
+    let mut own: Vec<Timed> = timed
         .filter_map(|r| Some((r, published_times(r)?)))
         .collect();
-    let problem = |row: &(&Record, &Spent)| row.0.cell.problem().without_mesh();
+    let problem = |row: &Timed| row.0.cell.problem().without_mesh();
     own.sort_by(|a, b| {
         compare_problems(&problem(a), &problem(b))
             .then(a.0.cell.refine.cmp(&b.0.cell.refine))
@@ -51,26 +50,20 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
-        let meshes: Vec<&[(&Record, &Spent)]> = group
-            .chunk_by(|a, b| a.0.cell.refine == b.0.cell.refine)
-            .collect();
-        if meshes.len() < 2 {
-            continue;
-        }
-        let tolerances =
-            |rows: &&[(&Record, &Spent)]| rows.iter().map(|r| r.0.cell.tolerance).collect();
-        let tolerance = common_tolerance(&meshes.iter().map(tolerances).collect::<Vec<_>>());
+        let of_mesh = |rows: &[Timed]| rows.iter().map(|r| r.0.cell.tolerance).collect();
+        let tolerances: Vec<Vec<f64>> = group.chunk_by(same_mesh).map(of_mesh).collect();
+        let tolerance = common_tolerance(&tolerances);
         let mut group = group.to_vec();
         group.retain(|row| Some(row.0.cell.tolerance) == tolerance);
-        let Some((first, _)) = group.first() else {
+        let Some(cell) = group
+            .first()
+            .map(|row| &row.0.cell)
+            .filter(|_| tolerances.len() > 1)
+        else {
             continue;
         };
-        let space = first.cell.space.as_deref().unwrap_or("own");
-        let mut name = file_name(&[
-            &first.cell.case,
-            space,
-            &format!("mu-{}", value(first.cell.mu())),
-        ]);
+        let (space, mu) = (cell.space.as_deref().unwrap_or("own"), value(cell.mu()));
+        let mut name = file_name(&[&cell.case, space, &format!("mu-{mu}")]);
         if names.contains(&name) {
             name = format!("{name}-{}", names.len());
         }
@@ -80,84 +73,61 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
     Ok(())
 }
 
-fn figure(group: &[(&Record, &Spent)], records: &[Record], caveat: &str) -> Figure {
-    let median = |row: &&(&Record, &Spent)| method_time(row.1).median_s;
-    let mut fastest = Vec::new();
-    let mut last = None;
-    for mesh in group.chunk_by(|a, b| a.0.cell.refine == b.0.cell.refine) {
-        let best = mesh.iter().min_by(|a, b| median(a).total_cmp(&median(b)));
-        fastest.extend(best.map(|row| {
-            let mesh = row
-                .0
-                .found
-                .problem
-                .as_ref()
-                .map_or("?", |p| p.mesh.as_str());
-            (
-                format!("{mesh}, {}", row.0.found.method),
-                stages(row, records),
-            )
-        }));
-        last = Some(mesh);
+/// A record with its times.
+type Timed<'a> = (&'a Record, &'a Spent);
+
+fn same_mesh(a: &Timed<'_>, b: &Timed<'_>) -> bool {
+    a.0.cell.refine == b.0.cell.refine
+}
+
+fn figure(group: &[Timed<'_>], records: &[Record], caveat: &str) -> Figure {
+    let mut bars = [Vec::new(), Vec::new()];
+    for mesh in group.chunk_by(same_mesh) {
+        let method = |row: &Timed<'_>| row.0.found.method.clone();
+        let best = least(mesh, |row| method_time(row.1).median_s);
+        let label = |row: &Timed<'_>| format!("{}, {}", made_with(row.0).0, method(row));
+        bars[0].extend(best.map(|row| (label(row), stages(row, records))));
+        bars[1] = mesh
+            .iter()
+            .map(|row| (method(row), stages(row, records)))
+            .collect();
     }
-    let finest = last.unwrap_or_default().iter();
-    let finest: Vec<Bar> = finest
-        .map(|row| (row.0.found.method.clone(), stages(row, records)))
-        .collect();
-    let title = fastest.last().map_or(String::new(), |(label, stages)| {
-        let total: f64 = stages.iter().sum();
-        let most = (0..STAGES.len())
-            .max_by(|a, b| stages[*a].total_cmp(&stages[*b]))
-            .unwrap_or(0);
-        format!(
-            "{} takes {} % of the time on the finest mesh ({})",
-            STAGES[most].0,
-            fixed(100.0 * stages[most] / total, 0),
-            plain(label)
-        )
+    let title = bars[0].last().map_or(String::new(), |(label, stages)| {
+        let most = least(0..7, |i| -stages[*i]).unwrap_or(0);
+        let share = fixed(100.0 * stages[most] / stages.iter().sum::<f64>(), 0);
+        let (stage, label) = (STAGES[most].0, plain(label));
+        format!("On the finest mesh, {stage} takes {share} % of the time ({label})")
     });
-    let (first, size) = (group[0].0, group[0].0.found.problem.as_ref());
-    let caption = format!(
-        "{}, {}, {}, solved to a natural map of {}{caveat}",
-        first.cell.case,
-        size.map_or("", |p| p.space.as_str()),
-        friction(first.cell.mu()),
-        value(first.cell.tolerance),
+    let record = group[0].0;
+    let (space, mu) = (made_with(record).1, friction(record.cell.mu()));
+    let reached = format!(
+        "solved to a natural map of {}",
+        value(record.cell.tolerance)
     );
-    let panels = vec![
-        panel("each mesh, least median of all methods", &fastest),
-        panel("finest mesh, each method", &finest),
+    let caption = format!("{}, {space}, {mu}, {reached}{caveat}", record.cell.case);
+    let headings = [
+        "each mesh, least median of all methods",
+        "finest mesh, each method",
     ];
+    let panels = headings
+        .iter()
+        .zip(&bars)
+        .map(|(heading, bars)| panel(heading, bars));
+    let figure = Figure::new(&title, &caption, 1, panels.collect());
     Figure {
         wide: true,
-        ..Figure::new(title, caption, panels)
+        ..figure
     }
 }
 
 /// Label and seconds of the stages.
 type Bar = (String, [f64; 7]);
 
-fn stages((record, spent): &(&Record, &Spent), records: &[Record]) -> [f64; 7] {
-    let [setup, assembly, factorisation] = body_times(record, records).unwrap_or([
-        spent.setup_s,
-        spent.assembly_s,
-        spent.factorisation_s,
-    ]);
-    let own = [
-        spent.condensation_s,
-        spent.prepare.median_s,
-        spent.solve.median_s,
-        spent.output_s,
-    ];
-    let all = [
-        setup,
-        assembly,
-        factorisation,
-        own[0],
-        own[1],
-        own[2],
-        own[3],
-    ];
+fn stages((record, spent): &Timed<'_>, records: &[Record]) -> [f64; 7] {
+    let own = [spent.setup_s, spent.assembly_s, spent.factorisation_s];
+    let [a, b, c] = body_times(record, records).unwrap_or(own);
+    let [d, e] = [&spent.prepare, &spent.solve].map(|timing| timing.median_s);
+    let all = [a, b, c, spent.condensation_s, d, e, spent.output_s];
     all.map(|seconds| {
         if seconds.is_finite() {
             seconds.max(0.0)
@@ -168,29 +138,24 @@ fn stages((record, spent): &(&Record, &Spent), records: &[Record]) -> [f64; 7] {
 }
 
 fn panel(heading: &str, bars: &[Bar]) -> Panel {
+    let total = |stages: &[f64]| stages.iter().sum::<f64>();
     let label = |(label, stages): &Bar| {
-        format!(
-            "{}: {} s",
-            plain(label),
-            significant(stages.iter().sum(), 3)
-        )
+        let seconds = significant(total(stages), 3);
+        format!("{}: {seconds} s", plain(label))
     };
-    // Labels of their own: the rows of the two panels are not the same.
-    let y = Axis::names("", bars.iter().map(label));
-    let mut panel = Panel::new(Axis::linear("share of the total time [%]"), y, 0.0);
+    let x = Axis::linear("share of the total time [%]").through(&[0.0, 100.0]);
+    let y = Axis::names("", bars.iter().map(label).collect());
+    let mut panel = Panel::new(x, y, 0.0);
     panel.heading = heading.to_owned();
     for (stage, (name, tint)) in STAGES.into_iter().enumerate() {
-        let ends = |(_, stages): &Bar| {
-            let total = stages.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-            let before: f64 = stages[..stage].iter().sum();
-            [
-                100.0 * before / total,
-                100.0 * (before + stages[stage]) / total,
-            ]
-        };
-        let rows = bars.iter().enumerate();
-        let points = rows.map(|(row, bar)| [ends(bar)[0], row as f64]).collect();
-        let mut series = Series::new(name, Style::line(tint, 0.0, &[]), points);
+        let share =
+            |parts: &[f64], all: &[f64]| 100.0 * total(parts) / total(all).max(f64::MIN_POSITIVE);
+        let ends = |(_, all): &Bar| [stage, stage + 1].map(|end| share(&all[..end], all));
+        let points = bars
+            .iter()
+            .enumerate()
+            .map(|(row, bar)| [ends(bar)[0], row as f64]);
+        let mut series = Series::new(name, Style::line(tint, 0.0, &[]), points.collect());
         series.draw = Draw::Bars;
         series.intervals = bars.iter().map(ends).collect();
         series.texts = series

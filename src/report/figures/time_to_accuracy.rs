@@ -1,7 +1,7 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 
 use super::quantity_name;
-use super::runs::friction;
+use super::runs::{distinct, friction, least};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
@@ -16,8 +16,8 @@ use crate::studies::sweep::record::Record;
 pub static KIND: Kind = Kind {
     file: "time_to_accuracy.*.svg",
     question: "How long does a wanted accuracy of the answer take, from mesh to method?",
-    shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per method; the triangle has the \
-            observed order if the time grows with the number of unknowns.",
+    shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per \
+            method; the triangle has the observed order if the time grows with the number of unknowns.",
 };
 
 /// Orders that a triangle may show.
@@ -46,17 +46,12 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
         .find(|row| row.kind != orders::Kind::Finest);
     let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(orders::Kind::Finest);
     let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
-    let mut methods: Vec<&str> = Vec::new();
-    for row in &shown {
-        if !methods.contains(&row.variant.method.as_str()) {
-            methods.push(&row.variant.method);
-        }
-    }
+    let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
     let best = shown
         .iter()
         .filter(|row| Some(row.refine) == finest && row.seconds.total() > 0.0);
-    let best = best.min_by(|a, b| a.seconds.total().total_cmp(&b.seconds.total()));
+    let best = least(best, |row| row.seconds.total());
     let further: Vec<&str> = best.iter().map(|row| row.variant.method.as_str()).collect();
     let name = first.map_or_else(String::new, |row| {
         quantity_name::name(&row.quantity, &row.at)
@@ -76,7 +71,7 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
     }
     let observed = first.map_or(f64::NAN, |row| row.order);
     let off = |order: &f64| (order - observed).abs();
-    let nearest = ORDERS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let nearest = least(ORDERS, off);
     let nearest = nearest.filter(|order| off(order) < 0.5 * order);
     let guide = |order: f64| Guide {
         rise: -order,
@@ -110,5 +105,5 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
         first.map_or("", |row| row.variant.space.as_str()),
         friction(one.coarsest.friction.first().copied().unwrap_or(0.0)),
     );
-    Figure::new(title, caption, vec![panel])
+    Figure::new(&title, &caption, 1, vec![panel])
 }

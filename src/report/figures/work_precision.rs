@@ -1,6 +1,6 @@
 //! Work against precision: solver error against time and iterations, problem by problem.
 
-use super::runs::friction;
+use super::runs::{friction, least, made_with};
 use super::{Bundle, Kind, ReportError};
 use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
@@ -9,13 +9,15 @@ use crate::studies::sweep::analysis::series::{Point, Series as Sequence, Swept, 
 use crate::studies::sweep::analysis::{problem_names, problems};
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::Timing;
 
 /// What it is.
 pub static KIND: Kind = Kind {
     file: "work_precision.*.svg",
     question: "What does every digit cost with every method?",
-    shows: "Distance of the answer from the converged solution of the same discrete problem (energy norm) against the time of the \
-            method and its iterations, along the tolerance, or along an option for methods with laws of their own.",
+    shows: "Distance of the answer from the converged solution of the same discrete problem (energy norm) against \
+            the time of the method and its iterations, along the tolerance, or along an option for methods with laws \
+            of their own.",
 };
 
 /// Points of a curve: problems that were solved at the three tiers alone have no figure.
@@ -56,33 +58,30 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
         let right = own.points.iter().filter(|p| p.error <= COMPARED);
         right.filter_map(move |p| Some((own.label.as_str(), p.time?.median_s)))
     });
-    let fastest = fastest.min_by(|a, b| a.1.total_cmp(&b.1));
+    let fastest = least(fastest, |own| own.1);
     let labels: Vec<&str> = shown.iter().map(|own| own.label.as_str()).collect();
     let further: Vec<&str> = fastest.iter().map(|(label, _)| *label).collect();
     let y = Axis::log(&format!("solver error, energy norm of {} [-]", italic("u")));
-    let mut panels = [
+    let axes = [
         Axis::log("time of the method [s]"),
-        Axis::log("1 + iterations [-]"),
-    ]
-    .map(|x| Panel::new(x, y.clone(), 66.0));
+        Axis::counts("iterations [-]"),
+    ];
+    let mut panels = axes.map(|x| Panel::new(x, y.clone(), 66.0));
     for (own, (label, style)) in shown.iter().zip(looks(&labels, &further)) {
-        let timed = || own.points.iter().filter_map(|p| Some((p, p.time?)));
-        let mut by_time = Series::new(
-            &label,
-            style.clone(),
-            timed().map(|(p, t)| [t.median_s, error(p)]).collect(),
-        );
-        if !style.behind {
-            by_time.intervals = timed().map(|(_, t)| [t.low_s, t.high_s]).collect();
-        }
-        panels[0].series.push(by_time);
-        let points = own
+        let timed: Vec<(&Point<'_>, Timing)> = own
             .points
             .iter()
-            .map(|p| [1.0 + p.record.found.sum(|i| i.iterations) as f64, error(p)]);
-        panels[1]
-            .series
-            .push(Series::new(label, style, points.collect()));
+            .filter_map(|p| Some((p, p.time?)))
+            .collect();
+        let points = timed.iter().map(|(p, t)| [t.median_s, error(p)]).collect();
+        let mut by_time = Series::new(&label, style.clone(), points);
+        if !style.behind {
+            by_time.intervals = timed.iter().map(|(_, t)| [t.low_s, t.high_s]).collect();
+        }
+        panels[0].series.push(by_time);
+        let count = |p: &Point<'_>| p.record.found.sum(|i| i.iterations) as f64;
+        let points = own.points.iter().map(|p| [count(p), error(p)]).collect();
+        panels[1].series.push(Series::new(label, style, points));
     }
     let title = fastest.map_or("Work against precision".to_owned(), |(label, seconds)| {
         let ms = significant(1e3 * seconds, 2);
@@ -92,14 +91,13 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
         )
     });
     let first = found.iter().flat_map(|own| &own.points).next();
-    let size = first.and_then(|point| point.record.found.problem.as_ref());
-    let (mesh, space) = size.map_or(("", ""), |size| (&size.mesh, &size.space));
+    let (mesh, space) = first.map_or(("", ""), |point| made_with(point.record));
     let caption = format!(
-        "{}, {mesh}, {space}, {}{caveat}; error: distance from the converged solution of the same discrete problem, at {} also what is \
-         smaller; hollow: laws of their own",
+        "{}, {mesh}, {space}, {}{caveat}; error: distance from the converged solution of the same discrete \
+         problem, at {} also what is smaller; hollow: laws of their own",
         problem.case,
         friction(problem.friction.first().copied().unwrap_or(0.0)),
         value(RESIDUAL_FLOOR),
     );
-    Figure::new(title, caption, panels.into()).columns(2)
+    Figure::new(&title, &caption, 2, panels.into())
 }

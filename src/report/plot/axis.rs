@@ -5,9 +5,8 @@
 enum Scale {
     Linear,
     Log,
-    /// Whole numbers from 0: linear, or ln(1 + value), which shows few and many.
+    /// Whole numbers from 0 on a scale of ln(1 + number), which shows few and many.
     Counts,
-    ManyCounts,
     /// Names, the first at the left or on top.
     Names(Vec<String>),
 }
@@ -18,8 +17,8 @@ pub struct Axis {
     /// Label with unit. Panels whose axes have the same label share the range.
     pub label: String,
     scale: Scale,
-    /// A value that it covers in any case.
-    with: Option<f64>,
+    /// Values that it covers in any case; at 0 and at the last one a linear axis ends without room.
+    with: Vec<f64>,
     low: f64,
     high: f64,
     /// Ticks with labels.
@@ -30,30 +29,20 @@ pub struct Axis {
 
 impl Axis {
     fn of(label: &str, scale: Scale) -> Self {
-        let (low, high, major, minor) = (0.0, 1.0, Vec::new(), Vec::new());
-        let label = label.to_owned();
         Self {
-            label,
+            label: label.to_owned(),
             scale,
-            with: None,
-            low,
-            high,
-            major,
-            minor,
+            with: Vec::new(),
+            low: 0.0,
+            high: 1.0,
+            major: Vec::new(),
+            minor: Vec::new(),
         }
     }
 
-    /// Evenly spaced values. Large and small numbers get a common power of ten inside the brackets of the unit.
+    /// Evenly spaced values.
     pub fn linear(label: &str) -> Self {
         Self::of(label, Scale::Linear)
-    }
-
-    /// The same axis, covering this value in any case.
-    pub fn through(self, value: f64) -> Self {
-        Self {
-            with: Some(value),
-            ..self
-        }
     }
 
     /// Powers of ten; what is not positive has no place.
@@ -61,29 +50,28 @@ impl Axis {
         Self::of(label, Scale::Log)
     }
 
-    /// Whole numbers from 0, `many` of them on a scale of ln(1 + number).
-    pub fn counts(label: &str, many: bool) -> Self {
-        Self::of(
-            label,
-            if many {
-                Scale::ManyCounts
-            } else {
-                Scale::Counts
-            },
-        )
+    /// Whole numbers from 0, evenly spaced in ln(1 + number).
+    pub fn counts(label: &str) -> Self {
+        Self::of(label, Scale::Counts)
     }
 
-    /// Names at 0, 1, 2 …, upwards on a y axis from the last.
-    pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        Self::of(
-            label,
-            Scale::Names(names.into_iter().map(Into::into).collect()),
-        )
+    /// Names at 0, 1, 2 …, on a y axis downwards.
+    pub fn names(label: &str, names: Vec<String>) -> Self {
+        Self::of(label, Scale::Names(names))
     }
 
-    /// Whether the axis has names instead of numbers.
-    pub fn is_named(&self) -> bool {
-        matches!(self.scale, Scale::Names(_))
+    /// The same axis, covering these values in any case.
+    pub fn through(self, with: &[f64]) -> Self {
+        let with = with.to_vec();
+        Self { with, ..self }
+    }
+
+    /// How many names the axis has instead of numbers.
+    pub fn named(&self) -> Option<usize> {
+        match &self.scale {
+            Scale::Names(names) => Some(names.len()),
+            _ => None,
+        }
     }
 
     /// Whether a value has a place.
@@ -94,9 +82,14 @@ impl Axis {
     fn map(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Log => value.ln(),
-            Scale::ManyCounts => value.ln_1p(),
+            Scale::Counts => value.ln_1p(),
             _ => value,
         }
+    }
+
+    /// Difference of the ends.
+    pub fn span(&self) -> f64 {
+        self.high - self.low
     }
 
     /// Place of a value: 0 at the lower end, 1 at the upper.
@@ -107,37 +100,28 @@ impl Axis {
 
     /// The same axis over all `values` that have a place, with about `count` ticks; none without such a value.
     pub fn fitted(&self, values: impl IntoIterator<Item = f64>, count: usize) -> Option<Self> {
-        let (low, high) = range(values.into_iter().chain(self.with).filter(|v| self.has(*v)))?;
+        let values = values.into_iter().chain(self.with.iter().copied());
+        let (low, high) = range(values.filter(|v| self.has(*v)))?;
         let mut axis = self.clone();
         match &self.scale {
             Scale::Linear => axis.fit_linear(low, high, count),
             Scale::Log => axis.fit_log(low, high, count),
             Scale::Counts => {
-                let step = nice_step(high.max(1.0) / count.max(1) as f64).max(1.0);
-                (axis.low, axis.high) = (-0.03 * high.max(1.0), 1.03 * high.max(1.0));
-                axis.major = labelled(multiples(step, 0.0, high.max(1.0)), 0);
-            }
-            Scale::ManyCounts => {
-                let ends = [-0.03, 1.03].map(|part| (high + 1.0).powf(part) - 1.0);
-                [axis.low, axis.high] = ends;
-                let decades = (0..=high.max(1.0).log10() as i32).map(|e| 10f64.powi(e));
-                // Over many decades, or where there is no room, the labels of 2 and 5 would touch those of the decades.
-                let fine = if high < 2e3 && count > 4 {
+                let end = |part: f64| (high + 1.0).powf(part) - 1.0;
+                (axis.low, axis.high) = (end(-0.03), end(1.03));
+                let within = |t: &f64| *t <= high;
+                // Over many decades the labels of 2 and 5 would touch those of the decades.
+                let steps = if high < 2e3 {
                     &[1.0, 2.0, 5.0][..]
                 } else {
                     &[1.0]
                 };
-                let steps = decades.flat_map(|p| fine.iter().map(move |m| m * p));
-                let ticks = std::iter::once(0.0).chain(steps.filter(|t| *t <= high));
-                axis.major = labelled(ticks.collect(), 0);
+                let ticks = (0..10).flat_map(|e| steps.iter().map(move |m| m * 10f64.powi(e)));
+                axis.major = labelled(std::iter::once(0.0).chain(ticks).filter(within), 0);
             }
             Scale::Names(names) => {
                 (axis.low, axis.high) = (-0.5, names.len() as f64 - 0.5);
-                let named = names
-                    .iter()
-                    .enumerate()
-                    .map(|(i, name)| (i as f64, name.clone()));
-                axis.major = named.collect();
+                axis.major = (0..).map(f64::from).zip(names.clone()).collect();
             }
         }
         Some(axis)
@@ -148,51 +132,45 @@ impl Axis {
             let half = if high == 0.0 { 1.0 } else { 0.1 * high.abs() };
             (low, high) = (low - half, high + half);
         }
-        // Room at the ends, but an axis that starts or ends at zero keeps doing so.
-        let pad = 0.05 * (high - low);
-        self.low = if low == 0.0 { 0.0 } else { low - pad };
-        self.high = if high == 0.0 { 0.0 } else { high + pad };
+        let pad = |end: f64| {
+            let last = self.with.len() > 1 && self.with.last() == Some(&end);
+            if end == 0.0 || last {
+                0.0
+            } else {
+                0.05 * (high - low)
+            }
+        };
+        (self.low, self.high) = (low - pad(low), high + pad(high));
         let step = nice_step((self.high - self.low) / count.max(1) as f64);
-        let ticks = multiples(step, self.low, self.high);
-        let exponent = common_exponent(ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs())));
-        let scale = 10f64.powi(exponent);
-        self.label = with_power(&self.label, exponent);
-        let decimals = decimals(step / scale);
-        self.major = ticks
-            .iter()
-            .map(|t| (*t, number(t / scale, decimals)))
-            .collect();
+        self.major = labelled(multiples(step, self.low, self.high), decimals(step));
     }
 
     fn fit_log(&mut self, low: f64, high: f64, count: usize) {
         let pad = (high / low).powf(0.05).max(1.1);
-        let (low, high) = (low / pad, high * pad);
-        (self.low, self.high) = (low, high);
-        let within = |v: &f64| *v >= low && *v <= high;
+        (self.low, self.high) = (low / pad, high * pad);
+        let (low, high) = (self.low, self.high);
         let decades = (high / low).log10();
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let of = |steps: &'static [f64]| {
             let powers = exponents.clone().map(|e| 10f64.powi(e));
-            powers
-                .flat_map(move |p| steps.iter().map(move |m| m * p))
-                .filter(within)
+            let all = powers.flat_map(move |p| steps.iter().map(move |m| m * p));
+            all.filter(move |v| (low..=high).contains(v))
         };
         if decades > 1.7 {
             let every = (decades / count.max(2) as f64).ceil() as i32;
-            let [labelled, bare]: [Vec<f64>; 2] = of(&[1.0])
-                .partition(|p| (p.log10().round() as i32).rem_euclid(every) == 0)
-                .into();
-            self.major = labelled.iter().map(|p| (*p, power(*p))).collect();
-            self.minor = bare;
+            let (major, minor): (Vec<f64>, Vec<f64>) =
+                of(&[1.0]).partition(|p| (p.log10().round() as i32).rem_euclid(every) == 0);
+            self.major = major.iter().map(|p| (*p, power(*p))).collect();
+            self.minor = minor;
             if decades < 6.0 {
-                self.minor
-                    .extend(of(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]));
+                let between = of(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+                self.minor.extend(between);
             }
         } else if decades > 0.7 {
             self.major = of(&[1.0, 2.0, 5.0]).map(|v| (v, handy(v))).collect();
         } else {
             // Less than a decade: evenly spaced ticks, as on a linear axis.
-            let step = nice_step((high - low) / count.clamp(2, 4) as f64);
+            let step = nice_step((high - low) / count.clamp(3, 4) as f64);
             self.major = labelled(multiples(step, low, high), decimals(step));
         }
     }
@@ -224,11 +202,9 @@ pub fn multiples(step: f64, low: f64, high: f64) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-fn labelled(ticks: Vec<f64>, decimals: usize) -> Vec<(f64, String)> {
-    ticks
-        .into_iter()
-        .map(|t| (t, number(t, decimals)))
-        .collect()
+fn labelled(ticks: impl IntoIterator<Item = f64>, decimals: usize) -> Vec<(f64, String)> {
+    let label = |t| (t, number(t, decimals));
+    ticks.into_iter().map(label).collect()
 }
 
 fn decimals(step: f64) -> usize {
@@ -261,26 +237,6 @@ fn handy(value: f64) -> String {
     }
 }
 
-/// Power of ten taken out of tick labels, a multiple of three; 0 for handy numbers.
-fn common_exponent(largest: f64) -> i32 {
-    if largest == 0.0 || (1e-2..1e4).contains(&largest) {
-        return 0;
-    }
-    3 * (largest.log10() / 3.0).floor() as i32
-}
-
-fn with_power(label: &str, exponent: i32) -> String {
-    if exponent == 0 {
-        return label.to_owned();
-    }
-    let power = power(10f64.powi(exponent));
-    match label.rsplit_once('[') {
-        Some((name, "-]")) => format!("{name}[{power}]"),
-        Some((name, unit)) => format!("{name}[{power} {unit}"),
-        None => format!("{label} [{power}]"),
-    }
-}
-
 /// Factor and prefixed unit that bring `largest` between 1 and 1000, e.g. 0.004 m gives (1e3, `mm`).
 pub fn prefixed(largest: f64, unit: &str) -> (f64, String) {
     if largest == 0.0 || !largest.is_finite() {
@@ -303,26 +259,17 @@ mod tests {
             let axis = axis.fitted(values, 5).expect("values");
             axis.major.into_iter().map(|(_, l)| l).collect()
         };
-        let axis = Axis::linear("force [N]")
-            .fitted([0.0, 1.2e9], 5)
-            .expect("values");
-        assert_eq!(
-            (axis.label.as_str(), axis.place(0.0)),
-            ("force [10⁹ N]", 0.0)
-        );
-        assert_eq!(labels(Axis::linear("f"), [0.0, 1.2]), ["0.0", "0.5", "1.0"]);
-        assert_eq!(
-            labels(Axis::log("e"), [1e-3, 1.0]),
-            ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]
-        );
-        assert_eq!(labels(Axis::log("e"), [0.2, 2.0]), ["0.2", "0.5", "1", "2"]);
+        let linear = labels(Axis::linear("f"), [0.0, 1.2]);
+        assert_eq!(linear, ["0.0", "0.5", "1.0"]);
+        let decades = labels(Axis::log("e"), [1e-3, 1.0]);
+        assert_eq!(decades, ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+        let parts = labels(Axis::log("e"), [0.2, 2.0]);
+        assert_eq!(parts, ["0.2", "0.5", "1", "2"]);
         assert!(labels(Axis::log("e"), [1e-16, 1.0]).len() <= 6);
         assert!(labels(Axis::log("e"), [973.0, 1138.0]).len() >= 2);
         assert!(Axis::log("e").fitted([0.0, -1.0], 5).is_none());
-        assert_eq!(
-            labels(Axis::counts("n", true), [0.0, 90.0])[..4],
-            ["0", "1", "2", "5"]
-        );
+        let counts = labels(Axis::counts("n"), [0.0, 90.0]);
+        assert_eq!(counts[..4], ["0", "1", "2", "5"]);
     }
 
     #[test]

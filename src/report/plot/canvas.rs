@@ -174,10 +174,10 @@ impl Canvas {
 
     /// Text whose middle height is at the point.
     pub fn text(&mut self, text: &str, at: [f64; 2], size_pt: f64, anchor: Anchor, colour: Rgb) {
-        self.shapes.push((
-            Shape::Text(text.to_owned(), pixel(at), size_pt, anchor),
-            colour,
-        ));
+        if !text.is_empty() {
+            let text = Shape::Text(text.to_owned(), pixel(at), size_pt, anchor);
+            self.shapes.push((text, colour));
+        }
     }
 
     /// A line with a filled head.
@@ -218,22 +218,22 @@ type Failure<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::Erro
 
 fn draw<'a>(area: &Area<'a>, shape: &Shape, colour: RGBColor) -> Result<(), Failure<'a>> {
     let pairs =
-        |points: &[Pixel]| -> Vec<(i32, i32)> { points.iter().map(|[x, y]| (*x, *y)).collect() };
+        |points: &[Pixel]| -> Vec<(i32, i32)> { points.iter().map(|p| (p[0], p[1])).collect() };
     match shape {
-        Shape::Line(points, width) => area.draw(&PathElement::new(
-            pairs(points),
-            colour.stroke_width(*width),
-        )),
+        Shape::Line(points, width) => {
+            let line = PathElement::new(pairs(points), colour.stroke_width(*width));
+            area.draw(&line)
+        }
         Shape::Fill(points) => area.draw(&Polygon::new(pairs(points), colour)),
         Shape::Disc([x, y], radius) => area.draw(&Circle::new((*x, *y), *radius, colour.filled())),
         Shape::Text(text, at, size_pt, anchor) => {
-            let size = size_pt * MM_PER_PT * PX_PER_MM * FONT_DIVISOR;
             let (place, turn) = match anchor {
                 Anchor::Start => (HPos::Left, FontTransform::None),
                 Anchor::Middle => (HPos::Center, FontTransform::None),
                 Anchor::End => (HPos::Right, FontTransform::None),
                 Anchor::Upwards => (HPos::Center, FontTransform::Rotate270),
             };
+            let size = size_pt * MM_PER_PT * PX_PER_MM * FONT_DIVISOR;
             let font = (FONTS, size).into_font().transform(turn);
             let style = font.color(&colour).pos(Pos::new(place, VPos::Center));
             area.draw_text(text, &style, (at[0], at[1]))
@@ -250,24 +250,28 @@ fn rgb([r, g, b]: Rgb) -> RGBColor {
 }
 
 /// Size in millimetres, a title, text elements on one line each (a line end would count as a space), subscripts.
-fn finish_svg(svg: &str, size: [f64; 2], title: &str) -> String {
-    let title = plain(title)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;");
+fn finish_svg(svg: &str, [width, height]: [f64; 2], title: &str) -> String {
+    let escaped = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;")];
+    let title = escaped
+        .iter()
+        .fold(plain(title), |text, (c, name)| text.replace(*c, name));
     let mut out = String::with_capacity(svg.len());
     let mut lines = svg.lines();
     while let Some(line) = lines.next() {
         if line.starts_with("<svg ") {
             let view = line.find("viewBox").map_or("", |at| &line[at..]);
-            out += &format!(
-                "<svg width=\"{:.2}mm\" height=\"{:.2}mm\" stroke-linejoin=\"round\" {view}\n<title>{title}</title>\n",
-                size[0], size[1],
-            );
+            let size = format!("width=\"{width:.2}mm\" height=\"{height:.2}mm\"");
+            out +=
+                &format!("<svg {size} stroke-linejoin=\"round\" {view}\n<title>{title}</title>\n");
         } else if line.starts_with("<text ") {
             // Without this a viewer drops the space behind a subscript.
             out += &line.replacen("<text ", "<text xml:space=\"preserve\" ", 1);
-            out += &styled(lines.next().unwrap_or(""), font_size(line));
+            let size = line
+                .split("font-size=\"")
+                .nth(1)
+                .and_then(|rest| rest.split('"').next());
+            let size = size.and_then(|size| size.parse().ok()).unwrap_or(PX_PER_MM);
+            out += &styled(lines.next().unwrap_or(""), size);
         } else {
             out += line;
             out.push('\n');
@@ -277,41 +281,16 @@ fn finish_svg(svg: &str, size: [f64; 2], title: &str) -> String {
     out.replace(" opacity=\"1\"", "")
 }
 
-fn font_size(element: &str) -> f64 {
-    let rest = element
-        .split_once("font-size=\"")
-        .map_or("", |(_, rest)| rest);
-    rest.split('"')
-        .next()
-        .and_then(|size| size.parse().ok())
-        .unwrap_or(PX_PER_MM)
-}
-
 /// Marks become `tspan` elements; a shift holds for all that follows, so it is taken back behind a subscript.
 fn styled(text: &str, size: f64) -> String {
-    let shift = 0.22 * size;
-    let mut open = 0;
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            SUB => {
-                out += &format!("<tspan dy=\"{shift:.1}\" font-size=\"{:.1}\">", 0.75 * size);
-                open += 1;
-            }
-            SUB_END => out += &format!("</tspan><tspan dy=\"{:.1}\">", -shift),
-            ITALIC => {
-                out += "<tspan font-style=\"italic\">";
-                open += 1;
-            }
-            ITALIC_END => {
-                out += "</tspan>";
-                open -= 1;
-            }
-            _ => out.push(c),
-        }
-    }
-    // One is open per subscript, and where a text was cut inside a mark.
-    out + &"</tspan>".repeat(open)
+    let (shift, small) = (0.22 * size, 0.75 * size);
+    let down = format!("<tspan dy=\"{shift:.1}\" font-size=\"{small:.1}\">");
+    let up = format!("</tspan><tspan dy=\"{:.1}\">", -shift);
+    // What goes back up is open to the end of the text.
+    let open = text.matches(SUB_END).count();
+    let text = text.replace(SUB, &down).replace(SUB_END, &up);
+    let text = text.replace(ITALIC, "<tspan font-style=\"italic\">");
+    text.replace(ITALIC_END, "</tspan>") + &"</tspan>".repeat(open)
 }
 
 /// Estimated width of a text [mm]; a little generous, since the font is the reader's.
@@ -334,20 +313,19 @@ pub fn fitting_size(text: &str, size_pt: f64, width: f64) -> f64 {
 
 /// The text broken at its line ends and at spaces into lines of at most `width` [mm].
 pub fn wrapped(text: &str, size_pt: f64, width: f64) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = Vec::new();
     for paragraph in text.split('\n').filter(|p| !p.is_empty()) {
-        let mut line = String::new();
-        for word in paragraph.split(' ') {
-            let longer = format!("{line} {word}");
-            if line.is_empty() {
-                line = word.to_owned();
-            } else if text_width(&longer, size_pt) <= width {
-                line = longer;
-            } else {
-                lines.push(std::mem::replace(&mut line, word.to_owned()));
+        let mut words = paragraph.split(' ');
+        lines.extend(words.next().map(str::to_owned));
+        for word in words {
+            match lines.last_mut() {
+                Some(line) if text_width(&format!("{line} {word}"), size_pt) <= width => {
+                    *line += " ";
+                    *line += word;
+                }
+                _ => lines.push(word.to_owned()),
             }
         }
-        lines.push(line);
     }
     lines
 }

@@ -5,10 +5,10 @@
 
 use super::axis::prefixed;
 use super::bands::Region;
-use super::canvas::{Anchor, COLUMN, Canvas, Head, Pixel, SMALL_PT, TICK_PT, italic, pixel};
-use super::mesh::{Box2, DISPLACEMENT, point_vector, sides, stroke};
+use super::canvas::*;
+use super::mesh::{Box2, DISPLACEMENT, fail, point_vector, sides, stroke};
 use super::solid::{OpenedSolid, Plane, dot, normal, project, sum};
-use super::style::{BLACK, GREY, Rgb, draw_marker, status_marker};
+use super::style::{BLACK, GREY, MARKER_MM, Rgb, draw_marker, status_marker};
 use crate::model::field_mesh::{CellShape, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::{fixed, significant};
@@ -20,9 +20,8 @@ const STATUS: [(&str, Rgb); 3] = [
     ("slip", [244, 200, 120]),
 ];
 
-/// Least distance of markers, size of one [mm].
+/// Least distance of markers [mm].
 const APART_MM: f64 = 3.4;
-const MARKER_MM: f64 = 0.85;
 /// Length of the longest arrow, unless it points to the viewer [mm].
 const ARROW_MM: f64 = 5.0;
 /// Arrows shorter than this fraction of the longest are left out.
@@ -38,12 +37,14 @@ const LEGEND_MM: f64 = 5.0;
 /// [`ReportError::FieldMesh`] when the body is not 3D, the crack has no facets, or either lacks a field.
 pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError> {
     let crack = &step.crack;
-    let plane =
-        Plane::of(crack).ok_or_else(|| ReportError::field_mesh("crack", "no facets".into()))?;
+    let Some(plane) = Plane::of(crack) else {
+        return fail("crack", "no facets");
+    };
     let solid = OpenedSolid::new(&step.body, &plane)?;
     let face = Face::new(crack, &plane)?;
-    let shown = Box2::around(solid.places.iter().map(|p| project(*p)))
-        .ok_or_else(|| ReportError::field_mesh(DISPLACEMENT, "no finite values".into()))?;
+    let Some(shown) = Box2::around(solid.places.iter().map(|p| project(*p))) else {
+        return fail(DISPLACEMENT, "no finite values");
+    };
     let scale = ((COLUMN - 6.0) / shown.width()).min(75.0 / shown.height());
     let title = face.title();
     let factor = significant(solid.factor, 1);
@@ -52,10 +53,8 @@ pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError
     let left = 0.5 * (COLUMN - scale * shown.width());
     let paper = |place: [f64; 3]| {
         let [x, y] = project(place);
-        [
-            left + scale * (x - shown.low[0]),
-            bottom - scale * (y - shown.low[1]),
-        ]
+        let [x, y] = [x - shown.low[0], y - shown.low[1]];
+        [left + scale * x, bottom - scale * y]
     };
     let places: Vec<[f64; 3]> = crack.points.iter().map(|x| solid.moved(*x)).collect();
     // Beside or below the body, whichever corner it leaves free.
@@ -65,50 +64,27 @@ pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError
     let mut canvas = Canvas::new(COLUMN, (legend + LEGEND_MM * rows).max(triad[1] + 4.0));
     head.draw(&mut canvas);
     let corner = |p: usize| pixel(paper(solid.places[p]));
-    let edges = |seen: bool| {
-        solid
-            .edges
-            .iter()
-            .filter(move |edge| edge.1 == seen)
-            .map(|edge| edge.0)
+    let edges = |seen: bool| -> Vec<[usize; 2]> {
+        let own = solid.edges.iter().filter(|edge| edge.1 == seen);
+        own.map(|edge| edge.0).collect()
     };
-    for [a, b] in edges(false) {
-        canvas.dashed(
-            &[paper(solid.places[a]), paper(solid.places[b])],
-            GREY,
-            0.1,
-            &[0.6, 0.6],
-        );
+    for edge in edges(false) {
+        let ends = edge.map(|p| paper(solid.places[p]));
+        canvas.dashed(&ends, GREY, 0.1, &[0.6, 0.6]);
     }
     for points in &solid.body {
-        canvas.fill_region(
-            &[points.iter().map(|p| corner(*p)).collect()],
-            shade(normal(&solid.places, points)),
-        );
-        stroke(
-            &mut canvas,
-            &sides(points).collect::<Vec<_>>(),
-            corner,
-            GREY,
-            0.05,
-        );
+        let corners = points.iter().map(|p| corner(*p)).collect();
+        let grey = shade(normal(&solid.places, points));
+        canvas.fill_region(&[corners], grey);
+        let edges: Vec<[usize; 2]> = sides(points).collect();
+        stroke(&mut canvas, &edges, corner, GREY, 0.05);
     }
     face.fill(&mut canvas, |p| paper(places[p]));
-    stroke(
-        &mut canvas,
-        &edges(true).collect::<Vec<_>>(),
-        corner,
-        GREY,
-        0.15,
-    );
+    stroke(&mut canvas, &edges(true), corner, GREY, 0.15);
     face.marks(&mut canvas, &places, paper, scale);
     face.legend(&mut canvas, [3.0, legend]);
-    for (direction, name) in [
-        ([1.0, 0.0, 0.0], "x"),
-        ([0.0, 1.0, 0.0], "y"),
-        ([0.0, 0.0, 1.0], "z"),
-    ] {
-        let [x, y] = project(direction);
+    for (c, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let [x, y] = project(std::array::from_fn(|d| f64::from(u8::from(c == d))));
         let at = |length: f64| [triad[0] + length * x, triad[1] - length * y];
         canvas.line(&[triad, at(5.0)], BLACK, 0.25);
         canvas.text(&italic(name), at(7.0), TICK_PT, Anchor::Middle, BLACK);
@@ -134,8 +110,8 @@ impl<'a> Face<'a> {
         let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
         let status = status.map_or(&[][..], |(_, values)| values);
         if status.len() != crack.points.len() {
-            let reason = format!("{} values for {} points", status.len(), crack.points.len());
-            return Err(ReportError::field_mesh("status", reason));
+            let (found, points) = (status.len(), crack.points.len());
+            return fail("status", &format!("{found} values for {points} points"));
         }
         let tangential = |name: &str| -> Result<Vec<[f64; 3]>, ReportError> {
             Ok(point_vector(crack, name)?

@@ -1,8 +1,6 @@
 //! The one heat map: a number and a text per row and column, tinted on a logarithmic or linear scale.
 
-use super::canvas::{
-    Anchor, Canvas, Head, LABEL_PT, MARGIN_MM, PAGE, SMALL_PT, TICK_PT, fitting_size, text_width,
-};
+use super::canvas::*;
 use super::style::{BLACK, LIGHT, Rgb, WHITE, between};
 use crate::report::ReportError;
 
@@ -14,6 +12,7 @@ const FULL: Rgb = [230, 130, 60];
 pub struct Cell {
     /// 0 for white to 1 for the full tint; not finite for grey.
     pub tint: f64,
+    /// Large first line.
     pub text: String,
     /// Small second line; may be empty.
     pub below: String,
@@ -43,57 +42,38 @@ impl HeatMap {
         if self.rows.is_empty() || self.columns.is_empty() {
             return Ok(None);
         }
-        let widest = |texts: &mut dyn Iterator<Item = &String>| {
-            texts
-                .map(|text| text_width(text, TICK_PT))
-                .fold(0.0, f64::max)
+        let widths = |texts: Vec<&String>| -> f64 {
+            let widths = texts.iter().map(|text| text_width(text, TICK_PT));
+            widths.fold(0.0, f64::max)
         };
-        let left = MARGIN_MM + widest(&mut self.rows.iter().map(|(name, _)| name)) + 1.5;
+        let left = MARGIN_MM + widths(self.rows.iter().map(|row| &row.0).collect()) + 1.5;
         let width = (PAGE - MARGIN_MM - left) / self.columns.len() as f64;
-        let longest = widest(&mut self.columns.iter());
+        let longest = widths(self.columns.iter().collect());
         let upwards = longest > width - 0.5;
-        let two_lines = self
-            .rows
-            .iter()
-            .flat_map(|(_, cells)| cells)
-            .any(|c| !c.below.is_empty());
-        let row = if two_lines { 6.4 } else { 4.4 };
+        let mut cells = self.rows.iter().flat_map(|(_, cells)| cells);
+        let row = if cells.any(|cell| !cell.below.is_empty()) {
+            6.4
+        } else {
+            4.4
+        };
         let head = Head::new(&self.title, &self.caption, PAGE);
-        let groups = if self.groups.is_empty() { 0.0 } else { 4.0 };
-        let top = head.height() + groups + if upwards { longest + 1.5 } else { 4.0 };
-        let mut canvas = Canvas::new(PAGE, top + row * self.rows.len() as f64 + 1.0);
+        let above = if self.groups.is_empty() { 0.0 } else { 4.0 };
+        let top = head.height() + above + if upwards { longest + 1.5 } else { 4.0 };
+        let bottom = top + row * self.rows.len() as f64;
+        let mut canvas = Canvas::new(PAGE, bottom + 1.0);
         head.draw(&mut canvas);
-        let mut first = 0;
-        for (name, count) in &self.groups {
-            let x = left + width * (first as f64 + 0.5 * *count as f64);
-            canvas.text(
-                name,
-                [x, head.height() + 2.0],
-                LABEL_PT,
-                Anchor::Middle,
-                BLACK,
-            );
-            first += count;
-        }
         for (column, name) in self.columns.iter().enumerate() {
             let x = left + width * (column as f64 + 0.5);
-            let half = 0.5 * text_width(name, TICK_PT);
-            let (y, anchor) = if upwards {
-                (half + 1.0, Anchor::Upwards)
-            } else {
-                (2.0, Anchor::Middle)
+            let (up, anchor) = match upwards {
+                true => (0.5 * text_width(name, TICK_PT) + 1.0, Anchor::Upwards),
+                false => (2.0, Anchor::Middle),
             };
-            canvas.text(name, [x, top - y], TICK_PT, anchor, BLACK);
+            canvas.text(name, [x, top - up], TICK_PT, anchor, BLACK);
         }
         for (index, (name, cells)) in self.rows.iter().enumerate() {
             let y = top + row * index as f64;
-            canvas.text(
-                name,
-                [left - 1.0, y + 0.5 * row],
-                TICK_PT,
-                Anchor::End,
-                BLACK,
-            );
+            let at = [left - 1.0, y + 0.5 * row];
+            canvas.text(name, at, TICK_PT, Anchor::End, BLACK);
             for (column, cell) in cells.iter().enumerate() {
                 let x = left + width * column as f64;
                 let tint = match cell.tint.is_finite() {
@@ -101,35 +81,25 @@ impl HeatMap {
                     false => LIGHT,
                 };
                 canvas.boxed([x, y], [x + width, y + row], tint, 0.05);
-                let middle = x + 0.5 * width;
-                let up = if cell.below.is_empty() { 0.5 } else { 0.32 };
-                let size = fitting_size(&cell.text, SMALL_PT, width - 0.4);
-                canvas.text(
-                    &cell.text,
-                    [middle, y + up * row],
-                    size,
-                    Anchor::Middle,
-                    BLACK,
-                );
-                let size = fitting_size(&cell.below, SMALL_PT - 1.0, width - 0.4);
-                if !cell.below.is_empty() {
-                    canvas.text(
-                        &cell.below,
-                        [middle, y + 0.75 * row],
-                        size,
-                        Anchor::Middle,
-                        BLACK,
-                    );
+                let parts = if cell.below.is_empty() {
+                    [0.5, 0.5]
+                } else {
+                    [0.3, 0.72]
+                };
+                for (text, part) in [&cell.text, &cell.below].into_iter().zip(parts) {
+                    let at = [x + 0.5 * width, y + part * row];
+                    let size = fitting_size(text, SMALL_PT, width - 0.2);
+                    canvas.text(text, at, size, Anchor::Middle, BLACK);
                 }
             }
         }
-        first = 0;
-        for (_, count) in &self.groups {
-            let x = [first, first + count].map(|c| left + width * c as f64);
-            let y = [top, top + row * self.rows.len() as f64];
-            let corners = [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]].map(|[a, b]| [x[a], y[b]]);
-            canvas.line(&corners, BLACK, 0.25);
-            first += count;
+        let mut x = left;
+        for (name, count) in &self.groups {
+            let end = x + width * *count as f64;
+            let at = [0.5 * (x + end), head.height() + 2.0];
+            canvas.text(name, at, LABEL_PT, Anchor::Middle, BLACK);
+            canvas.line(&[[x, top], [x, bottom]], BLACK, 0.3);
+            x = end;
         }
         canvas.finish(&self.title).map(Some)
     }

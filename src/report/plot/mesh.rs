@@ -14,6 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Name of the point vector that deforms a body.
 pub const DISPLACEMENT: &str = "displacement_m";
 
+/// The error of a picture that lacks something.
+pub fn fail<T>(name: &str, reason: &str) -> Result<T, ReportError> {
+    Err(ReportError::field_mesh(name, reason.to_owned()))
+}
+
 /// A point vector of a picture.
 ///
 /// # Errors
@@ -22,12 +27,8 @@ pub fn point_vector<'a>(picture: &'a FieldMesh, name: &str) -> Result<&'a [[f64;
     let found = picture.point_vectors.iter().find(|(n, _)| n == name);
     let values = found.map_or(&[][..], |(_, values)| values);
     if values.len() != picture.points.len() {
-        let reason = format!(
-            "{} values for {} points",
-            values.len(),
-            picture.points.len()
-        );
-        return Err(ReportError::field_mesh(name, reason));
+        let (found, points) = (values.len(), picture.points.len());
+        return fail(name, &format!("{found} values for {points} points"));
     }
     Ok(values)
 }

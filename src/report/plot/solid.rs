@@ -2,7 +2,7 @@
 //!
 //! The view is isometric, along the diagonal of the axes: x points to the lower left, y to the lower right, z up.
 
-use super::mesh::{deformed, sides};
+use super::mesh::{deformed, fail, sides};
 use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
 use std::collections::BTreeMap;
@@ -120,8 +120,10 @@ impl OpenedSolid {
     /// displacement.
     pub fn new(picture: &FieldMesh, crack: &Plane) -> Result<Self, ReportError> {
         if picture.dim != 3 {
-            let reason = format!("{} dimensions, a solid needs 3", picture.dim);
-            return Err(ReportError::field_mesh("picture", reason));
+            return fail(
+                "picture",
+                &format!("{} dimensions, a solid needs 3", picture.dim),
+            );
         }
         let (places, factor) = deformed(picture)?;
         let faces = boundary(picture)?;
@@ -167,14 +169,13 @@ impl OpenedSolid {
         let sharp = |normals: &[Vec3]| {
             normals.len() == 1 || normals.iter().any(|n| dot(*n, normals[0]) < SMOOTH)
         };
-        let edges = meeting
-            .into_iter()
-            .filter(|(_, (normals, _))| sharp(normals));
-        let edges = edges.map(|(edge, (_, seen))| (edge, seen)).collect();
-        let points = picture.points.iter().zip(&places).enumerate();
-        let behind =
-            points.filter(|(p, (_, place))| is_behind(*p) && place.iter().all(|c| c.is_finite()));
-        let behind = behind.map(|(_, (x, place))| [*x, *place]).collect();
+        let mut edges = Vec::new();
+        for (edge, (normals, seen)) in meeting {
+            edges.extend(sharp(&normals).then_some((edge, seen)));
+        }
+        let known = |p: &usize| is_behind(*p) && places[*p].iter().all(|c| c.is_finite());
+        let behind = (0..places.len()).filter(known);
+        let behind = behind.map(|p| [picture.points[p], places[p]]).collect();
         Ok(Self {
             factor,
             places,
@@ -192,15 +193,9 @@ impl OpenedSolid {
             let d = sum(x, -1.0, y);
             dot(d, d).sqrt()
         };
-        let nearest = self
-            .behind
-            .iter()
-            .map(|[y, _]| away(*y))
-            .fold(f64::INFINITY, f64::min);
-        let near = self
-            .behind
-            .iter()
-            .filter(|[y, _]| away(*y) <= nearest.max(self.slack));
+        let distances = self.behind.iter().map(|[y, _]| away(*y));
+        let reach = distances.fold(f64::INFINITY, f64::min).max(self.slack);
+        let near = self.behind.iter().filter(|[y, _]| away(*y) <= reach);
         let moves: Vec<Vec3> = near.map(|[y, place]| sum(*place, -1.0, *y)).collect();
         let total = moves.iter().fold([0.0; 3], |total, u| sum(total, 1.0, *u));
         sum(x, 1.0 / moves.len().max(1) as f64, total)
@@ -217,19 +212,11 @@ fn boundary(picture: &FieldMesh) -> Result<Vec<Vec<usize>>, ReportError> {
             _ => continue,
         };
         if cell.points.len() != needed || cell.points.iter().any(|p| *p >= picture.points.len()) {
-            return Err(ReportError::field_mesh(
-                "cells",
-                format!("cell {index} has wrong points"),
-            ));
+            return fail("cells", &format!("cell {index} has wrong points"));
         }
         // The points of a tetrahedron may come in either orientation.
-        let edge = |i: usize| {
-            sum(
-                picture.points[cell.points[i]],
-                -1.0,
-                picture.points[cell.points[0]],
-            )
-        };
+        let at = |i: usize| picture.points[cell.points[i]];
+        let edge = |i: usize| sum(at(i), -1.0, at(0));
         let mirrored = needed == 4 && dot(edge(1), cross(edge(2), edge(3))) < 0.0;
         for face in faces {
             let mut points: Vec<usize> = face.iter().map(|i| cell.points[*i]).collect();
@@ -241,17 +228,11 @@ fn boundary(picture: &FieldMesh) -> Result<Vec<Vec<usize>>, ReportError> {
             found.entry(set).or_default().push(points);
         }
     }
-    match found.is_empty() {
-        true => Err(ReportError::field_mesh(
-            "cells",
-            "no hexahedron or tetrahedron".into(),
-        )),
-        false => Ok(found
-            .into_values()
-            .filter(|equal| equal.len() == 1)
-            .flatten()
-            .collect()),
+    if found.is_empty() {
+        return fail("cells", "no hexahedron or tetrahedron");
     }
+    let single = found.into_values().filter(|equal| equal.len() == 1);
+    Ok(single.flatten().collect())
 }
 
 /// Number of the connected part of every point: cells that share a point belong together.

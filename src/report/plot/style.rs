@@ -16,35 +16,24 @@ pub const MIDDLE: Rgb = [165, 165, 165];
 pub const LIGHT: Rgb = [215, 215, 215];
 
 /// Okabe and Ito (2008) without the yellow, which vanishes on white paper.
-const CURVES: [Rgb; 6] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-];
+const CURVES: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
 
 /// viridis (van der Walt and Smith 2015) at 0, 0.1, …, 1: its lightness rises steadily, so it orders in grey too.
-const VIRIDIS: [Rgb; 11] = [
-    [68, 1, 84],
-    [72, 36, 117],
-    [65, 68, 135],
-    [53, 95, 141],
-    [42, 120, 142],
-    [33, 145, 140],
-    [34, 168, 132],
-    [68, 191, 112],
-    [122, 209, 81],
-    [189, 223, 38],
-    [253, 231, 37],
+const VIRIDIS: [u32; 11] = [
+    0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a884, 0x44bf70, 0x7ad151,
+    0xbddf26, 0xfde725,
 ];
+
+fn rgb(colour: u32) -> Rgb {
+    [16, 8, 0].map(|shift| (colour >> shift) as u8)
+}
 
 /// Colour of a field at `fraction` of its range.
 pub fn field(fraction: f64) -> Rgb {
     let position = fraction.clamp(0.0, 1.0) * 10.0;
     let index = (position.floor() as usize).min(9);
-    between(VIRIDIS[index], VIRIDIS[index + 1], position - index as f64)
+    let [low, high] = [index, index + 1].map(|i| rgb(VIRIDIS[i]));
+    between(low, high, position - index as f64)
 }
 
 /// Mixture of two colours, `part` of the second.
@@ -56,26 +45,32 @@ pub fn between(a: Rgb, b: Rgb, part: f64) -> Rgb {
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
 pub enum Marker {
     Disc,
     Square,
     Triangle,
     Diamond,
     TriangleDown,
-    Cross,
     Plus,
+    Cross,
 }
 
-const MARKERS: [Marker; 6] = [
+const MARKERS: [Marker; 7] = [
     Marker::Disc,
     Marker::Square,
     Marker::Triangle,
     Marker::Diamond,
     Marker::TriangleDown,
     Marker::Plus,
+    Marker::Cross,
 ];
 
-const MARKER_MM: f64 = 0.85;
+/// Radius of a marker, about [mm].
+pub const MARKER_MM: f64 = 0.85;
+const CURVE_MM: f64 = 0.45;
+/// Width of the lines of methods that do not stand out [mm].
+pub const OTHER_MM: f64 = 0.25;
 
 /// Dashes [mm], marker, its size [mm] and filling of curves that may lie on each other: what is drawn later leaves the
 /// earlier ones visible.
@@ -86,17 +81,23 @@ const OVER: [(&[f64], Marker, f64, bool); 4] = [
     (&[0.8, 1.6], Marker::Disc, 0.55, true),
 ];
 
+/// Dashes of methods that stand out in one figure only, in turn [mm].
+const FURTHER: [&[f64]; 4] = [&[3.0, 0.7, 0.7, 0.7], &[1.5, 0.9], &[0.7, 0.7], &[5.0, 1.0]];
+
 /// How a curve looks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
+    /// Of line and marker.
     pub colour: Rgb,
     /// Drawn and left out in turn [mm]; empty for a solid line.
     pub dashes: &'static [f64],
     /// Of the line [mm]; 0 for none.
     pub width: f64,
+    /// At every point with room.
     pub marker: Option<Marker>,
     /// Radius of the marker, about [mm].
     pub size: f64,
+    /// Whether the marker is filled.
     pub filled: bool,
     /// Whether it stands behind all others.
     pub behind: bool,
@@ -116,41 +117,43 @@ impl Style {
         }
     }
 
+    fn marked(self, marker: Marker, size: f64, filled: bool) -> Self {
+        let marker = Some(marker);
+        Self {
+            marker,
+            size,
+            filled,
+            ..self
+        }
+    }
+
     /// Look of the n-th curve of a figure; the first four stay visible where they lie on each other.
     pub fn curve(index: usize) -> Self {
         // Black as the fourth: its turn in the palette is lost in grey.
-        let colour = if index == 3 {
-            BLACK
-        } else {
-            CURVES[(index - usize::from(index > 3)) % 6]
+        let colour = match index {
+            3 => BLACK,
+            _ => rgb(CURVES[(index - usize::from(index > 3)) % 6]),
         };
-        let (dashes, marker, size, filled) = OVER.get(index).copied().unwrap_or((
-            &[2.5, 0.6, 0.6, 0.6],
-            MARKERS[index % 6],
-            MARKER_MM,
-            true,
-        ));
-        Self {
-            marker: Some(marker),
-            size,
-            filled,
-            ..Self::line(colour, 0.45, dashes)
-        }
+        let further = (FURTHER[index % 4], MARKERS[index % 7], MARKER_MM, true);
+        let (dashes, marker, size, filled) = OVER.get(index).copied().unwrap_or(further);
+        Self::line(colour, CURVE_MM, dashes).marked(marker, size, filled)
     }
 
     /// What several methods share: a wide band on which thin lines are seen.
     pub fn band() -> Self {
+        let line = Self::line(MIDDLE, 1.1, &[]);
         Self {
             behind: true,
-            ..Self::line(MIDDLE, 1.1, &[])
+            ..line
         }
     }
 
     /// A method that does not stand out.
     pub fn other() -> Self {
+        let line = Self::line(MIDDLE, OTHER_MM, &[]);
         Self {
             behind: true,
-            ..Self::line(MIDDLE, 0.25, &[])
+            ..line
         }
     }
 
@@ -164,37 +167,31 @@ impl Style {
         Self::line(GREY, 0.35, &[0.35, 0.65])
     }
 
-    /// A tolerance.
-    pub fn level() -> Self {
-        Self::line(GREY, 0.2, &[1.5, 1.0])
-    }
-
     /// A marker alone, black.
     pub fn mark(marker: Marker, filled: bool) -> Self {
+        Self::line(BLACK, 0.0, &[]).marked(marker, MARKER_MM, filled)
+    }
+
+    /// The same without its markers.
+    pub fn bare(self) -> Self {
         Self {
-            marker: Some(marker),
-            filled,
-            ..Self::line(BLACK, 0.0, &[])
+            marker: None,
+            size: MARKER_MM,
+            ..self
         }
     }
 
-    /// Look of a method that stands out: colour and marker are its own in every figure; methods with laws of their own have
-    /// short dashes and hollow markers.
-    pub fn of_method(label: &str) -> Self {
+    /// Look of a method: those that stand out have a colour and a marker of their own in every figure, the n-th of all
+    /// others is black; methods with laws of their own have short dashes and hollow markers.
+    pub fn of_method(label: &str, further: usize) -> Self {
         let own = HIGHLIGHTED.iter().position(|name| *name == base(label));
         let exact = is_exact(label);
-        let dashes: &[f64] = match own {
-            _ if !exact => &[1.5, 0.9],
-            Some(_) => &[],
-            None => &[3.0, 0.7, 0.7, 0.7],
+        let (colour, marker, dashes) = match own {
+            Some(i) if exact => (rgb(CURVES[i]), MARKERS[i], &[][..]),
+            Some(i) => (rgb(CURVES[i]), MARKERS[i], FURTHER[1]),
+            None => (BLACK, MARKERS[6 - further % 7], FURTHER[further % 4]),
         };
-        let marker = own.map_or(Marker::Cross, |i| MARKERS[i]);
-        let line = Self::line(own.map_or(BLACK, |i| CURVES[i]), 0.45, dashes);
-        Self {
-            marker: Some(marker),
-            filled: exact,
-            ..line
-        }
+        Self::line(colour, CURVE_MM, dashes).marked(marker, MARKER_MM, exact)
     }
 }
 
@@ -282,32 +279,21 @@ pub fn draw_marker(
 /// Labels and looks of the curves of methods in one figure: [`HIGHLIGHTED`] methods and `further` ones stand out, all others
 /// share grey and one label.
 pub fn looks(labels: &[&str], further: &[&str]) -> Vec<(String, Style)> {
-    let mut taken: Vec<&str> = Vec::new();
-    let mut chosen: Vec<Option<Style>> = Vec::new();
     let mut extra = 0;
-    for label in labels {
-        let named = HIGHLIGHTED.contains(&base(label)) && !taken.contains(&base(label));
-        taken.push(base(label));
-        chosen.push(if named {
-            Some(Style::of_method(label))
-        } else if further.contains(label) {
-            extra += 1;
-            let marker =
-                [Marker::Cross, Marker::Plus, Marker::Diamond, Marker::Square][(extra - 1) % 4];
-            Some(Style {
-                marker: Some(marker),
-                colour: BLACK,
-                ..Style::of_method(label)
-            })
-        } else {
-            None
-        });
-    }
+    let mut style = |index: usize| {
+        let name = base(labels[index]);
+        let first = labels[..index].iter().all(|label| base(label) != name);
+        let named = first && HIGHLIGHTED.contains(&name);
+        let shown = named || further.contains(&labels[index]);
+        extra += usize::from(shown && !named);
+        shown.then(|| Style::of_method(labels[index], extra.saturating_sub(1)))
+    };
+    let chosen: Vec<Option<Style>> = (0..labels.len()).map(&mut style).collect();
     let others = chosen.iter().filter(|style| style.is_none()).count();
-    let label = |(label, style): (&&str, Option<Style>)| match style {
+    let look = |(label, style): (&&str, Option<Style>)| match style {
         Some(style) => (plain(label), style),
         None if others == 1 => (plain(label), Style::other()),
         None => (format!("{others} other methods"), Style::other()),
     };
-    labels.iter().zip(chosen).map(label).collect()
+    labels.iter().zip(chosen).map(look).collect()
 }

@@ -239,6 +239,7 @@ fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
     assert_eq!(count("figures/time_to_accuracy."), 4);
     assert_eq!(count("figures/stages."), 4);
     assert_eq!(count("figures/profile."), 1);
+    assert_eq!(count("figures/fastest."), 1);
 }
 
 #[test]
@@ -247,6 +248,7 @@ fn without_times_there_are_no_rankings_and_no_errors() {
     records.iter_mut().for_each(|record| record.spent = None);
     let files = files(&records);
     assert!(!files.contains_key("figures/profile.time.svg"));
+    assert!(!files.contains_key("figures/fastest.svg"));
     for path in ["ranking.csv", "times.csv", "time_profiles.csv"] {
         let text = String::from_utf8(files[path].clone()).unwrap();
         assert_eq!(text.lines().count(), 1, "{path}");
