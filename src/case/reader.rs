@@ -263,6 +263,12 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(&format!("`{key}`")))
     }
 
+    /// A number above 0 that must be given.
+    pub(crate) fn positive(&self, key: &str) -> Result<f64, CaseError> {
+        let allowed = format!("{key} > 0");
+        self.required(key)?.number_if(&allowed, |x| x > 0.0)
+    }
+
     /// The one key of several that is given, exactly one of which must be.
     pub(crate) fn exactly_one<'k>(
         &self,

@@ -61,9 +61,7 @@ pub(super) fn quadrature(root: &Table<'_>) -> Result<Quadrature, CaseError> {
 pub(super) fn material(root: &Table<'_>) -> Result<Material, CaseError> {
     let table = root.required("material")?.table(&["young_pa", "poisson"])?;
     Ok(Material {
-        young: table
-            .required("young_pa")?
-            .number_if("young_pa > 0", |e| e > 0.0)?,
+        young: table.positive("young_pa")?,
         poisson: table
             .required("poisson")?
             .number_if("0 <= poisson < 0.5", |nu| (0.0..0.5).contains(&nu))?,

@@ -139,7 +139,7 @@ fn direction(samples: &[Sample], scale: f64) -> Option<Deviation> {
     let cosine = exact[0] * found[0] + exact[1] * found[1];
     let angle = |[a, b]: [f64; 2]| b.atan2(a);
     Some(Deviation {
-        quantity: "slip_direction",
+        quantity: "slip_direction".into(),
         at: String::new(),
         found: angle(found),
         exact: angle(exact),

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::records::{CELL_COLUMNS, SweepRecords, cell_columns, compare_cells};
+use crate::model::errors::Deviation;
 use crate::report::csv::{self, Row};
 use crate::report::number::{residual, significant, value};
 use crate::report::{Bundle, ReportError};
@@ -99,10 +100,8 @@ impl Row for CellRow<'_> {
         let record = self.0;
         let found = &record.found;
         let error = found.solver_error.as_ref();
-        let energy = |d: &&crate::studies::sweep::record::DeviationFound| {
-            d.quantity == "energy" && d.at.is_empty()
-        };
-        let energy = found.deviations.iter().find(energy).and_then(|d| d.error);
+        let energy = |d: &&Deviation| d.quantity == "energy" && d.at.is_empty();
+        let energy = found.deviations.iter().find(energy).map(|d| d.error);
         let natural_map = match found.increments.is_empty() {
             true => f64::NAN,
             false => found.natural_map(),
@@ -200,9 +199,9 @@ impl<'a> DeviationRow<'a> {
             kind: EXACT,
             quantity: &d.quantity,
             at: &d.at,
-            found: d.found.unwrap_or(f64::NAN),
+            found: d.found,
             reference: d.exact,
-            error: d.error.unwrap_or(f64::NAN),
+            error: d.error,
             norm: f64::NAN,
         });
         let values = record.found.values.iter().map(|v| Self {

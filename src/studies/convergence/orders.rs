@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use super::limit::{limit, slope};
 use super::{Measured, Regularity, Sample, Seconds, Variant};
+use crate::case::named;
 use crate::run::verdict::Verdict;
 
 /// Differences of a quantity below this fraction of its size are the tolerance of the runs, not the discretisation.
@@ -16,25 +17,15 @@ const RESOLVED: f64 = 1e-8;
 /// Relative errors below are round-off: they neither fall nor say anything about an order.
 pub const ROUND_OFF: f64 = 1e-12;
 
-/// What an error is measured against.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A closed form.
-    Exact,
-    /// The limit extrapolated from the three finest meshes, which are thus correlated with it.
-    Richardson,
-    /// The finest mesh: the sequence has no power law, or fewer than three meshes were solved.
-    Finest,
-}
-
-impl Kind {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Exact => "exact",
-            Kind::Richardson => "richardson",
-            Kind::Finest => "finest",
-        }
+named! {
+    /// What an error is measured against.
+    pub enum Kind {
+        /// A closed form.
+        Exact = "exact",
+        /// The limit extrapolated from the three finest meshes, which are thus correlated with it.
+        Richardson = "richardson",
+        /// The finest mesh: the sequence has no power law, or fewer than three meshes were solved.
+        Finest = "finest",
     }
 }
 
@@ -163,7 +154,7 @@ fn sequences<'a>(own: &[&'a Sample]) -> BTreeMap<(String, String), Vec<Point<'a>
             Measured::Nothing => {}
             Measured::Exact(deviations) => {
                 for d in deviations {
-                    let key = (d.quantity.to_owned(), d.at.clone());
+                    let key = (d.quantity.clone(), d.at.clone());
                     counts.insert(key.clone(), true);
                     all.entry(key).or_default().push(Point {
                         sample,
@@ -414,8 +405,8 @@ mod tests {
     #[test]
     fn closed_forms_are_taken_as_measured() {
         let exact = |refine: usize| {
-            let deviation = |quantity, order: i32| Deviation {
-                quantity,
+            let deviation = |quantity: &str, order: i32| Deviation {
+                quantity: quantity.into(),
                 at: String::new(),
                 found: 1.0,
                 exact: 1.25,
@@ -450,7 +441,7 @@ mod tests {
             let sample = |(i, error): (usize, f64)| {
                 let refine = 1 << i;
                 let deviation = Deviation {
-                    quantity: "energy",
+                    quantity: "energy".into(),
                     at: String::new(),
                     found: 1.0,
                     exact: 1.0,

@@ -31,8 +31,9 @@ use stickslip_xfem::stiffness::assembly::elimination_order;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
 
 use crate::case::{CaseError, ContactSpace};
-use crate::model::body::{Body, BodyError, Needs, free_rows};
+use crate::model::body::{Body, BodyError, Needs, free_rows, numbered};
 use crate::run::run_case::Progress;
+use crate::studies::convergence;
 
 pub use pencil::{PencilError, eigenvalues};
 pub use scene::{LENGTH, SCENES, Scene, YOUNG};
@@ -194,12 +195,8 @@ fn slope(samples: &[Sample]) -> f64 {
     if samples.iter().any(|p| p.beta == 0.0) {
         return f64::INFINITY;
     }
-    let points: Vec<[f64; 2]> = samples.iter().map(|p| [p.h.ln(), p.beta.ln()]).collect();
-    let count = points.len() as f64;
-    let [x, y] = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
-    let product =
-        |k: usize, mean: f64| -> f64 { points.iter().map(|p| (p[0] - x) * (p[k] - mean)).sum() };
-    product(1, y) / product(0, x)
+    let points: Vec<[f64; 2]> = samples.iter().map(|p| [p.h, p.beta]).collect();
+    convergence::slope(&points)
 }
 
 /// β of one space on one mesh of a scene.
@@ -275,17 +272,7 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
     }
     // In the basis of the solver: branch functions within a radius are not independent as they stand.
     let dim = body.mesh.dim();
-    let kept: Vec<Option<u32>> = {
-        let mut count = 0;
-        let number = |i: usize| {
-            (!body.basis.drops(i / dim)).then(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        (0..all.len()).map(number).collect()
-    };
-    let n = kept.iter().flatten().count();
+    let (kept, n) = numbered((0..all.len()).map(|i| !body.basis.drops(i / dim)));
     let columns: Vec<Vec<(usize, f64)>> =
         (0..all.len()).map(|i| body.basis.column(dim, i)).collect();
     let mut sum: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); n];

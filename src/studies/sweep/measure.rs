@@ -16,9 +16,7 @@ use stickslip_methods::{ContactState, Increment, Load, PointStatus};
 
 use super::cell::Cell;
 use super::memory;
-use super::record::{
-    DeviationFound, Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent, ValueFound,
-};
+use super::record::{Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent};
 use super::statistics::Timing;
 use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
@@ -98,12 +96,9 @@ pub fn measure(
     let mut output_s = f64::NAN;
     if let (true, Some(now)) = (honest, pass.snapshots.last()) {
         output_s = output(&scene, now);
-        let exact = closed_form(&scene.loading, now)?;
-        if let Some(deviations) = &exact {
-            found.deviations = deviations.iter().map(DeviationFound::of).collect();
-        } else {
-            let values = followed(scene.case, scene.body, now);
-            found.values = values.iter().map(ValueFound::of).collect();
+        match closed_form(&scene.loading, now)? {
+            Some(deviations) => found.deviations = deviations,
+            None => found.values = followed(scene.case, scene.body, now),
         }
     }
     // Before the reference, which is no part of the cell.
@@ -207,12 +202,8 @@ fn repeat(
     repeats: Repeats,
 ) -> Result<Option<(Timing, Timing)>, Verdict> {
     let system = scene.system;
-    let loads: Vec<Load> = (0..=pass.states.len())
-        .map(|increment| match increment {
-            0 => Load::zero(system.elastic()),
-            _ => scene.loading.at(increment),
-        })
-        .collect();
+    let increments = 0..=pass.states.len();
+    let loads: Vec<Load> = increments.map(|k| scene.loading.at(k)).collect();
     let rest = ContactState::zero(system);
     let (mut preparing, mut solving) = (Vec::new(), Vec::new());
     let clock = Instant::now();
@@ -253,16 +244,14 @@ fn output(scene: &Scene<'_>, now: &Snapshot) -> f64 {
 }
 
 fn size(scene: &Scene<'_>) -> ProblemSize {
-    let Scene {
-        case, body, system, ..
-    } = scene;
+    let body = scene.body;
     ProblemSize {
         mesh: body.label.clone(),
         space: body.space.clone(),
-        h_m: case.mesh.grid.refined(scene.refine).cell_size(),
+        h_m: scene.case.mesh.grid.refined(scene.refine).cell_size(),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
-        unknowns: system.rows(),
+        unknowns: scene.system.rows(),
     }
 }

@@ -39,7 +39,7 @@ impl Timing {
         let (first, last) = (*sorted.first()?, *sorted.last()?);
         let rank = interval_rank(n);
         Some(Self {
-            median_s: median(&sorted),
+            median_s: median(sorted.iter().copied()),
             min_s: first,
             low_s: rank.map_or(first, |k| sorted[k - 1]),
             high_s: rank.map_or(last, |k| sorted[n - k]),
@@ -53,8 +53,10 @@ impl Timing {
     }
 }
 
-/// Median of sorted numbers; NaN of none.
-pub fn median(sorted: &[f64]) -> f64 {
+/// Median of some numbers; NaN of none.
+pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
     let n = sorted.len();
     match n {
         0 => f64::NAN,

@@ -10,7 +10,7 @@ use std::fmt;
 use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub, unit};
 use stickslip_xfem::mesh::box_mesh::box_mesh;
 
-use crate::case::{Case, CaseError, parse};
+use crate::case::{Case, CaseError, named, parse};
 
 use super::text::{
     POISSON, PRESSURE, YOUNG, boundary, chain, head, load, parted, support, uniform,
@@ -22,50 +22,29 @@ pub const DISTANCES: [f64; 27] = [
     -1e-11, -1e-10, -1e-9, -1e-8, -1e-7, -1e-6, -1e-5, -1e-4, -1e-3, -1e-2, -1e-1, -3e-1,
 ];
 
-/// What the crack does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum State {
-    /// Closed under hydrostatic pressure, without friction.
-    Hydrostatic,
-    /// Sticks under a stress with all components.
-    Stick,
-    /// Open, free of traction beside a stress along it.
-    Open,
-    /// Slides as a whole.
-    Slide,
-    /// The sliding block with friction enough to hold.
-    Held,
-}
-
-impl State {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            State::Hydrostatic => "hydrostatic",
-            State::Stick => "stick",
-            State::Open => "open",
-            State::Slide => "block slides",
-            State::Held => "block sticks",
-        }
+named! {
+    /// What the crack does.
+    pub enum State {
+        /// Closed under hydrostatic pressure, without friction.
+        Hydrostatic = "hydrostatic",
+        /// Sticks under a stress with all components.
+        Stick = "stick",
+        /// Open, free of traction beside a stress along it.
+        Open = "open",
+        /// Slides as a whole.
+        Slide = "block slides",
+        /// The sliding block with friction enough to hold.
+        Held = "block sticks",
     }
 }
 
-/// What the boundary is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Loaded {
-    /// Displacements on all sides: the crack leaves through held sides.
-    Displacement,
-    /// Tractions and just enough supports: the crack leaves through free sides.
-    Traction,
-}
-
-impl Loaded {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Loaded::Displacement => "displacement",
-            Loaded::Traction => "traction",
-        }
+named! {
+    /// What the boundary is given.
+    pub enum Loaded {
+        /// Displacements on all sides: the crack leaves through held sides.
+        Displacement = "displacement",
+        /// Tractions and just enough supports: the crack leaves through free sides.
+        Traction = "traction",
     }
 }
 
@@ -106,7 +85,6 @@ impl fmt::Display for Patch {
             distance,
             ..
         } = self;
-        let (state, loaded) = (state.name(), loaded.name());
         write!(f, "{state}, {crack}, {mesh}, {loaded}, {distance:e}")
     }
 }

@@ -12,9 +12,9 @@ use super::{
 use crate::model::errors::Deviation;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
-use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Value, Variant};
+use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
 use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::record::{DeviationFound, ProblemSize, Record};
+use crate::studies::sweep::record::{ProblemSize, Record};
 
 /// Quantity of the closed form that is followed.
 const NORM: &str = "energy";
@@ -115,25 +115,13 @@ fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
 
 fn measured(record: &Record) -> Option<Measured> {
     let found = &record.found;
-    let norm = |d: &&DeviationFound| d.quantity == NORM && d.at.is_empty();
+    let norm = |d: &&Deviation| d.quantity == NORM && d.at.is_empty();
     if let Some(deviation) = found.deviations.iter().find(norm) {
-        return Some(Measured::Exact(vec![Deviation {
-            quantity: NORM,
-            at: String::new(),
-            found: deviation.found.unwrap_or(f64::NAN),
-            exact: deviation.exact,
-            error: deviation.error.unwrap_or(f64::NAN),
-        }]));
+        return Some(Measured::Exact(vec![deviation.clone()]));
     }
     let chosen = found.values.iter().find(|v| v.quantity == FUNCTIONAL);
     let value = chosen.or_else(|| found.values.first())?;
-    Some(Measured::Values(vec![Value {
-        quantity: value.quantity.clone(),
-        at: value.at.clone(),
-        value: value.value,
-        norm: value.norm,
-        scale: value.scale,
-    }]))
+    Some(Measured::Values(vec![value.clone()]))
 }
 
 /// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
@@ -156,8 +144,8 @@ fn seconds(record: &Record, records: &[Record]) -> Seconds {
 mod tests {
     use super::super::support::{record, timed};
     use super::*;
+    use crate::studies::convergence::Value;
     use crate::studies::convergence::orders::Kind;
-    use crate::studies::sweep::record::ValueFound;
 
     fn mesh(refine: usize, method: &str, tolerance: f64) -> Record {
         let mut record = timed(record("a", method, tolerance), 1.0);
@@ -168,12 +156,12 @@ mod tests {
     }
 
     fn with_error(mut record: Record, error: f64) -> Record {
-        record.found.deviations.push(DeviationFound {
+        record.found.deviations.push(Deviation {
             quantity: "energy".into(),
             at: String::new(),
-            found: Some(1.0),
+            found: 1.0,
             exact: 1.0,
-            error: Some(error),
+            error,
         });
         record
     }
@@ -204,7 +192,7 @@ mod tests {
             .map(|refine| {
                 let mut record = mesh(refine, "latin", 1e-9);
                 let h = record.found.problem.as_ref().unwrap().h_m;
-                record.found.values.push(ValueFound {
+                record.found.values.push(Value {
                     quantity: "strain_energy".into(),
                     at: String::new(),
                     value: 3.0 + h * h,

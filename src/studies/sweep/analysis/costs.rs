@@ -3,6 +3,7 @@
 use super::test_set::TestSet;
 use super::{is_correct, method_time, published_times};
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::median;
 
 /// A time and the interval it is known to lie in [s].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,9 +105,7 @@ impl<'a> Costs<'a> {
     /// Median of the relative widths of all intervals; NaN without any.
     pub fn median_width(&self) -> f64 {
         let costs = self.costs.iter().flatten().flatten();
-        let mut widths: Vec<f64> = costs.map(Cost::relative_width).collect();
-        widths.sort_by(f64::total_cmp);
-        crate::studies::sweep::statistics::median(&widths)
+        median(costs.map(Cost::relative_width))
     }
 
     /// Those among the right answers to a problem that none is cheaper than beyond the intervals.

@@ -55,21 +55,19 @@ pub fn ranking<'a>(costs: &Costs<'a>) -> Option<Ranking<'a>> {
     let rows: Vec<&Vec<Option<Cost>>> = costs.costs.iter().filter(right).collect();
     let shift = shift(&rows)?;
     let standing = |(index, method): (usize, &&'a str)| {
-        let own = rows.iter().filter_map(|row| row[index]);
-        let mut widths: Vec<f64> = own.map(|cost| cost.relative_width()).collect();
-        widths.sort_by(f64::total_cmp);
+        let own = || rows.iter().filter_map(|row| row[index]);
         let entered: Vec<Cost> = rows.iter().map(|row| entered(row, index)).collect();
         let mean = |end: fn(&Cost) -> f64| shifted_mean(entered.iter().map(end), shift);
         Standing {
             method,
-            correct: widths.len(),
+            correct: own().count(),
             mean: Cost {
                 value: mean(|c| c.value),
                 low: mean(|c| c.low),
                 high: mean(|c| c.high),
             },
             rank: [1, 1],
-            width: median(&widths),
+            width: median(own().map(|cost| cost.relative_width())),
         }
     };
     let mut standings: Vec<Standing> = costs.methods.iter().enumerate().map(standing).collect();
@@ -102,9 +100,7 @@ fn shift(rows: &[&Vec<Option<Cost>>]) -> Option<f64> {
         let values = row.iter().flatten().map(|cost| cost.value);
         values.fold(f64::INFINITY, f64::min)
     };
-    let mut all: Vec<f64> = rows.iter().map(least).collect();
-    all.sort_by(f64::total_cmp);
-    let middle = median(&all);
+    let middle = median(rows.iter().map(least));
     (middle > 0.0).then(|| 10f64.powi(middle.log10().floor() as i32))
 }
 
