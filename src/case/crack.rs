@@ -116,9 +116,8 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
 /// `contact`.
 fn contact(table: &Table<'_>) -> Result<ContactSpace, CaseError> {
     let named = ContactSpace::ALL.map(|space| (space.name(), space));
-    table
-        .get("contact")
-        .map_or(Ok(ContactSpace::Star), |v| v.one_of(&named))
+    let given = table.optional("contact", |v| v.one_of(&named))?;
+    Ok(given.unwrap_or(ContactSpace::Star))
 }
 
 /// `points_m`: a chain of segments that neither folds back nor touches itself.
@@ -132,8 +131,7 @@ fn polyline(value: Value<'_>) -> Result<CrackShape, CaseError> {
     }
     let mut points: Vec<[f64; 2]> = Vec::new();
     for entry in entries {
-        let x = entry.numbers(2)?;
-        let x = [x[0], x[1]];
+        let x: [f64; 2] = entry.point()?;
         if let Some(&last) = points.last() {
             let d = difference(last, x);
             let length = d[0].hypot(d[1]);
@@ -189,7 +187,7 @@ fn meet([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
 /// `arc`.
 fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "radius_m", "from_deg", "to_deg"])?;
-    let centre = table.required("centre_m")?.numbers(2)?;
+    let centre = table.required("centre_m")?.point()?;
     let radius = table.positive("radius_m")?;
     let angle = |key: &str| {
         let allowed = format!("-360 <= {key} <= 360");
@@ -205,7 +203,7 @@ fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
         ));
     }
     Ok(CrackShape::Arc {
-        centre: [centre[0], centre[1]],
+        centre,
         radius,
         from: from.to_radians(),
         to: to.to_radians(),
@@ -216,7 +214,7 @@ fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["point_m", "normal"])?;
     Ok(CrackShape::Plane {
-        point: place(table.required("point_m")?)?,
+        point: table.required("point_m")?.point()?,
         normal: direction(table.required("normal")?)?,
     })
 }
@@ -224,7 +222,7 @@ fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `disc`: an ellipse with equal half axes, the first one along the body axis least along the normal.
 fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "radius_m"])?;
-    let centre = place(table.required("centre_m")?)?;
+    let centre = table.required("centre_m")?.point()?;
     let normal = direction(table.required("normal")?)?;
     let radius = table.positive("radius_m")?;
     // The first of equals, so that a normal along z has its axis along x.
@@ -247,7 +245,7 @@ fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `ellipse`.
 fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "axis", "half_axes_m"])?;
-    let centre = place(table.required("centre_m")?)?;
+    let centre = table.required("centre_m")?.point()?;
     let normal = direction(table.required("normal")?)?;
     let given = table.required("axis")?;
     let axis = perpendicular(&direction(given)?, &normal);
@@ -270,15 +268,9 @@ fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
     }))
 }
 
-/// Three coordinates.
-fn place(value: Value<'_>) -> Result<Point, CaseError> {
-    let x = value.numbers(3)?;
-    Ok([x[0], x[1], x[2]])
-}
-
 /// The unit vector along a given one.
 fn direction(value: Value<'_>) -> Result<Point, CaseError> {
-    let v = place(value)?;
+    let v: Point = value.point()?;
     // Scaled first, so that tiny and huge vectors are not lost in the squares.
     let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 {

@@ -114,13 +114,10 @@ impl Runs {
             return Err(given.refuse(allowed, "name already taken"));
         }
         self.places.push(name.clone());
-        let coordinates = table.required("point_m")?.numbers(dim)?;
-        let mut point = [0.0; 3];
-        point[..dim].copy_from_slice(&coordinates);
         Ok(ProbeSpec {
             span: table.span(),
             name,
-            point,
+            point: table.required("point_m")?.in_space(dim)?,
         })
     }
 
@@ -158,42 +155,31 @@ impl Runs {
         Ok(Expect {
             span: table.span(),
             quantity: table.required("quantity")?.line()?,
-            at: table
-                .get("at")
-                .map_or(Ok(String::new()), |v| self.place(v))?,
+            at: table.optional("at", |v| self.place(v))?.unwrap_or_default(),
             component: table
-                .get("component")
-                .map_or(Ok(""), component)?
-                .to_string(),
-            friction: table
-                .get("friction")
-                .map(|v| Self::of_runs(v, friction(v)?, &self.frictions))
-                .transpose()?,
-            refine: table
-                .get("refine")
-                .map(|v| Self::of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine))
-                .transpose()?,
-            method: table.get("method").map(|v| v.line()).transpose()?,
-            increment: table
-                .get("increment")
-                .map(|v| v.integer(1..=self.increments))
-                .transpose()?,
+                .optional("component", component)?
+                .unwrap_or_default()
+                .into(),
+            friction: table.optional("friction", |v| {
+                Self::of_runs(v, friction(v)?, &self.frictions)
+            })?,
+            refine: table.optional("refine", |v| {
+                Self::of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine)
+            })?,
+            method: table.optional("method", |v| v.line())?,
+            increment: table.optional("increment", |v| v.integer(1..=self.increments))?,
             value: number,
             unit: table.required("unit")?.line()?,
             tolerance,
             kind: table.required("kind")?.one_of(&kinds)?,
             source: table.required("source")?.line()?,
-            assumptions: match table.get("assumptions") {
-                Some(v) => v
-                    .list()?
-                    .iter()
-                    .map(Value::line)
-                    .collect::<Result<_, _>>()?,
-                None => Vec::new(),
-            },
-            missed: table
-                .get("outcome")
-                .map_or(Ok(false), |v| v.one_of(&[("met", false), ("missed", true)]))?,
+            assumptions: (table.optional("assumptions", |v| {
+                v.list()?.iter().map(Value::line).collect()
+            })?)
+            .unwrap_or_default(),
+            missed: (table
+                .optional("outcome", |v| v.one_of(&[("met", false), ("missed", true)]))?)
+            .unwrap_or(false),
         })
     }
 

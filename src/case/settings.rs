@@ -77,13 +77,11 @@ pub(super) fn path(root: &Table<'_>) -> Result<PathSpec, CaseError> {
         });
     };
     let table = value.table(&["increments", "end"])?;
+    let increments = table.optional("increments", |v| v.integer(1..=MAX_INCREMENTS))?;
+    let end = table.optional("end", |v| v.number_if("end > 0", |t| t > 0.0))?;
     Ok(PathSpec {
-        increments: table
-            .get("increments")
-            .map_or(Ok(1), |v| v.integer(1..=MAX_INCREMENTS))?,
-        end: table
-            .get("end")
-            .map_or(Ok(1.0), |v| v.number_if("end > 0", |t| t > 0.0))?,
+        increments: increments.unwrap_or(1),
+        end: end.unwrap_or(1.0),
     })
 }
 

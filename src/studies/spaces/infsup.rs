@@ -136,35 +136,30 @@ pub fn run(
     cells: impl Fn(&Scene) -> Vec<usize>,
     progress: &dyn Progress,
 ) -> Result<Vec<Sequence>, InfSupError> {
-    let mut jobs = Vec::new();
+    let mut wanted = Vec::new();
     for scene in &SCENES {
-        for space in ContactSpace::ALL {
-            jobs.extend(cells(scene).into_iter().map(|n| (scene, space, n)));
-        }
+        let cells = cells(scene);
+        let spaces = ContactSpace::ALL.into_iter().filter(|_| !cells.is_empty());
+        wanted.extend(spaces.map(|space| (scene, space, cells.clone())));
     }
-    progress.plan(jobs.len());
-    let found = jobs
-        .par_iter()
-        .map(|&(scene, space, n)| {
-            let sample = sample(scene, space, n);
+    progress.plan(wanted.iter().map(|sequence| sequence.2.len()).sum());
+    let of = |(scene, space, cells): &(&'static Scene, ContactSpace, Vec<usize>)| {
+        let one = |n: &usize| {
+            let sample = sample(scene, *space, *n);
             progress.done(scene.name);
             sample
+        };
+        let samples: Vec<Result<Sample, InfSupError>> = cells.par_iter().map(one).collect();
+        Ok(Sequence {
+            scene,
+            space: *space,
+            samples: samples.into_iter().collect::<Result<_, _>>()?,
+            slope: f64::NAN,
+            share: f64::NAN,
         })
-        .collect::<Vec<_>>();
-    let mut sequences: Vec<Sequence> = Vec::new();
-    for ((scene, space, _), sample) in jobs.into_iter().zip(found) {
-        let sample = sample?;
-        match sequences.last_mut() {
-            Some(s) if s.scene.name == scene.name && s.space == space => s.samples.push(sample),
-            _ => sequences.push(Sequence {
-                scene,
-                space,
-                samples: vec![sample],
-                slope: f64::NAN,
-                share: f64::NAN,
-            }),
-        }
-    }
+    };
+    let found: Vec<Result<Sequence, InfSupError>> = wanted.par_iter().map(of).collect();
+    let mut sequences = found.into_iter().collect::<Result<Vec<_>, _>>()?;
     judge(&mut sequences);
     Ok(sequences)
 }

@@ -29,6 +29,7 @@ use crate::run::choice::Choice;
 use crate::run::load_path::Posed;
 use crate::run::run_case::{Progress, RunError, needs};
 use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::sweep::statistics::larger;
 
 /// Largest errors of a patch test that counts as passed.
 pub const PASSED: f64 = 1e-10;
@@ -164,15 +165,6 @@ fn pressed(case: &Case) -> Result<Box<dyn Field>, RunError> {
     let stress: Vec<f64> = parameters.map(|p| value(p.name, p.default)).collect();
     let solution = (spec.build)(&setting, &stress).map_err(refuse)?;
     solution.at(&[1.0]).map_err(refuse)
-}
-
-/// The larger of two numbers; NaN if one is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.max(b)
-    }
 }
 
 fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {

@@ -7,7 +7,6 @@
 pub mod accuracy;
 pub mod costs;
 pub mod profile;
-pub mod proportion;
 pub mod ranking;
 pub mod recommendation;
 pub mod series;

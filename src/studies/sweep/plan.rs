@@ -26,7 +26,7 @@ use super::record::SCHEMA;
 use super::store::Contents;
 use crate::case::error::CaseError;
 use crate::case::parse::{document, read_text};
-use crate::case::reader::{Table, Value};
+use crate::case::reader::Value;
 use crate::case::shipped;
 use crate::case::{self, Case, ContactSpace};
 use crate::model::body::Needs;
@@ -231,28 +231,23 @@ fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), Cas
     let named = ContactSpace::ALL.map(|space| (space.name(), Some(space)));
     let bounded =
         |v: Value<'_>| v.number_if("1e-14 <= tolerance < 1", |t| (1e-14..1.0).contains(&t));
-    let tolerances = list_of(&table, "tolerances", bounded)?;
+    let tolerances = table.optional("tolerances", |v| entries(v, bounded))?;
     let methods = || methods().iter().map(|m| m.name.to_owned()).collect();
     let block = Block {
         cases,
-        refine: list_of(&table, "refine", |v| v.integer(1..=1024))?,
-        contact: list_of(&table, "contact", |v| v.one_of(&named))?.unwrap_or(vec![None]),
-        friction: list_of(&table, "friction", |v| {
-            v.number_if("numbers >= 0", |mu| mu >= 0.0)
+        refine: table.optional("refine", |v| entries(v, |v| v.integer(1..=1024)))?,
+        contact: table
+            .optional("contact", |v| entries(v, |v| v.one_of(&named)))?
+            .unwrap_or(vec![None]),
+        friction: table.optional("friction", |v| {
+            entries(v, |v| v.number_if("numbers >= 0", |mu| mu >= 0.0))
         })?,
-        methods: list_of(&table, "methods", method)?.unwrap_or_else(methods),
+        methods: table
+            .optional("methods", |v| entries(v, method))?
+            .unwrap_or_else(methods),
         tolerances: tolerances.unwrap_or_else(|| Tier::ALL.map(Tier::tolerance).to_vec()),
     };
     Ok((block, drawn))
-}
-
-/// A list that may be absent.
-fn list_of<T>(
-    table: &Table<'_>,
-    key: &str,
-    read: impl FnMut(Value<'_>) -> Result<T, CaseError>,
-) -> Result<Option<Vec<T>>, CaseError> {
-    table.get(key).map(|list| entries(list, read)).transpose()
 }
 
 /// A list with at least one entry.

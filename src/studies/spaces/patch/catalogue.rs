@@ -182,13 +182,12 @@ pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
             for degrees in ANGLES {
                 let t = direction(degrees);
                 let c = add_scaled(&grid.node, distance * grid.size, &turned(&t));
-                for (state, loaded, rest) in straight(&c, &t) {
-                    patches.push(at(state, loaded, &format!("{degrees}°"), rest));
-                }
+                let mut tests = straight(&c, &t);
                 if degrees < 90.0 {
-                    for (state, loaded, rest) in blocks(&c, &t) {
-                        patches.push(at(state, loaded, &format!("{degrees}°"), rest));
-                    }
+                    tests.extend(blocks(&c, &t));
+                }
+                for (state, loaded, rest) in tests {
+                    patches.push(at(state, loaded, &format!("{degrees}°"), rest));
                 }
             }
             for loaded in [Loaded::Displacement, Loaded::Traction] {
@@ -204,6 +203,31 @@ pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
         }
     }
     Ok(patches)
+}
+
+/// Entries of a symmetric stress by their names.
+type Stress<'a> = &'a [(&'static str, f64)];
+
+/// A crack, given by its friction, in uniform stress: hydrostatic pressure, one that it sticks under, one along it.
+fn in_uniform_stress(
+    dim: usize,
+    crack: impl Fn(f64) -> String,
+    [hydrostatic, stick, open]: [Stress<'_>; 3],
+) -> Vec<(State, Loaded, String)> {
+    use Loaded::{Displacement, Traction};
+    let tests = [
+        (State::Hydrostatic, Displacement, 0.0, hydrostatic),
+        (State::Hydrostatic, Traction, 0.0, hydrostatic),
+        (State::Stick, Displacement, 1.0, stick),
+        (State::Stick, Traction, 1.0, stick),
+        (State::Open, Displacement, 0.3, open),
+    ];
+    let text = |(state, loaded, friction, stress): (State, Loaded, f64, Stress<'_>)| {
+        let held = boundary(dim, loaded, state == State::Hydrostatic);
+        let text = crack(friction) + &held + &uniform(stress) + &parted(state);
+        (state, loaded, text)
+    };
+    tests.map(text).into()
 }
 
 /// Uniform stress beside a straight crack through c along t.
@@ -222,19 +246,7 @@ fn straight(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
         ("yy", along(1, 1)),
         ("xy", along(0, 1)),
     ];
-    let of = |state, loaded, friction, stress: &[_]| {
-        let free = state == State::Hydrostatic;
-        let text =
-            chain(&ends, friction) + &boundary(2, loaded, free) + &uniform(stress) + &parted(state);
-        (state, loaded, text)
-    };
-    vec![
-        of(State::Hydrostatic, Loaded::Displacement, 0.0, &hydrostatic),
-        of(State::Hydrostatic, Loaded::Traction, 0.0, &hydrostatic),
-        of(State::Stick, Loaded::Displacement, 1.0, &stick),
-        of(State::Stick, Loaded::Traction, 1.0, &stick),
-        of(State::Open, Loaded::Displacement, 0.3, &open),
-    ]
+    in_uniform_stress(2, |mu| chain(&ends, mu), [&hydrostatic, &stick, &open])
 }
 
 /// The confined block that slides forward or sticks.
@@ -370,29 +382,22 @@ pub fn solid(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
         ];
         for &distance in distances {
             let point = add_scaled(&grid.node, distance * grid.size, &n);
-            let mut push = |state, loaded, friction: f64, stress: &[(&str, f64)]| {
-                let plane = format!(
-                    "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n"
-                );
-                let free = state == State::Hydrostatic;
+            let crack = |mu: f64| {
+                format!(
+                    "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {mu:?}\n"
+                )
+            };
+            for (state, loaded, rest) in in_uniform_stress(3, crack, [&hydrostatic, &stick, &open])
+            {
                 patches.push(Patch {
                     state,
                     loaded,
                     crack: format!("({}, {}, {})", normal[0], normal[1], normal[2]),
                     mesh: grid.name.to_owned(),
                     distance,
-                    text: head("solid", &grid.text)
-                        + &plane
-                        + &boundary(3, loaded, free)
-                        + &uniform(stress)
-                        + &parted(state),
+                    text: head("solid", &grid.text) + &rest,
                 });
-            };
-            push(State::Hydrostatic, Loaded::Displacement, 0.0, &hydrostatic);
-            push(State::Hydrostatic, Loaded::Traction, 0.0, &hydrostatic);
-            push(State::Stick, Loaded::Displacement, 1.0, &stick);
-            push(State::Stick, Loaded::Traction, 1.0, &stick);
-            push(State::Open, Loaded::Displacement, 0.3, &open);
+            }
         }
     }
     Ok(patches)

@@ -14,7 +14,7 @@ use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
 use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
 use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::record::{ProblemSize, Record};
+use crate::studies::sweep::record::Record;
 
 /// Quantity of the closed form that is followed.
 const NORM: &str = "energy";
@@ -82,31 +82,23 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
 
 fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
     let found = &record.found;
-    let ProblemSize {
-        mesh,
-        space,
-        h_m,
-        dim,
-        dofs,
-        points,
-        ..
-    } = found.problem.clone()?;
+    let size = found.problem.clone()?;
     Some(Sample {
         variant: Variant {
             case: record.cell.case.clone(),
-            space,
+            space: size.space,
             tip: String::new(),
             method: found.method.clone(),
             friction: record.cell.mu(),
         },
         // Only theory asks for it, and records do not know it.
         regularity: Regularity::Tip,
-        mesh,
+        mesh: size.mesh,
         refine: record.cell.refine,
-        h: h_m,
-        dim,
-        dofs,
-        points,
+        h: size.h_m,
+        dim: size.dim,
+        dofs: size.dofs,
+        points: size.points,
         verdict: Verdict::Solved,
         seconds: seconds(record, records),
         measured: measured(record)?,
@@ -144,7 +136,6 @@ fn seconds(record: &Record, records: &[Record]) -> Seconds {
 mod tests {
     use super::super::support::{record, timed};
     use super::*;
-    use crate::studies::convergence::Value;
     use crate::studies::convergence::orders::Kind;
 
     fn mesh(refine: usize, method: &str, tolerance: f64) -> Record {
@@ -183,30 +174,6 @@ mod tests {
             assert_eq!(row.kind, Some(Kind::Exact));
         }
         assert!((one.orders[0].order - 1.0).abs() < 1e-12);
-    }
-
-    /// Source: a power law, E(h) = 3 + h²: errors h²/E of the finest mesh.
-    #[test]
-    fn without_closed_form_the_limit_is_the_reference() {
-        let records: Vec<Record> = [1, 2, 4]
-            .map(|refine| {
-                let mut record = mesh(refine, "latin", 1e-9);
-                let h = record.found.problem.as_ref().unwrap().h_m;
-                record.found.values.push(Value {
-                    quantity: "strain_energy".into(),
-                    at: String::new(),
-                    value: 3.0 + h * h,
-                    norm: 3.0,
-                    scale: 3.0,
-                });
-                record
-            })
-            .into();
-        let found = refinements(&records);
-        for (row, h) in found[0].errors.iter().zip([0.4f64, 0.2, 0.1]) {
-            assert_eq!(row.kind, Some(Kind::Richardson));
-            assert!((row.error - h * h / 3.0).abs() < 1e-9, "{row:?}");
-        }
     }
 
     #[test]

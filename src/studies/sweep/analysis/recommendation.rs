@@ -14,13 +14,13 @@ use std::collections::BTreeSet;
 use stickslip_methods::Tier;
 
 use super::costs::Costs;
-use super::proportion::wilson;
 use super::ranking::ranking;
 use super::test_set::TestSet;
 use super::{compare_methods, is_correct};
 use crate::case::named;
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::wilson;
 
 /// Fewer problems say nothing.
 const FEWEST: usize = 3;

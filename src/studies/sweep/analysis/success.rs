@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use stickslip_methods::Tier;
 
-use super::proportion::wilson;
 use super::{claims, compare_methods, has_defaults, is_correct};
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::wilson;
 
 /// How a cell missed the tier: in the order of [`FAILURES`].
 pub const FAILURES: [&str; 12] = [
