@@ -1,6 +1,6 @@
 //! One increment of a case as interchange files.
 
-use stickslip_methods::{ContactState, Increment, LocalForm, MethodError, Tier};
+use stickslip_methods::{ContactState, Increment, Tier};
 
 use crate::case::Case;
 use crate::files::interchange::{Info, InterchangeError, matrix_market};
@@ -57,18 +57,6 @@ pub enum ExportError {
     },
 }
 
-impl From<BodyError> for ExportError {
-    fn from(error: BodyError) -> Self {
-        ExportError::Run(error.into())
-    }
-}
-
-impl From<MethodError> for ExportError {
-    fn from(error: MethodError) -> Self {
-        BodyError::from(error).into()
-    }
-}
-
 /// Solves the increments up to the one asked for and puts that one into files.
 ///
 /// # Errors
@@ -89,8 +77,8 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
         traction: request.choice.needs_traction(),
     };
     let friction = friction(case, request.friction)?;
-    let body = Body::new(case, refine.unwrap_or(1), needs)?;
-    let posed = Posed::new(&body, case, &friction)?;
+    let body = Body::new(case, refine.unwrap_or(1), needs).map_err(RunError::from)?;
+    let posed = Posed::new(&body, case, &friction).map_err(RunError::from)?;
     let path = posed.run(&request.choice, Accuracy::of(case, Tier::High));
     let mut state = ContactState::zero(&posed.system);
     let mut start = state.clone();
@@ -177,7 +165,8 @@ fn files(
     solution: &ContactState,
     info: Info,
 ) -> Result<Vec<(&'static str, Vec<u8>)>, ExportError> {
-    let form: LocalForm = increment.local_form()?;
+    let form = increment.local_form().map_err(BodyError::from);
+    let form = form.map_err(RunError::from)?;
     let local = local_problem(increment, &form, solution, info.clone());
     let mut files = vec![
         ("local.hdf5", local.to_bytes()?),

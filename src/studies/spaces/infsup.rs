@@ -24,13 +24,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{Elastic, ElasticParts, MethodError, SymmetricMatrix};
+use stickslip_methods::{Elastic, ElasticParts, SymmetricMatrix};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::fields::mass::mass;
 use stickslip_xfem::stiffness::assembly::elimination_order;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
 
-use crate::case::{CaseError, ContactSpace};
+use crate::case::ContactSpace;
 use crate::model::body::{Body, BodyError, Needs, free_rows, numbered};
 use crate::run::run_case::Progress;
 use crate::studies::convergence;
@@ -74,18 +74,6 @@ pub enum Fault {
     /// The eigenproblem has no answer.
     #[error(transparent)]
     Pencil(#[from] PencilError),
-}
-
-impl From<CaseError> for Fault {
-    fn from(error: CaseError) -> Self {
-        Fault::Body(error.into())
-    }
-}
-
-impl From<MethodError> for Fault {
-    fn from(error: MethodError) -> Self {
-        Fault::Body(error.into())
-    }
 }
 
 /// β on one mesh.
@@ -208,7 +196,11 @@ pub fn sample(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample
 }
 
 fn measure(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample, Fault> {
-    let body = Body::new(&scene.case(space, cells)?, 1, Needs::default())?;
+    let body = Body::new(
+        &scene.case(space, cells).map_err(BodyError::from)?,
+        1,
+        Needs::default(),
+    )?;
     let dim = body.mesh.dim();
     let standard = |unknown: &usize| {
         let function = &body.enrichment.functions[unknown / dim];
@@ -219,7 +211,7 @@ fn measure(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample, F
     }
     let h = LENGTH / cells as f64;
     let norm = displacement_norm(&body)?;
-    let response = norm.delassus()?;
+    let response = norm.delassus().map_err(BodyError::from)?;
     // G A⁻¹ Gᵀ from B A⁻¹ Bᵀ.
     let weight = |row: usize| body.points[row / dim].weight;
     let m = response.size();

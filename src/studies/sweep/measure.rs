@@ -153,8 +153,9 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
     let (mut states, mut snapshots) = (Vec::new(), Vec::new());
     let mut status: Option<Vec<PointStatus>> = None;
     let end = path.follow(&mut |key, increment, now| {
-        rows.push(path.row(key, increment));
-        increments.push(found_of(increment, status.as_deref()));
+        let row = path.row(key, increment);
+        increments.push(found_of(&row, increment, status.as_deref()));
+        rows.push(row);
         if let (Some(judged), Some(now)) = (&increment.judged, now) {
             status = Some(judged.status.clone());
             states.push(judged.outcome.state.clone());
@@ -172,20 +173,23 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
 }
 
 /// `before`: states of the points at the start; without one all are open.
-fn found_of(increment: &JudgedIncrement, before: Option<&[PointStatus]>) -> IncrementFound {
+fn found_of(
+    row: &RunRow,
+    increment: &JudgedIncrement,
+    before: Option<&[PointStatus]>,
+) -> IncrementFound {
     let judged = increment.judged.as_ref();
-    let counters = judged.map(|j| j.outcome.counters).unwrap_or_default();
     let began = |point: usize| before.map_or(PointStatus::Open, |before| before[point]);
     let status = judged.map_or(&[][..], |j| &j.status).iter().enumerate();
     let history = judged.map_or(&[][..], |j| &j.outcome.history);
     IncrementFound {
-        verdict: increment.verdict.clone(),
-        natural_map: (judged.map(|j| j.found.natural_map)).filter(|map| map.is_finite()),
-        iterations: counters.iterations,
-        solves: counters.solves,
-        tangent_factorisations: counters.factorisations,
-        global_factorisations: counters.global_factorisations,
-        local_solves: counters.local_solves,
+        verdict: row.verdict.clone(),
+        natural_map: Some(row.natural_map).filter(|map| map.is_finite()),
+        iterations: row.iterations,
+        solves: row.solves,
+        tangent_factorisations: row.tangent_factorisations,
+        global_factorisations: row.global_factorisations,
+        local_solves: row.local_solves,
         state_changes: history.iter().map(|i| i.changes).sum(),
         final_changes: status.filter(|(i, now)| **now != began(*i)).count(),
     }
