@@ -9,7 +9,7 @@ pub mod orders;
 mod sample;
 mod tips;
 
-pub use limit::{Limit, limit, slope};
+pub use limit::{Limit, limit, linear_limit, slope};
 pub use sample::{Measured, Sample, Seconds, Value, Variant};
 pub use tips::{Regularity, regularity};
 

@@ -3,6 +3,7 @@
 use crate::run::record::Results;
 use crate::run::run_case::{Progress, Settings, run_case};
 use crate::run::verdict::Verdict;
+use crate::studies::convergence::linear_limit;
 use crate::studies::paper::lookup::{
     PaperError, REACTION, REFERENCE_METHOD, Run, as_printed, case, choice,
 };
@@ -172,17 +173,13 @@ pub fn limit_rows(rows: &[RefinementRow]) -> Vec<LimitRow> {
         .into_iter()
         .map(|friction| {
             let limit = |family: &str| {
-                let mut own: Vec<&RefinementRow> = rows
+                let own = rows
                     .iter()
-                    .filter(|r| r.family == family && r.friction == friction)
-                    .collect();
-                own.sort_by(|a, b| a.h_m.total_cmp(&b.h_m));
-                match own.as_slice() {
-                    [fine, next, ..] => {
-                        let slope = (next.reaction_mn_per_m - fine.reaction_mn_per_m)
-                            / (next.h_m - fine.h_m);
-                        fine.reaction_mn_per_m - slope * fine.h_m
-                    }
+                    .filter(|r| r.family == family && r.friction == friction);
+                let mut own: Vec<_> = own.map(|r| [r.h_m, r.reaction_mn_per_m]).collect();
+                own.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                match own[..] {
+                    [fine, next, ..] => linear_limit([next, fine]),
                     _ => f64::NAN,
                 }
             };
