@@ -76,6 +76,16 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// The run of a case at a friction coefficient by a method.
+    pub fn of(results: &'a Results, case: &'a str, friction: f64, method: &'a str) -> Self {
+        Self {
+            results,
+            case,
+            friction,
+            method,
+        }
+    }
+
     fn has(&self, key: &RunKey) -> bool {
         key.case == self.case && key.friction == self.friction && key.method == self.method
     }

@@ -95,12 +95,7 @@ pub fn penalty_rows(
     let swept = run_case(&plate, &choices, settings, progress)?;
     let mut rows = Vec::new();
     for &friction in &plate.sweep.friction {
-        let run = |results, method| Run {
-            results,
-            case: &plate.name,
-            friction,
-            method,
-        };
+        let run = |results, method| Run::of(results, &plate.name, friction, method);
         let exact = run(results, REFERENCE_METHOD).value(REACTION);
         for (c, choice) in PENALTIES.iter().zip(&choices) {
             let run = run(&swept, &choice.label);
@@ -142,12 +137,7 @@ pub fn refinement_rows(
             plate.sweep.refine = vec![factor];
             let results = run_case(&plate, std::slice::from_ref(&method), settings, progress)?;
             rows.extend(results.runs.iter().map(|row| {
-                let run = Run {
-                    results: &results,
-                    case: name,
-                    friction: row.key.friction,
-                    method: &method.label,
-                };
+                let run = Run::of(&results, name, row.key.friction, &method.label);
                 RefinementRow {
                     family: family.into(),
                     mesh: row.key.mesh.clone(),

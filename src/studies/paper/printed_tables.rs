@@ -143,12 +143,7 @@ pub fn plate_rows(results: &Results) -> Result<Vec<Table1Row>, PaperError> {
         let (mesh, friction, printed): (String, f64, f64) = record?;
         for (name, _) in PLATES.iter().filter(|(_, own)| *own == mesh) {
             for method in PAPER_METHODS {
-                let run = Run {
-                    results,
-                    case: name,
-                    friction,
-                    method,
-                };
+                let run = Run::of(results, name, friction, method);
                 let (found, verdict) = (run.value(REACTION).map(as_printed), run.verdict());
                 let row = Table1Row::new(&mesh, friction, method, found, Some(printed), verdict);
                 rows.push(row);
@@ -170,12 +165,7 @@ pub fn beam_rows(results: &Results) -> Result<Vec<Table2Row>, PaperError> {
             let reference = Table2Row::printed(&model, variant, &component, printed);
             for (name, _) in BEAMS.iter().filter(|(_, own)| *own == model) {
                 for method in PAPER_METHODS {
-                    let run = Run {
-                        results,
-                        case: name,
-                        friction,
-                        method,
-                    };
+                    let run = Run::of(results, name, friction, method);
                     let p_mm = probe_row(run, &component);
                     rows.push(Table2Row::computed(&reference, method, p_mm, run.verdict()));
                 }
@@ -202,12 +192,7 @@ pub fn beam_difference(results: &Results) -> f64 {
         for (_, friction) in VARIANTS {
             for component in ["x", "y", "z"] {
                 let of = |case| {
-                    let run = Run {
-                        results,
-                        case,
-                        friction,
-                        method: method.name,
-                    };
+                    let run = Run::of(results, case, friction, method.name);
                     probe_row(run, component)
                 };
                 for (one, two) in of(EXACT_BEAM).iter().zip(of(BEAMS[1].0)) {

@@ -71,12 +71,7 @@ pub fn variant_rows(
         problem.expects.clear();
         let swept = run_case(&problem, &choices, settings, progress)?;
         for &friction in frictions {
-            let run = |results, method| Run {
-                results,
-                case: name,
-                friction,
-                method,
-            };
+            let run = |results, method| Run::of(results, name, friction, method);
             let reference = run(results, REFERENCE_METHOD).value(compared);
             let row = |run| row(run, compared, reference.unwrap_or(f64::NAN));
             rows.extend(methods().iter().map(|m| row(run(results, m.name))));
@@ -135,12 +130,8 @@ mod tests {
 
     #[test]
     fn a_missing_run_has_a_row_that_says_so() {
-        let run = Run {
-            results: &Results::default(),
-            case: "plate_mesh1",
-            friction: 0.1,
-            method: "latin",
-        };
+        let nothing = Results::default();
+        let run = Run::of(&nothing, "plate_mesh1", 0.1, "latin");
         let row = row(run, REACTION, 1.0);
         assert_eq!((&row.verdict, row.method.as_str()), (&None, "latin"));
         let numbers = [row.value, row.deviation, row.natural_map, row.solve_s];

@@ -296,24 +296,21 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
 
 #[cfg(test)]
 mod tests {
-    use super::super::support::{lying, record, timed};
+    use super::super::support::{lying, solved, timed};
     use super::*;
     use crate::studies::convergence::Value;
 
     /// pdas is fastest wherever it is right; latin is right everywhere; b-newton too, and faster than latin.
     fn records(problems: usize, failures: usize) -> Vec<Record> {
-        let mut all = Vec::new();
-        for index in 0..problems {
-            let case = format!("case-{index}");
-            for (method, time) in [("b-newton", 2.0), ("pdas", 1.0), ("latin", 3.0)] {
-                let mut cell = timed(record(&case, method, 1e-6), time);
-                if method == "pdas" && index < failures {
-                    cell.found = lying("gave-up: stalled").found;
-                }
-                all.push(cell);
+        let times = [("b-newton", 2.0), ("pdas", 1.0), ("latin", 3.0)];
+        let problem = |index| {
+            let mut all = solved(&format!("case-{index}"), &times);
+            if index < failures {
+                all[1].found = lying("gave-up: stalled").found;
             }
-        }
-        all
+            all
+        };
+        (0..problems).flat_map(problem).collect()
     }
 
     fn names(found: &Recommendation) -> Vec<&str> {
