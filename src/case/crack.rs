@@ -4,6 +4,7 @@ use stickslip_xfem::contact::ContactSpace;
 use stickslip_xfem::cut::crack::Tip;
 use stickslip_xfem::geometry::crack_shape::CrackShape;
 use stickslip_xfem::geometry::ellipse::Ellipse;
+use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, unit};
 
 use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
@@ -96,10 +97,8 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
         return Ok(if endless { Tip::None } else { Tip::Branch });
     };
     let tip = if value.any_table().is_ok() {
-        let radius = value
-            .table(&["branch_radius_m"])?
-            .required("branch_radius_m")?;
-        Tip::Radius(radius.number_if("branch_radius_m > 0", |r| r > 0.0)?)
+        let table = value.table(&["branch_radius_m"])?;
+        Tip::Radius(table.positive("branch_radius_m")?)
     } else if value.string().is_ok() {
         value.one_of(&[("none", Tip::None), ("branch", Tip::Branch)])?
     } else {
@@ -117,9 +116,8 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
 /// `contact`.
 fn contact(table: &Table<'_>) -> Result<ContactSpace, CaseError> {
     let named = ContactSpace::ALL.map(|space| (space.name(), space));
-    table
-        .get("contact")
-        .map_or(Ok(ContactSpace::Star), |v| v.one_of(&named))
+    let given = table.optional("contact", |v| v.one_of(&named))?;
+    Ok(given.unwrap_or(ContactSpace::Star))
 }
 
 /// `points_m`: a chain of segments that neither folds back nor touches itself.
@@ -133,8 +131,7 @@ fn polyline(value: Value<'_>) -> Result<CrackShape, CaseError> {
     }
     let mut points: Vec<[f64; 2]> = Vec::new();
     for entry in entries {
-        let x = entry.numbers(2)?;
-        let x = [x[0], x[1]];
+        let x: [f64; 2] = entry.point()?;
         if let Some(&last) = points.last() {
             let d = difference(last, x);
             let length = d[0].hypot(d[1]);
@@ -190,10 +187,8 @@ fn meet([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
 /// `arc`.
 fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "radius_m", "from_deg", "to_deg"])?;
-    let centre = table.required("centre_m")?.numbers(2)?;
-    let radius = table
-        .required("radius_m")?
-        .number_if("radius_m > 0", |r| r > 0.0)?;
+    let centre = table.required("centre_m")?.point()?;
+    let radius = table.positive("radius_m")?;
     let angle = |key: &str| {
         let allowed = format!("-360 <= {key} <= 360");
         table
@@ -208,7 +203,7 @@ fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
         ));
     }
     Ok(CrackShape::Arc {
-        centre: [centre[0], centre[1]],
+        centre,
         radius,
         from: from.to_radians(),
         to: to.to_radians(),
@@ -218,9 +213,8 @@ fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `plane`.
 fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["point_m", "normal"])?;
-    let point = table.required("point_m")?.numbers(3)?;
     Ok(CrackShape::Plane {
-        point: [point[0], point[1], point[2]],
+        point: table.required("point_m")?.point()?,
         normal: direction(table.required("normal")?)?,
     })
 }
@@ -228,11 +222,9 @@ fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `disc`: an ellipse with equal half axes, the first one along the body axis least along the normal.
 fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "radius_m"])?;
-    let centre = table.required("centre_m")?.numbers(3)?;
+    let centre = table.required("centre_m")?.point()?;
     let normal = direction(table.required("normal")?)?;
-    let radius = table
-        .required("radius_m")?
-        .number_if("radius_m > 0", |r| r > 0.0)?;
+    let radius = table.positive("radius_m")?;
     // The first of equals, so that a normal along z has its axis along x.
     let mut least = 0;
     for k in 1..3 {
@@ -243,9 +235,9 @@ fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
     Ok(CrackShape::Ellipse(Ellipse {
-        centre: [centre[0], centre[1], centre[2]],
+        centre,
         normal,
-        axis: normalised(perpendicular(axis, normal)),
+        axis: unit(&perpendicular(&axis, &normal)),
         half_axes: [radius; 2],
     }))
 }
@@ -253,11 +245,11 @@ fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `ellipse`.
 fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "axis", "half_axes_m"])?;
-    let centre = table.required("centre_m")?.numbers(3)?;
+    let centre = table.required("centre_m")?.point()?;
     let normal = direction(table.required("normal")?)?;
     let given = table.required("axis")?;
-    let axis = perpendicular(direction(given)?, normal);
-    if axis.iter().map(|v| v * v).sum::<f64>().sqrt() <= PARALLEL {
+    let axis = perpendicular(&direction(given)?, &normal);
+    if norm(&axis) <= PARALLEL {
         return Err(given.refuse(
             "a direction that is not that of the normal",
             "axis parallel to the normal",
@@ -269,31 +261,25 @@ fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
         *half = entry.number_if("half_axes_m > 0, each", |a| a > 0.0)?;
     }
     Ok(CrackShape::Ellipse(Ellipse {
-        centre: [centre[0], centre[1], centre[2]],
+        centre,
         normal,
-        axis: normalised(axis),
+        axis: unit(&axis),
         half_axes,
     }))
 }
 
 /// The unit vector along a given one.
-fn direction(value: Value<'_>) -> Result<[f64; 3], CaseError> {
-    let v = value.numbers(3)?;
+fn direction(value: Value<'_>) -> Result<Point, CaseError> {
+    let v: Point = value.point()?;
     // Scaled first, so that tiny and huge vectors are not lost in the squares.
     let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 {
         return Err(value.refuse("a vector that is not zero", "vector without direction"));
     }
-    Ok(normalised([v[0] / largest, v[1] / largest, v[2] / largest]))
-}
-
-fn normalised(v: [f64; 3]) -> [f64; 3] {
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    v.map(|x| x / length)
+    Ok(unit(&v.map(|x| x / largest)))
 }
 
 /// The part of v perpendicular to the unit vector n.
-fn perpendicular(v: [f64; 3], n: [f64; 3]) -> [f64; 3] {
-    let along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
-    [0, 1, 2].map(|k| v[k] - along * n[k])
+fn perpendicular(v: &Point, n: &Point) -> Point {
+    add_scaled(v, -dot(v, n), n)
 }

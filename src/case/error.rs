@@ -24,7 +24,7 @@ const DEPTH: usize = 8;
 pub struct CaseError(Box<Complaint>);
 
 // Boxed: an error type above 128 bytes would make every `Result` of the reader large.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Complaint {
     file: PathBuf,
     line: usize,
@@ -87,14 +87,10 @@ impl CaseError {
     ) -> Self {
         CaseError(Box::new(Complaint {
             file: file.to_path_buf(),
-            line: 0,
-            column: 0,
-            source_line: String::new(),
-            underline: String::new(),
-            key: String::new(),
             value: clip(&value.to_string()),
             allowed: allowed.to_string(),
             message: message.to_string(),
+            ..Complaint::default()
         }))
     }
 }

@@ -4,6 +4,7 @@ use super::crack::friction;
 use super::error::{CaseError, Span};
 use super::load::side_names;
 use super::mesh::{MAX_REFINE, Sweep};
+use super::named::named;
 use super::reader::Value;
 use super::settings::PathSpec;
 
@@ -62,20 +63,19 @@ pub enum Tolerance {
     Absolute(f64),
 }
 
-/// Origin of an expected number, strongest first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ExpectKind {
-    /// Closed form.
-    Analytic,
-    /// Printed in a publication.
-    Published,
-    /// Another code.
-    Independent,
-    /// This code, earlier; certifies nothing but stability.
-    Snapshot,
+named! {
+    /// Origin of an expected number, strongest first.
+    pub enum ExpectKind {
+        /// Closed form.
+        Analytic = "analytic",
+        /// Printed in a publication.
+        Published = "published",
+        /// Another code.
+        Independent = "independent",
+        /// This code, earlier; certifies nothing but stability.
+        Snapshot = "snapshot",
+    }
 }
-
-const NO_RUN: &str = "no run of this case has this value";
 
 /// What the runs of a case offer to an expectation; one that no run can meet would never be tested.
 pub(super) struct Runs {
@@ -114,13 +114,10 @@ impl Runs {
             return Err(given.refuse(allowed, "name already taken"));
         }
         self.places.push(name.clone());
-        let coordinates = table.required("point_m")?.numbers(dim)?;
-        let mut point = [0.0; 3];
-        point[..dim].copy_from_slice(&coordinates);
         Ok(ProbeSpec {
             span: table.span(),
             name,
-            point,
+            point: table.required("point_m")?.in_space(dim)?,
         })
     }
 
@@ -154,47 +151,35 @@ impl Runs {
             let allowed = "values other than 0, or `absolute`";
             return Err(wanted.refuse(allowed, "a relative tolerance of zero is zero"));
         }
+        let kinds: Vec<_> = ExpectKind::ALL.iter().map(|k| (k.name(), *k)).collect();
         Ok(Expect {
             span: table.span(),
             quantity: table.required("quantity")?.line()?,
-            at: table
-                .get("at")
-                .map_or(Ok(String::new()), |v| self.place(v))?,
+            at: table.optional("at", |v| self.place(v))?.unwrap_or_default(),
             component: table
-                .get("component")
-                .map_or(Ok(""), component)?
-                .to_string(),
-            friction: table
-                .get("friction")
-                .map(|v| self.friction(v))
-                .transpose()?,
-            refine: table.get("refine").map(|v| self.factor(v)).transpose()?,
-            method: table.get("method").map(|v| v.line()).transpose()?,
-            increment: table
-                .get("increment")
-                .map(|v| v.integer(1..=self.increments))
-                .transpose()?,
+                .optional("component", component)?
+                .unwrap_or_default()
+                .into(),
+            friction: table.optional("friction", |v| {
+                Self::of_runs(v, friction(v)?, &self.frictions)
+            })?,
+            refine: table.optional("refine", |v| {
+                Self::of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine)
+            })?,
+            method: table.optional("method", |v| v.line())?,
+            increment: table.optional("increment", |v| v.integer(1..=self.increments))?,
             value: number,
             unit: table.required("unit")?.line()?,
             tolerance,
-            kind: table.required("kind")?.one_of(&[
-                ("analytic", ExpectKind::Analytic),
-                ("published", ExpectKind::Published),
-                ("independent", ExpectKind::Independent),
-                ("snapshot", ExpectKind::Snapshot),
-            ])?,
+            kind: table.required("kind")?.one_of(&kinds)?,
             source: table.required("source")?.line()?,
-            assumptions: match table.get("assumptions") {
-                Some(v) => v
-                    .list()?
-                    .iter()
-                    .map(Value::line)
-                    .collect::<Result<_, _>>()?,
-                None => Vec::new(),
-            },
-            missed: table
-                .get("outcome")
-                .map_or(Ok(false), |v| v.one_of(&[("met", false), ("missed", true)]))?,
+            assumptions: (table.optional("assumptions", |v| {
+                v.list()?.iter().map(Value::line).collect()
+            })?)
+            .unwrap_or_default(),
+            missed: (table
+                .optional("outcome", |v| v.one_of(&[("met", false), ("missed", true)]))?)
+            .unwrap_or(false),
         })
     }
 
@@ -207,36 +192,22 @@ impl Runs {
         Ok(place.to_string())
     }
 
-    fn friction(&self, value: Value<'_>) -> Result<f64, CaseError> {
-        let allowed = format!("one of {}", join(&self.frictions));
-        let found = friction(value)?;
-        if self.frictions.contains(&found) {
-            Ok(found)
-        } else {
-            Err(value.refuse(allowed, NO_RUN))
+    /// A value that some run of the case has.
+    fn of_runs<T: PartialEq + ToString>(
+        value: Value<'_>,
+        found: T,
+        runs: &[T],
+    ) -> Result<T, CaseError> {
+        if runs.contains(&found) {
+            return Ok(found);
         }
-    }
-
-    fn factor(&self, value: Value<'_>) -> Result<usize, CaseError> {
-        let allowed = format!("one of {}", join(&self.refine));
-        let found = value.integer(1..=MAX_REFINE)?;
-        if self.refine.contains(&found) {
-            Ok(found)
-        } else {
-            Err(value.refuse(allowed, NO_RUN))
-        }
+        let known: Vec<String> = runs.iter().map(T::to_string).collect();
+        let allowed = format!("one of {}", known.join(", "));
+        Err(value.refuse(allowed, "no run of this case has this value"))
     }
 }
 
 /// An axis of the body or of the contact frame; empty for none.
 fn component(value: Value<'_>) -> Result<&'static str, CaseError> {
     value.one_of(&["x", "y", "z", "n", "a", "b", ""].map(|name| (name, name)))
-}
-
-fn join<T: ToString>(values: &[T]) -> String {
-    values
-        .iter()
-        .map(T::to_string)
-        .collect::<Vec<_>>()
-        .join(", ")
 }

@@ -186,7 +186,7 @@ fn region(
             .into_iter()
             .map(|(side, _)| side.to_string())
             .collect(),
-        condition: table.get("where").map(|v| condition(v, dim)).transpose()?,
+        condition: table.optional("where", |v| condition(v, dim))?,
     })
 }
 
@@ -424,11 +424,8 @@ fn linear(value: &Value<'_>, dim: usize) -> Result<Linear, CaseError> {
         });
     }
     let table = value.table(&["at_origin_pa", "gradient_pa_per_m"])?;
-    let mut gradient = [0.0; 3];
-    let given = table.required("gradient_pa_per_m")?.numbers(dim)?;
-    gradient[..dim].copy_from_slice(&given);
     Ok(Linear {
+        gradient: table.required("gradient_pa_per_m")?.in_space(dim)?,
         at_origin: table.required("at_origin_pa")?.number()?,
-        gradient,
     })
 }

@@ -64,15 +64,11 @@ pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> 
         ("box", value) => box_lines(value, dim)?,
         (_, value) => given_lines(value, dim)?,
     };
-    let follow = table
-        .get("follow")
-        .map(|v| follow(v, dim, &lines))
-        .transpose()?;
     let grid = GridSpec {
+        follow: table.optional("follow", |v| follow(v, dim, &lines))?,
         lines,
-        follow,
-        twist: table.get("twist").map(|v| twist(v, dim)).transpose()?,
-        distort: table.get("distort").map(|v| distort(v, dim)).transpose()?,
+        twist: table.optional("twist", |v| twist(v, dim))?,
+        distort: table.optional("distort", |v| distort(v, dim))?,
     };
     let keys = [
         ("follow", Motion::Follow),
@@ -116,12 +112,10 @@ fn distort(value: Value<'_>, dim: usize) -> Result<Distort, CaseError> {
     let amplitude = table
         .required("amplitude")?
         .number_if("0 <= amplitude < 0.5", |a| (0.0..0.5).contains(&a))?;
-    let seed = table
-        .get("seed")
-        .map_or(Ok(1), |v| v.integer(0..=MAX_SEED))?;
+    let seed = table.optional("seed", |v| v.integer(0..=MAX_SEED))?;
     Ok(Distort {
         amplitude,
-        seed: seed as u64,
+        seed: seed.unwrap_or(1) as u64,
     })
 }
 
@@ -277,10 +271,6 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
         });
     };
     let table = value.table(&["friction", "refine"])?;
-    let frictions = match table.get("friction") {
-        Some(v) => distinct(v, friction)?,
-        None => Vec::new(),
-    };
     let cells: Vec<usize> = mesh.grid.lines.iter().map(|l| l.len() - 1).collect();
     let factor = |v: Value<'_>| {
         let factor = v.integer(1..=MAX_REFINE)?;
@@ -298,13 +288,11 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
         }
         Ok(factor)
     };
-    let refine = match table.get("refine") {
-        Some(v) => distinct(v, factor)?,
-        None => vec![1],
-    };
+    let frictions = table.optional("friction", |v| distinct(v, friction))?;
+    let refine = table.optional("refine", |v| distinct(v, factor))?;
     Ok(Sweep {
-        friction: frictions,
-        refine,
+        friction: frictions.unwrap_or_default(),
+        refine: refine.unwrap_or_else(|| vec![1]),
     })
 }
 

@@ -69,6 +69,11 @@ impl Case {
         self.source.get(span.clone()).unwrap_or_default()
     }
 
+    /// As [`error`](Self::error), with the value as it stands in the file.
+    pub fn refuse(&self, span: &Span, allowed: impl Display, message: impl Display) -> CaseError {
+        self.error(span, self.text(span), allowed, message)
+    }
+
     /// Error about the value at `span`, found later than by the parser (e.g. a crack wholly outside the mesh).
     ///
     /// `value` is what was found, `allowed` what would be accepted; key, line and column follow from the span.

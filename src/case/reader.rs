@@ -180,6 +180,20 @@ impl<'a> Value<'a> {
         self.list_of(length)?.iter().map(Value::number).collect()
     }
 
+    /// Array of N finite numbers.
+    pub(crate) fn point<const N: usize>(&self) -> Result<[f64; N], CaseError> {
+        let mut point = [0.0; N];
+        point.copy_from_slice(&self.numbers(N)?);
+        Ok(point)
+    }
+
+    /// Array of `dim` finite numbers, with zeros up to three.
+    pub(crate) fn in_space(&self, dim: usize) -> Result<[f64; 3], CaseError> {
+        let mut point = [0.0; 3];
+        point[..dim].copy_from_slice(&self.numbers(dim)?);
+        Ok(point)
+    }
+
     /// A table with no other keys than the allowed ones.
     pub(crate) fn table(&self, keys: &[&str]) -> Result<Table<'a>, CaseError> {
         let table = self.any_table()?;
@@ -257,10 +271,25 @@ impl<'a> Table<'a> {
         })
     }
 
+    /// What a key that may be absent says.
+    pub(crate) fn optional<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(Value<'a>) -> Result<T, CaseError>,
+    ) -> Result<Option<T>, CaseError> {
+        self.get(key).map(read).transpose()
+    }
+
     /// Value of a key that must be given.
     pub(crate) fn required(&self, key: &str) -> Result<Value<'a>, CaseError> {
         self.get(key)
             .ok_or_else(|| self.missing(&format!("`{key}`")))
+    }
+
+    /// A number above 0 that must be given.
+    pub(crate) fn positive(&self, key: &str) -> Result<f64, CaseError> {
+        let allowed = format!("{key} > 0");
+        self.required(key)?.number_if(&allowed, |x| x > 0.0)
     }
 
     /// The one key of several that is given, exactly one of which must be.

@@ -61,9 +61,7 @@ pub(super) fn quadrature(root: &Table<'_>) -> Result<Quadrature, CaseError> {
 pub(super) fn material(root: &Table<'_>) -> Result<Material, CaseError> {
     let table = root.required("material")?.table(&["young_pa", "poisson"])?;
     Ok(Material {
-        young: table
-            .required("young_pa")?
-            .number_if("young_pa > 0", |e| e > 0.0)?,
+        young: table.positive("young_pa")?,
         poisson: table
             .required("poisson")?
             .number_if("0 <= poisson < 0.5", |nu| (0.0..0.5).contains(&nu))?,
@@ -79,13 +77,11 @@ pub(super) fn path(root: &Table<'_>) -> Result<PathSpec, CaseError> {
         });
     };
     let table = value.table(&["increments", "end"])?;
+    let increments = table.optional("increments", |v| v.integer(1..=MAX_INCREMENTS))?;
+    let end = table.optional("end", |v| v.number_if("end > 0", |t| t > 0.0))?;
     Ok(PathSpec {
-        increments: table
-            .get("increments")
-            .map_or(Ok(1), |v| v.integer(1..=MAX_INCREMENTS))?,
-        end: table
-            .get("end")
-            .map_or(Ok(1.0), |v| v.number_if("end > 0", |t| t > 0.0))?,
+        increments: increments.unwrap_or(1),
+        end: end.unwrap_or(1.0),
     })
 }
 

@@ -121,15 +121,8 @@ impl Body {
         check_supports(case, &integrator)?;
         check_probes(case, &mesh, &enrichment)?;
         let dim = mesh.dim();
-        let mut free = 0;
-        let numbers: Vec<Option<u32>> = (0..enrichment.functions.len() * dim)
-            .map(|i| {
-                (!fixed.contains_key(&i)).then(|| {
-                    free += 1;
-                    free - 1
-                })
-            })
-            .collect();
+        let unknowns = 0..enrichment.functions.len() * dim;
+        let (numbers, _) = numbered(unknowns.map(|i| !fixed.contains_key(&i)));
         let mut surface = ContactSurface::default();
         for number in 0..case.cracks.len() {
             let held = |unknown: usize| numbers[unknown].is_none();
@@ -177,15 +170,8 @@ impl Body {
             |cell| matrices.of(cell),
             |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
         );
-        let mut free = 0;
-        let solver_numbers: Vec<Option<u32>> = (0..numbers.len())
-            .map(|i| {
-                (numbers[i].is_some() && !basis.drops(i / dim)).then(|| {
-                    free += 1;
-                    free - 1
-                })
-            })
-            .collect();
+        let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(i / dim));
+        let (solver_numbers, free) = numbered(kept);
         let (col_ptr, row_idx, values) = if basis.is_identity() {
             stiffness.restrict(&solver_numbers)
         } else {
@@ -196,7 +182,7 @@ impl Body {
         let order = elimination_order(&mesh, &enrichment, &solver_numbers);
         let rows = |rows: &[Vec<(usize, f64)>]| {
             let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
-            free_rows(&rows, &solver_numbers, free as usize)
+            free_rows(&rows, &solver_numbers, free)
         };
         for mode in &mut motions.modes {
             basis.solver_unknowns(dim, mode);
@@ -206,7 +192,7 @@ impl Body {
         let assembly_s = clock.elapsed().as_secs_f64();
         let elastic = Elastic::new(ElasticParts {
             dim,
-            stiffness: SymmetricMatrix::new(free as usize, col_ptr, row_idx, values)?,
+            stiffness: SymmetricMatrix::new(free, col_ptr, row_idx, values)?,
             jump: rows(&jump)?,
             weight: points.iter().map(|p| p.weight).collect(),
             order,
@@ -346,6 +332,19 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
         })
         .collect();
     Ok((arms(cracks, mesh), doubled))
+}
+
+/// Numbers those that are kept, in their order, and counts them.
+pub(crate) fn numbered(kept: impl Iterator<Item = bool>) -> (Vec<Option<u32>>, usize) {
+    let mut count = 0;
+    let number = |kept: bool| {
+        kept.then(|| {
+            count += 1;
+            count - 1
+        })
+    };
+    let numbers = kept.map(number).collect();
+    (numbers, count as usize)
 }
 
 /// Products of sparse rows with a vector.

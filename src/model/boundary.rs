@@ -42,16 +42,19 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
     let mut fixed = BTreeMap::new();
     for (number, support) in case.supports.iter().enumerate() {
         let nodes = region_nodes(integrator, &support.on);
-        for &node in &nodes {
+        let mut fix = |function: usize, amount_of: &dyn Fn(Amount) -> Amount| {
             for (component, amount) in support.displacement.iter().enumerate() {
                 if let Some(amount) = *amount {
                     let value = Prescribed {
                         support: number,
-                        amount,
+                        amount: amount_of(amount),
                     };
-                    fixed.insert(node * dim + component, value);
+                    fixed.insert(function * dim + component, value);
                 }
             }
+        };
+        for &node in &nodes {
+            fix(node, &|amount| amount);
         }
         let held: BTreeSet<usize> = nodes.into_iter().collect();
         let supported = |nodes: &[usize]| nodes.iter().all(|n| held.contains(n));
@@ -71,17 +74,10 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
                     for f in enriched_on(integrator, facet.cell, &part) {
                         let kind = integrator.enrichment.functions[f].kind;
                         let jumps = matches!(kind, FunctionKind::Heaviside { .. });
-                        for (component, amount) in support.displacement.iter().enumerate() {
-                            let Some(amount) = *amount else { continue };
-                            let value = Prescribed {
-                                support: number,
-                                amount: match amount {
-                                    Amount::Exact if jumps => Amount::Exact,
-                                    _ => Amount::Number(0.0),
-                                },
-                            };
-                            fixed.insert(f * dim + component, value);
-                        }
+                        fix(f, &|amount| match amount {
+                            Amount::Exact if jumps => Amount::Exact,
+                            _ => Amount::Number(0.0),
+                        });
                     }
                 }
             }

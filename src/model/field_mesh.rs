@@ -12,7 +12,7 @@ use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, mean, norm, polygo
 use stickslip_xfem::mesh::cell::{CellKind, CellMap};
 
 use crate::model::body::Body;
-use crate::model::quantities::Snapshot;
+use crate::model::quantities::{Snapshot, tangential};
 
 /// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
 #[derive(Debug, Clone, Default)]
@@ -318,13 +318,6 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
             PointStatus::Slip => 2.0,
         })
     };
-    let tangential = |values: &[f64], i: usize| {
-        values[i * dim + 1..(i + 1) * dim]
-            .iter()
-            .map(|v| v * v)
-            .sum::<f64>()
-            .sqrt()
-    };
     let weight = |i: usize| body.points[i].weight;
     let cells = body
         .surface
@@ -353,14 +346,14 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         ],
         point_scalars: vec![
             ("gap_m".into(), scalar(&|i| now.jump[i * dim])),
-            ("slip_m".into(), scalar(&|i| tangential(&now.jump, i))),
+            ("slip_m".into(), scalar(&|i| tangential(&now.jump, dim, i))),
             (
                 "pressure_pa".into(),
                 scalar(&|i| now.p[i * dim] / weight(i)),
             ),
             (
                 "shear_pa".into(),
-                scalar(&|i| tangential(&now.p, i) / weight(i)),
+                scalar(&|i| tangential(&now.p, dim, i) / weight(i)),
             ),
             ("status".into(), corners.iter().map(leading).collect()),
         ],

@@ -160,9 +160,13 @@ impl<'a> Loading<'a> {
     }
 
     /// Right-hand side at the end of an increment: f = f_ext − K u_prescribed at the free unknowns, the jump the
-    /// prescribed ones carry, and the contact forces that their stress and an initial one imply.
+    /// prescribed ones carry, and the contact forces that their stress and an initial one imply. Before the first
+    /// increment, 0, nothing acts, whatever the histories say at t = 0.
     pub fn at(&self, increment: usize) -> Load {
         let body = self.body;
+        if increment == 0 {
+            return Load::zero(&body.elastic);
+        }
         let prescribed = self.prescribed_displacement(increment);
         let held = body.stiffness.mul(&prescribed);
         let external = self.external_force(increment);

@@ -232,6 +232,34 @@ fn initial_stress(
     Ok(())
 }
 
+/// Facets of the sides of a region, or edges of its first side, with all nodes in it: cell and local nodes.
+fn loaded_parts(
+    integrator: &CellIntegrator<'_>,
+    region: &Region,
+    edges: bool,
+) -> Result<Vec<(usize, Vec<usize>)>, LoadError> {
+    let mesh = integrator.mesh;
+    let nodes = region_nodes(integrator, region);
+    // Every mesh edge on the edge of a box belongs to one facet of the first side.
+    let sides = region.sides.iter().take(if edges { 1 } else { usize::MAX });
+    let mut parts = Vec::new();
+    for facet in sides.filter_map(|side| mesh.sides.get(side)).flatten() {
+        let (cell, local) = (mesh.cell(facet.cell), mesh.kind.facets()[facet.local]);
+        let edge = |i: usize| vec![local[i], local[(i + 1) % local.len()]];
+        let own = match edges {
+            true => (0..local.len()).map(edge).collect(),
+            false => vec![local.to_vec()],
+        };
+        let held = |k: &usize| nodes.binary_search(&(cell[*k] as usize)).is_ok();
+        let own = own.into_iter().filter(|part| part.iter().all(held));
+        parts.extend(own.map(|part| (facet.cell, part)));
+    }
+    match parts.is_empty() {
+        true => Err(LoadError::Empty(if edges { "edge" } else { "facet" })),
+        false => Ok(parts),
+    }
+}
+
 /// Traction on the facets of a side; `density(cell, x, region, n)` is the force per area for the outward normal n.
 fn facet_force(
     integrator: &CellIntegrator<'_>,
@@ -240,54 +268,35 @@ fn facet_force(
     force: &mut [f64],
     density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
 ) -> Result<(), LoadError> {
-    let mesh = integrator.mesh;
-    let nodes = region_nodes(integrator, region);
-    let mut loaded = false;
-    for &facet in region
-        .sides
-        .iter()
-        .flat_map(|side| mesh.sides.get(side).into_iter().flatten())
-    {
-        if !mesh
-            .facet_nodes(facet)
-            .all(|n| nodes.binary_search(&n).is_ok())
-        {
-            continue;
-        }
-        loaded = true;
-        let local = mesh.kind.facets()[facet.local];
-        for (part, region) in divided(integrator, facet.cell, local) {
-            if mesh.dim() == 2 {
+    for (cell, local) in loaded_parts(integrator, region, false)? {
+        for (part, region) in divided(integrator, cell, &local) {
+            let mut add = |normal: Point, points: Vec<(WeightedPoint, CellRegion)>| {
+                let density = |cell, x: &Point, region| density(cell, x, region, &normal);
+                add_points(integrator, cell, &points, &density, force)
+            };
+            if integrator.mesh.dim() == 2 {
                 let (p, q) = (part[0], part[1]);
                 let d = sub(&q, &p);
                 let length = norm(&d);
-                let normal = [d[1] / length, -d[0] / length, 0.0];
-                let points = loaded_segment(integrator, rule, facet.cell, &p, &q, region);
-                let density = |cell, x: &Point, region| density(cell, x, region, &normal);
-                add_points(integrator, facet.cell, &points, &density, force)?;
-            } else {
-                for t in fan(&part) {
-                    let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
-                    let size = norm(&normal);
-                    if size > 0.0 {
-                        let normal = normal.map(|v| v / size);
-                        let points = match rule {
-                            Rule::Fixed => triangle(&t),
-                            Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
-                        };
-                        let points: Vec<_> = points.into_iter().map(|p| (p, region)).collect();
-                        let density = |cell, x: &Point, region| density(cell, x, region, &normal);
-                        add_points(integrator, facet.cell, &points, &density, force)?;
-                    }
+                let points = loaded_segment(integrator, rule, cell, [&p, &q], region);
+                add([d[1] / length, -d[0] / length, 0.0], points)?;
+                continue;
+            }
+            for t in fan(&part) {
+                let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
+                let size = norm(&normal);
+                if size > 0.0 {
+                    let points = match rule {
+                        Rule::Fixed => triangle(&t),
+                        Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
+                    };
+                    let points = points.into_iter().map(|p| (p, region));
+                    add(normal.map(|v| v / size), points.collect())?;
                 }
             }
         }
     }
-    if loaded {
-        Ok(())
-    } else {
-        Err(LoadError::Empty("facet"))
-    }
+    Ok(())
 }
 
 /// An edge or facet between local nodes, divided among the regions of the cell.
@@ -305,8 +314,7 @@ fn loaded_segment(
     integrator: &CellIntegrator<'_>,
     rule: Rule,
     cell: usize,
-    p: &Point,
-    q: &Point,
+    [p, q]: [&Point; 2],
     region: CellRegion,
 ) -> Vec<(WeightedPoint, CellRegion)> {
     let n = if integrator.enrichment.has_branch(cell) {
@@ -329,45 +337,13 @@ fn line_force(
     line: &[f64],
     force: &mut [f64],
 ) -> Result<(), LoadError> {
-    let mesh = integrator.mesh;
-    let nodes = region_nodes(integrator, region);
     let density = [line[0], line[1], third(line)];
-    let mut loaded = false;
-    // Every mesh edge on the box edge belongs to one facet of the first side.
-    for &facet in region
-        .sides
-        .first()
-        .and_then(|side| mesh.sides.get(side))
-        .into_iter()
-        .flatten()
-    {
-        let local = mesh.kind.facets()[facet.local];
-        let cell = mesh.cell(facet.cell);
-        for i in 0..local.len() {
-            let ends = [local[i], local[(i + 1) % local.len()]];
-            if !ends
-                .iter()
-                .all(|&k| nodes.binary_search(&(cell[k] as usize)).is_ok())
-            {
-                continue;
-            }
-            loaded = true;
-            for (part, region) in divided(integrator, facet.cell, &ends) {
-                let points = loaded_segment(
-                    integrator,
-                    Rule::Fixed,
-                    facet.cell,
-                    &part[0],
-                    &part[1],
-                    region,
-                );
-                add_points(integrator, facet.cell, &points, &|_, _, _| density, force)?;
-            }
+    for (cell, ends) in loaded_parts(integrator, region, true)? {
+        for (part, region) in divided(integrator, cell, &ends) {
+            let ends = [&part[0], &part[1]];
+            let points = loaded_segment(integrator, Rule::Fixed, cell, ends, region);
+            add_points(integrator, cell, &points, &|_, _, _| density, force)?;
         }
     }
-    if loaded {
-        Ok(())
-    } else {
-        Err(LoadError::Empty("edge"))
-    }
+    Ok(())
 }

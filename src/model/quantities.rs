@@ -11,8 +11,7 @@ use crate::model::loading::Loading;
 /// One quantity of interest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
-    /// reaction, displacement, contact_force, points_open, points_stick, points_slip, max_gap, max_penetration,
-    /// max_penetration_sampled, max_slip, mean_slip, dissipation, strain_energy, …
+    /// One of those that [`unit`] knows.
     pub name: String,
     /// Place: a side, a probe, a crack (`crack-1`), or empty.
     pub at: String,
@@ -155,36 +154,56 @@ impl Snapshot {
     }
 }
 
-const AXES: [&str; 3] = ["x", "y", "z"];
-const LOCAL: [&str; 3] = ["n", "a", "b"];
+/// Components in space.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+/// Components at a crack: normal and tangential.
+pub const LOCAL: [&str; 3] = ["n", "a", "b"];
+
+/// Unit of forces: in 2D per metre of thickness.
+fn force_unit(dim: usize) -> &'static str {
+    if dim == 2 { "N/m" } else { "N" }
+}
+
+/// Unit of a quantity of interest in a body of that dimension; none where there is no such quantity.
+pub fn unit(name: &str, dim: usize) -> Option<&'static str> {
+    Some(match name {
+        "reaction" | "contact_force" => force_unit(dim),
+        "displacement" | "mean_slip" | "max_slip" => "m",
+        "max_gap" | "max_penetration" | "max_penetration_sampled" => "m",
+        "points_open" | "points_stick" | "points_slip" | "energy_identity" => "-",
+        "dissipation" | "strain_energy" if dim == 2 => "J/m",
+        "dissipation" | "strain_energy" => "J",
+        _ => return None,
+    })
+}
+
+/// Length of the tangential part of a vector at a contact point.
+pub(crate) fn tangential(values: &[f64], dim: usize, point: usize) -> f64 {
+    let own = &values[point * dim + 1..(point + 1) * dim];
+    own.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
 
 /// All quantities of interest.
 pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     let dim = body.mesh.dim();
-    let (force_unit, energy_unit) = if dim == 2 { ("N/m", "J/m") } else { ("N", "J") };
     let mut rows = Vec::new();
-    let mut push = |name: &str, at: &str, component: &str, value: f64, unit: &str| {
+    let mut push = |name: &str, at: &str, component: &str, value: f64| {
         rows.push(Quantity {
             name: name.into(),
             at: at.into(),
             component: component.into(),
             value,
-            unit: unit.into(),
+            unit: unit(name, dim).unwrap_or_default().into(),
         });
     };
     for (at, component, total) in reactions(case, body, now) {
-        push("reaction", &at, AXES[component], total, force_unit);
+        push("reaction", &at, AXES[component], total);
     }
     for probe in &case.probes {
         if let Some(node) = body.mesh.node_at(&probe.point) {
             for a in 0..dim {
-                push(
-                    "displacement",
-                    &probe.name,
-                    AXES[a],
-                    now.u[node * dim + a],
-                    "m",
-                );
+                let value = now.u[node * dim + a];
+                push("displacement", &probe.name, AXES[a], value);
             }
         }
     }
@@ -207,7 +226,7 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
         if !at.is_empty() {
             for c in 0..dim {
                 let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
-                push("contact_force", &at, LOCAL[c], total, force_unit);
+                push("contact_force", &at, LOCAL[c], total);
             }
         }
         for (name, status) in [
@@ -216,39 +235,27 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
             ("points_slip", PointStatus::Slip),
         ] {
             let count = own.iter().filter(|&&i| now.status[i] == status).count();
-            push(name, &at, "", count as f64, "-");
+            push(name, &at, "", count as f64);
         }
         let largest = |f: &dyn Fn(usize) -> f64| own.iter().map(|&i| f(i)).fold(0.0, f64::max);
-        push("max_gap", &at, "", largest(&|i| now.jump[i * dim]), "m");
-        push(
-            "max_penetration",
-            &at,
-            "",
-            largest(&|i| -now.jump[i * dim]),
-            "m",
-        );
-        push("max_penetration_sampled", &at, "", deepest, "m");
-        let slip = |i: usize| {
-            now.jump[i * dim + 1..(i + 1) * dim]
-                .iter()
-                .map(|v| v * v)
-                .sum::<f64>()
-                .sqrt()
-        };
-        push("max_slip", &at, "", largest(&slip), "m");
+        push("max_gap", &at, "", largest(&|i| now.jump[i * dim]));
+        push("max_penetration", &at, "", largest(&|i| -now.jump[i * dim]));
+        push("max_penetration_sampled", &at, "", deepest);
+        let slip = |i: usize| tangential(&now.jump, dim, i);
+        push("max_slip", &at, "", largest(&slip));
         if !at.is_empty() {
             // Mean over the surface of the crack: NaN for one without contact points.
             let area: f64 = own.iter().map(|&i| body.points[i].weight).sum();
             for c in 1..dim {
                 let part = |&i: &usize| body.points[i].weight * now.jump[i * dim + c];
                 let mean = own.iter().map(part).sum::<f64>() / area;
-                push("mean_slip", &at, LOCAL[c], mean, "m");
+                push("mean_slip", &at, LOCAL[c], mean);
             }
         }
     }
-    push("dissipation", "", "", now.dissipation, energy_unit);
-    push("strain_energy", "", "", now.strain_energy, energy_unit);
-    push("energy_identity", "", "", now.energy_identity, "-");
+    push("dissipation", "", "", now.dissipation);
+    push("strain_energy", "", "", now.strain_energy);
+    push("energy_identity", "", "", now.energy_identity);
     rows
 }
 
@@ -320,7 +327,7 @@ pub fn point_states(body: &Body, now: &Snapshot) -> Vec<PointState> {
                 p_n: p[0],
                 p_a: p[1],
                 p_b: third(p),
-                force_unit: if dim == 2 { "N/m" } else { "N" }.into(),
+                force_unit: force_unit(dim).into(),
                 status: now.status[i].as_str().into(),
             }
         })

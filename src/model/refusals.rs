@@ -46,7 +46,7 @@ pub fn check_probes(case: &Case, mesh: &Mesh, enrichment: &Enrichment) -> Result
     for probe in &case.probes {
         let refuse = |allowed: &str, reason: &str| {
             let message = format!("probe `{}` {reason}", probe.name);
-            Err(case.error(&probe.span, case.text(&probe.span), allowed, message))
+            Err(case.refuse(&probe.span, allowed, message))
         };
         let Some(node) = mesh.node_at(&probe.point) else {
             return refuse("the place of a node of the mesh", "is at no node");
@@ -88,7 +88,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::ConformingTip { .. } => &spec.tip_span,
         _ => &spec.geometry_span,
     };
-    case.error(span, case.text(span), allowed, error)
+    case.refuse(span, allowed, error)
 }
 
 /// The error of a body that can move, at the crack that cuts a piece off or at the supports.
@@ -101,7 +101,7 @@ pub fn motion_error(case: &Case, error: &MotionError) -> CaseError {
         (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
         (_, None) => (&case.mesh.span, "at least one [[support]]"),
     };
-    case.error(span, case.text(span), allowed, error)
+    case.refuse(span, allowed, error)
 }
 
 /// The error of a load, at its region.
@@ -116,13 +116,8 @@ pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -
                 | LoadKind::Line(region, _) => &region.span,
                 LoadKind::Body(..) | LoadKind::ExactBody | LoadKind::InitialStress(_) => span,
             };
-            case.error(
-                span,
-                case.text(span),
-                "a region with facets or edges to load",
-                error,
-            )
-            .into()
+            let allowed = "a region with facets or edges to load";
+            case.refuse(span, allowed, error).into()
         }
     }
 }
@@ -130,10 +125,5 @@ pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -
 /// The error of a load on one side of a crack that does not part the body.
 pub fn one_sided_error(case: &Case, span: &Span) -> CaseError {
     let message = "the crack ends inside the body: it has no sides away from its faces";
-    case.error(
-        span,
-        case.text(span),
-        "a crack through the whole body",
-        message,
-    )
+    case.refuse(span, "a crack through the whole body", message)
 }

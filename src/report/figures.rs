@@ -1,4 +1,4 @@
-//! The kinds of figures, one file each: rows in, SVG files in a [`Bundle`] out.
+//! The kinds of figures, one file each: rows in, SVG files in a [`Bundle`](super::Bundle) out.
 //!
 //! A kind declares itself in its `KIND` and is listed in [`CATALOGUE`]; manual and page follow from there. Times, profiles
 //! and errors stand beside honest verdicts only: runs that solved the contact laws or, named as such, their own ones.
@@ -11,6 +11,7 @@ pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
 pub mod infsup;
+mod kind;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
@@ -23,37 +24,7 @@ pub mod time_to_accuracy;
 pub mod work_precision;
 
 use super::tables::Chapter;
-use super::{Bundle, ReportError};
-
-/// A kind of figure, as the reader knows it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kind {
-    /// File name in `figures/`; `*` stands for what tells the files of a kind apart: case, mesh, contact space, method,
-    /// friction coefficient, crack, quantity, tier.
-    pub file: &'static str,
-    /// The reader's question that it answers.
-    pub question: &'static str,
-    /// What is drawn, for the manual.
-    pub shows: &'static str,
-}
-
-impl Kind {
-    /// Whether a file of this name (without its folder) is of this kind.
-    pub fn has(&self, name: &str) -> bool {
-        match self.file.split_once('*') {
-            Some((start, end)) => name.starts_with(start) && name.ends_with(end),
-            None => name == self.file,
-        }
-    }
-
-    /// Adds a figure of this kind, where there is something to draw.
-    fn add(&self, bundle: &mut Bundle, own: &str, svg: Option<String>) -> Result<(), ReportError> {
-        if let Some(svg) = svg {
-            bundle.add(format!("figures/{}", self.file.replacen('*', own, 1)), svg)?;
-        }
-        Ok(())
-    }
-}
+pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
 pub static CATALOGUE: [(Chapter, &Kind); 17] = [

@@ -153,5 +153,5 @@ fn option_error(case: &Case, spec: &MethodSpec, error: &OptionError) -> CaseErro
     // The last one of the name: a repeated option is wrong where it stands again.
     let position = spec.options.iter().rposition(|(given, _)| given == name);
     let span = position.map_or(&spec.span, |i| &spec.option_spans[i]);
-    case.error(span, case.text(span), allowed, error)
+    case.refuse(span, allowed, error)
 }

@@ -12,8 +12,7 @@ use std::f64::consts::PI;
 use stickslip_xfem::cut::crack::{Crack, Geometry};
 use stickslip_xfem::cut::placement::cells_at;
 
-use crate::case::Case;
-use crate::model::loading::Loading;
+use crate::run::load_path::Posed;
 use crate::run::record::ExactRow;
 
 /// Intervals N of the curve: half a millimetre at most on a figure of 85 mm.
@@ -26,7 +25,13 @@ const INSIDE: f64 = 1e-12;
 const ROUND_OFF: f64 = 1e-12;
 
 /// The closed form along a 2D crack at the end of every increment; nothing where the case names none, or in a solid.
-pub fn exact_rows(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<ExactRow> {
+pub fn exact_rows(posed: &Posed<'_>) -> Vec<ExactRow> {
+    let Posed {
+        case,
+        loading,
+        friction,
+        ..
+    } = posed;
     let mesh = &loading.body().mesh;
     let Some(spec) = case.cracks.first().filter(|_| case.exact.is_some()) else {
         return Vec::new();
@@ -51,7 +56,7 @@ pub fn exact_rows(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<Exac
             let (traction, jump) = (field.traction(x), field.jump(x));
             ExactRow {
                 case: case.name.clone(),
-                friction,
+                friction: *friction,
                 increment,
                 crack: 1,
                 s_m: *s,

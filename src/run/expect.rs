@@ -1,7 +1,8 @@
 //! Expected numbers of a case against what its runs found.
 
-use crate::case::{Case, CaseError, Expect, ExpectKind, Tolerance};
+use crate::case::{Case, CaseError, Expect, Tolerance};
 use crate::model::boundary::region_name;
+use crate::model::quantities::{AXES, LOCAL, unit};
 use crate::run::choice::Choice;
 use crate::run::record::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Results, RunKey};
 
@@ -10,44 +11,29 @@ use crate::run::record::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Resu
 /// # Errors
 /// The first such expectation, at its place in the file.
 pub fn check(case: &Case) -> Result<(), CaseError> {
-    let plane = case.model.dim() == 2;
-    let (force, energy) = if plane { ("N/m", "J/m") } else { ("N", "J") };
-    let axes: &[&str] = if plane { &["x", "y"] } else { &["x", "y", "z"] };
-    let local: &[&str] = if plane { &["n", "a"] } else { &["n", "a", "b"] };
-    let cracks: Vec<String> = (1..=case.cracks.len())
-        .map(|i| format!("crack-{i}"))
-        .collect();
-    let body_or_crack = || {
-        std::iter::once(String::new())
-            .chain(cracks.clone())
-            .collect::<Vec<_>>()
-    };
+    let dim = case.model.dim();
+    let cracks = || (1..=case.cracks.len()).map(|i| format!("crack-{i}"));
+    let anywhere = || std::iter::once(String::new()).chain(cracks()).collect();
     for expect in &case.expects {
-        let (places, components, unit): (Vec<String>, &[&str], &str) =
-            match expect.quantity.as_str() {
-                "reaction" => (
-                    case.supports.iter().map(|s| region_name(&s.on)).collect(),
-                    axes,
-                    force,
-                ),
-                "displacement" => (
-                    case.probes.iter().map(|p| p.name.clone()).collect(),
-                    axes,
-                    "m",
-                ),
-                "contact_force" => (cracks.clone(), local, force),
-                "points_open" | "points_stick" | "points_slip" => (body_or_crack(), &[""], "-"),
-                "max_gap" | "max_penetration" | "max_penetration_sampled" | "max_slip" => {
-                    (body_or_crack(), &[""], "m")
-                }
-                "mean_slip" => (cracks.clone(), &local[1..], "m"),
-                "dissipation" | "strain_energy" => (vec![String::new()], &[""], energy),
-                "energy_identity" => (vec![String::new()], &[""], "-"),
-                unknown => {
-                    let allowed = "a quantity of quantities.csv, see docs/schema.md";
-                    return Err(case.error(&expect.span, unknown, allowed, "unknown quantity"));
-                }
-            };
+        let name = expect.quantity.as_str();
+        let Some(unit) = unit(name, dim) else {
+            let allowed = "a quantity of quantities.csv, see docs/schema.md";
+            return Err(case.error(&expect.span, name, allowed, "unknown quantity"));
+        };
+        let (places, components): (Vec<String>, &[&str]) = match name {
+            "reaction" => {
+                let places = case.supports.iter().map(|s| region_name(&s.on));
+                (places.collect(), &AXES[..dim])
+            }
+            "displacement" => {
+                let places = case.probes.iter().map(|p| p.name.clone());
+                (places.collect(), &AXES[..dim])
+            }
+            "contact_force" => (cracks().collect(), &LOCAL[..dim]),
+            "mean_slip" => (cracks().collect(), &LOCAL[1..dim]),
+            "dissipation" | "strain_energy" | "energy_identity" => (vec![String::new()], &[""]),
+            _ => (anywhere(), &[""]),
+        };
         let quote = |list: &[&str]| {
             list.iter()
                 .map(|x| format!("{x:?}"))
@@ -141,13 +127,7 @@ fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
         found,
         allowed,
         unit: expect.unit.clone(),
-        kind: match expect.kind {
-            ExpectKind::Analytic => "analytic",
-            ExpectKind::Published => "published",
-            ExpectKind::Independent => "independent",
-            ExpectKind::Snapshot => "snapshot",
-        }
-        .into(),
+        kind: expect.kind.name().into(),
         source: expect.source.clone(),
         verdict: verdict.into(),
     }

@@ -1,14 +1,57 @@
 //! The load path of one run: increment after increment, each from the state in which the one before ended.
 
-use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
+use stickslip_methods::{ContactState, ContactSystem, Increment};
 
 use crate::case::Case;
+use crate::model::body::{Body, BodyError};
 use crate::model::loading::Loading;
 use crate::model::quantities::Snapshot;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::record::{RunKey, RunRow};
 use crate::run::verdict::{Accuracy, Verdict};
+
+/// A body with its contact system at one friction, and what acts on it: what all methods share.
+pub struct Posed<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// What acts on the body.
+    pub loading: Loading<'a>,
+    /// The contact system.
+    pub system: ContactSystem,
+    /// Friction coefficient that names the runs: that of the first crack, 0 without cracks.
+    pub friction: f64,
+}
+
+impl<'a> Posed<'a> {
+    /// `friction`: coefficient of every crack.
+    ///
+    /// # Errors
+    /// Coefficients that the system or the closed form of the case refuses.
+    pub fn new(body: &'a Body, case: &'a Case, friction: &[f64]) -> Result<Self, BodyError> {
+        let of_point = body.points.iter().map(|p| friction[p.crack]).collect();
+        let system = ContactSystem::new(body.elastic.clone(), of_point)?;
+        let first = friction.first().copied().unwrap_or(0.0);
+        Ok(Self {
+            case,
+            loading: Loading::new(body, case, first)?,
+            system,
+            friction: first,
+        })
+    }
+
+    /// The run of a method.
+    pub fn run(&'a self, choice: &'a Choice, accuracy: Accuracy) -> LoadPathRun<'a> {
+        LoadPathRun {
+            case: self.case,
+            loading: &self.loading,
+            system: &self.system,
+            friction: self.friction,
+            choice,
+            accuracy,
+        }
+    }
+}
 
 /// One run before it starts.
 #[derive(Clone, Copy)]
@@ -26,6 +69,9 @@ pub struct LoadPathRun<'a> {
     /// Accuracy asked for.
     pub accuracy: Accuracy,
 }
+
+/// Is shown an increment, with the mechanics at its end where the verdict is honest.
+pub type Witness<'a> = dyn FnMut(&RunKey, &JudgedIncrement, Option<&Snapshot>) + 'a;
 
 /// How a load path ended.
 pub struct PathEnd {
@@ -61,12 +107,13 @@ impl LoadPathRun<'_> {
 
     /// Follows the path, up to the first increment without an honest verdict: what came after would start from a state
     /// nobody vouches for. `each` is shown every increment, with the mechanics at its end where the verdict is honest.
-    pub fn follow(
-        &self,
-        each: &mut dyn FnMut(&RunKey, &JudgedIncrement, Option<&Snapshot>),
-    ) -> PathEnd {
+    pub fn follow(&self, each: &mut Witness<'_>) -> PathEnd {
+        self.follow_to(self.case.path.increments, each)
+    }
+
+    /// As [`follow`](Self::follow), no farther than an increment.
+    pub fn follow_to(&self, last: usize, each: &mut Witness<'_>) -> PathEnd {
         let Self {
-            case,
             loading,
             system,
             choice,
@@ -91,9 +138,8 @@ impl LoadPathRun<'_> {
         };
         let mut state = ContactState::zero(system);
         let mut before = Snapshot::virgin(body);
-        // Nothing acts before the first increment, whatever the histories say at t = 0.
-        let mut start_load = Load::zero(&body.elastic);
-        for increment in 1..=case.path.increments {
+        let mut start_load = loading.at(0);
+        for increment in 1..=last {
             end.key.increment = increment;
             if let Some(now) = end.now.take() {
                 before = now;

@@ -1,20 +1,20 @@
 //! Runs: a case times its meshes, friction values and methods, increment by increment.
 
-use std::sync::Arc;
+use std::sync::Once;
 
 use rayon::prelude::*;
-use stickslip_methods::{ContactSystem, Tier};
+use stickslip_methods::Tier;
 
-use crate::case::{Case, CaseError};
+use crate::case::{Case, CaseError, shipped};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::field_mesh::field_step;
-use crate::model::loading::Loading;
 use crate::model::quantities::{point_states, quantities};
 use crate::run::choice::{Choice, choices};
 use crate::run::exact_curve::exact_rows;
 use crate::run::expect::{self, expectation_rows};
-use crate::run::load_path::LoadPathRun;
+use crate::run::load_path::{LoadPathRun, Posed};
 use crate::run::record::{Results, RunFields, RunRow};
+use crate::run::registry::methods;
 use crate::run::verdict::Accuracy;
 
 /// How to run cases.
@@ -72,17 +72,6 @@ impl From<CaseError> for RunError {
     }
 }
 
-/// One run before it starts.
-struct Cell<'a> {
-    body: &'a Body,
-    loading: Arc<Loading<'a>>,
-    friction: f64,
-    system: Arc<ContactSystem>,
-    choice: &'a Choice,
-    refine: usize,
-    fields: bool,
-}
-
 /// Runs a case for some methods and gathers everything it produced.
 pub fn run_case(
     case: &Case,
@@ -98,53 +87,38 @@ pub fn run_case(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(settings.jobs)
         .build()?;
+    let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
     let mut results = Results::default();
+    if settings.jobs == 1 {
+        warm_up(case.model.dim());
+    }
     for &refine in &case.sweep.refine {
-        let frictionless = frictions
-            .iter()
-            .all(|per_crack| per_crack.iter().all(|&mu| mu == 0.0));
-        let needs = Needs {
-            frictionless,
-            traction: choices.iter().any(Choice::needs_traction),
-        };
-        let body = Body::new(case, refine, needs)?;
-        let mut cells = Vec::new();
-        for per_crack in &frictions {
-            let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
-            let system = Arc::new(
-                ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?,
-            );
-            let mu = per_crack.first().copied().unwrap_or(0.0);
-            let loading = Arc::new(Loading::new(&body, case, mu)?);
-            // The same on every mesh.
-            if Some(&refine) == case.sweep.refine.first() {
-                results.exact.extend(exact_rows(case, &loading, mu));
-            }
-            let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
-            for (number, choice) in choices.iter().enumerate() {
-                cells.push(Cell {
-                    fields: match settings.fields {
-                        Fields::None => false,
-                        Fields::First => number == first,
-                        Fields::All => true,
-                    },
-                    body: &body,
-                    loading: loading.clone(),
-                    friction: mu,
-                    system: system.clone(),
-                    choice,
-                    refine,
-                });
-            }
+        let body = Body::new(case, refine, needs(&frictions, &choices))?;
+        let posed = (frictions.iter())
+            .map(|friction| Posed::new(&body, case, friction))
+            .collect::<Result<Vec<_>, _>>()?;
+        // The same on every mesh.
+        if Some(&refine) == case.sweep.refine.first() {
+            results.exact.extend(posed.iter().flat_map(exact_rows));
         }
-        let run = |cell: &Cell<'_>| {
-            let results = run_cell(case, cell, accuracy);
+        let run = |&(posed, number): &(&Posed<'_>, usize)| {
+            let choice = &choices[number];
+            let fields = match settings.fields {
+                Fields::None => false,
+                Fields::First => number == first,
+                Fields::All => true,
+            };
+            let results = run_path(&posed.run(choice, accuracy), refine, fields);
+            let Posed { friction, .. } = posed;
             progress.done(&format!(
-                "{} {} mu={} {}",
-                case.name, body.label, cell.friction, cell.choice.label
+                "{} {} mu={friction} {}",
+                case.name, body.label, choice.label
             ));
             results
         };
+        let cells: Vec<(&Posed<'_>, usize)> = (posed.iter())
+            .flat_map(|posed| (0..choices.len()).map(move |number| (posed, number)))
+            .collect();
         // One after the other unless asked otherwise, so that times mean something.
         let parts: Vec<Results> = if settings.jobs > 1 {
             pool.install(|| cells.par_iter().map(run).collect())
@@ -161,6 +135,37 @@ pub fn run_case(
     Ok(results)
 }
 
+/// Runs a small shipped case of a dimension, once in a program: the first mesh would otherwise pay for starting threads and
+/// for memory that is touched for the first time, and look slower than the second. To be called before times are taken.
+pub fn warm_up(dim: usize) {
+    static PLANE: Once = Once::new();
+    static SOLID: Once = Once::new();
+    let (name, once) = match dim {
+        2 => ("plate_mesh1", &PLANE),
+        _ => ("manufactured_slip_3d", &SOLID),
+    };
+    let run = || -> Option<()> {
+        let case = shipped::find(name)?.ok()?;
+        let choice = Choice::new(methods().first()?, &[]).ok()?;
+        let friction: Vec<f64> = case.cracks.iter().map(|crack| crack.friction).collect();
+        let body = Body::new(&case, 1, Needs::default()).ok()?;
+        let posed = Posed::new(&body, &case, &friction).ok()?;
+        let path = posed.run(&choice, Accuracy::of(&case, case.tier));
+        path.follow(&mut |_, _, _| ());
+        Some(())
+    };
+    // What fails here fails in the run itself too, and is told there.
+    once.call_once(|| _ = run());
+}
+
+/// What the runs of some methods ask of a body, given the friction coefficients per run and crack.
+pub fn needs(frictions: &[Vec<f64>], choices: &[Choice]) -> Needs {
+    Needs {
+        frictionless: frictions.iter().flatten().all(|&mu| mu == 0.0),
+        traction: choices.iter().any(Choice::needs_traction),
+    }
+}
+
 /// Friction coefficients per run and crack.
 pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
     if case.sweep.friction.is_empty() {
@@ -174,23 +179,15 @@ pub fn friction_values(case: &Case) -> Vec<Vec<f64>> {
 }
 
 /// The load path of one run.
-fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
-    let Cell { body, choice, .. } = *cell;
-    let path = LoadPathRun {
-        case,
-        loading: &cell.loading,
-        system: &cell.system,
-        friction: cell.friction,
-        choice,
-        accuracy,
-    };
+fn run_path(path: &LoadPathRun<'_>, refine: usize, fields: bool) -> Results {
+    let (case, body) = (path.case, path.loading.body());
     let (mut results, mut steps) = (Results::default(), Vec::new());
     let end = path.follow(&mut |key, increment, now| {
         results.runs.push(path.row(key, increment));
         results.history.extend(increment.history_rows(key));
         let Some(now) = now else { return };
         results.add_found(key, quantities(case, body, now), point_states(body, now));
-        if cell.fields {
+        if fields {
             steps.push(field_step(body, now));
         }
     });
@@ -199,7 +196,7 @@ fn run_cell(case: &Case, cell: &Cell<'_>, accuracy: Accuracy) -> Results {
         return results;
     }
     let key = end.key;
-    results.expectations = expectation_rows(case, choice, cell.refine, &key, &results);
+    results.expectations = expectation_rows(case, path.choice, refine, &key, &results);
     if !steps.is_empty() {
         results.fields.push(RunFields { key, steps });
     }

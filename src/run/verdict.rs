@@ -80,9 +80,24 @@ pub enum Verdict {
     OutOfMemory,
 }
 
-/// Declares [`VerdictKind`] with its names, so that no list of all kinds can lack one.
+/// What a kind of verdict says about a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    /// The run did what it said.
+    Honest,
+    /// The method ended with a claim, right or wrong.
+    Claims,
+    /// A method that was to solve a case did not.
+    Failure,
+    /// The method or the program is wrong.
+    Wrong,
+    /// Time or memory ended the run.
+    Limit,
+}
+
+/// Declares [`VerdictKind`] with names and marks, so that no list of all kinds can lack one.
 macro_rules! verdict_kinds {
-    ($($kind:ident = $name:literal,)*) => {
+    ($($kind:ident = $name:literal: $($mark:ident)*,)*) => {
         /// A [`Verdict`] without its details.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs, reason = "as in `Verdict`")]
@@ -96,19 +111,24 @@ macro_rules! verdict_kinds {
             pub fn name(self) -> &'static str {
                 match self { $(Self::$kind => $name,)* }
             }
+
+            fn has(self, mark: Mark) -> bool {
+                let marks: &[Mark] = match self { $(Self::$kind => &[$(Mark::$mark),*],)* };
+                marks.contains(&mark)
+            }
         }
     };
 }
 
 verdict_kinds! {
-    Solved = "solved",
-    Approximate = "approximate",
-    FalseClaim = "false-claim",
-    GaveUp = "gave-up",
-    Refused = "refused",
-    Crashed = "crashed",
-    TimedOut = "timed-out",
-    OutOfMemory = "out-of-memory",
+    Solved = "solved": Honest Claims,
+    Approximate = "approximate": Honest Claims,
+    FalseClaim = "false-claim": Claims Failure Wrong,
+    GaveUp = "gave-up": Failure,
+    Refused = "refused": ,
+    Crashed = "crashed": Failure Wrong,
+    TimedOut = "timed-out": Failure Limit,
+    OutOfMemory = "out-of-memory": Failure Limit,
 }
 
 /// How a method ends without a claim: every status but the first, which is that of a claim.
@@ -179,83 +199,39 @@ impl Verdict {
 
     /// True if the run did what it said: its times may be published.
     pub fn is_honest(&self) -> bool {
-        match self.kind() {
-            VerdictKind::Solved | VerdictKind::Approximate => true,
-            VerdictKind::FalseClaim
-            | VerdictKind::GaveUp
-            | VerdictKind::Refused
-            | VerdictKind::Crashed
-            | VerdictKind::TimedOut
-            | VerdictKind::OutOfMemory => false,
-        }
+        self.kind().has(Mark::Honest)
     }
 
     /// True if the method ended with a claim, right or wrong.
     pub fn claims(&self) -> bool {
-        match self.kind() {
-            VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::FalseClaim => true,
-            VerdictKind::GaveUp
-            | VerdictKind::Refused
-            | VerdictKind::Crashed
-            | VerdictKind::TimedOut
-            | VerdictKind::OutOfMemory => false,
-        }
+        self.kind().has(Mark::Claims)
     }
 
     /// True if the laws claimed hold as claimed, and the contact laws to that tier as far as a verdict tells: that of a
     /// solved run was asked for.
     pub fn holds_to(&self, tier: Tier) -> bool {
         match self {
-            Verdict::Solved => true,
             Verdict::Approximate(reached) => reached.is_some_and(|reached| reached >= tier),
-            Verdict::FalseClaim
-            | Verdict::GaveUp(_)
-            | Verdict::Refused(_)
-            | Verdict::Crashed(_)
-            | Verdict::TimedOut
-            | Verdict::OutOfMemory => false,
+            other => other.is_honest(),
         }
     }
 
     /// True if the command must report failure where all methods were asked to solve a case.
     pub fn is_failure(&self) -> bool {
-        match self.kind() {
-            VerdictKind::FalseClaim
-            | VerdictKind::GaveUp
-            | VerdictKind::Crashed
-            | VerdictKind::TimedOut
-            | VerdictKind::OutOfMemory => true,
-            VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::Refused => false,
-        }
+        self.kind().has(Mark::Failure)
     }
 
     /// True if the method or the program is wrong. Giving up is not, nor is a limit: where methods are compared both are
     /// results.
     pub fn is_wrong(&self) -> bool {
-        match self.kind() {
-            VerdictKind::FalseClaim | VerdictKind::Crashed => true,
-            VerdictKind::Solved
-            | VerdictKind::Approximate
-            | VerdictKind::GaveUp
-            | VerdictKind::Refused
-            | VerdictKind::TimedOut
-            | VerdictKind::OutOfMemory => false,
-        }
+        self.kind().has(Mark::Wrong)
     }
 }
 
 impl VerdictKind {
     /// True if time or memory ended the run: it says something about these alone.
     pub fn is_limit(self) -> bool {
-        match self {
-            Self::TimedOut | Self::OutOfMemory => true,
-            Self::Solved
-            | Self::Approximate
-            | Self::FalseClaim
-            | Self::GaveUp
-            | Self::Refused
-            | Self::Crashed => false,
-        }
+        self.has(Mark::Limit)
     }
 }
 

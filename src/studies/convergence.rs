@@ -9,22 +9,20 @@ pub mod orders;
 mod sample;
 mod tips;
 
-pub use limit::{Limit, limit, slope};
+pub use limit::{Limit, limit, linear_limit, slope};
 pub use sample::{Measured, Sample, Seconds, Value, Variant};
 pub use tips::{Regularity, regularity};
 
 use std::collections::BTreeSet;
 
-use stickslip_methods::ContactSystem;
-
 use crate::case::{Case, ContactSpace, Tip};
-use crate::model::body::{Body, BodyError, Needs};
+use crate::model::body::{Body, BodyError};
 use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
 use crate::model::quantities::{Snapshot, quantities};
 use crate::run::choice::Choice;
-use crate::run::load_path::LoadPathRun;
-use crate::run::run_case::{Progress, RunError, friction_values};
+use crate::run::load_path::Posed;
+use crate::run::run_case::{Progress, RunError, friction_values, needs, warm_up};
 use crate::run::verdict::Accuracy;
 
 /// Refinement factors where neither the study nor the case names several.
@@ -127,24 +125,16 @@ pub fn run(
     let variants: Vec<Case> = combinations
         .map(|(space, tip)| variant(case, space, tip))
         .collect();
-    let needs = Needs {
-        frictionless: frictions.iter().flatten().all(|&mu| mu == 0.0),
-        traction: plan.choice.needs_traction(),
-    };
+    let needs = needs(&frictions, std::slice::from_ref(&plan.choice));
     progress.plan(variants.len() * meshes.len() * frictions.len());
-    // The first run of a program starts threads and fills caches: it is done twice, and timed once.
-    if let (Some(first), Some(&refine), Some(per_crack)) =
-        (variants.first(), meshes.first(), frictions.first())
-    {
-        let body = Body::new(first, refine, needs)?;
-        run_one(first, &body, refine, per_crack, &plan.choice, closed_form)?;
-    }
+    warm_up(case.model.dim());
     let mut samples = Vec::new();
     // A crack along cell facets has the same pairs in every space.
     let mut seen = BTreeSet::new();
     for variant in &variants {
         let tip = tips::label(variant);
         for &refine in &meshes {
+            // Goes before the next one comes: two would raise the peak of memory.
             let body = Body::new(variant, refine, needs)?;
             let new = seen.insert((body.space.clone(), tip.clone(), refine));
             for per_crack in &frictions {
@@ -181,24 +171,14 @@ fn run_one(
     choice: &Choice,
     closed_form: &ClosedForm<'_>,
 ) -> Result<Sample, RunError> {
-    let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
-    let system = ContactSystem::new(body.elastic.clone(), friction).map_err(BodyError::from)?;
-    let mu = per_crack.first().copied().unwrap_or(0.0);
-    let loading = Loading::new(body, case, mu)?;
-    let path = LoadPathRun {
-        case,
-        loading: &loading,
-        system: &system,
-        friction: mu,
-        choice,
-        accuracy: Accuracy::of(case, case.tier),
-    };
+    let posed = Posed::new(body, case, per_crack)?;
+    let path = posed.run(choice, Accuracy::of(case, case.tier));
     let mut rows = Vec::new();
     let end = path.follow(&mut |key, increment, _| rows.push(path.row(key, increment)));
     let key = end.key;
     let measured = match &end.now {
         None => Measured::Nothing,
-        Some(now) => match closed_form(&loading, now)? {
+        Some(now) => match closed_form(&posed.loading, now)? {
             Some(deviations) => Measured::Exact(deviations),
             None => Measured::Values(followed(case, body, now)),
         },

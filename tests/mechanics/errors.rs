@@ -92,7 +92,7 @@ fn the_interpolant_of_a_quadratic_field_has_its_known_error() {
         );
         assert!(
             rows.iter()
-                .all(|r| !["traction", "slip", "gap"].contains(&r.quantity))
+                .all(|r| !["traction", "slip", "gap"].contains(&r.quantity.as_str()))
         );
     }
 }

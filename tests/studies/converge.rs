@@ -57,8 +57,8 @@ fn power_law(case: &Case, body: &stickslip::model::body::Body) -> Vec<Deviation>
         Regularity::Tip => 0.5,
         _ => 1.0,
     };
-    let deviation = |quantity, at: &str, error| Deviation {
-        quantity,
+    let deviation = |quantity: &str, at: &str, error| Deviation {
+        quantity: quantity.into(),
         at: at.into(),
         found: 2.0 + error,
         exact: 2.0,

@@ -24,56 +24,14 @@ pub enum InterchangeError {
         /// What was found.
         reason: String,
     },
-    /// A group or dataset the layout demands is not there.
-    #[error("`{}`: {dataset} is missing", path.display())]
-    Missing {
+    /// A part that is not what the layout has there: a dataset of another type or length, a matrix of another shape.
+    #[error("`{}`: {found}, expected {allowed}", path.display())]
+    Unexpected {
         /// Which file.
         path: PathBuf,
-        /// Group or dataset.
-        dataset: String,
-    },
-    /// Neither or both of the two problems.
-    #[error("`{}`: {found}, expected one of the groups /fclib_local and /fclib_global", path.display())]
-    NoProblem {
-        /// Which file.
-        path: PathBuf,
-        /// What is there.
-        found: &'static str,
-    },
-    /// A dataset of another type.
-    #[error("`{}`: {dataset} holds {found}, expected {allowed}", path.display())]
-    Type {
-        /// Which file.
-        path: PathBuf,
-        /// Which dataset.
-        dataset: String,
-        /// Type found.
+        /// The part, and what it is.
         found: String,
-        /// Types that can be read.
-        allowed: &'static str,
-    },
-    /// A dataset of another length.
-    #[error("`{}`: {dataset} has {found} entries, expected {allowed}", path.display())]
-    Length {
-        /// Which file.
-        path: PathBuf,
-        /// Which dataset.
-        dataset: String,
-        /// Length found.
-        found: u64,
-        /// Length expected, in words where it is a range.
-        allowed: String,
-    },
-    /// A matrix of another shape.
-    #[error("`{}`: a matrix of {rows} × {cols}, expected {allowed}", path.display())]
-    Shape {
-        /// Which file.
-        path: PathBuf,
-        /// Rows found.
-        rows: usize,
-        /// Columns found.
-        cols: usize,
-        /// Shape expected.
+        /// What it may be.
         allowed: String,
     },
     /// A number out of range.
@@ -90,12 +48,12 @@ pub enum InterchangeError {
         /// What is allowed there.
         allowed: String,
     },
-    /// A problem in the right layout that asks for something not solved here.
+    /// A file that lacks a part, or asks for something not solved here.
     #[error("`{}`: {what}", path.display())]
-    Unsupported {
+    Refused {
         /// Which file.
         path: PathBuf,
-        /// What it asks for.
+        /// Why.
         what: String,
     },
     /// A line of a text file.
@@ -127,19 +85,38 @@ fn at(dataset: &str) -> String {
 }
 
 impl InterchangeError {
-    pub(super) fn value(
-        path: &Path,
-        dataset: impl Into<String>,
-        index: usize,
-        value: impl ToString,
-        allowed: impl Into<String>,
-    ) -> Self {
-        Self::Value {
+    /// A part that is not what the layout has there.
+    pub fn unexpected(path: &Path, found: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self::Unexpected {
             path: path.into(),
-            dataset: dataset.into(),
-            index,
-            value: value.to_string(),
+            found: found.into(),
             allowed: allowed.into(),
         }
     }
+
+    /// A file that lacks a part, or asks for something not solved here.
+    pub fn refused(path: &Path, what: impl Into<String>) -> Self {
+        Self::Refused {
+            path: path.into(),
+            what: what.into(),
+        }
+    }
+}
+
+pub(super) fn unwritable(what: impl Into<String>) -> InterchangeError {
+    InterchangeError::Unwritable { what: what.into() }
+}
+
+/// Refuses a part whose size does not fit the others.
+pub(super) fn check_size(
+    what: &str,
+    found: usize,
+    expected: usize,
+) -> Result<(), InterchangeError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(unwritable(format!(
+        "{what}: {found} entries, expected {expected}"
+    )))
 }

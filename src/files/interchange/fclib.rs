@@ -41,9 +41,9 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
 /// Those of [`read`].
 pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
     let tree = Tree::open(path, bytes)?;
-    let none = |found| InterchangeError::NoProblem {
-        path: path.into(),
-        found,
+    let none = |found| {
+        let allowed = "one of the groups /fclib_local and /fclib_global";
+        InterchangeError::unexpected(path, found, allowed)
     };
     match (
         tree.has_group("fclib_local")?,

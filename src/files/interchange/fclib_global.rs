@@ -6,12 +6,11 @@
 //! G and b stand together or not at all.
 
 use super::error::InterchangeError;
-use super::fclib_matrix::{check_matrix, put_matrix, read_matrix, read_symmetric};
+use super::fclib_matrix::{read_matrix, read_symmetric};
 use super::fclib_parts::{
-    Info, Lengths, Solution, check_size, check_solutions, points, put_info, put_solutions,
-    read_dim, read_friction, read_info, read_solutions, unwritable,
+    Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
 };
-use super::hdf5::{Tree, Writer, put_integers, put_reals, subgroup};
+use super::hdf5::Tree;
 use super::sparse::SparseMatrix;
 
 const GROUP: &str = "fclib_global";
@@ -96,50 +95,36 @@ impl GlobalProblem {
         Ok(problem)
     }
 
-    fn check(&self) -> Result<(), InterchangeError> {
-        let (unknowns, rows) = (self.f.len(), self.dim * self.points());
-        if !(self.dim == 2 || self.dim == 3) || rows == 0 || unknowns == 0 {
-            let points = self.points();
-            let what = format!(
-                "{unknowns} unknowns, {points} points of {} components",
-                self.dim
-            );
-            return Err(unwritable(what));
-        }
-        check_size("w", self.w.len(), rows)?;
-        check_matrix("M", &self.m, unknowns, unknowns)?;
-        check_matrix("H", &self.h, unknowns, rows)?;
-        if let Some(equality) = &self.equality {
-            check_matrix("G", &equality.g, unknowns, equality.b.len())?;
-        }
-        check_solutions(self.solution.iter().chain(&self.guesses), self.lengths())
-    }
-
     /// The bytes of the file.
     ///
     /// # Errors
     /// [`InterchangeError::Unwritable`] if the parts do not fit or exceed 32-bit integers.
     pub fn to_bytes(&self) -> Result<Vec<u8>, InterchangeError> {
-        self.check()?;
-        let mut file = Writer::new();
-        file.group(GROUP, |group| {
-            put_integers(group, "spacedim", &[self.dim as i32]);
-            put_matrix(group, "M", &self.m);
-            put_matrix(group, "H", &self.h);
-            if let Some(equality) = &self.equality {
-                put_matrix(group, "G", &equality.g);
-            }
-            subgroup(group, "vectors", |group| {
-                put_reals(group, "f", &self.f);
-                put_reals(group, "w", &self.w);
-                put_reals(group, "mu", &self.mu);
-                if let Some(equality) = &self.equality {
-                    put_reals(group, "b", &equality.b);
-                }
-            });
-            put_info(group, &self.info);
-        });
-        put_solutions(&mut file, self.solution.as_ref(), &self.guesses);
-        file.finish()
+        let (unknowns, rows) = (self.f.len(), self.dim * self.points());
+        let mut matrices = vec![
+            ("M", &self.m, [unknowns, unknowns]),
+            ("H", &self.h, [unknowns, rows]),
+        ];
+        let mut vectors = vec![
+            ("f", &self.f[..], unknowns),
+            ("w", &self.w, rows),
+            ("mu", &self.mu, self.points()),
+        ];
+        if let Some(GlobalEquality { g, b }) = &self.equality {
+            matrices.push(("G", g, [unknowns, b.len()]));
+            vectors.push(("b", b, b.len()));
+        }
+        let layout = Layout {
+            group: GROUP,
+            dim: self.dim,
+            points: self.points(),
+            matrices,
+            vectors,
+            info: &self.info,
+            lengths: self.lengths(),
+            solution: self.solution.as_ref(),
+            guesses: &self.guesses,
+        };
+        layout.to_bytes()
     }
 }

@@ -6,12 +6,11 @@
 //! V, R and s stand together or not at all.
 
 use super::error::InterchangeError;
-use super::fclib_matrix::{check_matrix, put_matrix, read_matrix, read_symmetric};
+use super::fclib_matrix::{read_matrix, read_symmetric};
 use super::fclib_parts::{
-    Info, Lengths, Solution, check_size, check_solutions, points, put_info, put_solutions,
-    read_dim, read_friction, read_info, read_solutions, unwritable,
+    Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
 };
-use super::hdf5::{Tree, Writer, put_integers, put_reals, subgroup};
+use super::hdf5::Tree;
 use super::sparse::SparseMatrix;
 
 const GROUP: &str = "fclib_local";
@@ -81,12 +80,8 @@ impl LocalProblem {
                     s,
                 })
             }
-            (has_v, _) => {
-                return Err(InterchangeError::Missing {
-                    path: tree.path().into(),
-                    dataset: if has_v { r_name } else { v_name },
-                });
-            }
+            (true, false) => return Err(tree.missing(&r_name)),
+            (false, true) => return Err(tree.missing(&v_name)),
         };
         let mut problem = Self {
             dim,
@@ -102,46 +97,29 @@ impl LocalProblem {
         Ok(problem)
     }
 
-    fn check(&self) -> Result<(), InterchangeError> {
-        let rows = self.dim * self.points();
-        if !(self.dim == 2 || self.dim == 3) || rows == 0 {
-            let what = format!("{} points of {} components", self.points(), self.dim);
-            return Err(unwritable(what));
-        }
-        check_size("q", self.q.len(), rows)?;
-        check_matrix("W", &self.w, rows, rows)?;
-        if let Some(equality) = &self.equality {
-            let extra = equality.s.len();
-            check_matrix("V", &equality.v, rows, extra)?;
-            check_matrix("R", &equality.r, extra, extra)?;
-        }
-        check_solutions(self.solution.iter().chain(&self.guesses), self.lengths())
-    }
-
     /// The bytes of the file.
     ///
     /// # Errors
     /// [`InterchangeError::Unwritable`] if the parts do not fit or exceed 32-bit integers.
     pub fn to_bytes(&self) -> Result<Vec<u8>, InterchangeError> {
-        self.check()?;
-        let mut file = Writer::new();
-        file.group(GROUP, |group| {
-            put_integers(group, "spacedim", &[self.dim as i32]);
-            put_matrix(group, "W", &self.w);
-            if let Some(equality) = &self.equality {
-                put_matrix(group, "V", &equality.v);
-                put_matrix(group, "R", &equality.r);
-            }
-            subgroup(group, "vectors", |group| {
-                put_reals(group, "q", &self.q);
-                put_reals(group, "mu", &self.mu);
-                if let Some(equality) = &self.equality {
-                    put_reals(group, "s", &equality.s);
-                }
-            });
-            put_info(group, &self.info);
-        });
-        put_solutions(&mut file, self.solution.as_ref(), &self.guesses);
-        file.finish()
+        let rows = self.dim * self.points();
+        let mut matrices = vec![("W", &self.w, [rows, rows])];
+        let mut vectors = vec![("q", &self.q[..], rows), ("mu", &self.mu, self.points())];
+        if let Some(LocalEquality { v, r, s }) = &self.equality {
+            matrices.extend([("V", v, [rows, s.len()]), ("R", r, [s.len(), s.len()])]);
+            vectors.push(("s", s, s.len()));
+        }
+        let layout = Layout {
+            group: GROUP,
+            dim: self.dim,
+            points: self.points(),
+            matrices,
+            vectors,
+            info: &self.info,
+            lengths: self.lengths(),
+            solution: self.solution.as_ref(),
+            guesses: &self.guesses,
+        };
+        layout.to_bytes()
     }
 }

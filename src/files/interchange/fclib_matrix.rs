@@ -10,8 +10,7 @@
 
 use hdf5_pure::GroupBuilder;
 
-use super::error::InterchangeError;
-use super::fclib_parts::{check_size, unwritable};
+use super::error::{InterchangeError, check_size, unwritable};
 use super::hdf5::{Tree, put_integers, put_reals, subgroup};
 use super::sparse::SparseMatrix;
 
@@ -26,19 +25,11 @@ pub(super) fn read_matrix(
     cols: usize,
 ) -> Result<SparseMatrix, InterchangeError> {
     for (size, expected) in [("m", rows), ("n", cols)] {
-        let (dataset, value) = (
-            format!("{name}/{size}"),
-            tree.integer(&format!("{name}/{size}"))?,
-        );
+        let dataset = format!("{name}/{size}");
+        let value = tree.integer(&dataset)?;
         if usize::try_from(value) != Ok(expected) {
             let allowed = format!("{expected}, as the vectors say");
-            return Err(InterchangeError::value(
-                tree.path(),
-                dataset,
-                0,
-                value,
-                allowed,
-            ));
+            return Err(tree.value(&dataset, 0, value, allowed));
         }
     }
     let nz_name = format!("{name}/nz");
@@ -62,13 +53,7 @@ pub(super) fn read_matrix(
         0.. => stored.triplets(nz, rows, cols)?,
         _ => {
             let allowed = "-1 (compressed columns), -2 (compressed rows), 0 and above (triplets)";
-            return Err(InterchangeError::value(
-                tree.path(),
-                nz_name,
-                0,
-                nz,
-                allowed,
-            ));
+            return Err(tree.value(&nz_name, 0, nz, allowed));
         }
     };
     let matrix = SparseMatrix::from_triplets(rows, cols, triplets);
@@ -76,14 +61,7 @@ pub(super) fn read_matrix(
     let overflow = matrix.entries().find(|e| !e.2.is_finite());
     if let Some((i, j, value)) = overflow {
         let allowed = format!("finite sums; entry ({i}, {j}) is stored more than once");
-        let dataset = format!("{name}/x");
-        return Err(InterchangeError::value(
-            tree.path(),
-            dataset,
-            0,
-            value,
-            allowed,
-        ));
+        return Err(tree.value(&format!("{name}/x"), 0, value, allowed));
     }
     Ok(matrix)
 }
@@ -104,14 +82,7 @@ pub(super) fn read_symmetric(
         matrix.get(j, i)
     );
     let index = matrix.entries().position(|e| (e.0, e.1) == (i, j));
-    let dataset = format!("{name}/x");
-    Err(InterchangeError::value(
-        tree.path(),
-        dataset,
-        index.unwrap_or(0),
-        value,
-        allowed,
-    ))
+    Err(tree.value(&format!("{name}/x"), index.unwrap_or(0), value, allowed))
 }
 
 /// The arrays of a matrix as they lie in the file.
@@ -145,14 +116,7 @@ impl Stored<'_> {
                     0 => "0".to_owned(),
                     _ => format!("{before} to {room}, pointers that never fall"),
                 };
-                let dataset = format!("{name}/p");
-                return Err(InterchangeError::value(
-                    tree.path(),
-                    dataset,
-                    index,
-                    pointer,
-                    allowed,
-                ));
+                return Err(tree.value(&format!("{name}/p"), index, pointer, allowed));
             }
             before = pointer;
         }
@@ -206,22 +170,18 @@ impl Stored<'_> {
         if (least..=most).contains(&found) {
             return Ok(());
         }
-        Err(InterchangeError::Length {
-            path: self.tree.path().into(),
-            dataset: format!("{}/{array}", self.name),
-            found: found as u64,
-            allowed: if least == most {
-                least.to_string()
-            } else {
-                format!("at least {least}")
-            },
-        })
+        let allowed = match least == most {
+            true => least.to_string(),
+            false => format!("at least {least}"),
+        };
+        let dataset = format!("{}/{array}", self.name);
+        Err(self.tree.length(&dataset, found as u64, allowed))
     }
 
     fn outside(&self, array: &str, index: usize, value: i64, size: usize) -> InterchangeError {
         let dataset = format!("{}/{array}", self.name);
         let allowed = format!("0 to {}", size as i64 - 1);
-        InterchangeError::value(self.tree.path(), dataset, index, value, allowed)
+        self.tree.value(&dataset, index, value, allowed)
     }
 }
 

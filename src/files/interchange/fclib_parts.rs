@@ -2,8 +2,10 @@
 
 use hdf5_pure::GroupBuilder;
 
-use super::error::InterchangeError;
+use super::error::{InterchangeError, check_size, unwritable};
+use super::fclib_matrix::{check_matrix, put_matrix};
 use super::hdf5::{Tree, Writer, put_integers, put_reals, put_text, subgroup};
+use super::sparse::SparseMatrix;
 
 /// What the author says about a problem.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -43,13 +45,7 @@ pub(super) fn read_dim(tree: &Tree, group: &str) -> Result<usize, InterchangeErr
     match tree.integer(&name)? {
         2 => Ok(2),
         3 => Ok(3),
-        value => Err(InterchangeError::value(
-            tree.path(),
-            name,
-            0,
-            value,
-            "2 or 3",
-        )),
+        value => Err(tree.value(&name, 0, value, "2 or 3")),
     }
 }
 
@@ -63,13 +59,7 @@ pub(super) fn read_friction(
     let mu = tree.reals(&name, points)?;
     match mu.iter().position(|&mu| mu < 0.0) {
         None => Ok(mu),
-        Some(index) => Err(InterchangeError::value(
-            tree.path(),
-            name,
-            index,
-            mu[index],
-            "0 and above",
-        )),
+        Some(index) => Err(tree.value(&name, index, mu[index], "0 and above")),
     }
 }
 
@@ -83,12 +73,8 @@ pub(super) fn points(
     if rows > 0 && rows.is_multiple_of(dim) {
         return Ok(rows / dim);
     }
-    Err(InterchangeError::Length {
-        path: tree.path().into(),
-        dataset: name.into(),
-        found: rows as u64,
-        allowed: format!("a positive multiple of spacedim = {dim}"),
-    })
+    let allowed = format!("a positive multiple of spacedim = {dim}");
+    Err(tree.length(name, rows as u64, allowed))
 }
 
 /// Info of a problem group, empty where there is none.
@@ -131,13 +117,7 @@ pub(super) fn read_solutions(
         let name = "guesses/number_of_guesses";
         let count = tree.integer(name)?;
         if count < 0 {
-            return Err(InterchangeError::value(
-                tree.path(),
-                name,
-                0,
-                count,
-                "0 and above",
-            ));
+            return Err(tree.value(name, 0, count, "0 and above"));
         }
         for number in 1..=count {
             guesses.push(read_solution(tree, &format!("guesses/{number}"), len)?);
@@ -146,38 +126,76 @@ pub(super) fn read_solutions(
     Ok((solution, guesses))
 }
 
-pub(super) fn unwritable(what: impl Into<String>) -> InterchangeError {
-    InterchangeError::Unwritable { what: what.into() }
+/// A problem on its way into a file.
+pub(super) struct Layout<'a> {
+    /// Group of the problem.
+    pub group: &'static str,
+    /// Components per contact point.
+    pub dim: usize,
+    /// Number of contact points.
+    pub points: usize,
+    /// Name, matrix, and the rows and columns it must have.
+    pub matrices: Vec<(&'static str, &'a SparseMatrix, [usize; 2])>,
+    /// Name, vector, and the entries it must have.
+    pub vectors: Vec<(&'static str, &'a [f64], usize)>,
+    /// What the author says.
+    pub info: &'a Info,
+    /// Lengths of solutions.
+    pub lengths: Lengths,
+    /// Solution.
+    pub solution: Option<&'a Solution>,
+    /// Guesses.
+    pub guesses: &'a [Solution],
 }
 
-/// Refuses a part whose size does not fit the others.
-pub(super) fn check_size(
-    what: &str,
-    found: usize,
-    expected: usize,
-) -> Result<(), InterchangeError> {
-    if found == expected {
-        return Ok(());
+impl Layout<'_> {
+    fn check(&self) -> Result<(), InterchangeError> {
+        let (dim, points) = (self.dim, self.points);
+        let empty = self.matrices.first().is_none_or(|matrix| matrix.2[0] == 0);
+        if !(dim == 2 || dim == 3) || points == 0 || empty {
+            return Err(unwritable(format!("{points} points of {dim} components")));
+        }
+        for (name, values, len) in &self.vectors {
+            check_size(name, values.len(), *len)?;
+        }
+        for (name, matrix, [rows, cols]) in &self.matrices {
+            check_matrix(name, matrix, *rows, *cols)?;
+        }
+        let Lengths { v, r, l } = self.lengths;
+        for solution in self.solution.into_iter().chain(self.guesses) {
+            check_size("solution v", solution.v.len(), v)?;
+            check_size("solution u", solution.u.len(), r)?;
+            check_size("solution r", solution.r.len(), r)?;
+            check_size("solution l", solution.l.len(), l)?;
+        }
+        Ok(())
     }
-    Err(unwritable(format!(
-        "{what}: {found} entries, expected {expected}"
-    )))
-}
 
-pub(super) fn check_solutions<'a>(
-    solutions: impl Iterator<Item = &'a Solution>,
-    len: Lengths,
-) -> Result<(), InterchangeError> {
-    for solution in solutions {
-        check_size("solution v", solution.v.len(), len.v)?;
-        check_size("solution u", solution.u.len(), len.r)?;
-        check_size("solution r", solution.r.len(), len.r)?;
-        check_size("solution l", solution.l.len(), len.l)?;
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// [`InterchangeError::Unwritable`] if the parts do not fit or exceed 32-bit integers.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, InterchangeError> {
+        self.check()?;
+        let mut file = Writer::new();
+        file.group(self.group, |group| {
+            put_integers(group, "spacedim", &[self.dim as i32]);
+            for (name, matrix, _) in &self.matrices {
+                put_matrix(group, name, matrix);
+            }
+            subgroup(group, "vectors", |group| {
+                for (name, values, _) in &self.vectors {
+                    put_reals(group, name, values);
+                }
+            });
+            put_info(group, self.info);
+        });
+        put_solutions(&mut file, self.solution, self.guesses);
+        file.finish()
     }
-    Ok(())
 }
 
-pub(super) fn put_info(group: &mut GroupBuilder, info: &Info) {
+fn put_info(group: &mut GroupBuilder, info: &Info) {
     if *info == Info::default() {
         return;
     }
@@ -209,7 +227,7 @@ fn put_solution(group: &mut GroupBuilder, solution: &Solution) {
     }
 }
 
-pub(super) fn put_solutions(file: &mut Writer, solution: Option<&Solution>, guesses: &[Solution]) {
+fn put_solutions(file: &mut Writer, solution: Option<&Solution>, guesses: &[Solution]) {
     if let Some(solution) = solution {
         file.group("solution", |group| put_solution(group, solution));
     }

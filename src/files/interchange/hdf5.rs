@@ -34,11 +34,6 @@ impl Tree {
         })
     }
 
-    /// The file, for messages.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Whether a group is there.
     pub fn has_group(&self, name: &str) -> Result<bool, InterchangeError> {
         match self.file.group(name) {
@@ -56,12 +51,31 @@ impl Tree {
         }
     }
 
-    fn required(&self, name: &str) -> Result<Dataset, InterchangeError> {
-        self.dataset(name)?
-            .ok_or_else(|| InterchangeError::Missing {
-                path: self.path.clone(),
-                dataset: name.into(),
-            })
+    /// Error about a part that is not there.
+    pub fn missing(&self, name: &str) -> InterchangeError {
+        InterchangeError::refused(&self.path, format!("{name} is missing"))
+    }
+
+    /// Error about the length of a dataset.
+    pub fn length(&self, name: &str, found: u64, allowed: impl Into<String>) -> InterchangeError {
+        InterchangeError::unexpected(&self.path, format!("{name} has {found} entries"), allowed)
+    }
+
+    /// Error about one number of a dataset.
+    pub fn value(
+        &self,
+        name: &str,
+        index: usize,
+        value: impl ToString,
+        allowed: impl Into<String>,
+    ) -> InterchangeError {
+        InterchangeError::Value {
+            path: self.path.clone(),
+            dataset: name.into(),
+            index,
+            value: value.to_string(),
+            allowed: allowed.into(),
+        }
     }
 
     /// Number of elements, refused if the file is too small to hold them.
@@ -78,12 +92,10 @@ impl Tree {
         let extent = (shape.iter()).try_fold(1u64, |n, &extent| n.checked_mul(extent));
         match extent {
             Some(extent) if extent <= largest => Ok(extent),
-            _ => Err(InterchangeError::Length {
-                path: self.path.clone(),
-                dataset: name.into(),
-                found: extent.unwrap_or(u64::MAX),
-                allowed: format!("at most {largest}, which is what the file can hold"),
-            }),
+            _ => {
+                let allowed = format!("at most {largest}, which is what the file can hold");
+                Err(self.length(name, extent.unwrap_or(u64::MAX), allowed))
+            }
         }
     }
 
@@ -120,13 +132,7 @@ impl Tree {
         let values = (dataset.read_f64()).map_err(|e| unreadable(&self.path, name, &e))?;
         match values.iter().position(|v| !v.is_finite()) {
             None => Ok(values),
-            Some(index) => Err(InterchangeError::value(
-                &self.path,
-                name,
-                index,
-                values[index],
-                "finite numbers",
-            )),
+            Some(index) => Err(self.value(name, index, values[index], "finite numbers")),
         }
     }
 
@@ -136,18 +142,14 @@ impl Tree {
         allowed: &'static str,
         fits: impl Fn(&DType) -> bool,
     ) -> Result<Dataset, InterchangeError> {
-        let dataset = self.required(name)?;
+        let dataset = self.dataset(name)?.ok_or_else(|| self.missing(name))?;
         self.extent(name, &dataset)?;
         let found = (dataset.dtype()).map_err(|e| unreadable(&self.path, name, &e))?;
         if fits(&found) {
             return Ok(dataset);
         }
-        Err(InterchangeError::Type {
-            path: self.path.clone(),
-            dataset: name.into(),
-            found: found.to_string(),
-            allowed,
-        })
+        let found = format!("{name} holds {found}");
+        Err(InterchangeError::unexpected(&self.path, found, allowed))
     }
 
     /// Text, if it is there.
@@ -160,15 +162,6 @@ impl Tree {
         })?;
         let texts = (dataset.read_string()).map_err(|e| unreadable(&self.path, name, &e))?;
         Ok(texts.into_iter().next())
-    }
-
-    fn length(&self, name: &str, found: u64, allowed: impl Into<String>) -> InterchangeError {
-        InterchangeError::Length {
-            path: self.path.clone(),
-            dataset: name.into(),
-            found,
-            allowed: allowed.into(),
-        }
     }
 }
 

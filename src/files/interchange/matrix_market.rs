@@ -58,28 +58,20 @@ pub fn parse(path: &Path, text: &str) -> Result<SparseMatrix, InterchangeError> 
     let banner = lines.next("a MatrixMarket banner")?;
     let words: Vec<String> = banner.split_whitespace().map(str::to_lowercase).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let (array, symmetric) = match words[..] {
+    let form = match words[..] {
         [
             "%%matrixmarket",
             "matrix",
-            "coordinate",
+            format,
             "real" | "integer",
-            "general",
-        ] => (false, false),
-        [
-            "%%matrixmarket",
-            "matrix",
-            "coordinate",
-            "real" | "integer",
-            "symmetric",
-        ] => (false, true),
-        [
-            "%%matrixmarket",
-            "matrix",
-            "array",
-            "real" | "integer",
-            "general",
-        ] => (true, false),
+            symmetry,
+        ] => (format, symmetry),
+        _ => ("", ""),
+    };
+    let (array, symmetric) = match form {
+        ("coordinate", "general") => (false, false),
+        ("coordinate", "symmetric") => (false, true),
+        ("array", "general") => (true, false),
         _ => {
             let allowed = "a real matrix, `coordinate` general or symmetric, or `array` general";
             return Err(lines.error(banner, format!("{BANNER} …: {allowed}")));

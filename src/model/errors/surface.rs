@@ -36,62 +36,53 @@ pub(super) fn rows(
     let integrator = body.integrator();
     let mut rows = Vec::new();
     if !surface.is_empty() {
-        let tractions: Vec<Sample> = surface
-            .iter()
-            .map(|p| Sample {
+        let over = |found: &dyn Fn(&SurfacePoint) -> [f64; 3],
+                    exact: &dyn Fn(&Point) -> [f64; 3]| {
+            let sample = |p: &SurfacePoint| Sample {
                 weight: p.weight,
-                found: p.traction(dim, &body.points, &now.p),
-                exact: field.traction(&p.x),
-            })
-            .collect();
+                found: found(p),
+                exact: exact(&p.x),
+            };
+            surface.iter().map(sample).collect::<Vec<_>>()
+        };
+        let tractions = over(&|p| p.traction(dim, &body.points, &now.p), &|x| {
+            field.traction(x)
+        });
         let length: f64 = surface.iter().map(|p| p.weight).sum();
         let scale = scales.stress * length.sqrt();
         rows.push(norm_row("traction", squares(&tractions), scale));
-        let jumps: Vec<Sample> = surface
-            .iter()
-            .map(|p| Sample {
-                weight: p.weight,
-                found: p.local(&p.jump(&integrator, &now.u)),
-                exact: field.jump(&p.x),
-            })
-            .collect();
+        let jumps = over(&|p| p.local(&p.jump(&integrator, &now.u)), &|x| {
+            field.jump(x)
+        });
         rows.extend(largest(["slip", "gap"], &jumps, scales.displacement));
         rows.extend(direction(&jumps, scales.displacement).filter(|_| dim == 3));
     }
     if body.points.is_empty() {
         return rows;
     }
-    let local = |values: &[f64], i: usize, divisor: f64| {
-        let mut v = [0.0; 3];
-        for (v, value) in v.iter_mut().zip(&values[i * dim..(i + 1) * dim]) {
-            *v = value / divisor;
-        }
-        v
+    // Of a force over the weight of its point, or of a jump as it is.
+    let at_points = |values: &[f64], divisor: &dyn Fn(usize) -> f64, exact: Vec<[f64; 3]>| {
+        let sample = |(i, exact): (usize, [f64; 3])| {
+            let mut found = [0.0; 3];
+            for (v, value) in found.iter_mut().zip(&values[i * dim..(i + 1) * dim]) {
+                *v = value / divisor(i);
+            }
+            Sample {
+                weight: 1.0 / body.points.len() as f64,
+                found,
+                exact,
+            }
+        };
+        let samples = exact.into_iter().enumerate().map(sample);
+        samples.collect::<Vec<_>>()
     };
-    let points = || body.points.iter().enumerate();
-    let mean = 1.0 / body.points.len() as f64;
-    let exact_traction = exact_at_points(body, &|x| field.traction(x));
-    let exact_jump = exact_at_points(body, &|x| field.jump(x));
-    let tractions: Vec<Sample> = points()
-        .map(|(i, point)| Sample {
-            weight: mean,
-            found: local(&now.p, i, point.weight),
-            exact: exact_traction[i],
-        })
-        .collect();
+    let exact = exact_at_points(body, &|x| field.traction(x));
+    let tractions = at_points(&now.p, &|i| body.points[i].weight, exact);
     rows.push(norm_row("traction_rms", squares(&tractions), scales.stress));
-    let jumps: Vec<Sample> = points()
-        .map(|(i, _)| Sample {
-            weight: mean,
-            found: local(&now.jump, i, 1.0),
-            exact: exact_jump[i],
-        })
-        .collect();
-    rows.extend(largest(
-        ["slip_points", "gap_points"],
-        &jumps,
-        scales.displacement,
-    ));
+    let exact = exact_at_points(body, &|x| field.jump(x));
+    let jumps = at_points(&now.jump, &|_| 1.0, exact);
+    let names = ["slip_points", "gap_points"];
+    rows.extend(largest(names, &jumps, scales.displacement));
     rows
 }
 
@@ -139,7 +130,7 @@ fn direction(samples: &[Sample], scale: f64) -> Option<Deviation> {
     let cosine = exact[0] * found[0] + exact[1] * found[1];
     let angle = |[a, b]: [f64; 2]| b.atan2(a);
     Some(Deviation {
-        quantity: "slip_direction",
+        quantity: "slip_direction".into(),
         at: String::new(),
         found: angle(found),
         exact: angle(exact),

@@ -1,9 +1,10 @@
 //! Converged reactions of the paper's plate: distance from the limit against the cell width.
 
+use super::kind::Kind;
 use super::runs::{distinct, friction, least};
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, Style, italic};
+use crate::report::{Bundle, ReportError};
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow, agreements};
 use crate::studies::paper::plate_series::RefinementRow;
 

@@ -1,9 +1,10 @@
 //! What the methods cost: time of every method on every case, relative to the fastest.
 
+use super::kind::Kind;
 use super::runs::distinct;
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::significant;
 use crate::report::plot::{Cell, HeatMap, plain, rank};
+use crate::report::{Bundle, ReportError};
 use crate::run::verdict::{Verdict, VerdictKind};
 use crate::studies::paper::comparison::ComparisonRow;
 

@@ -1,12 +1,13 @@
 //! Errors under refinement against the number of unknowns, a panel per place and enrichment of the tips.
 
+use super::kind::Kind;
 use super::quantity_name;
 use super::runs::{distinct, friction};
-use super::{Bundle, Kind, ReportError};
 use crate::case::ContactSpace;
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, Style, italic};
 use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow, ROUND_OFF};
 use std::collections::BTreeMap;
 

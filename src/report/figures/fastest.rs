@@ -1,9 +1,10 @@
 //! Mean time of every method at every accuracy.
 
+use super::kind::Kind;
 use super::performance::heading;
 use super::runs::distinct;
-use super::{Bundle, Kind, ReportError};
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, plain};
+use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, ranking};
 use crate::studies::sweep::analysis::test_set::TestSet;

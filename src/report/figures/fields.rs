@@ -1,9 +1,10 @@
 //! Pictures of bodies: contours of plane ones, the contact status on the crack of solids.
 
+use super::kind::Kind;
 use super::runs::problem;
-use super::{Bundle, Kind, ReportError};
 use crate::report::plot::{contact_status, displacement, plain, von_mises};
 use crate::report::standard::stem;
+use crate::report::{Bundle, ReportError};
 use crate::run::record::RunFields;
 
 /// Displacement of plane bodies.

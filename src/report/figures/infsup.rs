@@ -1,8 +1,9 @@
 //! Inf-sup numbers of the contact spaces under refinement, a panel per crack.
 
-use super::{Bundle, Kind, ReportError};
+use super::kind::Kind;
 use crate::case::ContactSpace;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic};
+use crate::report::{Bundle, ReportError};
 use crate::studies::spaces::infsup::{LEAST_SHARE, SCENES, Scene, Sequence};
 
 /// What it is.

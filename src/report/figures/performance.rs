@@ -1,9 +1,10 @@
 //! Performance profiles of the time of the methods, a panel per accuracy tier.
 
+use super::kind::Kind;
 use super::runs::least;
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, looks, plain};
+use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::test_set::TestSet;

@@ -1,12 +1,13 @@
 //! Traction, slip and gap along a plane crack, with the contact status at every point.
 
 use super::agreement::agreement;
+use super::kind::Kind;
 use super::runs::{Run, body, by_problem, friction, problem};
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
 use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
 use crate::run::record::{ExactRow, PointRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 

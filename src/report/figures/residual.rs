@@ -1,8 +1,9 @@
 //! Natural-map residual against iteration: all methods on one problem.
 
+use super::kind::Kind;
 use super::runs::{Run, by_problem, counted, distinct, problem};
-use super::{Bundle, Kind, ReportError};
 use crate::report::plot::{Axis, Figure, Panel, Series, looks, plain};
+use crate::report::{Bundle, ReportError};
 use crate::run::record::{HistoryRow, Results, RunRow};
 use crate::run::verdict::Verdict;
 use stickslip_methods::Tier;

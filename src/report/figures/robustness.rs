@@ -1,9 +1,10 @@
 //! Success rates of the methods on random problems.
 
+use super::kind::Kind;
 use super::runs::distinct;
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::{fixed, value};
 use crate::report::plot::{Cell, HeatMap, is_exact, italic, plain, rank};
+use crate::report::{Bundle, ReportError};
 use crate::studies::stress::robustness::RobustnessRow;
 
 /// What it is.

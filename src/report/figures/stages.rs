@@ -1,10 +1,11 @@
 //! Stages of a run as shares of its time.
 
+use super::kind::Kind;
 use super::runs::{friction, least, made_with};
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Rgb, Series, Style, plain};
 use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,

@@ -1,9 +1,10 @@
 //! Table 1 of the founding paper against ours.
 
+use super::kind::Kind;
 use super::runs::distinct;
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, is_exact, italic, looks};
+use crate::report::{Bundle, ReportError};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::printed_tables::Table1Row;
 

@@ -1,11 +1,12 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 
+use super::kind::Kind;
 use super::quantity_name;
 use super::runs::{distinct, friction, least};
-use super::{Bundle, Kind, ReportError};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
 use crate::report::standard::file_name;
+use crate::report::{Bundle, ReportError};
 use crate::studies::convergence::orders::{self, ErrorRow, ROUND_OFF};
 use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
 use crate::studies::sweep::analysis::problem_names;

@@ -2,9 +2,10 @@ use std::collections::BTreeMap;
 
 use crate::run::registry::methods;
 
+use crate::model::errors::Deviation;
 use crate::report::sweep::*;
+use crate::studies::convergence::Value;
 use crate::studies::sweep::analysis::support::{end_with, lying, record, timed};
-use crate::studies::sweep::record::{DeviationFound, ValueFound};
 
 /// Files that must not depend on times.
 const TIMELESS: [&str; 5] = [
@@ -87,7 +88,7 @@ fn cell(
         let second = cell.found.increments[0].clone();
         cell.found.increments.push(second);
         let h = cell.found.problem.as_ref().unwrap().h_m;
-        cell.found.values.push(ValueFound {
+        cell.found.values.push(Value {
             quantity: "strain_energy".into(),
             at: String::new(),
             value: 5.0 - 0.2 * h * h,
@@ -95,12 +96,12 @@ fn cell(
             scale: 5.0,
         });
     } else {
-        cell.found.deviations.push(DeviationFound {
+        cell.found.deviations.push(Deviation {
             quantity: "energy".into(),
             at: String::new(),
-            found: Some(1.0),
+            found: 1.0,
             exact: 1.0,
-            error: Some(0.1 / refine as f64),
+            error: 0.1 / refine as f64,
         });
     }
     let spent = cell.spent.as_mut().unwrap();

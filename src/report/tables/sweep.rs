@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 
 use super::words::*;
+use crate::model::errors::Deviation;
 use crate::report::table::{Column, Order, Row, columns};
+use crate::studies::convergence::Value;
 use crate::studies::sweep::analysis::{
     compare_methods, compare_problems, method_time, published_times,
 };
-use crate::studies::sweep::record::{
-    DeviationFound, IncrementFound, ProblemSize, Record, SolverError, Spent, ValueFound,
-};
+use crate::studies::sweep::record::{IncrementFound, ProblemSize, Record, SolverError, Spent};
 use crate::studies::sweep::statistics::Timing;
 
 /// A row about a cell.
@@ -76,8 +76,8 @@ impl CellRow<'_> {
     }
 
     fn discretisation_error(&self) -> Option<f64> {
-        let energy = |d: &&DeviationFound| d.quantity == "energy" && d.at.is_empty();
-        self.0.found.deviations.iter().find(energy)?.error
+        let energy = |d: &&Deviation| d.quantity == "energy" && d.at.is_empty();
+        self.0.found.deviations.iter().find(energy).map(|d| d.error)
     }
 
     /// A size of the problem; not-a-number where there is none.
@@ -179,7 +179,7 @@ const EXACT: &str = "exact";
 /// A quantity of a cell, beside its closed form or followed over meshes.
 pub struct DeviationRow<'a> {
     record: &'a Record,
-    quantity: Result<&'a DeviationFound, &'a ValueFound>,
+    quantity: Result<&'a Deviation, &'a Value>,
 }
 
 impl<'a> DeviationRow<'a> {
@@ -227,9 +227,9 @@ impl Row for DeviationRow<'_> {
             "kind" "" = if r.is_exact() { EXACT } else { "followed" }, "`exact`: beside the closed form; `followed`: a quantity of interest of a case without";
             "quantity" "" = r.names()[0], "as in `convergence.csv`";
             "at" "" = r.names()[1], "place and component; empty: the whole body";
-            "found" "SI" = r.quantity.map_or_else(|v| v.value, |d| d.found.unwrap_or(f64::NAN)), "value";
+            "found" "SI" = r.quantity.map_or_else(|v| v.value, |d| d.found), "value";
             "reference" "SI" = r.quantity.map_or(f64::NAN, |d| d.exact), "exact value; `NaN` of a followed quantity";
-            "error" "" .significant(4) = r.quantity.map_or(f64::NAN, |d| d.error.unwrap_or(f64::NAN)), "as in `convergence.csv`; `NaN` of a followed quantity";
+            "error" "" .significant(4) = r.quantity.map_or(f64::NAN, |d| d.error), "as in `convergence.csv`; `NaN` of a followed quantity";
             "norm" "SI" = r.quantity.map_or_else(|v| v.norm, |_| f64::NAN), "what errors of a followed quantity are relative to";
         })
     }

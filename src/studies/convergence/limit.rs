@@ -62,6 +62,12 @@ pub fn limit(points: &[[f64; 2]; 3]) -> Option<Limit> {
     })
 }
 
+/// Limit of v(h) = v₀ + C h through two meshes, (h, value), the finer one last: where theory says order 1.
+pub fn linear_limit([[h1, v1], [h2, v2]]: [[f64; 2]; 2]) -> f64 {
+    let slope = (v1 - v2) / (h1 - h2);
+    v2 - slope * h2
+}
+
 /// Slope of ln e over ln h by least squares; NaN where a value is not positive or there are fewer than two.
 pub fn slope(points: &[[f64; 2]]) -> f64 {
     if points.len() < 2

@@ -1,5 +1,7 @@
 //! What one mesh of a sequence leaves behind.
 
+use serde::{Deserialize, Serialize};
+
 use super::tips::Regularity;
 use crate::model::errors::Deviation;
 use crate::run::record::RunRow;
@@ -69,7 +71,7 @@ impl Seconds {
 }
 
 /// One followed quantity of interest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Value {
     /// Quantity, as in `quantities.csv`.
     pub quantity: String,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::case::{Case, CrackShape, Tip};
+use crate::case::{Case, CrackShape, CrackSpec, Tip};
 
 /// How regular the exact solution is beside what the discretisation knows of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,12 +17,7 @@ pub enum Regularity {
 
 /// Name of the tip enrichments of a case in tables: that of each tip, `no-tips` where no crack ends inside the body.
 pub fn label(case: &Case) -> String {
-    let names: BTreeSet<String> = case
-        .cracks
-        .iter()
-        .filter(|crack| ends_inside(case, &crack.geometry))
-        .map(|crack| name(crack.tip))
-        .collect();
+    let names: BTreeSet<String> = ending_inside(case).map(|crack| name(crack.tip)).collect();
     match names.len() {
         0 => "no-tips".into(),
         _ => names.into_iter().collect::<Vec<_>>().join("+"),
@@ -40,11 +35,7 @@ fn name(tip: Tip) -> String {
 
 /// What limits the order: the worst enriched tip.
 pub fn regularity(case: &Case) -> Regularity {
-    let mut inside = case
-        .cracks
-        .iter()
-        .filter(|crack| ends_inside(case, &crack.geometry))
-        .peekable();
+    let mut inside = ending_inside(case).peekable();
     if inside.peek().is_none() {
         Regularity::Smooth
     } else if inside.all(|crack| matches!(crack.tip, Tip::Radius(_))) {
@@ -52,6 +43,11 @@ pub fn regularity(case: &Case) -> Regularity {
     } else {
         Regularity::Tip
     }
+}
+
+/// Cracks with a tip or front inside the body.
+fn ending_inside(case: &Case) -> impl Iterator<Item = &CrackSpec> {
+    (case.cracks.iter()).filter(|crack| ends_inside(case, &crack.geometry))
 }
 
 /// Whether a crack has a tip or front inside the body.
@@ -65,10 +61,10 @@ fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
         })
     };
     match shape {
-        CrackShape::Polyline(points) => [points.first(), points.last()]
-            .into_iter()
-            .flatten()
-            .any(|&end| inside(end)),
+        CrackShape::Polyline(points) => {
+            let ends = [points.first(), points.last()];
+            ends.into_iter().flatten().any(|&end| inside(end))
+        }
         CrackShape::Arc {
             centre,
             radius,
@@ -76,13 +72,11 @@ fn ends_inside(case: &Case, shape: &CrackShape) -> bool {
             to,
         } => {
             let closed = (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-12);
-            let end = |angle: &f64| {
-                [
-                    centre[0] + radius * angle.cos(),
-                    centre[1] + radius * angle.sin(),
-                ]
+            let on_arc = |angle: &f64| {
+                let (sin, cos) = (angle.sin(), angle.cos());
+                inside([centre[0] + radius * cos, centre[1] + radius * sin])
             };
-            !closed && [from, to].into_iter().any(|angle| inside(end(angle)))
+            !closed && [from, to].into_iter().any(on_arc)
         }
         CrackShape::Ellipse(_) => true,
         CrackShape::Plane { .. } => false,

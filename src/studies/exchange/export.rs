@@ -1,15 +1,12 @@
 //! One increment of a case as interchange files.
 
-use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, LocalForm, MethodError, Tier,
-};
+use stickslip_methods::{ContactState, Increment, Tier};
 
 use crate::case::Case;
 use crate::files::interchange::{Info, InterchangeError, matrix_market};
 use crate::model::body::{Body, BodyError, Needs};
-use crate::model::loading::Loading;
 use crate::run::choice::Choice;
-use crate::run::increment::{Judged, Solver};
+use crate::run::load_path::Posed;
 use crate::run::record::RunKey;
 use crate::run::run_case::{RunError, friction_values};
 use crate::run::verdict::{Accuracy, Verdict};
@@ -45,24 +42,9 @@ pub enum ExportError {
     /// Writing.
     #[error(transparent)]
     Interchange(#[from] InterchangeError),
-    /// No such increment.
-    #[error("--increment {asked}: `{case}` has the increments 1 to {last}")]
-    Increment {
-        /// Case.
-        case: String,
-        /// As given.
-        asked: usize,
-        /// Last one.
-        last: usize,
-    },
-    /// A case with several friction values.
-    #[error("`{case}` runs with μ = {values}: choose one with --friction")]
-    Friction {
-        /// Case.
-        case: String,
-        /// The values.
-        values: String,
-    },
+    /// No such increment, or several answers where one was asked for.
+    #[error("{0}")]
+    Question(String),
     /// The state the increment starts from, or its solution, is not to be had.
     #[error("increment {increment} was not solved by {method} ({verdict}): try another --method")]
     Unsolved {
@@ -75,18 +57,6 @@ pub enum ExportError {
     },
 }
 
-impl From<BodyError> for ExportError {
-    fn from(error: BodyError) -> Self {
-        ExportError::Run(error.into())
-    }
-}
-
-impl From<MethodError> for ExportError {
-    fn from(error: MethodError) -> Self {
-        BodyError::from(error).into()
-    }
-}
-
 /// Solves the increments up to the one asked for and puts that one into files.
 ///
 /// # Errors
@@ -95,66 +65,52 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
     let last = case.path.increments;
     let wanted = request.increment.unwrap_or(last);
     if !(1..=last).contains(&wanted) {
-        return Err(ExportError::Increment {
-            case: case.name.clone(),
-            asked: wanted,
-            last,
-        });
+        return Err(ExportError::Question(format!(
+            "--increment {wanted}: `{}` has the increments 1 to {last}",
+            case.name
+        )));
     }
-    let per_crack = friction(case, request.friction)?;
     let refine = request.refine.or(case.sweep.refine.first().copied());
     // The files hold all rows, also where nothing rubs.
     let needs = Needs {
         frictionless: false,
         traction: request.choice.needs_traction(),
     };
-    let body = Body::new(case, refine.unwrap_or(1), needs)?;
-    let friction = body.points.iter().map(|p| per_crack[p.crack]).collect();
-    let system = ContactSystem::new(body.elastic.clone(), friction)?;
-    let mu = per_crack.first().copied().unwrap_or(0.0);
-    let loading = Loading::new(&body, case, mu)?;
-    let mut key = RunKey {
-        case: case.name.clone(),
-        mesh: body.label.clone(),
-        space: body.space.clone(),
-        method: request.choice.label.clone(),
-        friction: mu,
-        increment: 1,
-    };
-    let unsolved = |increment, verdict| ExportError::Unsolved {
-        increment,
-        method: request.choice.label.clone(),
-        verdict,
-    };
-    let accuracy = Accuracy::of(case, Tier::High);
-    let mut solver =
-        Solver::new(&request.choice, &system).map_err(|verdict| unsolved(1, verdict))?;
-    let mut state = ContactState::zero(&system);
-    let mut start_load = Load::zero(&body.elastic);
-    loop {
-        let load = loading.at(key.increment);
-        let increment = Increment {
-            system: &system,
-            load: &load,
-            start_load: &start_load,
-            start: &state,
-            index: key.increment - 1,
-            tolerance: accuracy.asked,
-        };
-        let tried = solver.judge(&increment, accuracy.accepted);
-        let solved = tried.judged.filter(|_| tried.verdict == Verdict::Solved);
-        let Some(Judged { outcome, .. }) = solved else {
-            return Err(unsolved(key.increment, tried.verdict));
-        };
-        if key.increment == wanted {
-            let info = info(case, &key, &increment);
-            let files = files(&increment, &outcome.state, info)?;
-            return Ok(ExportedIncrement { key, files });
+    let friction = friction(case, request.friction)?;
+    let body = Body::new(case, refine.unwrap_or(1), needs).map_err(RunError::from)?;
+    let posed = Posed::new(&body, case, &friction).map_err(RunError::from)?;
+    let path = posed.run(&request.choice, Accuracy::of(case, Tier::High));
+    let mut state = ContactState::zero(&posed.system);
+    let mut start = state.clone();
+    let mut unsolved = None;
+    let end = path.follow_to(wanted, &mut |key, increment, _| match &increment.judged {
+        Some(judged) if increment.verdict == Verdict::Solved => {
+            start = std::mem::replace(&mut state, judged.outcome.state.clone());
         }
-        state = outcome.state;
-        start_load = load;
-        key.increment += 1;
+        _ => {
+            unsolved.get_or_insert((key.increment, increment.verdict.clone()));
+        }
+    });
+    if let Some((increment, verdict)) = unsolved {
+        return Err(ExportError::Unsolved {
+            increment,
+            method: end.key.method,
+            verdict,
+        });
     }
+    let increment = Increment {
+        system: &posed.system,
+        load: &posed.loading.at(wanted),
+        start_load: &posed.loading.at(wanted - 1),
+        start: &start,
+        index: wanted - 1,
+        tolerance: path.accuracy.asked,
+    };
+    let info = info(case, &end.key, &increment);
+    Ok(ExportedIncrement {
+        files: files(&increment, &state, info)?,
+        key: end.key,
+    })
 }
 
 /// Friction per crack.
@@ -165,10 +121,11 @@ fn friction(case: &Case, given: Option<f64>) -> Result<Vec<f64>, ExportError> {
     let mut all = friction_values(case);
     if all.len() > 1 {
         let values: Vec<String> = case.sweep.friction.iter().map(f64::to_string).collect();
-        return Err(ExportError::Friction {
-            case: case.name.clone(),
-            values: values.join(", "),
-        });
+        return Err(ExportError::Question(format!(
+            "`{}` runs with μ = {}: choose one with --friction",
+            case.name,
+            values.join(", ")
+        )));
     }
     Ok(all.pop().unwrap_or_default())
 }
@@ -208,7 +165,8 @@ fn files(
     solution: &ContactState,
     info: Info,
 ) -> Result<Vec<(&'static str, Vec<u8>)>, ExportError> {
-    let form: LocalForm = increment.local_form()?;
+    let form = increment.local_form().map_err(BodyError::from);
+    let form = form.map_err(RunError::from)?;
     let local = local_problem(increment, &form, solution, info.clone());
     let mut files = vec![
         ("local.hdf5", local.to_bytes()?),

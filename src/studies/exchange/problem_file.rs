@@ -155,21 +155,14 @@ impl ProblemFile {
         let vector = matrix_market::parse(reaction, &text)?;
         let rows = self.load.offset.len();
         if (vector.rows(), vector.cols()) != (rows, 1) {
-            return Err(InterchangeError::Shape {
-                path: reaction.into(),
-                rows: vector.rows(),
-                cols: vector.cols(),
-                allowed: format!("{rows} × 1"),
-            }
-            .into());
+            let found = format!("a matrix of {} × {}", vector.rows(), vector.cols());
+            let allowed = format!("{rows} × 1");
+            return Err(InterchangeError::unexpected(reaction, found, allowed).into());
         }
         let elastic = self.system.elastic();
         if !elastic.floating().is_empty() {
-            return Err(InterchangeError::Unsupported {
-                path: self.path.clone(),
-                what: "the body floats: a reaction alone does not tell its rigid motion".into(),
-            }
-            .into());
+            let what = "the body floats: a reaction alone does not tell its rigid motion";
+            return Err(InterchangeError::refused(&self.path, what).into());
         }
         let p = vector.column(0);
         let mut u = self.load.force.clone();
@@ -230,10 +223,7 @@ fn name(path: &Path) -> String {
 }
 
 fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeError> {
-    let unsupported = |what: &str| InterchangeError::Unsupported {
-        path: path.into(),
-        what: what.into(),
-    };
+    let unsupported = |what: &str| InterchangeError::refused(path, what);
     match problem {
         Problem::Local(problem) => {
             let Some(equality) = &problem.equality else {

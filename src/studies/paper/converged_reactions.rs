@@ -20,7 +20,7 @@ use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, Kind};
 use crate::studies::convergence::{self, ConvergencePlan};
-use crate::studies::paper::lookup::{PaperError, case, choice};
+use crate::studies::paper::lookup::{PaperError, as_printed, case, choice};
 use crate::studies::paper::printed_tables::Table1Row;
 
 /// Radius of the tip enrichment [m].
@@ -118,19 +118,16 @@ pub fn agreements(rows: &[ConvergedRow]) -> Vec<Agreement> {
         let limits = || own.iter().map(|row| row.limit_mn_per_m);
         let bars = || own.iter().map(|row| row.error_bar_mn_per_m);
         // `min` and `max` would drop a NaN.
-        let known = if limits().chain(bars()).all(f64::is_finite) {
-            1.0
-        } else {
-            f64::NAN
-        };
+        let all = limits().chain(bars()).all(f64::is_finite);
+        let known = |x: f64| if all { x } else { f64::NAN };
         let highest = limits().fold(f64::NEG_INFINITY, f64::max);
         let lowest = limits().fold(f64::INFINITY, f64::min);
         Agreement {
             friction,
             meshes: own.len(),
             mean_mn_per_m: limits().sum::<f64>() / own.len() as f64,
-            spread_mn_per_m: known * (highest - lowest),
-            smallest_bar_mn_per_m: known * bars().fold(f64::INFINITY, f64::min),
+            spread_mn_per_m: known(highest - lowest),
+            smallest_bar_mn_per_m: known(bars().fold(f64::INFINITY, f64::min)),
         }
     };
     frictions.into_iter().map(agreement).collect()
@@ -165,8 +162,7 @@ pub fn converged_reactions(
             friction: row.variant.friction,
             dofs: row.dofs,
             points: row.points,
-            // The support pushes down on the body; the paper prints the magnitude.
-            reaction_mn_per_m: -row.found / 1e6,
+            reaction_mn_per_m: as_printed(row.found),
             order: row.order,
             verdict: row.verdict.clone(),
         }));
@@ -185,7 +181,7 @@ pub fn converged_reactions(
                 mesh: mesh.into(),
                 finest_h_m: found.map_or(f64::NAN, |row| row.finest_h),
                 order: found.map_or(f64::NAN, |row| row.order),
-                limit_mn_per_m: found.map_or(f64::NAN, |row| -row.reference / 1e6),
+                limit_mn_per_m: found.map_or(f64::NAN, |row| as_printed(row.reference)),
                 error_bar_mn_per_m: found.map_or(f64::NAN, |row| row.error_bar / 1e6),
                 printed_mn_per_m: printed,
             });

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, CaseError, shipped};
 use crate::run::choice::Choice;
-use crate::run::record::{Results, RunKey};
+use crate::run::record::{Results, RunKey, RunRow};
 use crate::run::registry::method;
 use crate::run::run_case::RunError;
 use crate::run::verdict::Verdict;
@@ -51,25 +51,64 @@ pub fn choice(name: &str, options: &[(String, f64)]) -> Result<Choice, PaperErro
     Choice::new(method, options).map_err(|e| PaperError::Missing(format!("{name}: {e}")))
 }
 
-/// Value of a quantity of a run; `None` where the run has none.
-pub fn value(
-    results: &Results,
-    key: impl Fn(&RunKey) -> bool,
-    quantity: &str,
-    at: &str,
-    component: &str,
-) -> Option<f64> {
-    results
-        .quantities
-        .iter()
-        .filter(|row| key(&row.key))
-        .map(|row| &row.quantity)
-        .find(|q| q.name == quantity && q.at == at && q.component == component)
-        .map(|q| q.value)
+/// What is compared: quantity, place, component.
+pub type Compared = [&'static str; 3];
+
+/// Reaction of the plate at its top.
+pub const REACTION: Compared = ["reaction", "top", "y"];
+
+/// The reaction as the paper prints it [MN/m]: the support pushes down on the body, the paper has the magnitude.
+pub fn as_printed(reaction: f64) -> f64 {
+    -reaction / 1e6
 }
 
-/// Verdict of the last increment of a run.
-pub fn verdict(results: &Results, key: impl Fn(&RunKey) -> bool) -> Option<Verdict> {
-    let last = results.runs.iter().rfind(|r| key(&r.key));
-    last.map(|r| r.verdict.clone())
+/// A run of a case by a method, among others.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// Everything that was run; the case on one mesh.
+    pub results: &'a Results,
+    /// Case.
+    pub case: &'a str,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Method label.
+    pub method: &'a str,
+}
+
+impl<'a> Run<'a> {
+    /// The run of a case at a friction coefficient by a method.
+    pub fn of(results: &'a Results, case: &'a str, friction: f64, method: &'a str) -> Self {
+        Self {
+            results,
+            case,
+            friction,
+            method,
+        }
+    }
+
+    fn has(&self, key: &RunKey) -> bool {
+        key.case == self.case && key.friction == self.friction && key.method == self.method
+    }
+
+    /// Value of a quantity; `None` where the run has none.
+    pub fn value(&self, [quantity, at, component]: [&str; 3]) -> Option<f64> {
+        let own = self
+            .results
+            .quantities
+            .iter()
+            .filter(|row| self.has(&row.key));
+        own.map(|row| &row.quantity)
+            .find(|q| q.name == quantity && q.at == at && q.component == component)
+            .map(|q| q.value)
+    }
+
+    /// Row of the last increment; `None` where there is no such run.
+    pub fn last(&self) -> Option<&'a RunRow> {
+        self.results.runs.iter().rfind(|row| self.has(&row.key))
+    }
+
+    /// Verdict of the last increment.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.last().map(|row| row.verdict.clone())
+    }
 }

@@ -1,9 +1,12 @@
 //! The plate over one parameter: reaction against the penalty stiffness, and against the cell width on both meshes.
 
-use crate::run::record::{Results, RunKey};
+use crate::run::record::Results;
 use crate::run::run_case::{Progress, Settings, run_case};
 use crate::run::verdict::Verdict;
-use crate::studies::paper::lookup::{PaperError, REFERENCE_METHOD, case, choice, value};
+use crate::studies::convergence::linear_limit;
+use crate::studies::paper::lookup::{
+    PaperError, REACTION, REFERENCE_METHOD, Run, as_printed, case, choice,
+};
 
 /// Multiples of the natural scale that the penalty stiffness is swept over.
 const PENALTIES: [f64; 7] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
@@ -84,39 +87,31 @@ pub fn penalty_rows(
     progress: &dyn Progress,
 ) -> Result<Vec<PenaltyRow>, PaperError> {
     let plate = case(REFINEMENTS[0].0)?;
-    let mut choices = Vec::new();
-    for c in PENALTIES {
-        choices.push(choice(
-            "penalty",
-            &[("normal".into(), c), ("tangential".into(), c)],
-        )?);
-    }
+    let stiffness = |c| choice("penalty", &[("normal".into(), c), ("tangential".into(), c)]);
+    let choices: Vec<_> = PENALTIES
+        .into_iter()
+        .map(stiffness)
+        .collect::<Result<_, _>>()?;
     let swept = run_case(&plate, &choices, settings, progress)?;
     let mut rows = Vec::new();
     for &friction in &plate.sweep.friction {
-        let exact = value(
-            results,
-            |k| k.case == plate.name && k.friction == friction && k.method == REFERENCE_METHOD,
-            "reaction",
-            "top",
-            "y",
-        );
+        let run = |results, method| Run::of(results, &plate.name, friction, method);
+        let exact = run(results, REFERENCE_METHOD).value(REACTION);
         for (c, choice) in PENALTIES.iter().zip(&choices) {
-            let key = |k: &RunKey| k.friction == friction && k.method == choice.label;
-            let found = value(&swept, key, "reaction", "top", "y");
-            let run = swept.runs.iter().find(|r| key(&r.key));
+            let run = run(&swept, &choice.label);
+            let (found, row) = (run.value(REACTION), run.last());
+            let deepest = run.value(["max_penetration", "crack-1", ""]);
             rows.push(PenaltyRow {
                 friction,
                 parameter: *c,
-                reaction_mn_per_m: found.map_or(f64::NAN, |r| -r / 1e6),
+                reaction_mn_per_m: found.map_or(f64::NAN, as_printed),
                 relative_error: match (found, exact) {
                     (Some(found), Some(exact)) => ((found - exact) / exact).abs(),
                     _ => f64::NAN,
                 },
-                max_penetration_m: value(&swept, key, "max_penetration", "crack-1", "")
-                    .unwrap_or(f64::NAN),
-                natural_map: run.map_or(f64::NAN, |r| r.natural_map),
-                verdict: run.map(|r| r.verdict.clone()),
+                max_penetration_m: deepest.unwrap_or(f64::NAN),
+                natural_map: row.map_or(f64::NAN, |r| r.natural_map),
+                verdict: run.verdict(),
             });
         }
     }
@@ -135,30 +130,24 @@ pub fn refinement_rows(
     let mut rows = Vec::new();
     for (name, family, factors) in REFINEMENTS {
         let mut plate = case(name)?;
-        plate.sweep.refine = factors.to_vec();
         plate.expects.clear();
-        let results = run_case(&plate, std::slice::from_ref(&method), settings, progress)?;
-        let width = plate.mesh.grid.lines[0].last().unwrap_or(&0.0) - plate.mesh.grid.lines[0][0];
-        let columns = plate.mesh.grid.lines[0].len() - 1;
-        for run in &results.runs {
-            // The label begins with the number of columns.
-            let found: usize = run
-                .key
-                .mesh
-                .split('x')
-                .next()
-                .and_then(|n| n.parse().ok())
-                .unwrap_or(columns);
-            rows.push(RefinementRow {
-                family: family.into(),
-                mesh: run.key.mesh.clone(),
-                h_m: width / found as f64,
-                friction: run.key.friction,
-                dofs: run.dofs,
-                reaction_mn_per_m: value(&results, |k| *k == run.key, "reaction", "top", "y")
-                    .map_or(f64::NAN, |r| -r / 1e6),
-                verdict: run.verdict.clone(),
-            });
+        let lines = &plate.mesh.grid.lines[0];
+        let (columns, width) = (lines.len() - 1, lines.last().unwrap_or(&0.0) - lines[0]);
+        for &factor in factors {
+            plate.sweep.refine = vec![factor];
+            let results = run_case(&plate, std::slice::from_ref(&method), settings, progress)?;
+            rows.extend(results.runs.iter().map(|row| {
+                let run = Run::of(&results, name, row.key.friction, &method.label);
+                RefinementRow {
+                    family: family.into(),
+                    mesh: row.key.mesh.clone(),
+                    h_m: width / (factor * columns) as f64,
+                    friction: row.key.friction,
+                    dofs: row.dofs,
+                    reaction_mn_per_m: run.value(REACTION).map_or(f64::NAN, as_printed),
+                    verdict: row.verdict.clone(),
+                }
+            }));
         }
     }
     Ok(rows)
@@ -174,17 +163,13 @@ pub fn limit_rows(rows: &[RefinementRow]) -> Vec<LimitRow> {
         .into_iter()
         .map(|friction| {
             let limit = |family: &str| {
-                let mut own: Vec<&RefinementRow> = rows
+                let own = rows
                     .iter()
-                    .filter(|r| r.family == family && r.friction == friction)
-                    .collect();
-                own.sort_by(|a, b| a.h_m.total_cmp(&b.h_m));
-                match own.as_slice() {
-                    [fine, next, ..] => {
-                        let slope = (next.reaction_mn_per_m - fine.reaction_mn_per_m)
-                            / (next.h_m - fine.h_m);
-                        fine.reaction_mn_per_m - slope * fine.h_m
-                    }
+                    .filter(|r| r.family == family && r.friction == friction);
+                let mut own: Vec<_> = own.map(|r| [r.h_m, r.reaction_mn_per_m]).collect();
+                own.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                match own[..] {
+                    [fine, next, ..] => linear_limit([next, fine]),
                     _ => f64::NAN,
                 }
             };

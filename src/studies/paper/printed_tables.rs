@@ -3,10 +3,11 @@
 //! Table 1: vertical reaction at the top of the plate. Table 2: displacement of seven points of the beam. Lines with the
 //! method [`PRINTED`] carry the printed numbers.
 
-use crate::run::record::{Results, RunKey};
+use crate::run::record::Results;
 use crate::run::registry::methods;
 use crate::run::verdict::Verdict;
-use crate::studies::paper::lookup::{PaperError, value, verdict};
+use crate::studies::paper::lookup::{PaperError, REACTION, Run, as_printed};
+use crate::studies::sweep::statistics::larger;
 
 /// Printed numbers.
 const TABLE1: &str = include_str!("../../../cases/reference/plate_table1.csv");
@@ -142,19 +143,10 @@ pub fn plate_rows(results: &Results) -> Result<Vec<Table1Row>, PaperError> {
         let (mesh, friction, printed): (String, f64, f64) = record?;
         for (name, _) in PLATES.iter().filter(|(_, own)| *own == mesh) {
             for method in PAPER_METHODS {
-                let key =
-                    |k: &RunKey| k.case == *name && k.friction == friction && k.method == method;
-                // The support pushes down on the body; the paper prints the magnitude.
-                let reaction = value(results, key, "reaction", "top", "y").map(|r| -r / 1e6);
-                let verdict = verdict(results, key);
-                rows.push(Table1Row::new(
-                    &mesh,
-                    friction,
-                    method,
-                    reaction,
-                    Some(printed),
-                    verdict,
-                ));
+                let run = Run::of(results, name, friction, method);
+                let (found, verdict) = (run.value(REACTION).map(as_printed), run.verdict());
+                let row = Table1Row::new(&mesh, friction, method, found, Some(printed), verdict);
+                rows.push(row);
             }
         }
     }
@@ -173,16 +165,9 @@ pub fn beam_rows(results: &Results) -> Result<Vec<Table2Row>, PaperError> {
             let reference = Table2Row::printed(&model, variant, &component, printed);
             for (name, _) in BEAMS.iter().filter(|(_, own)| *own == model) {
                 for method in PAPER_METHODS {
-                    let key = |k: &RunKey| {
-                        k.case == *name && k.friction == friction && k.method == method
-                    };
-                    let row = probe_row(results, key, &component);
-                    rows.push(Table2Row::computed(
-                        &reference,
-                        method,
-                        row,
-                        verdict(results, key),
-                    ));
+                    let run = Run::of(results, name, friction, method);
+                    let p_mm = probe_row(run, &component);
+                    rows.push(Table2Row::computed(&reference, method, p_mm, run.verdict()));
                 }
             }
             rows.push(reference);
@@ -192,10 +177,11 @@ pub fn beam_rows(results: &Results) -> Result<Vec<Table2Row>, PaperError> {
 }
 
 /// One component of P1 … P7 [mm]; NaN where the run has no solution.
-fn probe_row(results: &Results, key: impl Fn(&RunKey) -> bool, component: &str) -> [f64; 7] {
+fn probe_row(run: Run<'_>, component: &str) -> [f64; 7] {
     std::array::from_fn(|i| {
         let probe = format!("P{}", i + 1);
-        value(results, &key, "displacement", &probe, component).map_or(f64::NAN, |u| u * 1e3)
+        let found = run.value(["displacement", &probe, component]);
+        found.map_or(f64::NAN, |u| u * 1e3)
     })
 }
 
@@ -205,20 +191,13 @@ pub fn beam_difference(results: &Results) -> f64 {
     for method in methods().iter().filter(|m| m.exact) {
         for (_, friction) in VARIANTS {
             for component in ["x", "y", "z"] {
-                let of = |case: &str| {
-                    let key = |k: &RunKey| {
-                        k.case == case && k.friction == friction && k.method == method.name
-                    };
-                    probe_row(results, key, component)
+                let of = |case| {
+                    let run = Run::of(results, case, friction, method.name);
+                    probe_row(run, component)
                 };
                 for (one, two) in of(EXACT_BEAM).iter().zip(of(BEAMS[1].0)) {
-                    let difference = (one - two).abs();
-                    // `max` would drop a NaN, and a missing run must show.
-                    largest = if difference.is_nan() {
-                        f64::NAN
-                    } else {
-                        largest.max(difference)
-                    };
+                    // A missing run must show.
+                    largest = larger(largest, (one - two).abs());
                 }
             }
         }

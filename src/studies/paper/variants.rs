@@ -3,14 +3,16 @@
 use crate::run::registry::methods;
 
 use crate::run::choice::Choice;
-use crate::run::record::{Results, RunKey, RunRow};
+use crate::run::record::{Results, RunRow};
 use crate::run::run_case::{Progress, Settings, run_case};
 use crate::run::verdict::Verdict;
-use crate::studies::paper::lookup::{PaperError, REFERENCE_METHOD, case, choice, value};
+use crate::studies::paper::lookup::{
+    Compared, PaperError, REACTION, REFERENCE_METHOD, Run, case, choice,
+};
 
 /// Case, friction coefficients, and what is compared: (quantity, at, component).
-const PROBLEMS: [(&str, &[f64], [&str; 3]); 2] = [
-    ("plate_mesh1", &[0.1, 0.8, 1.2], ["reaction", "top", "y"]),
+const PROBLEMS: [(&str, &[f64], Compared); 2] = [
+    ("plate_mesh1", &[0.1, 0.8, 1.2], REACTION),
     ("beam_model1", &[0.1], ["displacement", "P4", "z"]),
 ];
 
@@ -63,16 +65,17 @@ pub fn variant_rows(
 ) -> Result<Vec<VariantRow>, PaperError> {
     let choices = variants()?;
     let mut rows = Vec::new();
-    for (name, frictions, quantity) in PROBLEMS {
+    for (name, frictions, compared) in PROBLEMS {
         let mut problem = case(name)?;
         problem.sweep.friction = frictions.to_vec();
         problem.expects.clear();
         let swept = run_case(&problem, &choices, settings, progress)?;
         for &friction in frictions {
-            let reference = value_of(results, name, friction, REFERENCE_METHOD, quantity);
-            let row = |of, method| row(of, name, friction, method, quantity, reference);
-            rows.extend(methods().iter().map(|m| row(results, m.name)));
-            rows.extend(choices.iter().map(|c| row(&swept, &c.label)));
+            let run = |results, method| Run::of(results, name, friction, method);
+            let reference = run(results, REFERENCE_METHOD).value(compared);
+            let row = |run| row(run, compared, reference.unwrap_or(f64::NAN));
+            rows.extend(methods().iter().map(|m| row(run(results, m.name))));
+            rows.extend(choices.iter().map(|c| row(run(&swept, &c.label))));
         }
     }
     Ok(rows)
@@ -91,47 +94,24 @@ fn variants() -> Result<Vec<Choice>, PaperError> {
 }
 
 /// One row. A run that is missing must show.
-fn row(
-    of: &Results,
-    case: &str,
-    friction: f64,
-    method: &str,
-    quantity: [&str; 3],
-    reference: f64,
-) -> VariantRow {
-    let run = run_of(of, case, friction, method);
-    let found = value_of(of, case, friction, method, quantity);
+fn row(run: Run<'_>, compared: Compared, reference: f64) -> VariantRow {
+    let last = run.last();
+    let value = run.value(compared).unwrap_or(f64::NAN);
+    let count = |of: fn(&RunRow) -> usize| last.map_or(0, of);
     VariantRow {
-        case: case.into(),
-        friction,
-        method: method.into(),
-        verdict: run.map(|r| r.verdict.clone()),
-        quantity: quantity.join(" "),
-        value: found,
-        deviation: ((found - reference) / reference).abs(),
-        natural_map: run.map_or(f64::NAN, |r| r.natural_map),
-        iterations: run.map_or(0, |r| r.iterations),
-        tangent_factorisations: run.map_or(0, |r| r.tangent_factorisations),
-        global_factorisations: run.map_or(0, |r| r.global_factorisations),
-        solve_s: run.map_or(f64::NAN, |r| r.solve_s),
+        case: run.case.into(),
+        friction: run.friction,
+        method: run.method.into(),
+        verdict: run.verdict(),
+        quantity: compared.join(" "),
+        value,
+        deviation: ((value - reference) / reference).abs(),
+        natural_map: last.map_or(f64::NAN, |r| r.natural_map),
+        iterations: count(|r| r.iterations),
+        tangent_factorisations: count(|r| r.tangent_factorisations),
+        global_factorisations: count(|r| r.global_factorisations),
+        solve_s: last.map_or(f64::NAN, |r| r.solve_s),
     }
-}
-
-fn value_of(
-    results: &Results,
-    case: &str,
-    friction: f64,
-    method: &str,
-    [quantity, at, component]: [&str; 3],
-) -> f64 {
-    let key = |k: &RunKey| k.case == case && k.friction == friction && k.method == method;
-    value(results, key, quantity, at, component).unwrap_or(f64::NAN)
-}
-
-fn run_of<'a>(results: &'a Results, case: &str, friction: f64, method: &str) -> Option<&'a RunRow> {
-    let own =
-        |r: &&RunRow| r.key.case == case && r.key.friction == friction && r.key.method == method;
-    results.runs.iter().rfind(own)
 }
 
 #[cfg(test)]
@@ -150,15 +130,9 @@ mod tests {
 
     #[test]
     fn a_missing_run_has_a_row_that_says_so() {
-        let quantity = PROBLEMS[0].2;
-        let row = row(
-            &Results::default(),
-            "plate_mesh1",
-            0.1,
-            "latin",
-            quantity,
-            1.0,
-        );
+        let nothing = Results::default();
+        let run = Run::of(&nothing, "plate_mesh1", 0.1, "latin");
+        let row = row(run, REACTION, 1.0);
         assert_eq!((&row.verdict, row.method.as_str()), (&None, "latin"));
         let numbers = [row.value, row.deviation, row.natural_map, row.solve_s];
         assert!(numbers.iter().all(|x| x.is_nan()), "{row:?}");

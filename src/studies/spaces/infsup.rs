@@ -24,15 +24,16 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{Elastic, ElasticParts, MethodError, SymmetricMatrix};
+use stickslip_methods::{Elastic, ElasticParts, SymmetricMatrix};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::fields::mass::mass;
 use stickslip_xfem::stiffness::assembly::elimination_order;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
 
-use crate::case::{CaseError, ContactSpace};
-use crate::model::body::{Body, BodyError, Needs, free_rows};
+use crate::case::ContactSpace;
+use crate::model::body::{Body, BodyError, Needs, free_rows, numbered};
 use crate::run::run_case::Progress;
+use crate::studies::convergence;
 
 pub use pencil::{PencilError, eigenvalues};
 pub use scene::{LENGTH, SCENES, Scene, YOUNG};
@@ -73,18 +74,6 @@ pub enum Fault {
     /// The eigenproblem has no answer.
     #[error(transparent)]
     Pencil(#[from] PencilError),
-}
-
-impl From<CaseError> for Fault {
-    fn from(error: CaseError) -> Self {
-        Fault::Body(error.into())
-    }
-}
-
-impl From<MethodError> for Fault {
-    fn from(error: MethodError) -> Self {
-        Fault::Body(error.into())
-    }
 }
 
 /// β on one mesh.
@@ -135,35 +124,30 @@ pub fn run(
     cells: impl Fn(&Scene) -> Vec<usize>,
     progress: &dyn Progress,
 ) -> Result<Vec<Sequence>, InfSupError> {
-    let mut jobs = Vec::new();
+    let mut wanted = Vec::new();
     for scene in &SCENES {
-        for space in ContactSpace::ALL {
-            jobs.extend(cells(scene).into_iter().map(|n| (scene, space, n)));
-        }
+        let cells = cells(scene);
+        let spaces = ContactSpace::ALL.into_iter().filter(|_| !cells.is_empty());
+        wanted.extend(spaces.map(|space| (scene, space, cells.clone())));
     }
-    progress.plan(jobs.len());
-    let found = jobs
-        .par_iter()
-        .map(|&(scene, space, n)| {
-            let sample = sample(scene, space, n);
+    progress.plan(wanted.iter().map(|sequence| sequence.2.len()).sum());
+    let of = |(scene, space, cells): &(&'static Scene, ContactSpace, Vec<usize>)| {
+        let one = |n: &usize| {
+            let sample = sample(scene, *space, *n);
             progress.done(scene.name);
             sample
+        };
+        let samples: Vec<Result<Sample, InfSupError>> = cells.par_iter().map(one).collect();
+        Ok(Sequence {
+            scene,
+            space: *space,
+            samples: samples.into_iter().collect::<Result<_, _>>()?,
+            slope: f64::NAN,
+            share: f64::NAN,
         })
-        .collect::<Vec<_>>();
-    let mut sequences: Vec<Sequence> = Vec::new();
-    for ((scene, space, _), sample) in jobs.into_iter().zip(found) {
-        let sample = sample?;
-        match sequences.last_mut() {
-            Some(s) if s.scene.name == scene.name && s.space == space => s.samples.push(sample),
-            _ => sequences.push(Sequence {
-                scene,
-                space,
-                samples: vec![sample],
-                slope: f64::NAN,
-                share: f64::NAN,
-            }),
-        }
-    }
+    };
+    let found: Vec<Result<Sequence, InfSupError>> = wanted.par_iter().map(of).collect();
+    let mut sequences = found.into_iter().collect::<Result<Vec<_>, _>>()?;
     judge(&mut sequences);
     Ok(sequences)
 }
@@ -194,12 +178,8 @@ fn slope(samples: &[Sample]) -> f64 {
     if samples.iter().any(|p| p.beta == 0.0) {
         return f64::INFINITY;
     }
-    let points: Vec<[f64; 2]> = samples.iter().map(|p| [p.h.ln(), p.beta.ln()]).collect();
-    let count = points.len() as f64;
-    let [x, y] = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
-    let product =
-        |k: usize, mean: f64| -> f64 { points.iter().map(|p| (p[0] - x) * (p[k] - mean)).sum() };
-    product(1, y) / product(0, x)
+    let points: Vec<[f64; 2]> = samples.iter().map(|p| [p.h, p.beta]).collect();
+    convergence::slope(&points)
 }
 
 /// β of one space on one mesh of a scene.
@@ -216,7 +196,11 @@ pub fn sample(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample
 }
 
 fn measure(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample, Fault> {
-    let body = Body::new(&scene.case(space, cells)?, 1, Needs::default())?;
+    let body = Body::new(
+        &scene.case(space, cells).map_err(BodyError::from)?,
+        1,
+        Needs::default(),
+    )?;
     let dim = body.mesh.dim();
     let standard = |unknown: &usize| {
         let function = &body.enrichment.functions[unknown / dim];
@@ -227,7 +211,7 @@ fn measure(scene: &Scene, space: ContactSpace, cells: usize) -> Result<Sample, F
     }
     let h = LENGTH / cells as f64;
     let norm = displacement_norm(&body)?;
-    let response = norm.delassus()?;
+    let response = norm.delassus().map_err(BodyError::from)?;
     // G A⁻¹ Gᵀ from B A⁻¹ Bᵀ.
     let weight = |row: usize| body.points[row / dim].weight;
     let m = response.size();
@@ -275,17 +259,7 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
     }
     // In the basis of the solver: branch functions within a radius are not independent as they stand.
     let dim = body.mesh.dim();
-    let kept: Vec<Option<u32>> = {
-        let mut count = 0;
-        let number = |i: usize| {
-            (!body.basis.drops(i / dim)).then(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        (0..all.len()).map(number).collect()
-    };
-    let n = kept.iter().flatten().count();
+    let (kept, n) = numbered((0..all.len()).map(|i| !body.basis.drops(i / dim)));
     let columns: Vec<Vec<(usize, f64)>> =
         (0..all.len()).map(|i| body.basis.column(dim, i)).collect();
     let mut sum: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); n];

@@ -17,19 +17,19 @@ pub use catalogue::{DISTANCES, Loaded, Patch, State, catalogue, flat, solid};
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use stickslip_methods::{ContactSystem, Tier};
+use stickslip_methods::Tier;
 use stickslip_xfem::exact::{Field, Setting, solution};
 use stickslip_xfem::geometry::{dot, norm, sub};
 
 use crate::case::{Case, ContactSpace};
-use crate::model::body::{Body, BodyError, Needs};
-use crate::model::loading::Loading;
+use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
 use crate::model::sides::Sides;
 use crate::run::choice::Choice;
-use crate::run::load_path::LoadPathRun;
-use crate::run::run_case::{Progress, RunError};
+use crate::run::load_path::Posed;
+use crate::run::run_case::{Progress, RunError, needs};
 use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::sweep::statistics::larger;
 
 /// Largest errors of a patch test that counts as passed.
 pub const PASSED: f64 = 1e-10;
@@ -117,31 +117,19 @@ fn run_one(
         traction: f64::NAN,
         displacement: f64::NAN,
     };
-    let friction = case.cracks.first().map_or(0.0, |c| c.friction);
-    let needs = Needs {
-        frictionless: friction == 0.0,
-        traction: choice.needs_traction(),
-    };
-    let body = match Body::new(case, 1, needs) {
+    let friction: Vec<f64> = case.cracks.iter().map(|c| c.friction).collect();
+    let frictions = std::slice::from_ref(&friction);
+    let body = match Body::new(case, 1, needs(frictions, std::slice::from_ref(choice))) {
         Ok(body) => body,
         Err(refused) => return Ok(row(space.name(), 0, Verdict::Refused(refused.to_string()))),
     };
-    let own = vec![friction; body.points.len()];
-    let system = ContactSystem::new(body.elastic.clone(), own).map_err(BodyError::from)?;
-    let loading = Loading::new(&body, case, friction)?;
-    let path = LoadPathRun {
-        case,
-        loading: &loading,
-        system: &system,
-        friction,
-        choice,
-        accuracy: Accuracy::of(case, Tier::High),
-    };
+    let posed = Posed::new(&body, case, &friction)?;
+    let path = posed.run(choice, Accuracy::of(case, Tier::High));
     let end = path.follow(&mut |_, _, _| ());
     let mut row = row(&body.space, body.points.len(), end.verdict);
     let Some(now) = end.now else { return Ok(row) };
     let hydrostatic;
-    let field = match loading.exact(loading.increments()) {
+    let field = match posed.loading.exact(case.path.increments) {
         Some(field) => field,
         None => {
             hydrostatic = pressed(case)?;
@@ -177,15 +165,6 @@ fn pressed(case: &Case) -> Result<Box<dyn Field>, RunError> {
     let stress: Vec<f64> = parameters.map(|p| value(p.name, p.default)).collect();
     let solution = (spec.build)(&setting, &stress).map_err(refuse)?;
     solution.at(&[1.0]).map_err(refuse)
-}
-
-/// The larger of two numbers; NaN if one is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.max(b)
-    }
 }
 
 fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {

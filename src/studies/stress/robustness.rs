@@ -4,7 +4,7 @@ use stickslip_methods::Tier;
 
 use crate::run::verdict::{GIVE_UPS, Verdict};
 use crate::studies::stress::{StressPlan, Trial};
-use crate::studies::sweep::analysis::proportion::wilson;
+use crate::studies::sweep::statistics::wilson;
 
 /// Tiers that contact laws held to beside an approximate method's own laws; none comes last.
 const GRADES: [Option<Tier>; 4] = [Some(Tier::High), Some(Tier::Mid), Some(Tier::Low), None];

@@ -7,7 +7,6 @@
 pub mod accuracy;
 pub mod costs;
 pub mod profile;
-pub mod proportion;
 pub mod ranking;
 pub mod recommendation;
 pub mod series;
@@ -78,9 +77,7 @@ pub fn body_times(record: &Record, records: &[Record]) -> Option<[f64; 3]> {
         published_times(r).map(|spent| [spent.setup_s, spent.assembly_s, spent.factorisation_s])
     };
     let alike = |other: &&Record| {
-        let (a, b) = (&record.cell, &other.cell);
-        (&a.case, &a.digest, a.refine, &a.space) == (&b.case, &b.digest, b.refine, &b.space)
-            && a.friction == b.friction
+        record.cell.problem() == other.cell.problem()
             && record.origin.machine == other.origin.machine
             && record.origin.profile == other.origin.profile
     };
@@ -113,16 +110,11 @@ pub fn compare_methods(a: &str, b: &str) -> Ordering {
 
 /// Order of problems: case, refinement, contact space, friction.
 pub fn compare_problems(a: &Problem, b: &Problem) -> Ordering {
-    let key = |p: &Problem| (p.case.clone(), p.refine, p.space.clone(), p.digest.clone());
-    let friction = || {
-        let pairs = a.friction.iter().zip(&b.friction);
-        let differences = pairs.map(|(x, y)| x.total_cmp(y));
-        let lengths = a.friction.len().cmp(&b.friction.len());
-        differences
-            .fold(Ordering::Equal, Ordering::then)
-            .then(lengths)
-    };
-    key(a).cmp(&key(b)).then_with(friction)
+    fn key(p: &Problem) -> impl PartialOrd + '_ {
+        (&p.case, p.refine, &p.space, &p.digest, &p.friction)
+    }
+    // Coefficients of friction are numbers.
+    key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal)
 }
 
 /// The finest tolerance that was asked for on every mesh, given those of each; none where they share none.

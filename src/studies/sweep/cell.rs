@@ -31,19 +31,11 @@ impl Cell {
     /// Stable name, also of the record's file: what a reader wants to know, then 8 hexadecimal digits of the SHA-256 of
     /// the cell, which tell apart what the readable part does not (the case file, the coefficients of further cracks).
     pub fn id(&self) -> String {
-        let Cell {
-            case,
-            digest,
-            refine,
-            space,
-            friction,
-            method,
-            tolerance,
-        } = self;
-        let space = space.as_deref().unwrap_or("own");
-        let mu = self.mu();
-        let readable = format!("{case}.r{refine}.{space}.mu-{mu}.{method}.tol-{tolerance:e}");
-        let exact = format!("{readable} {digest} {friction:?}");
+        let space = self.space.as_deref().unwrap_or("own");
+        let (case, mu) = (&self.case, self.mu());
+        let how = format!("{}.tol-{:e}", self.method, self.tolerance);
+        let readable = format!("{case}.r{}.{space}.mu-{mu}.{how}", self.refine);
+        let exact = format!("{readable} {} {:?}", self.digest, self.friction);
         let safe = |c: char| match c {
             'a'..='z' | 'A'..='Z' | '0'..='9' | '.' | '-' | '_' | '=' => c,
             _ => '-',

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use super::analysis::{method_time, published_times};
 use super::record::{IncrementFound, Record};
 use super::statistics::{Timing, median};
+use crate::case::named;
 
 /// Change of a solver error that is told, relative.
 const ERROR_CHANGE: f64 = 0.01;
@@ -25,25 +26,15 @@ const TIME_CHANGE: f64 = 1.1;
 /// Median absolute deviation to standard deviation, of a normal distribution.
 const NORMAL: f64 = 1.4826;
 
-/// Which way something went, from A to B.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// B is better.
-    Better,
-    /// B is worse.
-    Worse,
-    /// Neither.
-    Other,
-}
-
-impl Direction {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Direction::Better => "better",
-            Direction::Worse => "worse",
-            Direction::Other => "other",
-        }
+named! {
+    /// Which way something went, from A to B.
+    pub enum Direction {
+        /// B is better.
+        Better = "better",
+        /// B is worse.
+        Worse = "worse",
+        /// Neither.
+        Other = "other",
     }
 }
 
@@ -123,35 +114,47 @@ impl Comparison {
     }
 }
 
+impl Change {
+    fn new(record: &Record, what: What, direction: Direction, texts: [String; 2]) -> Self {
+        let [a, b] = texts;
+        Self {
+            id: record.id.clone(),
+            what,
+            direction,
+            a,
+            b,
+            ratio: f64::NAN,
+        }
+    }
+}
+
 /// Compares `b` with `a`, cell by cell.
 pub fn compare(a: &[Record], b: &[Record]) -> Comparison {
-    let by_id = |records: &'_ [Record]| -> BTreeMap<String, Record> {
-        records.iter().map(|r| (r.id.clone(), r.clone())).collect()
-    };
+    fn by_id(records: &[Record]) -> BTreeMap<&str, &Record> {
+        records.iter().map(|r| (r.id.as_str(), r)).collect()
+    }
     let (a, b) = (by_id(a), by_id(b));
-    let pairs: Vec<[&Record; 2]> = a
-        .iter()
-        .filter_map(|(id, record)| Some([record, b.get(id)?]))
+    let pairs: Vec<[&Record; 2]> = (a.iter())
+        .filter_map(|(id, record)| Some([*record, *b.get(id)?]))
         .collect();
     let mut changes = Vec::new();
-    for (ours, theirs, what) in [(&a, &b, What::OnlyA), (&b, &a, What::OnlyB)] {
-        let alone = ours.values().filter(|r| !theirs.contains_key(&r.id));
-        changes.extend(alone.map(|r| lonely(r, what.clone())));
+    for (own, other, what) in [(&a, &b, What::OnlyA), (&b, &a, What::OnlyB)] {
+        for (_, record) in own.iter().filter(|(id, _)| !other.contains_key(*id)) {
+            let mut texts = [record.found.verdict.to_string(), String::new()];
+            if what == What::OnlyB {
+                texts.reverse();
+            }
+            changes.push(Change::new(record, what.clone(), Direction::Other, texts));
+        }
     }
     let mut identical = 0;
-    for pair in &pairs {
-        let found = found_changes(*pair);
-        let same = bits(pair[0]) == bits(pair[1]);
-        if same {
+    for [a, b] in &pairs {
+        let found = found_changes([a, b]);
+        if a.found.same_bits(&b.found) {
             identical += 1;
         } else if found.is_empty() {
-            changes.push(change(
-                pair[0],
-                What::Bits,
-                Direction::Other,
-                ["", ""],
-                f64::NAN,
-            ));
+            let texts = [String::new(), String::new()];
+            changes.push(Change::new(a, What::Bits, Direction::Other, texts));
         }
         changes.extend(found);
     }
@@ -168,38 +171,6 @@ pub fn compare(a: &[Record], b: &[Record]) -> Comparison {
         drift,
         noise,
     }
-}
-
-fn change(
-    record: &Record,
-    what: What,
-    direction: Direction,
-    texts: [&str; 2],
-    ratio: f64,
-) -> Change {
-    let [a, b] = texts.map(str::to_owned);
-    Change {
-        id: record.id.clone(),
-        what,
-        direction,
-        a,
-        b,
-        ratio,
-    }
-}
-
-fn lonely(record: &Record, what: What) -> Change {
-    let verdict = record.found.verdict.to_string();
-    let texts = match what {
-        What::OnlyA => [verdict.as_str(), ""],
-        _ => ["", &verdict],
-    };
-    change(record, what, Direction::Other, texts, f64::NAN)
-}
-
-/// The found part as it is written: equal text, equal bits.
-fn bits(record: &Record) -> Option<String> {
-    serde_json::to_string(&record.found).ok()
 }
 
 /// B against A where less is better.
@@ -229,42 +200,37 @@ const COUNTERS: [Counter; 7] = [
 /// Changes of what was found.
 fn found_changes([a, b]: [&Record; 2]) -> Vec<Change> {
     let mut changes = Vec::new();
+    let mut tell = |what, direction, texts, ratio| {
+        changes.push(Change {
+            ratio,
+            ..Change::new(a, what, direction, texts)
+        });
+    };
     let [x, y] = [a, b].map(|r| &r.found.verdict);
     if x != y {
-        let direction = towards_less(x.rank(), y.rank());
         let texts = [x, y].map(|verdict| verdict.to_string());
-        let texts = texts.each_ref().map(String::as_str);
-        changes.push(change(a, What::Verdict, direction, texts, f64::NAN));
+        let direction = towards_less(x.rank(), y.rank());
+        tell(What::Verdict, direction, texts, f64::NAN);
     }
     for (name, of) in COUNTERS {
         let [x, y] = [a, b].map(|r| r.found.sum(of));
         if x != y {
-            let texts = [x, y].map(|n| n.to_string());
-            let texts = texts.each_ref().map(String::as_str);
             // How the states of the points change is neither good nor bad.
-            let direction = if name.ends_with("_changes") {
-                Direction::Other
-            } else {
-                towards_less(x, y)
+            let direction = match name.ends_with("_changes") {
+                true => Direction::Other,
+                false => towards_less(x, y),
             };
-            let ratio = y as f64 / x as f64;
-            changes.push(change(a, What::Counter(name), direction, texts, ratio));
+            let texts = [x, y].map(|n| n.to_string());
+            tell(What::Counter(name), direction, texts, y as f64 / x as f64);
         }
     }
     let errors = [a, b].map(|r| r.found.solver_error.as_ref().map(|e| e.energy));
-    if let [Some(x), Some(y)] = errors {
-        let largest = x.max(y);
-        if largest > ROUND_OFF && (x - y).abs() > ERROR_CHANGE * x.min(y) {
-            let texts = [x, y].map(|e| format!("{e:.2e}"));
-            let texts = texts.each_ref().map(String::as_str);
-            changes.push(change(
-                a,
-                What::SolverError,
-                towards_less(x, y),
-                texts,
-                y / x,
-            ));
-        }
+    if let [Some(x), Some(y)] = errors
+        && x.max(y) > ROUND_OFF
+        && (x - y).abs() > ERROR_CHANGE * x.min(y)
+    {
+        let texts = [x, y].map(|e| format!("{e:.2e}"));
+        tell(What::SolverError, towards_less(x, y), texts, y / x);
     }
     changes
 }
@@ -305,22 +271,22 @@ impl<'a> Timed<'a> {
         let changed = !self.a.overlaps(&b) && beyond.abs() > least;
         changed.then(|| {
             let texts = [self.a, self.b].map(|t| format!("{:.3e} s", t.median_s));
-            let texts = texts.each_ref().map(String::as_str);
             let direction = towards_less(0.0, beyond);
-            change(self.record, What::Time, direction, texts, beyond.exp())
+            Change {
+                ratio: beyond.exp(),
+                ..Change::new(self.record, What::Time, direction, texts)
+            }
         })
     }
 }
 
 fn drift_and_noise(timed: &[Timed<'_>]) -> [f64; 2] {
-    let sorted_median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        median(&values)
-    };
-    let ratios: Vec<f64> = timed.iter().map(Timed::log_ratio).collect();
-    let drift = sorted_median(ratios.clone());
-    let deviations = ratios.iter().map(|ratio| (ratio - drift).abs());
-    [drift, NORMAL * sorted_median(deviations.collect())]
+    let ratios = || timed.iter().map(Timed::log_ratio);
+    let drift = median(ratios());
+    [
+        drift,
+        NORMAL * median(ratios().map(|ratio| (ratio - drift).abs())),
+    ]
 }
 
 #[cfg(test)]

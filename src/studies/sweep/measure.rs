@@ -16,9 +16,7 @@ use stickslip_methods::{ContactState, Increment, Load, PointStatus};
 
 use super::cell::Cell;
 use super::memory;
-use super::record::{
-    DeviationFound, Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent, ValueFound,
-};
+use super::record::{Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent};
 use super::statistics::Timing;
 use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
@@ -98,12 +96,9 @@ pub fn measure(
     let mut output_s = f64::NAN;
     if let (true, Some(now)) = (honest, pass.snapshots.last()) {
         output_s = output(&scene, now);
-        let exact = closed_form(&scene.loading, now)?;
-        if let Some(deviations) = &exact {
-            found.deviations = deviations.iter().map(DeviationFound::of).collect();
-        } else {
-            let values = followed(scene.case, scene.body, now);
-            found.values = values.iter().map(ValueFound::of).collect();
+        match closed_form(&scene.loading, now)? {
+            Some(deviations) => found.deviations = deviations,
+            None => found.values = followed(scene.case, scene.body, now),
         }
     }
     // Before the reference, which is no part of the cell.
@@ -158,8 +153,9 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
     let (mut states, mut snapshots) = (Vec::new(), Vec::new());
     let mut status: Option<Vec<PointStatus>> = None;
     let end = path.follow(&mut |key, increment, now| {
-        rows.push(path.row(key, increment));
-        increments.push(found_of(increment, status.as_deref()));
+        let row = path.row(key, increment);
+        increments.push(found_of(&row, increment, status.as_deref()));
+        rows.push(row);
         if let (Some(judged), Some(now)) = (&increment.judged, now) {
             status = Some(judged.status.clone());
             states.push(judged.outcome.state.clone());
@@ -177,20 +173,23 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
 }
 
 /// `before`: states of the points at the start; without one all are open.
-fn found_of(increment: &JudgedIncrement, before: Option<&[PointStatus]>) -> IncrementFound {
+fn found_of(
+    row: &RunRow,
+    increment: &JudgedIncrement,
+    before: Option<&[PointStatus]>,
+) -> IncrementFound {
     let judged = increment.judged.as_ref();
-    let counters = judged.map(|j| j.outcome.counters).unwrap_or_default();
     let began = |point: usize| before.map_or(PointStatus::Open, |before| before[point]);
     let status = judged.map_or(&[][..], |j| &j.status).iter().enumerate();
     let history = judged.map_or(&[][..], |j| &j.outcome.history);
     IncrementFound {
-        verdict: increment.verdict.clone(),
-        natural_map: (judged.map(|j| j.found.natural_map)).filter(|map| map.is_finite()),
-        iterations: counters.iterations,
-        solves: counters.solves,
-        tangent_factorisations: counters.factorisations,
-        global_factorisations: counters.global_factorisations,
-        local_solves: counters.local_solves,
+        verdict: row.verdict.clone(),
+        natural_map: Some(row.natural_map).filter(|map| map.is_finite()),
+        iterations: row.iterations,
+        solves: row.solves,
+        tangent_factorisations: row.tangent_factorisations,
+        global_factorisations: row.global_factorisations,
+        local_solves: row.local_solves,
         state_changes: history.iter().map(|i| i.changes).sum(),
         final_changes: status.filter(|(i, now)| **now != began(*i)).count(),
     }
@@ -207,12 +206,8 @@ fn repeat(
     repeats: Repeats,
 ) -> Result<Option<(Timing, Timing)>, Verdict> {
     let system = scene.system;
-    let loads: Vec<Load> = (0..=pass.states.len())
-        .map(|increment| match increment {
-            0 => Load::zero(system.elastic()),
-            _ => scene.loading.at(increment),
-        })
-        .collect();
+    let increments = 0..=pass.states.len();
+    let loads: Vec<Load> = increments.map(|k| scene.loading.at(k)).collect();
     let rest = ContactState::zero(system);
     let (mut preparing, mut solving) = (Vec::new(), Vec::new());
     let clock = Instant::now();
@@ -253,16 +248,14 @@ fn output(scene: &Scene<'_>, now: &Snapshot) -> f64 {
 }
 
 fn size(scene: &Scene<'_>) -> ProblemSize {
-    let Scene {
-        case, body, system, ..
-    } = scene;
+    let body = scene.body;
     ProblemSize {
         mesh: body.label.clone(),
         space: body.space.clone(),
-        h_m: case.mesh.grid.refined(scene.refine).cell_size(),
+        h_m: scene.case.mesh.grid.refined(scene.refine).cell_size(),
         dim: body.mesh.dim(),
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
-        unknowns: system.rows(),
+        unknowns: scene.system.rows(),
     }
 }

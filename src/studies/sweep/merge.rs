@@ -49,14 +49,15 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
                     chosen.insert(record.id.clone(), (record, store));
                 }
                 Some(_) if record.limits.is_some() => {}
-                Some((first, other)) if first.found != record.found && !forced => {
+                Some((first, other)) if !first.found.same_bits(&record.found) && !forced => {
                     return Err(StoreError::Contradiction {
                         id: record.id,
                         first: other.dir().to_path_buf(),
                         second: store.dir().to_path_buf(),
                     });
                 }
-                Some((first, _)) if first.found != record.found || first.spent.is_some() => {}
+                Some((first, _))
+                    if !first.found.same_bits(&record.found) || first.spent.is_some() => {}
                 _ => {
                     chosen.insert(record.id.clone(), (record, store));
                 }

@@ -14,7 +14,7 @@
 //! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the natural map; the default
 //! ```
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::run::registry::methods;
@@ -26,7 +26,7 @@ use super::record::SCHEMA;
 use super::store::Contents;
 use crate::case::error::CaseError;
 use crate::case::parse::{document, read_text};
-use crate::case::reader::{Table, Value};
+use crate::case::reader::Value;
 use crate::case::shipped;
 use crate::case::{self, Case, ContactSpace};
 use crate::model::body::Needs;
@@ -94,8 +94,12 @@ impl Plan {
             Ok((title, repeats, blocks.collect::<Result<Vec<_>, _>>()?))
         })?;
         let mut tasks = Vec::new();
-        for block in blocks {
-            block.add_to(&mut tasks)?;
+        for (mut block, drawn) in blocks {
+            if let Some(random) = drawn {
+                block.cases = random.cases(block.friction.as_deref())?;
+            }
+            let own = block.cases.iter();
+            tasks.extend(own.flat_map(|(name, case)| block.tasks_of(name, case)));
         }
         tasks.sort_by(|a: &Task, b: &Task| a.id.cmp(&b.id));
         // Blocks may overlap.
@@ -118,9 +122,9 @@ impl Plan {
     }
 }
 
-/// One `[[cells]]`.
+/// One `[[cells]]`: cases by name, and what is combined with each.
 struct Block {
-    origin: Cases,
+    cases: Vec<(String, Case)>,
     refine: Option<Vec<usize>>,
     contact: Vec<Option<ContactSpace>>,
     friction: Option<Vec<f64>>,
@@ -128,52 +132,38 @@ struct Block {
     tolerances: Vec<f64>,
 }
 
-enum Cases {
-    Files(Vec<Case>),
-    Random {
-        dim: usize,
-        seed: u64,
-        problems: usize,
-    },
+/// Random problems that a block asks for.
+struct Random {
+    dim: usize,
+    seed: u64,
+    problems: usize,
 }
 
 /// Friction coefficients of random problems where none are given.
 const RANDOM_FRICTION: f64 = 0.3;
 
-impl Block {
-    fn add_to(self, tasks: &mut Vec<Task>) -> Result<(), PlanError> {
-        match self.origin {
-            Cases::Files(ref cases) => {
-                for case in cases {
-                    self.of_case(case, &case.name, &case.source, tasks);
-                }
-            }
-            Cases::Random {
-                dim,
-                seed,
-                problems,
-            } => {
-                let friction = self.friction.clone().unwrap_or(vec![RANDOM_FRICTION]);
-                // The same bodies for all methods, also those that need the stress at the crack.
-                let needs = Needs {
-                    frictionless: false,
-                    traction: true,
-                };
-                for problem in 0..problems {
-                    let text = case_numbered(seed, dim, problem, &friction, needs)?;
-                    let name = format!("random-{dim}d-seed-{seed}-{problem:03}");
-                    let case = case::parse(PathBuf::from(format!("{name}.toml")), text.as_str())?;
-                    self.of_case(&case, &name, &text, tasks);
-                }
-            }
-        }
-        Ok(())
+impl Random {
+    fn cases(&self, friction: Option<&[f64]>) -> Result<Vec<(String, Case)>, PlanError> {
+        // The same bodies for all methods, also those that need the stress at the crack.
+        let needs = Needs {
+            frictionless: false,
+            traction: true,
+        };
+        let friction = friction.unwrap_or(&[RANDOM_FRICTION]);
+        let case = |problem| {
+            let Self { dim, seed, .. } = *self;
+            let text = case_numbered(seed, dim, problem, friction, needs)?;
+            let name = format!("random-{dim}d-seed-{seed}-{problem:03}");
+            Ok((name.clone(), case::parse(format!("{name}.toml"), text)?))
+        };
+        (0..self.problems).map(case).collect()
     }
+}
 
-    fn of_case(&self, case: &Case, name: &str, source: &str, tasks: &mut Vec<Task>) {
-        let text: Arc<str> = Arc::from(source);
-        let digest = digest(source);
-        let refine = self.refine.as_ref().unwrap_or(&case.sweep.refine);
+impl Block {
+    fn tasks_of(&self, name: &str, case: &Case) -> Vec<Task> {
+        let text: Arc<str> = Arc::from(case.source.as_str());
+        let digest = digest(&case.source);
         let friction = match &self.friction {
             Some(given) => given
                 .iter()
@@ -181,35 +171,39 @@ impl Block {
                 .collect(),
             None => friction_values(case),
         };
-        for &refine in refine {
-            for contact in &self.contact {
-                for per_crack in &friction {
-                    for method in &self.methods {
-                        for &tolerance in &self.tolerances {
-                            let cell = Cell {
-                                case: name.to_owned(),
-                                digest: digest.clone(),
-                                refine,
-                                space: contact.map(|space| space.name().to_owned()),
-                                friction: per_crack.clone(),
-                                method: method.clone(),
-                                tolerance,
-                            };
-                            tasks.push(Task {
-                                id: cell.id(),
-                                cell,
-                                text: text.clone(),
-                            });
-                        }
-                    }
+        let mut tasks = Vec::new();
+        for &refine in self.refine.as_ref().unwrap_or(&case.sweep.refine) {
+            for (contact, friction) in product(&self.contact, &friction) {
+                for (method, tolerance) in product(&self.methods, &self.tolerances) {
+                    let cell = Cell {
+                        case: name.to_owned(),
+                        digest: digest.clone(),
+                        refine,
+                        space: contact.map(|space| space.name().to_owned()),
+                        friction: friction.clone(),
+                        method: method.clone(),
+                        tolerance: *tolerance,
+                    };
+                    tasks.push(Task {
+                        id: cell.id(),
+                        cell,
+                        text: text.clone(),
+                    });
                 }
             }
         }
+        tasks
     }
 }
 
-fn block(value: Value<'_>, folder: &Path) -> Result<Block, CaseError> {
-    let keys = [
+/// Every entry of one list with every entry of another.
+fn product<'a, A, B>(a: &'a [A], b: &'a [B]) -> impl Iterator<Item = (&'a A, &'a B)> {
+    a.iter().flat_map(move |a| b.iter().map(move |b| (a, b)))
+}
+
+/// A block, with the random problems that are still to be drawn.
+fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), CaseError> {
+    let table = value.table(&[
         "cases",
         "random",
         "refine",
@@ -217,49 +211,43 @@ fn block(value: Value<'_>, folder: &Path) -> Result<Block, CaseError> {
         "friction",
         "methods",
         "tolerances",
-    ];
-    let table = value.table(&keys)?;
-    let origin = match table.exactly_one(&["cases", "random"])? {
+    ])?;
+    let (mut cases, mut drawn) = (Vec::new(), None);
+    match table.exactly_one(&["cases", "random"])? {
         ("cases", list) => {
-            let cases = entries(list, |v| find_case(v, folder))?;
-            Cases::Files(cases)
+            let found = entries(list, |v| find_case(v, folder))?;
+            cases.extend(found.into_iter().map(|case| (case.name.clone(), case)));
         }
         (_, random) => {
             let table = random.table(&["dimension", "seed", "problems"])?;
-            Cases::Random {
+            let seed = table.get("seed");
+            drawn = Some(Random {
                 dim: table.required("dimension")?.integer(2..=3)?,
-                seed: table
-                    .get("seed")
-                    .map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64,
+                seed: seed.map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64,
                 problems: table.required("problems")?.integer(1..=1_000_000)?,
-            }
+            });
         }
+    }
+    let named = ContactSpace::ALL.map(|space| (space.name(), Some(space)));
+    let bounded =
+        |v: Value<'_>| v.number_if("1e-14 <= tolerance < 1", |t| (1e-14..1.0).contains(&t));
+    let tolerances = table.optional("tolerances", |v| entries(v, bounded))?;
+    let methods = || methods().iter().map(|m| m.name.to_owned()).collect();
+    let block = Block {
+        cases,
+        refine: table.optional("refine", |v| entries(v, |v| v.integer(1..=1024)))?,
+        contact: table
+            .optional("contact", |v| entries(v, |v| v.one_of(&named)))?
+            .unwrap_or(vec![None]),
+        friction: table.optional("friction", |v| {
+            entries(v, |v| v.number_if("numbers >= 0", |mu| mu >= 0.0))
+        })?,
+        methods: table
+            .optional("methods", |v| entries(v, method))?
+            .unwrap_or_else(methods),
+        tolerances: tolerances.unwrap_or_else(|| Tier::ALL.map(Tier::tolerance).to_vec()),
     };
-    let named = ContactSpace::ALL.map(|space| (space.name(), space));
-    let optional = |key: &str| table.get(key);
-    Ok(Block {
-        origin,
-        refine: optional("refine")
-            .map(|v| entries(v, |v| v.integer(1..=1024)))
-            .transpose()?,
-        contact: match optional("contact") {
-            Some(list) => entries(list, |v| v.one_of(&named).map(Some))?,
-            None => vec![None],
-        },
-        friction: optional("friction")
-            .map(|list| entries(list, |v| v.number_if("numbers >= 0", |mu| mu >= 0.0)))
-            .transpose()?,
-        methods: match optional("methods") {
-            Some(list) => entries(list, method)?,
-            None => methods().iter().map(|m| m.name.to_owned()).collect(),
-        },
-        tolerances: match optional("tolerances") {
-            Some(list) => entries(list, |v| {
-                v.number_if("1e-14 <= tolerance < 1", |t| (1e-14..1.0).contains(&t))
-            })?,
-            None => Tier::ALL.map(Tier::tolerance).to_vec(),
-        },
-    })
+    Ok((block, drawn))
 }
 
 /// A list with at least one entry.
@@ -296,16 +284,14 @@ fn method(value: Value<'_>) -> Result<String, CaseError> {
 }
 
 fn repeats(value: Value<'_>) -> Result<Repeats, CaseError> {
-    let table: Table<'_> = value.table(&["least", "most", "seconds", "patience_s"])?;
+    let table = value.table(&["least", "most", "seconds", "patience_s"])?;
     let count = |key: &str, default: usize, least: usize| {
-        table
-            .get(key)
-            .map_or(Ok(default), |v| v.integer(least..=1_000_000))
+        let given = table.get(key);
+        given.map_or(Ok(default), |v| v.integer(least..=1_000_000))
     };
     let seconds = |key: &str, default: f64| {
-        table
-            .get(key)
-            .map_or(Ok(default), |v| v.number_if("numbers >= 0", |s| s >= 0.0))
+        let given = table.get(key);
+        given.map_or(Ok(default), |v| v.number_if("numbers >= 0", |s| s >= 0.0))
     };
     let default = Repeats::DEFAULT;
     let least = count("least", default.least, 1)?;

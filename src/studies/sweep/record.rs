@@ -73,46 +73,28 @@ impl Origin {
     }
 
     fn collect() -> Self {
-        let Provenance {
-            version,
-            commit,
-            dirty,
-            rustc,
-            profile,
-            os,
-            cpu,
-            ..
-        } = Provenance::collect(1);
+        let build = Provenance::collect(1);
         Self {
-            version,
-            commit,
-            dirty,
+            version: build.version,
+            commit: build.commit,
+            dirty: build.dirty,
             sources: env!("STICKSLIP_BUILD_SOURCES").into(),
-            rustc,
-            profile,
-            machine: format!("{os}, {cpu}"),
+            rustc: build.rustc,
+            profile: build.profile,
+            machine: format!("{}, {}", build.os, build.cpu),
         }
     }
 
     /// Names and values of all parts.
     fn parts(&self) -> [(&'static str, &str); 7] {
-        let Self {
-            version,
-            commit,
-            dirty,
-            sources,
-            rustc,
-            profile,
-            machine,
-        } = self;
         [
-            ("version", version),
-            ("commit", commit),
-            ("uncommitted changes", dirty),
-            ("sources", sources),
-            ("compiler", rustc),
-            ("profile", profile),
-            ("machine", machine),
+            ("version", &self.version),
+            ("commit", &self.commit),
+            ("uncommitted changes", &self.dirty),
+            ("sources", &self.sources),
+            ("compiler", &self.rustc),
+            ("profile", &self.profile),
+            ("machine", &self.machine),
         ]
     }
 
@@ -148,9 +130,9 @@ pub struct Found {
     /// Distance from the converged solution of the same discrete problem; absent without an honest verdict or reference.
     pub solver_error: Option<SolverError>,
     /// Distance from the closed form; empty where the case has none, or without an honest verdict.
-    pub deviations: Vec<DeviationFound>,
+    pub deviations: Vec<Deviation>,
     /// Quantities of interest at the end of the path, for cases without closed form; empty without an honest verdict.
-    pub values: Vec<ValueFound>,
+    pub values: Vec<Value>,
 }
 
 /// Size of a discrete problem.
@@ -210,36 +192,6 @@ pub struct SolverError {
     pub jump: f64,
 }
 
-/// One quantity beside the closed form; see [`errors`](crate::model::errors).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct DeviationFound {
-    /// Quantity.
-    pub quantity: String,
-    /// Place.
-    pub at: String,
-    /// Discrete value.
-    pub found: Option<f64>,
-    /// Exact value.
-    pub exact: f64,
-    /// Relative error.
-    pub error: Option<f64>,
-}
-
-/// One quantity of interest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ValueFound {
-    /// Quantity, as in `quantities.csv`.
-    pub quantity: String,
-    /// Place and component.
-    pub at: String,
-    /// Value, SI.
-    pub value: f64,
-    /// What errors are relative to.
-    pub norm: f64,
-    /// Largest number of the same kind in the body.
-    pub scale: f64,
-}
-
 /// Times and memory of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spent {
@@ -277,6 +229,12 @@ impl Found {
         }
     }
 
+    /// Whether another record has the same bits: NaN is like NaN.
+    pub fn same_bits(&self, other: &Self) -> bool {
+        let text = |found| serde_json::to_string(found).ok();
+        text(self) == text(other)
+    }
+
     /// Largest natural map over the increments; NaN where one has none.
     pub fn natural_map(&self) -> f64 {
         let maps = self.increments.iter().map(|i| i.natural_map);
@@ -290,34 +248,4 @@ impl Found {
     pub fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
         self.increments.iter().map(counter).sum()
     }
-}
-
-impl DeviationFound {
-    /// As it is written: numbers that do not exist are absent.
-    pub fn of(deviation: &Deviation) -> Self {
-        Self {
-            quantity: deviation.quantity.to_owned(),
-            at: deviation.at.clone(),
-            found: finite(deviation.found),
-            exact: deviation.exact,
-            error: finite(deviation.error),
-        }
-    }
-}
-
-impl ValueFound {
-    /// As it is written.
-    pub fn of(value: &Value) -> Self {
-        Self {
-            quantity: value.quantity.clone(),
-            at: value.at.clone(),
-            value: value.value,
-            norm: value.norm,
-            scale: value.scale,
-        }
-    }
-}
-
-fn finite(value: f64) -> Option<f64> {
-    Some(value).filter(|v| v.is_finite())
 }

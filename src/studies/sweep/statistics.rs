@@ -1,6 +1,6 @@
-//! Statistics of repeated times.
+//! Statistics of repeated times and of rates.
 //!
-//! The median and its distribution-free 95 % interval: with n independent samples sorted, the median of the distribution
+//! Times: the median and its distribution-free 95 % interval: with n independent samples sorted, the median of the distribution
 //! lies between the k-th smallest and the k-th largest with probability 1 − 2 P(X < k), X ~ Binomial(n, ½). k is the
 //! largest for which that is at least 0.95. Below six samples there is none; then the interval is the range, and covers
 //! less (1 − 2^(1−n)).
@@ -11,6 +11,9 @@ use serde::{Deserialize, Serialize};
 
 /// Probability that an interval covers the median, at least, from six samples on.
 pub const COVERAGE: f64 = 0.95;
+
+/// Two-sided 95 % quantile of the normal distribution.
+const Z: f64 = 1.959_963_984_540_054;
 
 /// Summary of repeated times [s].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -39,7 +42,7 @@ impl Timing {
         let (first, last) = (*sorted.first()?, *sorted.last()?);
         let rank = interval_rank(n);
         Some(Self {
-            median_s: median(&sorted),
+            median_s: median(sorted.iter().copied()),
             min_s: first,
             low_s: rank.map_or(first, |k| sorted[k - 1]),
             high_s: rank.map_or(last, |k| sorted[n - k]),
@@ -53,14 +56,41 @@ impl Timing {
     }
 }
 
-/// Median of sorted numbers; NaN of none.
-pub fn median(sorted: &[f64]) -> f64 {
+/// The larger of two numbers; NaN if one is, which `max` would drop.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}
+
+/// Median of some numbers; NaN of none.
+pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
     let n = sorted.len();
     match n {
         0 => f64::NAN,
         _ if n % 2 == 1 => sorted[n / 2],
         _ => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
     }
+}
+
+/// Rate of `hits` among `count` and Wilson's 95 % interval (J. Am. Stat. Assoc. 22 (1927) 209); NaN if nothing was tried.
+pub fn wilson(hits: usize, count: usize) -> [f64; 3] {
+    if count == 0 {
+        return [f64::NAN; 3];
+    }
+    let (n, p) = (count as f64, hits as f64 / count as f64);
+    let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+    let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();
+    // Rounding may leave the ends just outside of what a rate can be.
+    [
+        p,
+        (centre - half).clamp(0.0, p),
+        (centre + half).clamp(p, 1.0),
+    ]
 }
 
 /// Largest k with 2 P(X < k) <= 1 − [`COVERAGE`], X ~ Binomial(n, ½); none below six samples.
@@ -132,5 +162,21 @@ mod tests {
         assert!(timing(1.0, 2.0).overlaps(&timing(2.0, 3.0)));
         assert!(timing(1.0, 4.0).overlaps(&timing(2.0, 3.0)));
         assert!(!timing(1.0, 2.0).overlaps(&timing(2.1, 3.0)));
+    }
+
+    /// Source: Newcombe, Stat. Med. 17 (1998) 857, Table I, method 3 (Wilson without continuity correction).
+    #[test]
+    fn intervals_agree_with_newcombe() {
+        for (hits, count, low, high) in [
+            (81, 263, 0.2553, 0.3662),
+            (15, 148, 0.0624, 0.1605),
+            (0, 20, 0.0, 0.1611),
+            (1, 29, 0.0061, 0.1718),
+        ] {
+            let [rate, found_low, found_high] = wilson(hits, count);
+            assert_eq!(rate, hits as f64 / count as f64);
+            assert!((found_low - low).abs() < 5e-5 && (found_high - high).abs() < 5e-5);
+        }
+        assert!(wilson(0, 0).iter().all(|x| x.is_nan()));
     }
 }

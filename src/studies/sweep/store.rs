@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
-use crate::files::bundle::unique;
+use crate::files::bundle::{FolderError, unique};
 
 /// Ending of a file that is being written.
 const PARTIAL: &str = "partial";
@@ -43,15 +43,8 @@ pub struct Store {
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// The file system refused.
-    #[error("cannot {action} `{}`: {source}", path.display())]
-    Io {
-        /// What was tried.
-        action: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A file that is not what its name says.
     #[error("`{}`: {source}", path.display())]
     Broken {
@@ -131,16 +124,6 @@ pub enum StoreError {
     },
 }
 
-impl StoreError {
-    fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
-        Self::Io {
-            action,
-            path: path.to_path_buf(),
-            source,
-        }
-    }
-}
-
 impl Store {
     /// Opens a folder for a sweep, and makes it if need be.
     ///
@@ -152,13 +135,12 @@ impl Store {
             contents,
         };
         let cells = store.cells();
-        fs::create_dir_all(&cells).map_err(|e| StoreError::io("create folder", &cells, e))?;
+        fs::create_dir_all(&cells).map_err(|e| FolderError::io("create folder", &cells, e))?;
         match Self::open(dir) {
             Ok(found) if found.contents == store.contents => {}
             Ok(found) => return Err(store.other(&found)),
             Err(StoreError::NoSweep { .. }) => {
-                let json = to_json(&store.contents, &store.list())?;
-                write_whole(&store.list(), &json)?;
+                write_whole(&dir.join("sweep.json"), &store.contents)?;
             }
             Err(error) => return Err(error),
         }
@@ -170,20 +152,11 @@ impl Store {
     /// # Errors
     /// A folder without a sweep, or with one of another schema.
     pub fn open(dir: &Path) -> Result<Self, StoreError> {
-        let path = dir.join("sweep.json");
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(e) if e.kind() == ErrorKind::NotFound => {
-                return Err(StoreError::NoSweep {
-                    dir: dir.to_path_buf(),
-                });
-            }
-            Err(e) => return Err(StoreError::io("read", &path, e)),
-        };
-        Ok(Self {
-            dir: dir.to_path_buf(),
-            contents: parse(&text, &path)?,
-        })
+        let dir = dir.to_path_buf();
+        match read(&dir.join("sweep.json"))? {
+            Some(contents) => Ok(Self { dir, contents }),
+            None => Err(StoreError::NoSweep { dir }),
+        }
     }
 
     /// What the folder is to hold.
@@ -202,12 +175,9 @@ impl Store {
     /// A file that is no record, or that of another cell.
     pub fn get(&self, id: &str) -> Result<Option<Record>, StoreError> {
         let path = self.path(id);
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(StoreError::io("read", &path, e)),
+        let Some(record) = read::<Record>(&path)? else {
+            return Ok(None);
         };
-        let record: Record = parse(&text, &path)?;
         if record.id != id || record.cell.id() != id {
             return Err(StoreError::Misnamed {
                 path,
@@ -223,7 +193,7 @@ impl Store {
     /// The file system; then no half-written record remains.
     pub fn put(&self, record: &Record) -> Result<(), StoreError> {
         let path = self.path(&record.id);
-        write_whole(&path, &to_json(record, &path)?)
+        write_whole(&path, record)
     }
 
     /// All records there are, in the order of the sweep.
@@ -264,22 +234,20 @@ impl Store {
     /// The file system.
     pub fn clear_partial(&self, ids: &[String]) -> Result<(), StoreError> {
         let cells = self.cells();
-        let entries = fs::read_dir(&cells).map_err(|e| StoreError::io("list", &cells, e))?;
+        let entries = fs::read_dir(&cells).map_err(|e| FolderError::io("list", &cells, e))?;
         for entry in entries {
-            let path = entry.map_err(|e| StoreError::io("list", &cells, e))?.path();
+            let path = entry
+                .map_err(|e| FolderError::io("list", &cells, e))?
+                .path();
             let partial = path.extension().is_some_and(|e| e == PARTIAL);
             let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
             // Name of a partial file: <id>.json.<unique>.partial.
             let id = stem.rsplit_once(".json.").map(|(id, _)| id);
             if partial && id.is_some_and(|id| ids.iter().any(|own| own == id)) {
-                fs::remove_file(&path).map_err(|e| StoreError::io("remove", &path, e))?;
+                fs::remove_file(&path).map_err(|e| FolderError::io("remove", &path, e))?;
             }
         }
         Ok(())
-    }
-
-    fn list(&self) -> PathBuf {
-        self.dir.join("sweep.json")
     }
 
     fn cells(&self) -> PathBuf {
@@ -294,10 +262,8 @@ impl Store {
     pub(super) fn other(&self, found: &Store) -> StoreError {
         let dir = found.dir.clone();
         let found = &found.contents;
-        let only = |a: &Contents, b: &Contents| {
-            let missing = a.cells.iter().filter(|id| !b.cells.contains(id));
-            missing.count()
-        };
+        let only =
+            |a: &Contents, b: &Contents| a.cells.iter().filter(|id| !b.cells.contains(id)).count();
         StoreError::OtherSweep {
             dir,
             title: found.title.clone(),
@@ -308,43 +274,43 @@ impl Store {
     }
 }
 
-/// A file of this schema; the version is looked at first, so that a newer format is not called broken.
-fn parse<T: for<'a> Deserialize<'a>>(text: &str, path: &Path) -> Result<T, StoreError> {
+/// A file of this schema, if it is there; the version is looked at first, so that a newer format is not called broken.
+fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError> {
     #[derive(Deserialize)]
     struct Version {
         schema: u32,
     }
-    let broken = |source| StoreError::Broken {
-        path: path.to_path_buf(),
-        source,
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(e) => return Err(FolderError::io("read", path, e).into()),
     };
-    let Version { schema } = serde_json::from_str(text).map_err(broken)?;
+    let Version { schema } = serde_json::from_str(&text).map_err(|e| broken(path, e))?;
     if schema != SCHEMA {
         return Err(StoreError::Schema {
             path: path.to_path_buf(),
             found: schema,
         });
     }
-    serde_json::from_str(text).map_err(broken)
+    serde_json::from_str(&text).map_err(|e| broken(path, e))
 }
 
-fn to_json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, StoreError> {
-    let json = serde_json::to_vec_pretty(value);
-    let mut json = json.map_err(|source| StoreError::Broken {
+fn broken(path: &Path, source: serde_json::Error) -> StoreError {
+    StoreError::Broken {
         path: path.to_path_buf(),
         source,
-    })?;
-    json.push(b'\n');
-    Ok(json)
+    }
 }
 
 /// Writes a file under another name and renames it.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+fn write_whole<T: Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
+    let mut json = serde_json::to_vec_pretty(value).map_err(|e| broken(path, e))?;
+    json.push(b'\n');
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
     let written = fs::File::create_new(&partial)
         .and_then(|mut file| {
-            file.write_all(bytes)?;
+            file.write_all(&json)?;
             // A full disk may tell only now; the rename must not come before the contents.
             file.sync_all()
         })
@@ -352,6 +318,6 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     written.map_err(|e| {
         // What the user is told is why it could not be written.
         let _ = fs::remove_file(&partial);
-        StoreError::io("write", path, e)
+        FolderError::io("write", path, e).into()
     })
 }

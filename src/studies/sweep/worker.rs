@@ -1,6 +1,6 @@
 //! Cells in a process of their own, so that a time limit can end them and a memory limit costs nothing but them.
 //!
-//! The conductor starts `stickslip work`, writes a [`Request`] per line to its standard input and reads a [`Reply`] per line
+//! The conductor starts `stickslip work`, writes a [`Request`] per line to its standard input and reads an [`Answer`] per line
 //! from its standard output. A worker that does not answer in time is killed; one that dies is read as the verdict on its
 //! cell. Either way the next cell gets a new worker.
 
@@ -34,26 +34,23 @@ pub struct Request {
     pub repeats: Repeats,
 }
 
-/// What a worker answers.
+/// What became of a request.
 #[derive(Debug, Serialize, Deserialize)]
-pub enum Reply {
+pub enum Answer {
     /// The cell was measured.
     Measured(Box<Record>),
-    /// The case, its discretisation or its method cannot be used.
+    /// The case, its discretisation or its method cannot be used, or the worker died.
     Ended(Verdict),
 }
 
-/// Why a worker could not be used at all.
+/// A worker that does not start.
 #[derive(Debug, thiserror::Error)]
-pub enum WorkerError {
-    /// It did not start.
-    #[error("cannot start `{}`: {source}", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+#[error("cannot start `{}`: {source}", program.display())]
+pub struct WorkerError {
+    /// The program.
+    program: PathBuf,
+    /// Why.
+    source: std::io::Error,
 }
 
 /// The worker's side: measures what it is asked for until its input ends.
@@ -88,8 +85,8 @@ pub fn serve(
             .map_err(Into::into)
             .and_then(|choice| measure(&mut bench, &cell, &text, &choice, repeats));
         let reply = match measured {
-            Ok(record) => Reply::Measured(Box::new(record)),
-            Err(error) => Reply::Ended(error.into()),
+            Ok(record) => Answer::Measured(Box::new(record)),
+            Err(error) => Answer::Ended(error.into()),
         };
         let mut json = serde_json::to_vec(&reply)?;
         json.push(b'\n');
@@ -97,14 +94,6 @@ pub fn serve(
         output.flush()?;
     }
     Ok(())
-}
-
-/// What became of a request.
-pub enum Answer {
-    /// The cell was measured.
-    Measured(Box<Record>),
-    /// It ended otherwise.
-    Ended(Verdict),
 }
 
 /// The conductor's side: a worker that is started when it is first needed, and again after it was lost.
@@ -147,32 +136,29 @@ impl<'a> Worker<'a> {
             .input
             .write_all(&line)
             .and_then(|()| running.input.flush());
-        match running
-            .lines
-            .recv_timeout(Duration::from_secs_f64(self.limits.seconds))
-        {
-            Ok(line) => {
-                let Ok(reply) = serde_json::from_str(&line) else {
+        let limit = Duration::from_secs_f64(self.limits.seconds);
+        let verdict = match running.lines.recv_timeout(limit) {
+            Ok(line) => match serde_json::from_str(&line) {
+                Ok(answer) => {
+                    self.running = Some(running);
+                    return Ok(answer);
+                }
+                Err(_) => {
                     running.kill();
-                    let text = "the worker answered what is no record".to_owned();
-                    return Ok(Answer::Ended(Verdict::Crashed(text)));
-                };
-                self.running = Some(running);
-                Ok(match reply {
-                    Reply::Measured(record) => Answer::Measured(record),
-                    Reply::Ended(verdict) => Answer::Ended(verdict),
-                })
-            }
+                    Verdict::Crashed("the worker answered what is no record".into())
+                }
+            },
             Err(RecvTimeoutError::Timeout) => {
                 running.kill();
-                Ok(Answer::Ended(Verdict::TimedOut))
+                Verdict::TimedOut
             }
-            Err(RecvTimeoutError::Disconnected) => Ok(Answer::Ended(running.post_mortem())),
-        }
+            Err(RecvTimeoutError::Disconnected) => running.post_mortem(),
+        };
+        Ok(Answer::Ended(verdict))
     }
 
     fn start(&self) -> Result<Running, WorkerError> {
-        let failed = |source| WorkerError::Start {
+        let failed = |source| WorkerError {
             program: self.program.to_path_buf(),
             source,
         };

@@ -10,7 +10,7 @@ use std::fmt;
 use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub, unit};
 use stickslip_xfem::mesh::box_mesh::box_mesh;
 
-use crate::case::{Case, CaseError, parse};
+use crate::case::{Case, CaseError, named, parse};
 
 use super::text::{
     POISSON, PRESSURE, YOUNG, boundary, chain, head, load, parted, support, uniform,
@@ -22,50 +22,29 @@ pub const DISTANCES: [f64; 27] = [
     -1e-11, -1e-10, -1e-9, -1e-8, -1e-7, -1e-6, -1e-5, -1e-4, -1e-3, -1e-2, -1e-1, -3e-1,
 ];
 
-/// What the crack does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum State {
-    /// Closed under hydrostatic pressure, without friction.
-    Hydrostatic,
-    /// Sticks under a stress with all components.
-    Stick,
-    /// Open, free of traction beside a stress along it.
-    Open,
-    /// Slides as a whole.
-    Slide,
-    /// The sliding block with friction enough to hold.
-    Held,
-}
-
-impl State {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            State::Hydrostatic => "hydrostatic",
-            State::Stick => "stick",
-            State::Open => "open",
-            State::Slide => "block slides",
-            State::Held => "block sticks",
-        }
+named! {
+    /// What the crack does.
+    pub enum State {
+        /// Closed under hydrostatic pressure, without friction.
+        Hydrostatic = "hydrostatic",
+        /// Sticks under a stress with all components.
+        Stick = "stick",
+        /// Open, free of traction beside a stress along it.
+        Open = "open",
+        /// Slides as a whole.
+        Slide = "block slides",
+        /// The sliding block with friction enough to hold.
+        Held = "block sticks",
     }
 }
 
-/// What the boundary is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Loaded {
-    /// Displacements on all sides: the crack leaves through held sides.
-    Displacement,
-    /// Tractions and just enough supports: the crack leaves through free sides.
-    Traction,
-}
-
-impl Loaded {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Loaded::Displacement => "displacement",
-            Loaded::Traction => "traction",
-        }
+named! {
+    /// What the boundary is given.
+    pub enum Loaded {
+        /// Displacements on all sides: the crack leaves through held sides.
+        Displacement = "displacement",
+        /// Tractions and just enough supports: the crack leaves through free sides.
+        Traction = "traction",
     }
 }
 
@@ -106,7 +85,6 @@ impl fmt::Display for Patch {
             distance,
             ..
         } = self;
-        let (state, loaded) = (state.name(), loaded.name());
         write!(f, "{state}, {crack}, {mesh}, {loaded}, {distance:e}")
     }
 }
@@ -204,13 +182,12 @@ pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
             for degrees in ANGLES {
                 let t = direction(degrees);
                 let c = add_scaled(&grid.node, distance * grid.size, &turned(&t));
-                for (state, loaded, rest) in straight(&c, &t) {
-                    patches.push(at(state, loaded, &format!("{degrees}°"), rest));
-                }
+                let mut tests = straight(&c, &t);
                 if degrees < 90.0 {
-                    for (state, loaded, rest) in blocks(&c, &t) {
-                        patches.push(at(state, loaded, &format!("{degrees}°"), rest));
-                    }
+                    tests.extend(blocks(&c, &t));
+                }
+                for (state, loaded, rest) in tests {
+                    patches.push(at(state, loaded, &format!("{degrees}°"), rest));
                 }
             }
             for loaded in [Loaded::Displacement, Loaded::Traction] {
@@ -226,6 +203,31 @@ pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
         }
     }
     Ok(patches)
+}
+
+/// Entries of a symmetric stress by their names.
+type Stress<'a> = &'a [(&'static str, f64)];
+
+/// A crack, given by its friction, in uniform stress: hydrostatic pressure, one that it sticks under, one along it.
+fn in_uniform_stress(
+    dim: usize,
+    crack: impl Fn(f64) -> String,
+    [hydrostatic, stick, open]: [Stress<'_>; 3],
+) -> Vec<(State, Loaded, String)> {
+    use Loaded::{Displacement, Traction};
+    let tests = [
+        (State::Hydrostatic, Displacement, 0.0, hydrostatic),
+        (State::Hydrostatic, Traction, 0.0, hydrostatic),
+        (State::Stick, Displacement, 1.0, stick),
+        (State::Stick, Traction, 1.0, stick),
+        (State::Open, Displacement, 0.3, open),
+    ];
+    let text = |(state, loaded, friction, stress): (State, Loaded, f64, Stress<'_>)| {
+        let held = boundary(dim, loaded, state == State::Hydrostatic);
+        let text = crack(friction) + &held + &uniform(stress) + &parted(state);
+        (state, loaded, text)
+    };
+    tests.map(text).into()
 }
 
 /// Uniform stress beside a straight crack through c along t.
@@ -244,19 +246,7 @@ fn straight(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
         ("yy", along(1, 1)),
         ("xy", along(0, 1)),
     ];
-    let of = |state, loaded, friction, stress: &[_]| {
-        let free = state == State::Hydrostatic;
-        let text =
-            chain(&ends, friction) + &boundary(2, loaded, free) + &uniform(stress) + &parted(state);
-        (state, loaded, text)
-    };
-    vec![
-        of(State::Hydrostatic, Loaded::Displacement, 0.0, &hydrostatic),
-        of(State::Hydrostatic, Loaded::Traction, 0.0, &hydrostatic),
-        of(State::Stick, Loaded::Displacement, 1.0, &stick),
-        of(State::Stick, Loaded::Traction, 1.0, &stick),
-        of(State::Open, Loaded::Displacement, 0.3, &open),
-    ]
+    in_uniform_stress(2, |mu| chain(&ends, mu), [&hydrostatic, &stick, &open])
 }
 
 /// The confined block that slides forward or sticks.
@@ -392,29 +382,22 @@ pub fn solid(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
         ];
         for &distance in distances {
             let point = add_scaled(&grid.node, distance * grid.size, &n);
-            let mut push = |state, loaded, friction: f64, stress: &[(&str, f64)]| {
-                let plane = format!(
-                    "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {friction:?}\n"
-                );
-                let free = state == State::Hydrostatic;
+            let crack = |mu: f64| {
+                format!(
+                    "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {mu:?}\n"
+                )
+            };
+            for (state, loaded, rest) in in_uniform_stress(3, crack, [&hydrostatic, &stick, &open])
+            {
                 patches.push(Patch {
                     state,
                     loaded,
                     crack: format!("({}, {}, {})", normal[0], normal[1], normal[2]),
                     mesh: grid.name.to_owned(),
                     distance,
-                    text: head("solid", &grid.text)
-                        + &plane
-                        + &boundary(3, loaded, free)
-                        + &uniform(stress)
-                        + &parted(state),
+                    text: head("solid", &grid.text) + &rest,
                 });
-            };
-            push(State::Hydrostatic, Loaded::Displacement, 0.0, &hydrostatic);
-            push(State::Hydrostatic, Loaded::Traction, 0.0, &hydrostatic);
-            push(State::Stick, Loaded::Displacement, 1.0, &stick);
-            push(State::Stick, Loaded::Traction, 1.0, &stick);
-            push(State::Open, Loaded::Displacement, 0.3, &open);
+            }
         }
     }
     Ok(patches)

@@ -12,9 +12,9 @@ use super::{
 use crate::model::errors::Deviation;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
-use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Value, Variant};
+use crate::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
 use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::record::{DeviationFound, ProblemSize, Record};
+use crate::studies::sweep::record::Record;
 
 /// Quantity of the closed form that is followed.
 const NORM: &str = "energy";
@@ -82,31 +82,23 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
 
 fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
     let found = &record.found;
-    let ProblemSize {
-        mesh,
-        space,
-        h_m,
-        dim,
-        dofs,
-        points,
-        ..
-    } = found.problem.clone()?;
+    let size = found.problem.clone()?;
     Some(Sample {
         variant: Variant {
             case: record.cell.case.clone(),
-            space,
+            space: size.space,
             tip: String::new(),
             method: found.method.clone(),
             friction: record.cell.mu(),
         },
         // Only theory asks for it, and records do not know it.
         regularity: Regularity::Tip,
-        mesh,
+        mesh: size.mesh,
         refine: record.cell.refine,
-        h: h_m,
-        dim,
-        dofs,
-        points,
+        h: size.h_m,
+        dim: size.dim,
+        dofs: size.dofs,
+        points: size.points,
         verdict: Verdict::Solved,
         seconds: seconds(record, records),
         measured: measured(record)?,
@@ -115,25 +107,13 @@ fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
 
 fn measured(record: &Record) -> Option<Measured> {
     let found = &record.found;
-    let norm = |d: &&DeviationFound| d.quantity == NORM && d.at.is_empty();
+    let norm = |d: &&Deviation| d.quantity == NORM && d.at.is_empty();
     if let Some(deviation) = found.deviations.iter().find(norm) {
-        return Some(Measured::Exact(vec![Deviation {
-            quantity: NORM,
-            at: String::new(),
-            found: deviation.found.unwrap_or(f64::NAN),
-            exact: deviation.exact,
-            error: deviation.error.unwrap_or(f64::NAN),
-        }]));
+        return Some(Measured::Exact(vec![deviation.clone()]));
     }
     let chosen = found.values.iter().find(|v| v.quantity == FUNCTIONAL);
     let value = chosen.or_else(|| found.values.first())?;
-    Some(Measured::Values(vec![Value {
-        quantity: value.quantity.clone(),
-        at: value.at.clone(),
-        value: value.value,
-        norm: value.norm,
-        scale: value.scale,
-    }]))
+    Some(Measured::Values(vec![value.clone()]))
 }
 
 /// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
@@ -157,7 +137,6 @@ mod tests {
     use super::super::support::{record, timed};
     use super::*;
     use crate::studies::convergence::orders::Kind;
-    use crate::studies::sweep::record::ValueFound;
 
     fn mesh(refine: usize, method: &str, tolerance: f64) -> Record {
         let mut record = timed(record("a", method, tolerance), 1.0);
@@ -168,12 +147,12 @@ mod tests {
     }
 
     fn with_error(mut record: Record, error: f64) -> Record {
-        record.found.deviations.push(DeviationFound {
+        record.found.deviations.push(Deviation {
             quantity: "energy".into(),
             at: String::new(),
-            found: Some(1.0),
+            found: 1.0,
             exact: 1.0,
-            error: Some(error),
+            error,
         });
         record
     }
@@ -195,30 +174,6 @@ mod tests {
             assert_eq!(row.kind, Some(Kind::Exact));
         }
         assert!((one.orders[0].order - 1.0).abs() < 1e-12);
-    }
-
-    /// Source: a power law, E(h) = 3 + h²: errors h²/E of the finest mesh.
-    #[test]
-    fn without_closed_form_the_limit_is_the_reference() {
-        let records: Vec<Record> = [1, 2, 4]
-            .map(|refine| {
-                let mut record = mesh(refine, "latin", 1e-9);
-                let h = record.found.problem.as_ref().unwrap().h_m;
-                record.found.values.push(ValueFound {
-                    quantity: "strain_energy".into(),
-                    at: String::new(),
-                    value: 3.0 + h * h,
-                    norm: 3.0,
-                    scale: 3.0,
-                });
-                record
-            })
-            .into();
-        let found = refinements(&records);
-        for (row, h) in found[0].errors.iter().zip([0.4f64, 0.2, 0.1]) {
-            assert_eq!(row.kind, Some(Kind::Richardson));
-            assert!((row.error - h * h / 3.0).abs() < 1e-9, "{row:?}");
-        }
     }
 
     #[test]

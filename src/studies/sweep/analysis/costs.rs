@@ -3,6 +3,7 @@
 use super::test_set::TestSet;
 use super::{is_correct, method_time, published_times};
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::median;
 
 /// A time and the interval it is known to lie in [s].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +45,12 @@ impl Cost {
     pub fn relative_width(&self) -> f64 {
         (self.high - self.low) / self.value
     }
+}
+
+/// Least of the right costs of a problem; infinite without any.
+pub(super) fn least(row: &[Option<Cost>]) -> f64 {
+    let values = row.iter().flatten().map(|cost| cost.value);
+    values.fold(f64::INFINITY, f64::min)
 }
 
 /// Costs of the right answers of a test set.
@@ -104,9 +111,7 @@ impl<'a> Costs<'a> {
     /// Median of the relative widths of all intervals; NaN without any.
     pub fn median_width(&self) -> f64 {
         let costs = self.costs.iter().flatten().flatten();
-        let mut widths: Vec<f64> = costs.map(Cost::relative_width).collect();
-        widths.sort_by(f64::total_cmp);
-        crate::studies::sweep::statistics::median(&widths)
+        median(costs.map(Cost::relative_width))
     }
 
     /// Those among the right answers to a problem that none is cheaper than beyond the intervals.
@@ -122,54 +127,37 @@ impl<'a> Costs<'a> {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_methods::Tier;
-
-    use super::super::support::{lying, record, timed};
-    use super::*;
-
-    fn set(records: &[Record]) -> TestSet<'_> {
-        TestSet::new(records, Tier::Mid)
-    }
+    use super::super::support::{costs, failed, record, solved, timed};
 
     #[test]
     fn wrong_answers_have_no_cost() {
-        let records = vec![
-            timed(record("plate", "b-newton", 1e-6), 1.0),
-            lying("false-claim"),
-        ];
-        let set = set(&records);
-        let costs = Costs::new(&set);
-        assert!(costs.costs[0][0].is_some());
-        assert_eq!(costs.costs[0][1], None);
+        let mut records = solved("plate", &[("b-newton", 1.0)]);
+        records.push(failed("plate", "latin"));
+        let costs = costs(&records).costs;
+        assert!(costs[0][0].is_some() && costs[0][1].is_none());
     }
 
     #[test]
     fn a_right_answer_without_a_time_is_no_failure() {
-        let mut records = vec![
-            timed(record("plate", "b-newton", 1e-6), 1.0),
-            record("plate", "latin", 1e-6),
-        ];
-        let costs = |records: &[Record]| {
-            let set = set(records);
-            let costs = Costs::new(&set);
+        let mut records = solved("plate", &[("b-newton", 1.0)]);
+        records.push(record("plate", "latin", 1e-6));
+        let counts = |records: &[_]| {
+            let costs = costs(records);
             (costs.problems(), costs.untimed)
         };
-        assert_eq!(costs(&records), (0, 1));
+        assert_eq!(counts(&records), (0, 1));
         records[1] = timed(records[1].clone(), 2.0);
-        assert_eq!(costs(&records), (1, 0));
+        assert_eq!(counts(&records), (1, 0));
         // Nor are two machines compared.
         records[1].origin.machine = "linux, two".into();
-        assert_eq!(costs(&records), (0, 1));
+        assert_eq!(counts(&records), (0, 1));
     }
 
     #[test]
     fn what_overlaps_the_cheapest_is_as_cheap() {
         // Intervals of ±10 %: 1.0 and 1.2 overlap, 1.0 and 1.3 do not.
-        let records: Vec<Record> = [("b-newton", 1.0), ("pdas", 1.2), ("latin", 1.3)]
-            .map(|(method, t)| timed(record("plate", method, 1e-6), t))
-            .into();
-        let set = set(&records);
-        let costs = Costs::new(&set);
+        let records = solved("plate", &[("b-newton", 1.0), ("pdas", 1.2), ("latin", 1.3)]);
+        let costs = costs(&records);
         assert_eq!(costs.methods, ["b-newton", "pdas", "latin"]);
         assert_eq!(costs.cheapest(0), [0, 1]);
         assert!((costs.median_width() - 0.2).abs() < 1e-12);

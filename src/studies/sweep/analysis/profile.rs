@@ -12,7 +12,7 @@
 //!
 //! Reference: E. D. Dolan, J. J. Moré, Math. Program. 91 (2002) 201.
 
-use super::costs::{Cost, Costs};
+use super::costs::{Cost, Costs, least};
 
 /// Fraction of the problems against a bound, for one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,12 +29,8 @@ pub fn performance<'a>(costs: &Costs<'a>) -> Vec<Curve<'a>> {
     if count == 0 {
         return Vec::new();
     }
-    let best = |row: &[Option<Cost>]| {
-        let values = row.iter().flatten().map(|cost| cost.value);
-        values.fold(f64::INFINITY, f64::min)
-    };
     let curve = |(index, method): (usize, &&'a str)| {
-        let ratio = |row: &Vec<Option<Cost>>| Some(row[index]?.value / best(row));
+        let ratio = |row: &Vec<Option<Cost>>| Some(row[index]?.value / least(row));
         let ratios = costs.costs.iter().filter_map(ratio);
         let mut ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
         ratios.sort_by(f64::total_cmp);
@@ -53,36 +49,18 @@ pub fn performance<'a>(costs: &Costs<'a>) -> Vec<Curve<'a>> {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_methods::Tier;
-
-    use super::super::support::{lying, of_case, record, timed};
-    use super::super::test_set::TestSet;
+    use super::super::support::{costs, failed, solved};
     use super::*;
-    use crate::studies::sweep::record::Record;
 
-    /// Four problems: b-newton 1, 4, 2 s and no answer; latin 2, 2, 2 s and no answer.
-    fn records() -> Vec<Record> {
-        let times = [[1.0, 2.0], [4.0, 2.0], [2.0, 2.0]];
-        let mut records = Vec::new();
-        for (case, times) in ["a", "b", "c"].into_iter().zip(times) {
-            for (method, time) in ["b-newton", "latin"].into_iter().zip(times) {
-                records.push(timed(record(case, method, 1e-6), time));
-            }
-        }
-        for method in ["b-newton", "latin"] {
-            let mut failed = of_case(lying("gave-up: stalled"), "d");
-            failed.cell.method = method.into();
-            records.push(failed);
-        }
-        records
-    }
-
-    /// Source: hand calculation. Ratios: b-newton 1, 2, 1, ∞ and latin 2, 1, 1, ∞.
+    /// Source: hand calculation. Times 1 and 2, 4 and 2, 2 and 2 s, and no answer; ratios 1, 2, 1, ∞ and 2, 1, 1, ∞.
     #[test]
     fn a_performance_profile_is_the_distribution_of_ratios_to_the_best() {
-        let records = records();
-        let set = TestSet::new(&records, Tier::Mid);
-        let costs = Costs::new(&set);
+        let mut records = Vec::new();
+        for (case, newton, latin) in [("a", 1.0, 2.0), ("b", 4.0, 2.0), ("c", 2.0, 2.0)] {
+            records.extend(solved(case, &[("b-newton", newton), ("latin", latin)]));
+        }
+        records.extend(["b-newton", "latin"].map(|method| failed("d", method)));
+        let costs = costs(&records);
         assert_eq!((costs.problems(), costs.unsolved()), (4, 1));
         for curve in performance(&costs) {
             assert_eq!(curve.steps, [[1.0, 0.5], [2.0, 0.75]], "{}", curve.method);
@@ -91,11 +69,8 @@ mod tests {
 
     #[test]
     fn a_method_that_is_never_best_starts_at_zero() {
-        let records: Vec<Record> = [("b-newton", 1.0), ("latin", 3.0)]
-            .map(|(method, t)| timed(record("a", method, 1e-6), t))
-            .into();
-        let set = TestSet::new(&records, Tier::Mid);
-        let curves = performance(&Costs::new(&set));
+        let records = solved("a", &[("b-newton", 1.0), ("latin", 3.0)]);
+        let curves = performance(&costs(&records));
         assert_eq!(curves[0].steps, [[1.0, 1.0]]);
         let [start, end] = [curves[1].steps[0], curves[1].steps[1]];
         assert_eq!(start, [1.0, 0.0]);

@@ -15,7 +15,7 @@
 //! References: shifted geometric mean: T. Achterberg, *Constraint Integer Programming*, TU Berlin 2007, appendix A.3;
 //! penalty: F. Hutter, H. Hoos, K. Leyton-Brown, T. Stützle, J. Artif. Intell. Res. 36 (2009) 267.
 
-use super::costs::{Cost, Costs};
+use super::costs::{Cost, Costs, least};
 use crate::studies::sweep::statistics::median;
 
 /// Factor on the largest right cost of a problem for those who have none.
@@ -55,21 +55,19 @@ pub fn ranking<'a>(costs: &Costs<'a>) -> Option<Ranking<'a>> {
     let rows: Vec<&Vec<Option<Cost>>> = costs.costs.iter().filter(right).collect();
     let shift = shift(&rows)?;
     let standing = |(index, method): (usize, &&'a str)| {
-        let own = rows.iter().filter_map(|row| row[index]);
-        let mut widths: Vec<f64> = own.map(|cost| cost.relative_width()).collect();
-        widths.sort_by(f64::total_cmp);
+        let own = || rows.iter().filter_map(|row| row[index]);
         let entered: Vec<Cost> = rows.iter().map(|row| entered(row, index)).collect();
         let mean = |end: fn(&Cost) -> f64| shifted_mean(entered.iter().map(end), shift);
         Standing {
             method,
-            correct: widths.len(),
+            correct: own().count(),
             mean: Cost {
                 value: mean(|c| c.value),
                 low: mean(|c| c.low),
                 high: mean(|c| c.high),
             },
             rank: [1, 1],
-            width: median(&widths),
+            width: median(own().map(|cost| cost.relative_width())),
         }
     };
     let mut standings: Vec<Standing> = costs.methods.iter().enumerate().map(standing).collect();
@@ -98,13 +96,7 @@ fn entered(row: &[Option<Cost>], index: usize) -> Cost {
 }
 
 fn shift(rows: &[&Vec<Option<Cost>>]) -> Option<f64> {
-    let least = |row: &&Vec<Option<Cost>>| {
-        let values = row.iter().flatten().map(|cost| cost.value);
-        values.fold(f64::INFINITY, f64::min)
-    };
-    let mut all: Vec<f64> = rows.iter().map(least).collect();
-    all.sort_by(f64::total_cmp);
-    let middle = median(&all);
+    let middle = median(rows.iter().map(|row| least(row)));
     (middle > 0.0).then(|| 10f64.powi(middle.log10().floor() as i32))
 }
 
@@ -117,23 +109,14 @@ pub fn shifted_mean(values: impl ExactSizeIterator<Item = f64>, shift: f64) -> f
 
 #[cfg(test)]
 mod tests {
-    use stickslip_methods::Tier;
-
-    use super::super::support::{lying, record, timed};
-    use super::super::test_set::TestSet;
+    use super::super::support::{costs, failed, solved};
     use super::*;
     use crate::studies::sweep::record::Record;
 
     fn ranked(records: &[Record]) -> Vec<(String, f64, [usize; 2])> {
-        let set = TestSet::new(records, Tier::Mid);
-        let ranking = ranking(&Costs::new(&set)).unwrap();
+        let ranking = ranking(&costs(records)).unwrap();
         let line = |s: &Standing| (s.method.to_owned(), s.mean.value, s.rank);
         ranking.standings.iter().map(line).collect()
-    }
-
-    fn one_problem(times: &[(&str, f64)]) -> Vec<Record> {
-        let cell = |(method, t): &(&str, f64)| timed(record("a", method, 1e-6), *t);
-        times.iter().map(cell).collect()
     }
 
     /// Source: hand calculation: (3 + 1)(15 + 1) = 8², less the shift of 1.
@@ -147,13 +130,13 @@ mod tests {
     #[test]
     fn overlapping_intervals_are_not_ranked() {
         // ±10 %: the neighbours 1, 1.2, 1.4 overlap, the ends do not; 5 stands alone.
-        let records = one_problem(&[
+        let times = [
             ("b-newton", 1.0),
             ("pdas", 1.2),
             ("hybrid", 1.4),
             ("latin", 5.0),
-        ]);
-        let ranked = ranked(&records);
+        ];
+        let ranked = ranked(&solved("a", &times));
         let ranks: Vec<[usize; 2]> = ranked.iter().map(|r| r.2).collect();
         assert_eq!(ranks, [[1, 2], [1, 3], [2, 3], [4, 4]]);
     }
@@ -162,37 +145,24 @@ mod tests {
     /// costs 1 and 2, median 1.5, shift 1: (2·3)^½ − 1 and (5·21)^½ − 1.
     #[test]
     fn a_failure_costs_ten_times_the_slowest_right_answer() {
-        let mut records = one_problem(&[("b-newton", 1.0), ("latin", 4.0)]);
-        records.push(timed(record("b", "b-newton", 1e-6), 2.0));
-        let mut failed = lying("false-claim");
-        failed.cell.case = "b".into();
-        records.push(failed);
+        let mut records = solved("a", &[("b-newton", 1.0), ("latin", 4.0)]);
+        records.extend(solved("b", &[("b-newton", 2.0)]));
+        records.push(failed("b", "latin"));
         let ranked = ranked(&records);
         assert_eq!(ranked[0].0, "b-newton");
-        assert!(
-            (ranked[0].1 - (6f64.sqrt() - 1.0)).abs() < 1e-12,
-            "{ranked:?}"
-        );
-        assert!(
-            (ranked[1].1 - (105f64.sqrt() - 1.0)).abs() < 1e-12,
-            "{ranked:?}"
-        );
+        for (found, product) in ranked.iter().zip([6f64, 105.0]) {
+            let mean = product.sqrt() - 1.0;
+            assert!((found.1 - mean).abs() < 1e-12, "{ranked:?}");
+        }
     }
 
     #[test]
-    fn who_is_never_right_is_not_ranked() {
-        let mut records = one_problem(&[("b-newton", 1.0)]);
-        records.push(lying("false-claim"));
-        records[1].cell.case = "a".into();
+    fn who_is_never_right_and_what_nobody_solves_is_not_ranked() {
+        let mut records = solved("a", &[("b-newton", 1.0)]);
+        records.push(failed("a", "latin"));
         let ranked = ranked(&records);
         assert_eq!(ranked.len(), 1);
         assert_eq!((ranked[0].0.as_str(), ranked[0].2), ("b-newton", [1, 1]));
-    }
-
-    #[test]
-    fn what_nobody_solves_is_not_ranked() {
-        let records = vec![lying("false-claim")];
-        let set = TestSet::new(&records, Tier::Mid);
-        assert_eq!(ranking(&Costs::new(&set)), None);
+        assert_eq!(ranking(&costs(&records[1..])), None);
     }
 }

@@ -10,62 +10,44 @@
 //! coefficients and meshes of one case are no independent evidence: k and n are scaled down to as many votes as there are cases.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use stickslip_methods::Tier;
 
 use super::costs::Costs;
-use super::proportion::wilson;
 use super::ranking::ranking;
 use super::test_set::TestSet;
 use super::{compare_methods, is_correct};
+use crate::case::named;
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::wilson;
 
 /// Fewer problems say nothing.
 const FEWEST: usize = 3;
 /// A slip below this part of the displacements is none.
 const STICKS: f64 = 1e-8;
 
-/// What friction does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Friction {
-    /// All coefficients are zero.
-    Frictionless,
-    /// Something slips, or may do so.
-    Slip,
-    /// Nothing slips on the whole path.
-    Stick,
-}
-
-/// How many contact unknowns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Size {
-    /// Up to 100.
-    Small,
-    /// Up to 1000.
-    Medium,
-    /// More.
-    Large,
-}
-
-impl fmt::Display for Friction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Friction::Frictionless => "frictionless",
-            Friction::Slip => "slip",
-            Friction::Stick => "stick",
-        })
+named! {
+    /// What friction does.
+    pub enum Friction {
+        /// All coefficients are zero.
+        Frictionless = "frictionless",
+        /// Something slips, or may do so.
+        Slip = "slip",
+        /// Nothing slips on the whole path.
+        Stick = "stick",
     }
 }
 
-impl fmt::Display for Size {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Size::Small => "up to 100",
-            Size::Medium => "101 to 1000",
-            Size::Large => "over 1000",
-        })
+named! {
+    /// How many contact unknowns.
+    pub enum Size {
+        /// Up to 100.
+        Small = "up to 100",
+        /// Up to 1000.
+        Medium = "101 to 1000",
+        /// More.
+        Large = "over 1000",
     }
 }
 
@@ -152,24 +134,15 @@ fn sticks(record: &Record) -> Option<bool> {
     slips.reduce(|a, b| a || b).map(|slips| !slips)
 }
 
-/// How sure the fastest methods are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Confidence {
-    /// Fastest on most problems of the class with 95 % confidence.
-    Sure,
-    /// Fastest on most of the problems that were measured.
-    Likely,
-    /// Not even that, too few problems, or no times.
-    Open,
-}
-
-impl fmt::Display for Confidence {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Confidence::Sure => "sure",
-            Confidence::Likely => "likely",
-            Confidence::Open => "open",
-        })
+named! {
+    /// How sure the fastest methods are.
+    pub enum Confidence {
+        /// Fastest on most problems of the class with 95 % confidence.
+        Sure = "sure",
+        /// Fastest on most of the problems that were measured.
+        Likely = "likely",
+        /// Not even that, too few problems, or no times.
+        Open = "open",
     }
 }
 
@@ -323,24 +296,21 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
 
 #[cfg(test)]
 mod tests {
-    use super::super::support::{lying, record, timed};
+    use super::super::support::{lying, solved, timed};
     use super::*;
-    use crate::studies::sweep::record::ValueFound;
+    use crate::studies::convergence::Value;
 
     /// pdas is fastest wherever it is right; latin is right everywhere; b-newton too, and faster than latin.
     fn records(problems: usize, failures: usize) -> Vec<Record> {
-        let mut all = Vec::new();
-        for index in 0..problems {
-            let case = format!("case-{index}");
-            for (method, time) in [("b-newton", 2.0), ("pdas", 1.0), ("latin", 3.0)] {
-                let mut cell = timed(record(&case, method, 1e-6), time);
-                if method == "pdas" && index < failures {
-                    cell.found = lying("gave-up: stalled").found;
-                }
-                all.push(cell);
+        let times = [("b-newton", 2.0), ("pdas", 1.0), ("latin", 3.0)];
+        let problem = |index| {
+            let mut all = solved(&format!("case-{index}"), &times);
+            if index < failures {
+                all[1].found = lying("gave-up: stalled").found;
             }
-        }
-        all
+            all
+        };
+        (0..problems).flat_map(problem).collect()
     }
 
     fn names(found: &Recommendation) -> Vec<&str> {
@@ -409,7 +379,7 @@ mod tests {
         };
         assert_eq!(classes(&records), [Class::ALL], "all alike");
         for record in records.iter_mut().filter(|r| r.cell.case == "case-1") {
-            record.found.values.push(ValueFound {
+            record.found.values.push(Value {
                 quantity: "max_slip".into(),
                 at: "crack-1".into(),
                 value: 1e-20,

@@ -6,7 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::run::registry::methods;
+use crate::run::choice::Choice;
+use crate::run::registry;
 
 use super::{compare_methods, has_defaults, is_honest, method_name, method_time, published_times};
 use crate::studies::sweep::cell::Problem;
@@ -73,7 +74,7 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
         points.sort_by(|a, b| b.value.total_cmp(&a.value));
     }
     let mut all: Vec<Series> = Vec::new();
-    let mut approximate: BTreeMap<&str, Vec<Choice<'a>>> = BTreeMap::new();
+    let mut approximate: BTreeMap<&str, Vec<Setting<'a>>> = BTreeMap::new();
     for (method, points) in &by_method {
         let Some(first) = points.first().map(|p| p.record) else {
             continue;
@@ -100,11 +101,11 @@ pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
 }
 
 /// All options with their values, and the cell that has them.
-type Choice<'a> = (Vec<(String, f64)>, Point<'a>);
+type Setting<'a> = (Vec<(String, f64)>, Point<'a>);
 
 /// The curves of one method with laws of its own, given by cells with different options; none where all are the same.
-fn along_options<'a>(method: &str, cells: &[Choice<'a>]) -> Vec<Series<'a>> {
-    let value = |cell: &Choice<'a>, name: &str| {
+fn along_options<'a>(method: &str, cells: &[Setting<'a>]) -> Vec<Series<'a>> {
+    let value = |cell: &Setting<'a>, name: &str| {
         let own = cell.0.iter().find(|(option, _)| option == name);
         own.map(|(_, value)| *value)
     };
@@ -168,30 +169,18 @@ fn point(record: &Record) -> Option<Point<'_>> {
     })
 }
 
-/// Options of a method as on the command line, the rest as the registry has them.
+/// Options of a method as on the command line, the rest as the registry has them; none of a method it does not have.
 fn options(method: &str) -> Vec<(String, f64)> {
-    let (name, list) = method.split_once(':').unwrap_or((method, ""));
-    let pairs = list.split(',').filter_map(|part| part.split_once('='));
-    let given: Vec<(&str, f64)> = pairs
-        .filter_map(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)))
-        .collect();
-    let known = methods().iter().find(|m| m.name == name);
-    let mut all: Vec<(String, f64)> = known
-        .map_or(&[][..], |m| m.options)
-        .iter()
-        .map(|spec| (spec.name().to_owned(), spec.default().number()))
-        .collect();
-    for (name, value) in given {
-        match all.iter_mut().find(|(option, _)| option == name) {
-            Some((_, own)) => *own = value,
-            None => all.push((name.to_owned(), value)),
-        }
-    }
-    all
+    let Ok(choice) = Choice::parse(method) else {
+        return Vec::new();
+    };
+    let all = choice.options.iter();
+    all.map(|(spec, value)| (spec.name().to_owned(), value.number()))
+        .collect()
 }
 
 fn default(method: &str, option: &str) -> Option<f64> {
-    let method = methods().iter().find(|m| m.name == method)?;
+    let method = registry::method(method)?;
     let spec = method.options.iter().find(|spec| spec.name() == option)?;
     Some(spec.default().number())
 }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use stickslip_methods::Tier;
 
-use super::proportion::wilson;
 use super::{claims, compare_methods, has_defaults, is_correct};
-use crate::run::verdict::{GIVE_UPS, Verdict};
+use crate::run::verdict::Verdict;
 use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::wilson;
 
 /// How a cell missed the tier: in the order of [`FAILURES`].
 pub const FAILURES: [&str; 12] = [
@@ -24,6 +24,9 @@ pub const FAILURES: [&str; 12] = [
     "timed_out",
     "out_of_memory",
 ];
+
+/// Place of what was stopped in [`FAILURES`].
+const STOPPED: usize = 7;
 
 /// One method at one tier.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,25 +109,23 @@ fn row(own: &[&Record], tier: Tier) -> Option<SuccessRow> {
 
 /// Place in [`FAILURES`] of a verdict that is not right to the tier.
 fn failure(verdict: &Verdict) -> usize {
-    match verdict {
-        Verdict::Solved | Verdict::Approximate(_) => 0,
-        Verdict::FalseClaim => 1,
-        // A status that is not known here ended without a claim, like the last, one that was stopped.
-        Verdict::GaveUp(status) => {
-            let known = GIVE_UPS.iter().position(|own| own == status);
-            2 + known.unwrap_or(GIVE_UPS.len() - 1)
-        }
-        Verdict::Refused(_) => 8,
-        Verdict::Crashed(_) => 9,
-        Verdict::TimedOut => 10,
-        Verdict::OutOfMemory => 11,
-    }
+    let name = match verdict {
+        Verdict::Solved | Verdict::Approximate(_) => "inaccurate",
+        Verdict::GaveUp(status) => status.as_str(),
+        other => other.kind().name(),
+    };
+    let place = FAILURES
+        .iter()
+        .position(|own| *own == name.replace('-', "_"));
+    // A status that is not known here ended without a claim, like one that was stopped.
+    place.unwrap_or(STOPPED)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::support::{end_with, lying, of_case, record};
     use super::*;
+    use crate::run::verdict::GIVE_UPS;
 
     #[test]
     fn claims_and_right_answers_are_counted_apart() {
@@ -176,26 +177,16 @@ mod tests {
     }
 
     #[test]
-    fn every_end_has_the_column_of_its_name() {
-        for text in [
-            "false-claim",
-            "gave-up: max-iterations",
-            "gave-up: stalled",
-            "gave-up: singular-tangent",
-            "gave-up: mechanism",
-            "gave-up: diverged",
-            "gave-up: stopped",
-            "refused: why",
-            "crashed: why",
-            "timed-out",
-            "out-of-memory",
-        ] {
-            let verdict: Verdict = text.parse().unwrap();
-            let name = match &verdict {
-                Verdict::GaveUp(status) => status.as_str(),
-                other => other.kind().name(),
-            };
-            assert_eq!(FAILURES[failure(&verdict)], name.replace('-', "_"));
-        }
+    fn every_end_has_a_column_of_its_own() {
+        let mut places: Vec<usize> = (GIVE_UPS.iter())
+            .map(|status| failure(&Verdict::GaveUp(*status)))
+            .collect();
+        let others = ["solved", "false-claim", "refused: why", "crashed: why"];
+        let limits = ["timed-out", "out-of-memory"];
+        let others = others.iter().chain(&limits);
+        places.extend(others.map(|text| failure(&text.parse().unwrap())));
+        places.sort();
+        assert_eq!(places, (0..FAILURES.len()).collect::<Vec<_>>());
+        assert_eq!(FAILURES[STOPPED], "stopped");
     }
 }

@@ -1,5 +1,9 @@
 //! Records made by hand, for tests.
 
+use stickslip_methods::Tier;
+
+use super::costs::Costs;
+use super::test_set::TestSet;
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::cell::Cell;
 use crate::studies::sweep::record::{
@@ -109,6 +113,24 @@ pub fn lying(verdict: &str) -> Record {
     let mut record = timed(record("plate", "latin", 1e-6), 123.4567);
     end_with(&mut record, verdict);
     record
+}
+
+/// Cells of one problem asked for 1e-6 and solved, by method and time [s].
+pub fn solved(case: &str, times: &[(&str, f64)]) -> Vec<Record> {
+    let cell = |(method, t): &(&str, f64)| timed(record(case, method, 1e-6), *t);
+    times.iter().map(cell).collect()
+}
+
+/// A cell of a problem that a method gave up.
+pub fn failed(case: &str, method: &str) -> Record {
+    let mut failed = of_case(lying("gave-up: stalled"), case);
+    failed.cell.method = method.into();
+    failed
+}
+
+/// Costs at the middle tier.
+pub fn costs(records: &[Record]) -> Costs<'_> {
+    Costs::new(&TestSet::new(records, Tier::Mid))
 }
 
 /// Gives a cell of one increment another verdict.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use stickslip_methods::Tier;
 
-use super::{compare_methods, has_defaults, problem_names, problems};
+use super::{compare_methods, compare_problems, has_defaults, problems};
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
 
@@ -35,15 +35,12 @@ impl<'a> TestSet<'a> {
         methods.sort_by(|a, b| compare_methods(a, b));
         methods.dedup();
         let all = problems(records);
-        // A name per problem: problems have no order of their own, having friction coefficients.
-        let names = problem_names(&all);
-        let mut by_name: BTreeMap<(&str, &str), &Record> = BTreeMap::new();
+        let place = |problem: &Problem| all.binary_search_by(|p| compare_problems(p, problem));
+        let mut by_place: BTreeMap<(usize, &str), &Record> = BTreeMap::new();
         for record in own {
-            let problem = record.cell.problem();
-            let place = all.iter().position(|other| *other == problem);
-            if let Some(place) = place {
-                let key = (names[place].as_str(), record.cell.method.as_str());
-                by_name.entry(key).or_insert(record);
+            if let Ok(place) = place(&record.cell.problem()) {
+                let key = (place, record.cell.method.as_str());
+                by_place.entry(key).or_insert(record);
             }
         }
         let mut set = Self {
@@ -53,15 +50,15 @@ impl<'a> TestSet<'a> {
             records: Vec::new(),
             left_out: 0,
         };
-        for (problem, name) in all.into_iter().zip(&names) {
-            let row = |method: &&str| by_name.get(&(name.as_str(), *method)).copied();
+        for (place, problem) in all.iter().enumerate() {
+            let row = |method: &&str| by_place.get(&(place, *method)).copied();
             let row: Vec<Option<&Record>> = set.methods.iter().map(row).collect();
             if row.iter().all(Option::is_none) {
                 continue;
             }
             match row.into_iter().collect::<Option<Vec<&Record>>>() {
                 Some(row) => {
-                    set.problems.push(problem);
+                    set.problems.push(problem.clone());
                     set.records.push(row);
                 }
                 None => set.left_out += 1,

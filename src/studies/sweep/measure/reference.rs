@@ -11,6 +11,8 @@
 //!
 //! No method is measured against itself: the converged solution for `hybrid` is that of the next method.
 
+use std::collections::BTreeMap;
+
 use super::scene::Scene;
 use crate::model::quantities::Snapshot;
 use crate::run::choice::Choice;
@@ -26,33 +28,40 @@ const METHODS: [&str; 5] = ["hybrid", "b-newton", "pdas", "newton-ac", "interior
 
 /// A converged solution.
 pub struct Reference {
-    /// Method that found it.
-    method: &'static str,
     /// Its natural map, the largest over the increments.
     natural_map: f64,
     /// By increment.
     snapshots: Vec<Snapshot>,
 }
 
-/// What was tried so far on one problem.
-#[derive(Default)]
-pub struct References {
-    found: Vec<Reference>,
-    failed: Vec<&'static str>,
-}
+/// What was tried so far on one problem, by method; none where it did not converge.
+pub type References = BTreeMap<&'static str, Option<Reference>>;
 
 /// Distance of some increments, found by the method of that name, from the converged solution, which is found when it is
 /// first asked for; none if no other method reaches it, or where the solution is zero and the answer is not.
 pub fn solver_error(scene: &mut Scene<'_>, found: &[Snapshot], own: &str) -> Option<SolverError> {
-    let method = METHODS
-        .into_iter()
-        .find(|name| *name != own && converge(scene, name))?;
-    let mut known = scene.references.found.iter();
+    let mut known = std::mem::take(scene.references);
+    let mut others = METHODS.into_iter().filter(|name| *name != own);
+    let name = others.find(|name| {
+        let tried = known.entry(name).or_insert_with(|| follow(scene, name));
+        tried.is_some()
+    });
+    let reference = name.and_then(|name| Some((name, known.get(name)?.as_ref()?)));
+    let error = reference.and_then(|(name, own)| distance(scene, found, name, own));
+    *scene.references = known;
+    error
+}
+
+fn distance(
+    scene: &Scene<'_>,
+    found: &[Snapshot],
+    method: &str,
+    reference: &Reference,
+) -> Option<SolverError> {
     let Reference {
-        method,
         natural_map,
         snapshots,
-    } = known.find(|reference| reference.method == method)?;
+    } = reference;
     let largest = |of: &dyn Fn(&Snapshot, &Snapshot) -> f64, size: &dyn Fn(&Snapshot) -> f64| {
         let pairs = found.iter().zip(snapshots);
         let difference = pairs.map(|(now, exact)| of(now, exact)).fold(0.0, f64::max);
@@ -75,7 +84,7 @@ pub fn solver_error(scene: &mut Scene<'_>, found: &[Snapshot], own: &str) -> Opt
             .max(0.0)
     };
     Some(SolverError {
-        reference: (*method).to_owned(),
+        reference: method.to_owned(),
         reference_natural_map: *natural_map,
         energy: largest(
             &|now, exact| square(&difference(&now.u, &exact.u)).sqrt(),
@@ -92,25 +101,7 @@ pub fn solver_error(scene: &mut Scene<'_>, found: &[Snapshot], own: &str) -> Opt
     })
 }
 
-/// Whether a method is right to the tolerance all along the path; followed once.
-fn converge(scene: &mut Scene<'_>, name: &'static str) -> bool {
-    let References { found, failed } = &scene.references;
-    if found.iter().any(|reference| reference.method == name) {
-        return true;
-    }
-    if failed.contains(&name) {
-        return false;
-    }
-    let reference = follow(scene, name);
-    let References { found, failed } = &mut scene.references;
-    let converged = reference.is_some();
-    match reference {
-        Some(reference) => found.push(reference),
-        None => failed.push(name),
-    }
-    converged
-}
-
+/// The solution of a method that is right to the tolerance all along the path.
 fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
     let choice = Choice::parse(name).ok()?;
     let path = LoadPathRun {
@@ -131,7 +122,6 @@ fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
     });
     let complete = snapshots.len() == scene.case.path.increments;
     complete.then_some(Reference {
-        method: name,
         natural_map,
         snapshots,
     })

@@ -1,8 +1,6 @@
 //! The discretised body of a cell. Neighbouring cells solve the same problem, so the last body is kept with its factor,
 //! and for the last friction coefficients the converged solution.
 
-use std::sync::Arc;
-
 use stickslip_methods::ContactSystem;
 
 use super::reference::References;
@@ -10,7 +8,7 @@ use crate::case::{self, Case, ContactSpace};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::model::loading::Loading;
 use crate::run::choice::ChoiceError;
-use crate::run::run_case::RunError;
+use crate::run::run_case::{RunError, warm_up};
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::cell::Cell;
 use crate::studies::sweep::memory;
@@ -29,6 +27,12 @@ pub enum MeasureError {
     Space(String),
 }
 
+impl From<BodyError> for MeasureError {
+    fn from(error: BodyError) -> Self {
+        MeasureError::Run(error.into())
+    }
+}
+
 impl From<MeasureError> for Verdict {
     fn from(error: MeasureError) -> Self {
         match error {
@@ -42,7 +46,6 @@ impl From<MeasureError> for Verdict {
 #[derive(Default)]
 pub struct Bench {
     kept: Option<Kept>,
-    warm: bool,
 }
 
 struct Kept {
@@ -59,7 +62,7 @@ struct Kept {
 
 struct PerFriction {
     friction: Vec<f64>,
-    system: Arc<ContactSystem>,
+    system: ContactSystem,
     references: References,
 }
 
@@ -104,13 +107,7 @@ impl Bench {
         // The old body goes before the new one comes: two would raise the peak of memory.
         let kept = match self.kept.take().filter(same) {
             Some(kept) => kept,
-            None => {
-                // The first body of a process starts threads and fills caches: it is made twice, and timed once.
-                if !std::mem::replace(&mut self.warm, true) {
-                    drop(Kept::new(cell, text, needs)?);
-                }
-                Kept::new(cell, text, needs)?
-            }
+            None => Kept::new(cell, text, needs)?,
         };
         let kept = self.kept.insert(kept);
         let known = kept.friction.take().filter(|f| f.friction == cell.friction);
@@ -118,12 +115,10 @@ impl Bench {
             Some(known) => known,
             None => {
                 let of_point = kept.body.points.iter().map(|p| cell.friction[p.crack]);
-                let system = ContactSystem::new(kept.body.elastic.clone(), of_point.collect())
-                    .map_err(BodyError::from)
-                    .map_err(RunError::from)?;
+                let system = ContactSystem::new(kept.body.elastic.clone(), of_point.collect());
                 PerFriction {
                     friction: cell.friction.clone(),
-                    system: Arc::new(system),
+                    system: system.map_err(BodyError::from)?,
                     references: References::default(),
                 }
             }
@@ -131,7 +126,7 @@ impl Bench {
         let PerFriction {
             system, references, ..
         } = kept.friction.insert(per_friction);
-        let loading = Loading::new(&kept.body, &kept.case, cell.mu()).map_err(RunError::from)?;
+        let loading = Loading::new(&kept.body, &kept.case, cell.mu())?;
         Ok(Scene {
             case: &kept.case,
             refine: kept.refine,
@@ -146,7 +141,7 @@ impl Bench {
 
 impl Kept {
     fn new(cell: &Cell, text: &str, needs: Needs) -> Result<Self, MeasureError> {
-        let mut case = case::parse(format!("{}.toml", cell.case), text).map_err(RunError::from)?;
+        let mut case = case::parse(format!("{}.toml", cell.case), text).map_err(BodyError::from)?;
         if let Some(name) = &cell.space {
             let space = ContactSpace::named(name);
             let space = space.ok_or_else(|| MeasureError::Space(name.clone()))?;
@@ -154,9 +149,10 @@ impl Kept {
                 .iter_mut()
                 .for_each(|crack| crack.contact = space);
         }
-        let body = Body::new(&case, cell.refine, needs).map_err(RunError::from)?;
-        let factored = body.elastic.factorise().map_err(BodyError::from);
-        factored.map_err(RunError::from)?;
+        warm_up(case.model.dim());
+        memory::reset_peak();
+        let body = Body::new(&case, cell.refine, needs)?;
+        body.elastic.factorise().map_err(BodyError::from)?;
         Ok(Kept {
             digest: cell.digest.clone(),
             refine: cell.refine,
