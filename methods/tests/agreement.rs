@@ -1,73 +1,51 @@
 //! Methods against each other, against their own parameters and against independent solvers.
 
-use crate::toys::*;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
+use clarabel::solver::SupportedConeT;
 use stickslip_methods::*;
 
+use crate::toys::*;
+
 /// Open, stick or slip of every point, by the forces.
-fn states(system: &ContactSystem, p: &[f64]) -> Vec<u8> {
+fn states(system: &ContactSystem, p: &[f64]) -> Vec<usize> {
     let largest = p.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    p.chunks(system.dim())
-        .zip(system.friction())
-        .map(|(p, mu)| {
-            let t = p[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
-            match () {
-                () if p[0] <= 1e-6 * largest => 0,
-                () if t < mu * p[0] - 1e-6 * largest => 1,
-                () => 2,
-            }
-        })
-        .collect()
+    let points = p.chunks(system.dim()).zip(system.friction());
+    let state = |(p, mu): (&[f64], &f64)| {
+        let t = p[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+        match () {
+            () if p[0] <= 1e-6 * largest => 0,
+            () if t < mu * p[0] - 1e-6 * largest => 1,
+            () => 2,
+        }
+    };
+    points.map(state).collect()
 }
 
 /// 30 coupled random systems per friction and dimension.
 #[test]
 fn all_exact_methods_give_the_same_answer_on_random_coupled_systems() {
-    for dim in [2, 3] {
-        for mu in [0.0, 0.1, 0.3, 0.6, 1.0] {
-            let mut rng = Random(7);
-            let mut seen = [0; 3];
-            for trial in 0..30 {
-                let (k, b) = random_body(&mut rng, dim, 12, 20, 0.05);
-                let s = system(&elastic(dim, &k, &b, vec![], false), mu);
-                let load = force(&s, &rng.vector(k.len()));
-                let mut reference: Option<ContactState> = None;
-                for m in exact() {
-                    let outcome = run(m, &[], &s, &load, 1e-10);
-                    assert_eq!(
-                        outcome.status,
-                        Status::Converged,
-                        "{} dim {dim} mu {mu} trial {trial}",
-                        m.name
-                    );
-                    let reference = reference.get_or_insert_with(|| outcome.state.clone());
-                    let (du, dp) = (
-                        difference(&outcome.state.u, &reference.u),
-                        difference(&outcome.state.p, &reference.p),
-                    );
-                    assert!(
-                        du < 1e-7 && dp < 1e-7,
-                        "{} dim {dim} mu {mu} trial {trial}: {du:.1e} {dp:.1e}",
-                        m.name
-                    );
-                    assert_eq!(
-                        states(&s, &outcome.state.p),
-                        states(&s, &reference.p),
-                        "{} trial {trial}",
-                        m.name
-                    );
-                }
-                if let Some(reference) = reference {
-                    states(&s, &reference.p)
-                        .iter()
-                        .for_each(|&i| seen[i as usize] += 1);
-                }
+    for (dim, mu) in [2, 3]
+        .iter()
+        .flat_map(|dim| [0.0, 0.1, 0.3, 0.6, 1.0].map(|mu| (*dim, mu)))
+    {
+        let mut rng = Random(7);
+        let mut seen = [0; 3];
+        for trial in 0..30 {
+            let (k, b) = random_body(&mut rng, dim, 12, 20, 0.05);
+            let s = system(&elastic(dim, &k, &b, vec![], false), mu);
+            let load = force(&s, &rng.vector(k.len()));
+            let mut reference: Option<(ContactState, Vec<usize>)> = None;
+            for m in exact() {
+                let state = solved(&m, &[], &s, &load, 1e-10).state;
+                let own = states(&s, &state.p);
+                let (other, theirs) = reference.get_or_insert_with(|| (state.clone(), own.clone()));
+                assert_same(&state, other, 1e-7, (m.name, dim, mu, trial));
+                assert_eq!(&own, theirs, "{} trial {trial}", m.name);
             }
-            assert!(
-                seen[0] > 0 && seen[2] > 0 && (mu < 0.2 || seen[1] > 0),
-                "the study must have all states: {seen:?}"
-            );
+            let (_, states) = reference.unwrap();
+            states.into_iter().for_each(|i| seen[i] += 1);
         }
+        let all = seen[0] > 0 && seen[2] > 0 && (mu < 0.2 || seen[1] > 0);
+        assert!(all, "the study must have all states: {seen:?}");
     }
 }
 
@@ -86,56 +64,45 @@ fn specimen() -> (ContactSystem, Load, ContactState) {
 }
 
 #[test]
-fn penalty_error_falls_like_one_over_its_stiffness() {
+fn penalty_error_falls_like_one_over_its_stiffness_and_that_of_the_barrier_like_its_gap() {
     let (s, load, reference) = specimen();
-    let penalty = method("penalty").unwrap();
-    let errors: Vec<f64> = [1e2, 1e3, 1e4, 1e5, 1e6]
-        .iter()
-        .map(|&c| {
-            let outcome = run(penalty, &[("normal", c), ("tangential", c)], &s, &load, 1e-12);
-            assert_eq!(outcome.status, Status::Converged, "{c:e}");
-            assert!(matches!(outcome.claim, Claim::Penalised { normal, tangential } if normal == tangential && normal > 0.0));
+    #[rustfmt::skip]
+    let sweeps = [
+        ("penalty", ["normal", "tangential"], [1e2, 1e3, 1e4, 1e5, 1e6]),
+        ("barrier", ["gap", "slip"], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
+    ];
+    for (name, options, values) in sweeps {
+        let errors = values.map(|c| {
+            let given = options.map(|option| (option, c));
+            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-12);
+            let (one, other) = match outcome.claim {
+                Claim::Penalised { normal, tangential } => (normal, tangential),
+                Claim::Barrier { gap, slip, .. } => (gap, slip),
+                other => panic!("{other:?}"),
+            };
+            assert!(one == other && one > 0.0, "{name}");
+            if name == "barrier" {
+                // It never penetrates.
+                let judged = judge(&s, &load, &outcome.state);
+                assert_eq!((judged.penetration, judged.adhesion), (0.0, 0.0));
+                assert!(judged.cone < 1e-15, "{judged:?}");
+            }
             difference(&outcome.state.p, &reference.p)
-        })
-        .collect();
-    for pair in errors.windows(2) {
-        let slope = (pair[1] / pair[0]).log10();
-        assert!((-1.1..-0.9).contains(&slope), "{errors:?}");
-    }
-}
-
-#[test]
-fn barrier_error_falls_like_its_gap_and_slip_and_never_penetrates() {
-    let (s, load, reference) = specimen();
-    let barrier = method("barrier").unwrap();
-    let errors: Vec<f64> = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
-        .iter()
-        .map(|&c| {
-            let outcome = run(barrier, &[("gap", c), ("slip", c)], &s, &load, 1e-12);
-            assert_eq!(outcome.status, Status::Converged, "{c:e}");
-            assert!(matches!(outcome.claim, Claim::Barrier { gap, slip, .. } if gap == slip && gap > 0.0));
-            let judged = judge(&s, &load, &outcome.state);
-            assert_eq!((judged.penetration, judged.adhesion), (0.0, 0.0));
-            assert!(judged.cone < 1e-15, "{judged:?}");
-            difference(&outcome.state.p, &reference.p)
-        })
-        .collect();
-    for pair in errors.windows(2) {
-        let slope = (pair[1] / pair[0]).log10();
-        assert!((-1.1..-0.9).contains(&slope), "{errors:?}");
+        });
+        for pair in errors.windows(2) {
+            let slope = (pair[1] / pair[0]).log10();
+            assert!((-1.1..-0.9).contains(&slope), "{name}: {errors:?}");
+        }
     }
 }
 
 #[test]
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
+    #[rustfmt::skip]
     let sweeps: [(&str, &str, &[f64]); 11] = [
         ("b-newton", "r", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
-        (
-            "augmented-lagrangian",
-            "stiffness",
-            &[1.0, 10.0, 1e2, 1e3, 1e4, 1e6],
-        ),
+        ("augmented-lagrangian", "stiffness", &[1.0, 10.0, 1e2, 1e3, 1e4, 1e6]),
         ("latin", "search_direction", &[0.1, 0.3, 1.0, 3.0, 10.0]),
         ("latin", "relaxation", &[0.5, 0.7, 0.9]),
         ("admm", "penalty", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
@@ -148,20 +115,9 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     ];
     for (name, option, values) in sweeps {
         for &value in values {
-            let outcome = run(method(name).unwrap(), &[(option, value)], &s, &load, 1e-10);
-            assert_eq!(
-                outcome.status,
-                Status::Converged,
-                "{name} {option} = {value}"
-            );
-            let (du, dp) = (
-                difference(&outcome.state.u, &reference.u),
-                difference(&outcome.state.p, &reference.p),
-            );
-            assert!(
-                du < 1e-7 && dp < 1e-7,
-                "{name} {option} = {value}: {du:.1e} {dp:.1e}"
-            );
+            let given = [(option, value)];
+            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-10);
+            assert_same(&outcome.state, &reference, 1e-7, (name, given));
         }
     }
 }
@@ -169,24 +125,14 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
 #[test]
 fn exact_methods_can_be_driven_to_rounding() {
     let (s, load, _) = specimen();
-    for m in exact() {
-        let outcome = run(m, &[], &s, &load, 1e-13);
-        if !converged(m, &outcome, "") {
-            continue;
-        }
-        assert!(
-            judge(&s, &load, &outcome.state).natural_map <= 1e-13,
-            "{}",
-            m.name
-        );
+    for (m, outcome) in claims(exact(), &s, &load, 1e-13) {
+        let found = judge(&s, &load, &outcome.state).natural_map;
+        assert!(found <= 1e-13, "{}: {found:e}", m.name);
         // Beyond rounding there is nothing to claim.
-        let outcome = run(m, &[], &s, &load, 1e-20);
-        assert!(
-            outcome.status != Status::Converged
-                || outcome.history.last().unwrap().natural_map == 0.0,
-            "{}",
-            m.name
-        );
+        let outcome = run(&m, &[], &s, &load, 1e-20);
+        let last = outcome.history.last().unwrap().natural_map;
+        let honest = outcome.status != Status::Converged || last == 0.0;
+        assert!(honest, "{}", m.name);
     }
 }
 
@@ -200,13 +146,7 @@ fn every_exact_method_reaches_tier_high_within_its_default_limits_on_a_stiff_ran
             let s = system(&elastic(2, &k, &b, vec![], false), 0.3);
             let load = force(&s, &rng.vector(k.len()));
             for m in exact() {
-                let outcome = run(m, &[], &s, &load, Tier::High.tolerance());
-                assert_eq!(
-                    outcome.status,
-                    Status::Converged,
-                    "{} shift {shift}",
-                    m.name
-                );
+                solved(&m, &[], &s, &load, Tier::High.tolerance());
             }
         }
     }
@@ -218,47 +158,25 @@ fn frictionless_contact_is_the_quadratic_programme_that_clarabel_solves() {
     let mut rng = Random(17);
     for (dim, points) in [(2, 10), (3, 8)] {
         let (k, b) = random_body(&mut rng, dim, points, 10, 0.2);
-        let n = k.len();
-        let f = rng.vector(n);
+        let f = rng.vector(k.len());
         let offset: Vec<f64> = rng.vector(dim * points).iter().map(|x| 0.1 * x).collect();
-        let upper: Rows = (0..n)
-            .map(|i| (0..n).map(|j| if j >= i { k[i][j] } else { 0.0 }).collect())
-            .collect();
-        let normal: Rows = (0..points)
-            .map(|i| b[dim * i].iter().map(|x| -x).collect())
-            .collect();
-        let gaps: Vec<f64> = (0..points).map(|i| offset[dim * i]).collect();
-        let linear: Vec<f64> = f.iter().map(|x| -x).collect();
-        let settings = DefaultSettingsBuilder::default()
-            .verbose(false)
-            .tol_gap_abs(1e-12)
-            .tol_gap_rel(1e-12)
-            .tol_feas(1e-12)
-            .build()
-            .unwrap();
-        let (hessian, constraints) = (csc(&upper), csc(&normal));
+        let minus = |v: &[f64]| -> Vec<f64> { v.iter().map(|x| -x).collect() };
+        let normal: Rows = b.iter().step_by(dim).map(|row| minus(row)).collect();
+        let gaps: Vec<f64> = offset.iter().step_by(dim).copied().collect();
         let cones = [SupportedConeT::NonnegativeConeT(points)];
-        let mut solver =
-            DefaultSolver::new(&hessian, &linear, &constraints, &gaps, &cones, settings).unwrap();
-        solver.solve();
+        let independent = minimise(&k, &minus(&f), (&normal, &gaps, &cones), 1e-12);
 
         let s = system(&elastic(dim, &k, &b, vec![], false), 0.0);
-        let load = Load {
-            force: f,
-            offset,
-            traction: vec![],
-        };
-        for (m, options, tolerance) in all() {
-            let outcome = run(m, &options, &s, &load, 1e-10);
-            let p: Vec<f64> = outcome.state.p.iter().step_by(dim).copied().collect();
-            let (du, dp) = (
-                difference(&outcome.state.u, &solver.solution.x),
-                difference(&p, &solver.solution.z),
-            );
-            let allowed = tolerance.max(1e-6);
+        let load = load(f, offset);
+        for m in all() {
+            let found = run(&m, &m.given, &s, &load, 1e-10).state;
+            let p: Vec<f64> = found.p.iter().step_by(dim).copied().collect();
+            let du = difference(&found.u, &independent.x);
+            let dp = difference(&p, &independent.z);
+            let allowed = m.accuracy.max(1e-6);
             assert!(
                 du < allowed && dp < allowed,
-                "{} dim {dim}: {du:.1e} {dp:.1e}",
+                "{}: {du:.1e} {dp:.1e}",
                 m.name
             );
         }

@@ -1,28 +1,15 @@
 //! Limits that every registered method must reach: no load, no friction, large friction, an open crack.
 
-use crate::toys::*;
 use stickslip_methods::*;
+
+use crate::toys::*;
 
 #[test]
 fn no_load_means_no_motion_and_no_force() {
-    let floating = block(1.0, 1.5, 50.0, 2.0);
-    for body in [spring_pair(1.0, 1.0), floating] {
+    for body in [spring_pair(1.0, 1.0), block(1.0, 1.5, 50.0, 2.0)] {
         let s = system(&body, 0.3);
-        for m in general() {
-            let outcome = run(m, &[], &s, &force(&s, &vec![0.0; body.unknowns()]), 1e-9);
-            if !converged(m, &outcome, "") {
-                continue;
-            }
-            assert!(
-                outcome
-                    .state
-                    .u
-                    .iter()
-                    .chain(&outcome.state.p)
-                    .all(|&x| x == 0.0),
-                "{}",
-                m.name
-            );
+        for (m, outcome) in claims(general(), &s, &Load::zero(&body), 1e-9) {
+            assert_eq!(outcome.state, ContactState::zero(&s), "{}", m.name);
         }
     }
 }
@@ -32,36 +19,34 @@ fn without_friction_there_are_no_tangential_rows_and_no_tangential_forces() {
     let mut rng = Random(5);
     let (k, b) = random_body(&mut rng, 3, 5, 4, 0.2);
     let f = rng.vector(k.len());
-    let shared = elastic(3, &k, &b, vec![], false);
-    let slim = elastic(3, &k, &b, vec![], true);
+    let [shared, slim] = [false, true].map(|slim| elastic(3, &k, &b, vec![], slim));
     // The shared body condenses all rows, and its frictionless system takes the normal block.
+    let rough = system(&shared, 0.4);
     run(
         method("b-newton").unwrap(),
         &[],
-        &system(&shared, 0.4),
-        &force(&system(&shared, 0.4), &f),
+        &rough,
+        &force(&rough, &f),
         1e-6,
     );
-    for (m, options, _) in all() {
-        let mut forces = Vec::new();
-        for body in [&shared, &slim] {
-            let s = system(body, 0.0);
-            assert_eq!((s.components(), s.rows()), (1, 5));
-            let outcome = run(m, &options, &s, &force(&s, &f), 1e-9);
-            if !converged(m, &outcome, "") {
-                continue;
-            }
-            assert!(
-                (0..5).all(|i| outcome.state.p[3 * i + 1..3 * i + 3] == [0.0, 0.0]),
-                "{}",
-                m.name
-            );
-            forces.push(outcome.state.p);
-        }
-        assert!(difference(&forces[0], &forces[1]) < 1e-7, "{}", m.name);
+    let [one, other] = [&shared, &slim].map(|body| {
+        let s = system(body, 0.0);
+        assert_eq!((s.components(), s.rows()), (1, 5));
+        let load = force(&s, &f);
+        let forces = claims(all(), &s, &load, 1e-9).map(|(m, outcome)| {
+            let p = outcome.state.p;
+            let none = p.chunks(3).all(|p| p[1..] == [0.0, 0.0]);
+            assert!(none, "{}", m.name);
+            (m.name, p)
+        });
+        forces.collect::<Vec<_>>()
+    });
+    for ((name, p), (same, q)) in one.iter().zip(&other) {
+        assert!(name == same && difference(p, q) < 1e-7, "{name}");
     }
+    let refused = ContactSystem::new(slim, vec![0.1; 5]);
     assert!(matches!(
-        ContactSystem::new(slim, vec![0.1; 5]),
+        refused,
         Err(MethodError::FrictionlessBody { point: 0, .. })
     ));
 }
@@ -74,27 +59,13 @@ fn points_without_friction_among_others_carry_no_tangential_force() {
     let s = ContactSystem::new(body, vec![0.5, 0.0, 0.5, 0.0]).unwrap();
     assert_eq!((s.components(), s.rows()), (2, 6));
     let f: Vec<f64> = rng.vector(k.len()).iter().map(|x| x - 1.0).collect();
-    for m in exact() {
-        let load = force(&s, &f);
-        let outcome = run(m, &[], &s, &load, 1e-9);
-        if !converged(m, &outcome, "") {
-            continue;
-        }
-        assert_eq!(
-            (outcome.state.p[3], outcome.state.p[7]),
-            (0.0, 0.0),
-            "{}",
-            m.name
-        );
-        assert!(
-            outcome.state.p[2] > 0.0 || outcome.state.p[6] > 0.0,
-            "the case must close such a point"
-        );
-        assert!(
-            judge(&s, &load, &outcome.state).natural_map <= 1e-9,
-            "{}",
-            m.name
-        );
+    let load = force(&s, &f);
+    for (m, outcome) in claims(exact(), &s, &load, 1e-9) {
+        let p = &outcome.state.p;
+        assert_eq!((p[3], p[7]), (0.0, 0.0), "{}", m.name);
+        assert!(p[2] > 0.0 || p[6] > 0.0, "the case must close such a point");
+        let found = judge(&s, &load, &outcome.state).natural_map;
+        assert!(found <= 1e-9, "{}: {found:e}", m.name);
     }
 }
 
@@ -108,21 +79,9 @@ fn large_friction_under_closing_load_is_the_tied_solution() {
         .map(|r| if r % 3 == 0 { 2.0 } else { rng.next() })
         .collect();
     let q: Vec<f64> = mul(&delassus(&k, &b), &tied).iter().map(|x| -x).collect();
-    let load = Load {
-        force: vec![0.0; k.len()],
-        offset: q,
-        traction: vec![],
-    };
-    for (m, options, tolerance) in all() {
-        let outcome = run(m, &options, &s, &load, 1e-11);
-        if !converged(m, &outcome, "") {
-            continue;
-        }
-        assert!(
-            difference(&outcome.state.p, &tied) < 10.0 * tolerance,
-            "{}",
-            m.name
-        );
+    for (m, outcome) in claims(all(), &s, &load(vec![0.0; k.len()], q), 1e-11) {
+        let off = difference(&outcome.state.p, &tied);
+        assert!(off < 10.0 * m.accuracy, "{}: {off:.1e}", m.name);
     }
 }
 
@@ -134,48 +93,41 @@ fn open_crack_is_one_linear_solve_and_is_never_condensed() {
     let free = solve(&k, &f);
     let jump = mul(&b, &free);
     // An initial gap that the load does not close.
-    let offset = (0..6)
-        .map(|r| if r % 2 == 0 { jump[r].abs() + 0.1 } else { 0.0 })
-        .collect();
+    let gap = |r: usize| if r % 2 == 0 { jump[r].abs() + 0.1 } else { 0.0 };
+    let load = load(f, (0..6).map(gap).collect());
     for m in general() {
         let body = elastic(2, &k, &b, vec![], false);
         let s = system(&body, 0.3);
-        let load = Load {
-            force: f.clone(),
-            offset: Vec::clone(&offset),
-            traction: vec![],
-        };
-        let outcome = run(m, &[], &s, &load, 1e-9);
+        let Outcome {
+            status,
+            claim,
+            state,
+            counters,
+            ..
+        } = run(&m, &[], &s, &load, 1e-9);
         assert_eq!(
-            (outcome.status, outcome.claim),
+            (status, claim),
             (Status::Converged, Claim::Exact),
             "{}",
             m.name
         );
-        let counters = outcome.counters;
-        assert_eq!(
-            (
-                counters.iterations,
-                counters.solves,
-                counters.factorisations
-            ),
-            (0, 1, 0),
-            "{}",
-            m.name
+        let work = (
+            counters.iterations,
+            counters.solves,
+            counters.factorisations,
         );
-        assert!(
-            difference(&outcome.state.u, &free) < 1e-12
-                && outcome.state.p.iter().all(|&p| p == 0.0)
-        );
-        assert_eq!(judge(&s, &load, &outcome.state).natural_map, 0.0);
+        assert_eq!(work, (0, 1, 0), "{}", m.name);
+        assert!(difference(&state.u, &free) < 1e-12 && state.p.iter().all(|&p| p == 0.0));
+        assert_eq!(judge(&s, &load, &state).natural_map, 0.0);
+        let ElasticCounters {
+            factorisations,
+            solves,
+            products,
+            condensations,
+        } = body.counters();
         assert_eq!(
-            body.counters(),
-            ElasticCounters {
-                factorisations: 1,
-                solves: 1,
-                products: 0,
-                condensations: 0
-            }
+            [factorisations, solves, products, condensations],
+            [1, 1, 0, 0]
         );
     }
 }
@@ -188,7 +140,7 @@ fn one_factorisation_serves_all_frictions_methods_and_increments() {
     for mu in [0.0, 0.2, 0.7] {
         let s = system(&body, mu);
         for m in general() {
-            run(m, &[], &s, &force(&s, &rng.vector(k.len())), 1e-6);
+            run(&m, &[], &s, &force(&s, &rng.vector(k.len())), 1e-6);
         }
     }
     let counters = body.counters();
@@ -204,25 +156,17 @@ fn a_cycle_of_active_sets_without_friction_is_left() {
         [-3.23428727, -6.11342967, 6.79082924],
     ];
     // Rows (n, t) per point, the tangential ones not coupled.
-    let (mut col_ptr, mut row_idx, mut values) = (vec![0], vec![], vec![]);
-    for j in 0..3 {
-        row_idx.extend((j..3).map(|i| 2 * i).chain([2 * j + 1]));
-        values.extend((j..3).map(|i| normal[i][j]).chain([1.0]));
-        col_ptr.extend([values.len() - 1, values.len()]);
-    }
-    let w = SymmetricMatrix::new(6, col_ptr, row_idx, values);
-    let body = Elastic::from_delassus(2, w.unwrap(), vec![]).unwrap();
-    let s = system(&body, 0.0);
-    let load = Load {
-        force: vec![0.0; 6],
-        offset: vec![0.05277372, 0.0, 1.55333021, 0.0, -1.76164288, 0.0],
-        traction: vec![],
+    let entry = |i: usize, j: usize| match (i % 2, j % 2) {
+        (0, 0) => normal[i / 2][j / 2],
+        _ => f64::from(u8::from(i == j)),
     };
-    for m in general() {
-        let outcome = run(m, &[], &s, &load, 1e-9);
-        if !converged(m, &outcome, "") {
-            continue;
-        }
+    let w: Rows = (0..6)
+        .map(|i| (0..6).map(|j| entry(i, j)).collect())
+        .collect();
+    let body = Elastic::from_delassus(2, sparse(&w), vec![]).unwrap();
+    let s = system(&body, 0.0);
+    let load = free_jump(&[0.05277372, 0.0, 1.55333021, 0.0, -1.76164288, 0.0]);
+    for (m, outcome) in claims(general(), &s, &load, 1e-9) {
         if m.name == "pdas" {
             let h: Vec<f64> = outcome.history.iter().map(|h| h.natural_map).collect();
             let again = |k: usize| (h[k] - h[k - 3]).abs() < 1e-9 && (h[k] - h[k - 1]).abs() > 0.1;

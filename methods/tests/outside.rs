@@ -96,13 +96,11 @@ fn a_simple_method_solves_what_is_easy_and_fails_fairly_elsewhere() {
             let load = force(&s, &f);
             let outcome = run(&UZAWA, &[], &s, &load, 1e-8);
             assert_eq!(outcome, run(&UZAWA, &[], &s, &load, 1e-8), "the same bits");
-            assert_eq!(
-                (outcome.state.u.len(), outcome.state.p.len()),
-                (k.len(), b.len())
-            );
+            let sizes = (outcome.state.u.len(), outcome.state.p.len());
+            assert_eq!(sizes, (k.len(), b.len()));
             let judged = judge(&s, &load, &outcome.state);
             assert_eq!(body.counters().condensations, 0);
-            if converged(&UZAWA, &outcome, "") {
+            if converged(&UZAWA, &outcome) {
                 assert!(
                     judged.natural_map <= 1e-8,
                     "a claim holds: mu {mu} {judged:?}"

@@ -14,13 +14,8 @@ fn every_file_with_a_method_is_registered() {
             let path = entry.unwrap().path();
             let text = std::fs::read_to_string(&path).unwrap();
             if text.contains("pub static METHOD: Method") {
-                files.insert(
-                    path.file_stem()
-                        .unwrap()
-                        .to_str()
-                        .unwrap()
-                        .replace('_', "-"),
-                );
+                let name = path.file_stem().unwrap().to_str().unwrap();
+                files.insert(name.replace('_', "-"));
             }
         }
     }
@@ -61,10 +56,8 @@ fn every_default_is_allowed_and_every_range_has_an_outside_that_is_refused() {
             for value in [min - 1.0, max * 2.0, f64::NAN, f64::NEG_INFINITY] {
                 let error = Options::new(m.options, &[(name.to_string(), value)]).unwrap_err();
                 let text = error.to_string();
-                assert!(
-                    text.contains(name) && text.contains(&option.allowed()),
-                    "{text}"
-                );
+                let told = text.contains(name) && text.contains(&option.allowed());
+                assert!(told, "{text}");
             }
         }
         let unknown = Options::new(m.options, &[("no_such_option".to_string(), 1.0)]).unwrap_err();
@@ -78,12 +71,7 @@ fn tiers_are_named_and_ordered() {
     for tier in Tier::ALL {
         assert_eq!(tier.as_str().parse(), Ok(tier));
     }
-    assert!(
-        "ultra"
-            .parse::<Tier>()
-            .unwrap_err()
-            .to_string()
-            .contains("low, mid, high")
-    );
+    let error = "ultra".parse::<Tier>().unwrap_err().to_string();
+    assert!(error.contains("low, mid, high"), "{error}");
     assert_eq!(Tier::ALL.map(Tier::tolerance), [1e-3, 1e-6, 1e-9]);
 }

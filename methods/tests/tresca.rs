@@ -5,7 +5,7 @@
 //! It tells a wrong answer of a solver from a difficulty of Coulomb's law, and an independent code can solve it.
 
 use crate::toys::*;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
+use clarabel::solver::SupportedConeT;
 use stickslip_methods::*;
 
 /// W and q of a random body under a random load.
@@ -26,11 +26,7 @@ impl Problem {
             W: delassus(&k, &b),
             q: mul(&b, &solve(&k, &f)),
             dim,
-            load: Load {
-                force: f,
-                offset: vec![0.0; dim * points],
-                traction: vec![],
-            },
+            load: load(f, vec![0.0; dim * points]),
             k,
             b,
         }
@@ -49,13 +45,6 @@ impl Problem {
     /// The minimiser by clarabel, at its default accuracy of 1e-8.
     fn minimiser(&self, bounds: &[f64]) -> Vec<f64> {
         let (m, dim) = (self.q.len(), self.dim);
-        let upper: Rows = (0..m)
-            .map(|i| {
-                (0..m)
-                    .map(|j| if j >= i { self.W[i][j] } else { 0.0 })
-                    .collect()
-            })
-            .collect();
         // Per point P_n >= 0 and (g, P_t) in a second-order cone.
         let (mut rows, mut right, mut cones): (Rows, Vec<f64>, Vec<_>) = Default::default();
         let unit = |k: usize| (0..m).map(|j| if j == k { -1.0 } else { 0.0 }).collect();
@@ -68,14 +57,7 @@ impl Problem {
             cones.push(SupportedConeT::NonnegativeConeT(1));
             cones.push(SupportedConeT::SecondOrderConeT(dim));
         }
-        let settings = DefaultSettingsBuilder::default()
-            .verbose(false)
-            .build()
-            .unwrap();
-        let (W, A) = (csc(&upper), csc(&rows));
-        let mut solver = DefaultSolver::new(&W, &self.q, &A, &right, &cones, settings).unwrap();
-        solver.solve();
-        solver.solution.x
+        minimise(&self.W, &self.q, (&rows, &right, &cones), 1e-8).x
     }
 }
 
@@ -85,17 +67,11 @@ fn every_exact_coulomb_solution_minimises_the_tresca_problem_of_its_own_bound() 
     for (dim, points, mu) in [(2, 10, 0.3), (2, 10, 0.9), (3, 8, 0.3), (3, 8, 0.9)] {
         let problem = Problem::random(&mut rng, dim, points);
         let s = problem.system(mu);
-        let solution = |m: &Method, s: &ContactSystem| {
-            let outcome = run(m, &[], s, &problem.load, 1e-12);
-            assert_eq!(outcome.status, Status::Converged, "{}", m.name);
-            outcome.state.p
-        };
-        let reference = solution(method("tresca").unwrap(), &s);
-        let bounds: Vec<f64> = reference
-            .iter()
-            .step_by(dim)
-            .map(|p| mu * p.max(0.0))
-            .collect();
+        let solution = |m: &Method, s: &_| solved(m, &[], s, &problem.load, 1e-12).state.p;
+        let tresca = method("tresca").unwrap();
+        let reference = solution(tresca, &s);
+        let normal = reference.iter().step_by(dim);
+        let bounds: Vec<f64> = normal.map(|p| mu * p.max(0.0)).collect();
         let least = problem.objective(&reference);
         let off = |P: &[f64]| (problem.objective(P) / least - 1.0).abs();
 
@@ -106,26 +82,18 @@ fn every_exact_coulomb_solution_minimises_the_tresca_problem_of_its_own_bound() 
             off(&independent)
         );
         assert!(difference(&independent, &reference) < 1e-5);
+        let rounding = 1e-10 * bounds.iter().fold(0.0, |m: f64, g| m.max(*g));
         for m in exact() {
-            let P = solution(m, &s);
-            assert!(
-                off(&P) < 1e-10,
-                "{} dim {dim} mu {mu}: {:e}",
-                m.name,
-                off(&P)
-            );
-            let largest = bounds.iter().fold(0.0, |m: f64, g| m.max(*g));
+            let P = solution(&m, &s);
+            let at = format!("{} dim {dim} mu {mu}: {:e}", m.name, off(&P));
+            assert!(off(&P) < 1e-10, "{at}");
             for (P, g) in P.chunks(dim).zip(&bounds) {
                 let t = P[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
-                assert!(
-                    P[0] > -1e-10 * largest && t < g + 1e-10 * largest,
-                    "{}",
-                    m.name
-                );
+                assert!(P[0] > -rounding && t < g + rounding, "{at}");
             }
         }
         // Another friction is another problem.
-        let other = solution(method("tresca").unwrap(), &problem.system(0.8 * mu));
+        let other = solution(tresca, &problem.system(0.8 * mu));
         assert!(off(&other) > 1e-5, "dim {dim} mu {mu}: {:e}", off(&other));
     }
 }
@@ -147,14 +115,9 @@ fn unpolished_fixed_points_end_at_their_floor_and_say_so() {
                 "{name} dim {dim}: {floor:e}"
             );
 
-            let polished = run(m, &[], &s, &problem.load, 1e-13);
-            assert_eq!(polished.status, Status::Converged, "{name} dim {dim}");
-            let newton = polished.history.iter().filter(|i| i.natural_map <= 1e-6);
-            assert!(
-                newton.count() <= 4,
-                "{name} dim {dim}: {:?}",
-                polished.history
-            );
+            let polished = solved(m, &[], &s, &problem.load, 1e-13).history;
+            let newton = polished.iter().filter(|i| i.natural_map <= 1e-6);
+            assert!(newton.count() <= 4, "{name} dim {dim}: {polished:?}");
         }
     }
 }

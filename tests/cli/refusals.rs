@@ -1,7 +1,6 @@
 //! What only the discretisation can find wrong: refused with file, line and column, exit code 2, and nothing written.
 
 use crate::common::*;
-use assert_cmd::Command;
 use stickslip::model::body::BodyError;
 
 /// A good case; every fault below changes one thing in it.
@@ -22,6 +21,19 @@ fn place(text: &str, mark: &str) -> (usize, usize) {
     (line, at - before.rfind('\n').map_or(0, |n| n + 1) + 1)
 }
 
+/// Demands that `check` and `run` end with 2, say where, and write nothing.
+fn assert_code_2(text: &str, start: &str, words: &str) {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("bad.toml"), text).unwrap();
+    for verb in [&["check", "bad.toml"][..], &["run", "bad.toml"]] {
+        let (shown, complaints) = ends_with(2, verb, dir.path());
+        let told = complaints.starts_with(start) && complaints.contains(words);
+        assert!(told, "{verb:?}: {complaints}");
+        assert!(shown.is_empty(), "{verb:?}: {shown}");
+    }
+    assert_eq!(files(dir.path()).len(), 1, "{words}: written");
+}
+
 /// Demands a refusal of the body at a mark, by the library and by `check` and `run`; nothing is written.
 fn assert_refused(text: &str, mark: &str, words: &str) {
     let error = match try_body(text) {
@@ -29,59 +41,22 @@ fn assert_refused(text: &str, mark: &str, words: &str) {
         Err(BodyError::Case(error)) => error,
         Err(other) => panic!("no position: {other}\n{text}"),
     };
-    assert_eq!((error.line(), error.column()), place(text, mark), "{error}");
+    let (line, column) = place(text, mark);
+    assert_eq!((error.line(), error.column()), (line, column), "{error}");
     assert!(error.to_string().contains(words), "{error}");
-    assert!(
-        !error.allowed().is_empty() && !error.value().is_empty(),
-        "{error}"
-    );
-    let dir = tempfile::tempdir().unwrap();
-    let file = dir.path().join("bad.toml");
-    std::fs::write(&file, text).unwrap();
-    let out = dir.path().join("results");
-    for command in ["check", "run"] {
-        let mut program = Command::cargo_bin("stickslip").unwrap();
-        program.arg(command).arg(&file);
-        if command == "run" {
-            program.arg("--out").arg(&out);
-        }
-        let output = program.output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{command}: {output:?}");
-        let shown = String::from_utf8(output.stderr).unwrap();
-        let position = format!("{}:{}:{}: ", file.display(), error.line(), error.column());
-        assert!(shown.contains(&position), "{command}: {shown}");
-        assert!(output.stdout.is_empty(), "{command}: {:?}", output.stdout);
-    }
-    let left: Vec<_> = walk(&out);
-    assert!(left.is_empty(), "written: {left:?}");
-}
-
-/// Files below a folder.
-fn walk(dir: &std::path::Path) -> Vec<std::path::PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(dir).into_iter().flatten() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(walk(&path));
-        } else {
-            found.push(path);
-        }
-    }
-    found
+    assert!(!error.allowed().is_empty() && !error.value().is_empty());
+    let position = format!("bad.toml:{line}:{column}: ");
+    assert_code_2(text, "error: ", &position);
 }
 
 fn replaced(from: &str, to: &str) -> String {
     let text = good();
+    assert!(try_body(&text).is_ok(), "the good case is good");
     assert_eq!(text.matches(from).count(), 1, "`{from}` must occur once");
     text.replace(from, to)
 }
 
 const POINTS: &str = "[[-0.45, 0.23], [0.68, 0.31]]";
-
-#[test]
-fn the_good_case_is_good() {
-    assert!(try_body(&good()).is_ok());
-}
 
 #[test]
 fn a_crack_outside_the_mesh_is_refused() {
@@ -111,16 +86,8 @@ fn a_crack_too_short_for_the_mesh_is_refused() {
 fn a_tip_in_a_cell_that_another_crack_cuts_is_refused_at_it() {
     // Close to the first crack, but not on it.
     let points = "[[0.05, -0.6], [0.1, 0.26]]";
-    let second =
-        format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\ncontact = \"edge-pairs\"\n");
-    assert_refused(
-        &replaced(
-            "[[support]]\non = \"bottom\"",
-            &(second + "[[support]]\non = \"bottom\""),
-        ),
-        points,
-        "let it end on that crack",
-    );
+    let second = format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\n");
+    assert_refused(&(good() + &second), points, "let it end on that crack");
 }
 
 #[test]
@@ -217,11 +184,8 @@ fn a_mesh_folded_by_following_a_steep_line_is_refused() {
     let follow = "mesh = { box = { min_m = [-1.0, -1.0], max_m = [1.0, 1.0], cells = [8, 9] }, follow = { point_m = [0, 0], angle_deg = 45, half_length_m = 0.97 } }";
     let text = replaced(mesh, follow);
     let error = stickslip::case::parse("t.toml", text.as_str()).unwrap_err();
-    assert_eq!(
-        (error.line(), error.column()),
-        place(&text, "45, half"),
-        "{error}"
-    );
+    let at = (error.line(), error.column());
+    assert_eq!(at, place(&text, "45, half"), "{error}");
     // Just within the body: thin cells, but cells.
     assert!(try_body(&text.replace("45, half", "42, half")).is_ok());
 }
@@ -247,31 +211,13 @@ fn a_mesh_folded_by_turning_or_moving_it_is_refused() {
 
 #[test]
 fn a_method_option_out_of_range_is_refused_at_its_value() {
-    let dir = tempfile::tempdir().unwrap();
-    let file = dir.path().join("bad.toml");
-    let out = dir.path().join("results");
     for (method, words) in [
         ("name = \"penalty\"\nnormal = -3\n", "normal"),
         ("name = \"penalty\"\nnormel = 3\n", "normel"),
         ("name = \"newton\"\n", "unknown method"),
     ] {
-        std::fs::write(&file, good() + "[[method]]\n" + method).unwrap();
-        for command in ["check", "run"] {
-            let mut program = Command::cargo_bin("stickslip").unwrap();
-            program.arg(command).arg(&file);
-            if command == "run" {
-                program.arg("--out").arg(&out);
-            }
-            let output = program.output().unwrap();
-            assert_eq!(output.status.code(), Some(2), "{command} {method}");
-            let shown = String::from_utf8(output.stderr).unwrap();
-            let start = format!("error: {}:", file.display());
-            assert!(
-                shown.starts_with(&start) && shown.contains(words),
-                "{shown}"
-            );
-        }
-        assert!(walk(&out).is_empty());
+        let text = good() + "[[method]]\n" + method;
+        assert_code_2(&text, "error: bad.toml:", words);
     }
 }
 
@@ -294,11 +240,8 @@ fn probes_between_the_faces_and_expectations_without_an_answer_are_refused() {
             );
         let case = parse(&text);
         let error = stickslip::run::expect::check(&case).expect_err("no run has it");
-        assert_eq!(
-            (error.line(), error.column()),
-            place(&text, "[[expect]]"),
-            "{error}"
-        );
+        let at = (error.line(), error.column());
+        assert_eq!(at, place(&text, "[[expect]]"), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
 }

@@ -45,19 +45,13 @@ fn a_task_measures_its_shard_with_the_options_given() {
     ];
     let sweep = ["my sweep.toml", "out-%a", "--memory-limit", "4000"];
     let output = task(&array, &sweep);
-    assert_eq!(
-        printed(&output),
-        [
-            "study",
-            "my sweep.toml",
-            "--out",
-            "out-1",
-            "--shard",
-            "1/2",
-            "--memory-limit",
-            "4000"
-        ]
-    );
+    let shard = ["--out", "out-1", "--shard", "1/2"];
+    let expected = [
+        &["study", "my sweep.toml"],
+        &shard[..],
+        &["--memory-limit", "4000"],
+    ];
+    assert_eq!(printed(&output), expected.concat());
 }
 
 /// `sbatch --array=1,5` says that there are two tasks: without the number of shards even task 1 would take a wrong part.

@@ -21,38 +21,26 @@ pub fn bodies(needs: Needs) -> Vec<(&'static str, Body)> {
         body(&solid([3.0, 3.0, 3.0], [3, 3, 3], planes, &clamped(3)))
     };
     let across = |y: f64, slope: f64| crack([-1.0, y - slope], [4.0, y + 4.0 * slope], 0.3, "none");
-    vec![
+    let tipped = |p, q, tip| flat(crack(p, q, 0.3, tip));
+    let one_plane = |point, normal| block(&[(point, normal, 0.3)]);
+    let low = ([0.0, 0.0, 0.6], [0.05, 0.0, 1.0], 0.3);
+    let high = ([0.0, 0.0, 2.4], [0.0, 0.05, 1.0], 0.3);
+    #[rustfmt::skip]
+    let all = vec![
         ("straight", flat(across(1.6, 0.0))),
         ("oblique", flat(across(0.7, 0.4))),
         ("through nodes", flat(across(0.0, 1.0))),
         ("on cell edges", flat(across(1.5, 0.0))),
         ("two cracks", flat(across(0.7, 0.03) + &across(2.3, -0.02))),
-        (
-            "one tip",
-            flat(crack([-1.0, 1.2], [1.7, 1.9], 0.3, "branch")),
-        ),
-        (
-            "two tips",
-            flat(crack([0.6, 1.2], [2.3, 1.9], 0.3, "branch")),
-        ),
-        ("no tip", flat(crack([0.6, 1.2], [2.3, 1.9], 0.3, "none"))),
-        ("plane", block(&[([0.0, 0.0, 1.7], [0.0, 0.0, 1.0], 0.3)])),
-        (
-            "oblique plane",
-            block(&[([1.4, 1.6, 1.5], [1.0, 0.3, 2.0], 0.3)]),
-        ),
-        (
-            "plane through nodes",
-            block(&[([0.0, 0.0, 0.0], [1.0, 0.0, -1.0], 0.3)]),
-        ),
-        (
-            "two planes",
-            block(&[
-                ([0.0, 0.0, 0.6], [0.05, 0.0, 1.0], 0.3),
-                ([0.0, 0.0, 2.4], [0.0, 0.05, 1.0], 0.3),
-            ]),
-        ),
-    ]
+        ("one tip", tipped([-1.0, 1.2], [1.7, 1.9], "branch")),
+        ("two tips", tipped([0.6, 1.2], [2.3, 1.9], "branch")),
+        ("no tip", tipped([0.6, 1.2], [2.3, 1.9], "none")),
+        ("plane", one_plane([0.0, 0.0, 1.7], [0.0, 0.0, 1.0])),
+        ("oblique plane", one_plane([1.4, 1.6, 1.5], [1.0, 0.3, 2.0])),
+        ("plane through nodes", one_plane([0.0, 0.0, 0.0], [1.0, 0.0, -1.0])),
+        ("two planes", block(&[low, high])),
+    ];
+    all
 }
 
 /// A displacement field.

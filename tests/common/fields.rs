@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use nalgebra::Complex;
-use stickslip::case::Amount;
+use stickslip::case::{Amount, Material, Model};
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::quantities::Snapshot;
 use stickslip::run::registry::method;
@@ -20,7 +20,7 @@ use stickslip_xfem::intensity::williams::{kolosov, plane_modulus};
 use stickslip_xfem::material::{Lame, strain, stress};
 use stickslip_xfem::quadrature::gauss;
 
-use super::{METHOD, TOLERANCE, friction, loading, no_load, parse};
+use super::*;
 
 /// Straight crack |x| < a in an infinite plate under uniform remote stress, whose faces give up a constant part of the
 /// stress: Westergaard functions Z = A (z/√(z² − a²) − 1) of mode I and II (Tada, Paris & Irwin).
@@ -141,6 +141,42 @@ impl Field for Griffith {
         let slip = self.drop[1] * 2.0 * PI * self.a * self.a / plane_modulus(self.lame);
         Some((self.remote[2] - self.drop[1]) * slip)
     }
+}
+
+pub fn lame() -> Lame {
+    let material = Material {
+        young: 1.0,
+        poisson: 0.3,
+    };
+    Lame::new(material, Model::PlaneStrain)
+}
+
+/// A closed crack that slides under friction, μ = 0.3, p = 1e-3, τ = 0.7e-3, off the centre and oblique to the grid.
+pub fn sliding() -> Griffith {
+    Griffith {
+        centre: [0.031, -0.047, 0.0],
+        angle: 27f64.to_radians(),
+        a: 0.45,
+        remote: [-0.4e-3, -1.0e-3, 0.7e-3],
+        drop: [0.0, 0.4e-3],
+        lame: lame(),
+    }
+}
+
+/// The same crack pulled open and sheared.
+pub fn open() -> Griffith {
+    Griffith {
+        remote: [0.2e-3, 1.0e-3, 0.5e-3],
+        drop: [1.0e-3, 0.5e-3],
+        ..sliding()
+    }
+}
+
+/// A plate around such a crack, held on its outline.
+pub fn plate(field: &Griffith, cells: usize, tip: &str) -> String {
+    let [p, q] = field.ends();
+    let rest = crack(p, q, 0.3, tip) + &clamped(2);
+    plane([-1.0, -1.0], [1.0, 1.0], [cells, cells], &rest)
 }
 
 /// Sets the prescribed displacements of all standard functions to an exact field; those of enriched ones stay 0.

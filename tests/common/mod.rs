@@ -1,11 +1,14 @@
 //! What the whole-chain tests share: cases from text, one increment by hand, rows by name.
 
-// Every test binary uses its own part.
+// Every test program uses its own part.
 #![allow(dead_code)]
 
 pub mod bodies;
 pub mod fields;
 
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::path::Path;
 use std::sync::Arc;
 
 use stickslip::case::{self, Case};
@@ -301,4 +304,56 @@ pub fn clamped(dim: usize) -> String {
         .iter()
         .map(|side| support(&format!("\"{side}\""), zero))
         .collect()
+}
+
+/// Demands a number within a tolerance; NaN is in none.
+#[track_caller]
+pub fn assert_near(found: f64, exact: f64, tolerance: f64, at: impl Debug) {
+    let near = (found - exact).abs() < tolerance;
+    assert!(near, "{at:?}: {found:e} instead of {exact:e}");
+}
+
+/// Demands a number below a bound.
+#[track_caller]
+pub fn assert_below(found: f64, bound: f64, at: impl Debug) {
+    assert!(found < bound, "{at:?}: {found:e}, not below {bound:e}");
+}
+
+/// Runs the program in a folder: exit code, standard output, standard error.
+pub fn stickslip(arguments: &[&str], dir: &Path) -> (i32, String, String) {
+    let mut program = assert_cmd::Command::cargo_bin("stickslip").unwrap();
+    let output = program.args(arguments).current_dir(dir).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let code = output.status.code().unwrap();
+    (code, text(output.stdout), text(output.stderr))
+}
+
+/// Runs the program, which must end with a code; what it prints.
+#[track_caller]
+pub fn ends_with(code: i32, arguments: &[&str], dir: &Path) -> (String, String) {
+    let (found, output, complaints) = stickslip(arguments, dir);
+    assert_eq!(found, code, "{arguments:?}\n{output}{complaints}");
+    (output, complaints)
+}
+
+/// Rows of a table of commas, by column.
+pub fn csv_rows(text: &str) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+/// Files below a folder, by relative path.
+pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(dir).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.is_dir() {
+            let below = files(&path).into_iter();
+            found.extend(below.map(|(file, text)| (format!("{name}/{file}"), text)));
+        } else {
+            found.insert(name.to_owned(), std::fs::read(&path).unwrap());
+        }
+    }
+    found
 }

@@ -2,13 +2,13 @@
 
 use crate::common::*;
 use stickslip::case::{Case, ContactSpace, CrackShape, Tip, shipped};
-use stickslip::model::body::{Body, Needs};
 use stickslip::model::errors::Deviation;
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Quiet;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::convergence;
 use stickslip::studies::convergence::{ConvergencePlan, Measured, slope};
+use stickslip_xfem::exact::Setting;
 
 /// Errors by mesh, from coarse to fine: cell size and deviations.
 struct Errors(Vec<(f64, Vec<Deviation>)>);
@@ -120,14 +120,15 @@ const SLIDING: [(&str, f64); 6] = [
     ("k2_interaction", 5e-3),
 ];
 
-/// Source: closed form, Laborde et al. (2005). Goal: energy of order 0.95 or more with a fixed radius, of order 1/2 (within
-/// 0.15) with the tip cell alone.
+/// Source: closed form, Laborde et al. (2005). Goal: energy of order 0.95 or more with a fixed radius; with the tip cell alone
+/// the √r field in the next cells is missed, so energy of order 1/2 and displacement of order 1 (within 0.15).
 #[test]
 fn a_sliding_crack_has_the_orders_of_its_tip_functions() {
     let case = shipped("inclined_crack");
     assert_first_order(&case);
     let topological = Errors::of(&case, &[1, 2, 4], Some(Tip::Branch));
-    assert!((topological.order("energy") - 0.5).abs() <= 0.15);
+    assert_near(topological.order("energy"), 0.5, 0.15, "energy");
+    assert_near(topological.order("displacement"), 1.0, 0.15, "displacement");
 }
 
 /// Source: closed form. Goal: traction within 0.4 %, slip within 2 %, displacement within 4e-4, K_II within 0.5 % on 40 x 40
@@ -161,6 +162,7 @@ fn an_open_crack_is_the_linear_problem() {
     errors.within("k1_interaction", 5e-3);
     errors.within("k2_interaction", 5e-3);
     errors.within("traction", 0.0);
+    errors.within("dissipation", 0.0);
 }
 
 /// Source: closed form. Goal: on 40 x 40 cells the largest slip and the dissipation of first loading within 1 %, energy of
@@ -315,21 +317,35 @@ fn a_sloping_interface_passes_the_patch_test() {
 #[test]
 fn expected_dissipation_is_that_of_the_closed_form() {
     let mut count = 0;
-    for (name, _) in shipped::CASES {
-        let case = shipped(name);
-        if case.exact.is_none() {
-            continue;
-        }
-        let body = Body::new(&case, 1, Needs::default()).unwrap();
-        let loading = loading(&body, &case);
+    for case in shipped::CASES.iter().map(|(name, _)| shipped(name)) {
+        let Some(exact) = &case.exact else { continue };
+        let lines = &case.mesh.grid.lines;
+        let end = |last: bool, a: usize| match lines.get(a) {
+            Some(line) => line[if last { line.len() - 1 } else { 0 }],
+            None => 0.0,
+        };
+        let setting = Setting {
+            material: case.material,
+            model: case.model,
+            friction: case.cracks[0].friction,
+            crack: &case.cracks[0].geometry,
+            body: [false, true].map(|last| [0, 1, 2].map(|a| end(last, a))),
+        };
+        let solution = (exact.solution.build)(&setting, &exact.values).unwrap();
+        let factors = exact.factors(&case.path);
         for expect in case.expects.iter().filter(|e| e.quantity == "dissipation") {
-            let field = loading.exact(expect.increment.unwrap_or(case.path.increments));
-            let exact = field.unwrap().dissipation().unwrap();
+            let increment = expect.increment.unwrap_or(case.path.increments);
+            let field = solution.at(&factors[..increment]).unwrap();
+            let exact = field.dissipation().unwrap();
             let error = (expect.value - exact).abs();
-            assert!(error <= 1e-9 * exact, "{name}: {} {exact}", expect.value);
+            assert!(
+                error <= 1e-9 * exact,
+                "{}: {} {exact}",
+                case.name,
+                expect.value
+            );
             count += 1;
         }
     }
-    println!("{count} expectations");
-    assert!(count >= 18);
+    assert!(count >= 18, "{count} expectations");
 }

@@ -40,109 +40,85 @@ fn disc(normal: &str, friction: f64, tip: &str) -> String {
 /// Pressure 1 Pa and shear on planes z = const.
 const SHEAR: &str = "stress_zz_pa = -1\nstress_xz_pa = 0.6\nstress_yz_pa = 0.4";
 
-/// Solves a case with a closed form: the body, its state and the errors.
-fn measure(text: &str) -> (Body, Snapshot, Vec<Deviation>) {
+/// Solves a case with a closed form on a body: its state and the errors.
+fn measure(body: &Body, text: &str) -> (Snapshot, Vec<Deviation>) {
     let case = parse(text);
-    let body = body(text);
-    let system = ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap();
+    let system = ContactSystem::new(body.elastic.clone(), friction(&case, body)).unwrap();
     let system = Arc::new(system);
     let registered = method(METHOD).expect("registered");
     let options = Options::new(registered.options, &[]).unwrap();
     let mut enforcement = (registered.build)(&options);
-    let (now, rows) = {
-        let loading = loading(&body, &case);
-        let increment = Increment {
-            system: &system,
-            load: &loading.at(1),
-            start_load: &no_load(&body),
-            start: &ContactState::zero(&system),
-            index: 0,
-            tolerance: TOLERANCE,
-        };
-        let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
-        assert_eq!(outcome.status, Status::Converged);
-        let status = vec![PointStatus::Open; body.points.len()];
-        let virgin = Snapshot::virgin(&body);
-        let now = Snapshot::new(&loading, 1, &outcome.state, None, status, &virgin);
-        let field = loading.exact(1).expect("a closed form");
-        let rows = errors(&body, &body.surface.quadrature, field, &now).unwrap();
-        (now, rows)
+    let loading = loading(body, &case);
+    let increment = Increment {
+        system: &system,
+        load: &loading.at(1),
+        start_load: &no_load(body),
+        start: &ContactState::zero(&system),
+        index: 0,
+        tolerance: TOLERANCE,
     };
-    (body, now, rows)
+    let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
+    assert_eq!(outcome.status, Status::Converged);
+    let status = vec![PointStatus::Open; body.points.len()];
+    let virgin = Snapshot::virgin(body);
+    let now = Snapshot::new(&loading, 1, &outcome.state, None, status, &virgin);
+    let field = loading.exact(1).expect("a closed form");
+    let rows = errors(body, &body.surface.quadrature, field, &now).unwrap();
+    (now, rows)
 }
 
 /// The error of one quantity, the largest over all its places.
 fn error(rows: &[Deviation], quantity: &str) -> f64 {
-    let found: Vec<f64> = rows
-        .iter()
-        .filter(|r| r.quantity == quantity)
-        .map(|r| r.error)
-        .collect();
-    assert!(!found.is_empty(), "{quantity}");
-    found.into_iter().fold(0.0, f64::max)
+    let own = rows.iter().filter(|r| r.quantity == quantity);
+    own.map(|r| r.error).reduce(f64::max).expect(quantity)
 }
 
-/// Mean slip over the crack, components along a and b [m].
-fn mean_slip(body: &Body, now: &Snapshot) -> [f64; 2] {
-    let points = body.points.iter().zip(now.jump.chunks(3));
-    points.fold([0.0; 2], |sum, (p, jump)| {
-        [sum[0] + p.weight * jump[1], sum[1] + p.weight * jump[2]]
-    })
-}
-
-/// Source: Segedin 1950. Goal: a disc that slips under pressure and friction: slip within
-/// 10 % at 10 cells per diameter, its direction within 0.5 degrees, K_II and K_III within 6 % all along the front, uniform
-/// contact traction within 2 %; with its plane parallel to the grid, and turned.
-#[test]
-fn a_slipping_disc_has_the_slip_and_the_intensities_of_the_closed_form() {
-    for normal in ["[0, 0, 1]", "[0.2, -0.1, 1]"] {
-        let text = held(
-            &disc(normal, 0.3, "{ branch_radius_m = 0.3 }"),
-            [16, 16, 8],
-            SHEAR,
-        );
-        let (body, now, rows) = measure(&text);
-        for (quantity, bound) in [
-            ("slip", 0.10),
-            ("gap", 0.01),
-            ("k1_jump", 0.02),
-            ("k2_jump", 0.06),
-            ("k3_jump", 0.06),
-            ("traction", 0.02),
-            ("displacement", 0.02),
-            ("energy", 0.15),
-        ] {
-            let found = error(&rows, quantity);
-            assert!(found < bound, "{normal} {quantity}: {found:.2e}");
-        }
-        let traction = now
-            .p
-            .chunks(3)
-            .fold([0.0; 2], |s, p| [s[0] + p[1], s[1] + p[2]]);
-        let slip = mean_slip(&body, &now);
-        let case = parse(&text);
-        let held = loading(&body, &case);
-        let exact = held.exact(1).unwrap().jump(&[0.013, -0.021, 0.034]);
-        let angle = |v: [f64; 2]| v[1].atan2(v[0]).to_degrees();
-        let turn = (angle(slip) - angle([exact[1], exact[2]])).abs();
-        assert!(turn < 0.5, "{normal}: {turn} degrees");
-        assert!(slip[0] * traction[0] + slip[1] * traction[1] < 0.0);
+fn assert_within(rows: &[Deviation], bounds: &[(&str, f64)], at: &str) {
+    for &(quantity, bound) in bounds {
+        assert_below(error(rows, quantity), bound, (at, quantity));
     }
 }
 
-/// Source: Sneddon 1946: opening 4 (1 − ν) σ √(a² − r²)/(π G), K_I = 2 σ √(a/π). Goal: an open disc within 10 % at 10 cells per
-/// diameter, K_I within 8 %.
+/// Source: Segedin 1950. Goal: a disc that slips under pressure and friction: slip within 10 % at 10 cells per diameter, its
+/// direction within 0.5 degrees, K_II and K_III within 6 % all along the front, uniform contact traction within 2 %; with
+/// its plane parallel to the grid, and turned.
+///
+/// Source: Sneddon 1946: opening 4 (1 − ν) σ √(a² − r²)/(π G), K_I = 2 σ √(a/π). Goal: the same body, its disc opened: within
+/// 10 %, K_I within 8 %.
 #[test]
-fn an_open_disc_has_the_opening_of_the_closed_form() {
-    let text = held(
-        &disc("[0, 0, 1]", 0.0, "{ branch_radius_m = 0.3 }"),
-        [16, 16, 8],
-        "stress_zz_pa = 1",
-    );
-    let (_, _, rows) = measure(&text);
-    for (quantity, bound) in [("gap", 0.10), ("slip", 0.01), ("k1_jump", 0.08)] {
-        let found = error(&rows, quantity);
-        assert!(found < bound, "{quantity}: {found:.2e}");
+fn a_disc_has_the_slip_the_opening_and_the_intensities_of_the_closed_form() {
+    for normal in ["[0, 0, 1]", "[0.2, -0.1, 1]"] {
+        let disc = disc(normal, 0.3, "{ branch_radius_m = 0.3 }");
+        let text = held(&disc, [16, 16, 8], SHEAR);
+        let body = body(&text);
+        let (now, rows) = measure(&body, &text);
+        #[rustfmt::skip]
+        let bounds = [
+            ("slip", 0.10), ("gap", 0.01), ("k1_jump", 0.02), ("k2_jump", 0.06), ("k3_jump", 0.06),
+            ("traction", 0.02), ("displacement", 0.02), ("energy", 0.15),
+        ];
+        assert_within(&rows, &bounds, normal);
+        // Sums over the crack, along a and b.
+        let sum = |values: &[f64], weight: &dyn Fn(usize) -> f64| {
+            let points = values.chunks(3).enumerate();
+            points.fold([0.0; 2], |sum, (i, v)| {
+                [sum[0] + weight(i) * v[1], sum[1] + weight(i) * v[2]]
+            })
+        };
+        let traction = sum(&now.p, &|_| 1.0);
+        let slip = sum(&now.jump, &|i| body.points[i].weight);
+        let case = parse(&text);
+        let held_by = loading(&body, &case);
+        let exact = held_by.exact(1).unwrap().jump(&[0.013, -0.021, 0.034]);
+        let angle = |v: [f64; 2]| v[1].atan2(v[0]).to_degrees();
+        assert_near(angle(slip), angle([exact[1], exact[2]]), 0.5, normal);
+        assert!(slip[0] * traction[0] + slip[1] * traction[1] < 0.0);
+        if normal == "[0, 0, 1]" {
+            let text = held(&disc, [16, 16, 8], "stress_zz_pa = 1");
+            let (_, rows) = measure(&body, &text);
+            let bounds = [("gap", 0.10), ("slip", 0.01), ("k1_jump", 0.08)];
+            assert_within(&rows, &bounds, "open");
+        }
     }
 }
 
@@ -150,12 +126,11 @@ fn an_open_disc_has_the_opening_of_the_closed_form() {
 /// energy.
 #[test]
 fn richer_fronts_are_better() {
-    let energy = |tip: &str| {
-        let text = held(&disc("[0, 0, 1]", 0.3, tip), [12, 12, 6], SHEAR);
-        error(&measure(&text).2, "energy")
-    };
     let [none, branch, radius] =
-        ["\"none\"", "\"branch\"", "{ branch_radius_m = 0.3 }"].map(energy);
+        ["\"none\"", "\"branch\"", "{ branch_radius_m = 0.4 }"].map(|tip| {
+            let text = held(&disc("[0, 0, 1]", 0.3, tip), [8, 8, 4], SHEAR);
+            error(&measure(&body(&text), &text).1, "energy")
+        });
     assert!(radius < branch && branch < none, "{radius} {branch} {none}");
 }
 
@@ -264,10 +239,7 @@ fn a_straight_front_is_the_tip_of_the_plane_problem() {
                 .unwrap();
             for a in 0..2 {
                 let difference = deep.u[3 * node + a] - flat.u[2 * twin + a];
-                assert!(
-                    difference.abs() < 1e-4 * 1e-2,
-                    "{tip} {end} {x:?}: {difference:e}"
-                );
+                assert_below(difference.abs(), 1e-4 * 1e-2, (&tip, &end, &x, &difference));
             }
         }
     }

@@ -2,7 +2,6 @@
 
 use crate::common::fields::*;
 use crate::common::*;
-use stickslip::case::{Material, Model};
 use stickslip::model::body::Body;
 use stickslip::model::errors::{fronts, tip_fronts, tip_intensities};
 use stickslip::model::quantities::Snapshot;
@@ -17,45 +16,6 @@ use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
 use stickslip_xfem::intensity::williams::{Mode, Williams};
 use stickslip_xfem::intensity::{FitRange, JumpSample, jump_fit};
 use stickslip_xfem::material::{Lame, stress};
-
-fn lame() -> Lame {
-    let material = Material {
-        young: 1.0,
-        poisson: 0.3,
-    };
-    Lame::new(material, Model::PlaneStrain)
-}
-
-/// A closed crack that slides under friction, off the centre of the plate and oblique to the grid.
-fn sliding() -> Griffith {
-    Griffith {
-        centre: [0.031, -0.047, 0.0],
-        angle: 27f64.to_radians(),
-        a: 0.45,
-        remote: [-0.4e-3, -1.0e-3, 0.7e-3],
-        drop: [0.0, 0.4e-3],
-        lame: lame(),
-    }
-}
-
-/// The same crack pulled open and sheared.
-fn open() -> Griffith {
-    Griffith {
-        remote: [0.2e-3, 1.0e-3, 0.5e-3],
-        drop: [1.0e-3, 0.5e-3],
-        ..sliding()
-    }
-}
-
-fn plate(field: &Griffith, cells: usize, tip: &str) -> String {
-    let [p, q] = field.ends();
-    plane(
-        [-1.0, -1.0],
-        [1.0, 1.0],
-        [cells, cells],
-        &(crack(p, q, 0.3, tip) + &clamped(2)),
-    )
-}
 
 /// Intensities from exact gradients and exact tractions.
 fn of_exact(

@@ -4,7 +4,6 @@
 mod common;
 
 mod accuracy;
-mod closed_crack;
 mod conforming;
 mod errors;
 mod exact;

@@ -1,4 +1,4 @@
-//! The discretisation: sub-cells, rigid motions, jump operator, and the patch test with a closed crack.
+//! The discretisation: sub-cells, rigid motions, stiffness and jump operator.
 
 use crate::common::bodies::{bodies, motion_of, motions};
 use crate::common::*;
@@ -240,5 +240,42 @@ fn contact_forces_do_the_work_of_the_jump_and_balance_themselves() {
             let whole = dot(&force, &motion_of(&body, |_| true, &r));
             assert!(whole.abs() < 1e-12 * p.len() as f64, "{name}: {whole:e}");
         }
+    }
+}
+
+/// Source: an enriched function with a sliver of support is small in both K and its diagonal.
+/// Goal: scaled by its diagonal, K is as well conditioned for a cut at 1e-9 h as for one at 0.3 h.
+/// Tolerance: a factor of 3 between the smallest eigenvalues.
+#[test]
+fn slivers_do_not_spoil_the_scaled_stiffness() {
+    let least = |offset: f64| {
+        let y = (4.0 + offset) * 0.2;
+        let rest = crack([-0.1, y], [1.1, y], 10.0, "none")
+            + &support("\"bottom\"", "[\"free\", 0]")
+            + &support("[\"left\", \"bottom\"]", "[0, 0]")
+            + &support("\"top\"", "[\"free\", -1e-3]");
+        let body = body(&plane([0.0, 0.0], [1.0, 2.0], [5, 10], &rest));
+        let k = body.elastic.stiffness().unwrap();
+        let n = k.size();
+        let mut dense = DMatrix::zeros(n, n);
+        for j in 0..n {
+            for e in k.col_ptr()[j]..k.col_ptr()[j + 1] {
+                let i = k.row_idx()[e];
+                let value = k.values()[e] / (k.diagonal(i) * k.diagonal(j)).sqrt();
+                dense[(i, j)] = value;
+                dense[(j, i)] = value;
+            }
+        }
+        let mut values = SymmetricEigen::new(dense).eigenvalues.as_slice().to_vec();
+        values.sort_by(f64::total_cmp);
+        // The upper part slides along the crack and turns: motions only contact can stop.
+        let floating = body.elastic.floating().len();
+        assert!(values[..floating].iter().all(|v| v.abs() < 1e-12));
+        values[floating]
+    };
+    let usual = least(0.3);
+    for offset in [1e-2, 1e-4, 1e-6, 1e-9] {
+        let found = least(offset);
+        assert!(found > usual / 3.0, "{offset:e}: {found:e} {usual:e}");
     }
 }

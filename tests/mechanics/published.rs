@@ -45,14 +45,8 @@ fn table_1_mesh_1_is_reproduced_by_every_exact_method() {
         for method in exact() {
             let found = of(method);
             println!("μ = {friction}, {method}: {found:.2} against {reaction}");
-            assert!(
-                (found / reaction - 1.0).abs() < 1e-3,
-                "{method} {friction}: {found}"
-            );
-            assert!(
-                (found / reference - 1.0).abs() < 1e-6,
-                "{method} {friction}: {found}"
-            );
+            assert_near(found / reaction, 1.0, 1e-3, (&method, &friction, &found));
+            assert_near(found / reference, 1.0, 1e-6, (&method, &friction, &found));
             compared += 1;
         }
     }
@@ -109,39 +103,5 @@ fn table_2_is_reproduced_in_all_42_numbers_and_both_models_are_one_with_exact_su
                 assert!((a - b).abs() < 1e-12, "{component} {friction}: {a:e} {b:e}");
             }
         }
-    }
-}
-
-/// Source: convergence of the discretisation. Goal: both families of plate meshes approach one reaction: the gap between
-/// them shrinks under refinement, and their limits agree. Mesh II is not the paper's lost one.
-/// μ = 0.1 and 1.2; factors 1, 2, 4 of Mesh I, 1, 3 of Mesh II (odd ones keep the crack mid-row).
-/// Tolerance: the limits extrapolated as R + C h agree within 5e-3, the error left by these coarse meshes.
-#[test]
-fn both_plate_meshes_approach_one_limit() {
-    let reactions = |name: &str, factors: &[usize], friction: f64| {
-        let mut case = shipped::find(name).unwrap().unwrap();
-        case.sweep.friction = vec![friction];
-        case.sweep.refine = factors.to_vec();
-        case.expects.clear();
-        let results = run(&case, &[METHOD]);
-        let rows = results.quantities.iter().filter(|q| {
-            q.quantity.name == "reaction" && q.quantity.at == "top" && q.quantity.component == "y"
-        });
-        rows.map(|q| -q.quantity.value / 1e6).collect::<Vec<f64>>()
-    };
-    for friction in [0.1, 1.2] {
-        let first = reactions("plate_mesh1", &[1, 2, 4], friction);
-        let second = reactions("plate_mesh2", &[1, 3], friction);
-        println!("μ = {friction}: {first:.2?} {second:.2?}");
-        let coarse = (first[0] - second[0]).abs();
-        let fine = (first[2] - second[1]).abs();
-        assert!(fine < 0.8 * coarse, "{coarse} {fine}");
-        // R(h) = R + C h from the two finest meshes of each.
-        let limits = [
-            2.0 * first[2] - first[1],
-            second[1] + (second[1] - second[0]) / 2.0,
-        ];
-        println!("limits {limits:.2?}");
-        assert!((limits[0] / limits[1] - 1.0).abs() < 5e-3, "{limits:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! Contact spaces in uniform stress: the patch tests of all of them, and continuity as the crack comes to a node.
 
-use crate::common::{choices, parse, run as run_case, value};
+use crate::common::{assert_below, choices, parse, run as run_case, value};
 use stickslip::case::ContactSpace::{self, EdgePairs, Facet, P0, Star};
 use stickslip::run::run_case::Quiet;
 use stickslip::studies::spaces::patch::{
@@ -62,11 +62,9 @@ fn star_passes_where_cracks_meet_unless_the_stiffness_is_refused() {
     let found = rows(&patches, &[Star]);
     assert_eq!(found.len(), 4 * DISTANCES.len());
     for row in &found {
-        let refused = row.distance.abs() < 2e-3
-            && row
-                .verdict
-                .to_string()
-                .contains("stiffness is not positive definite");
+        let why = row.verdict.to_string();
+        let refused =
+            row.distance.abs() < 2e-3 && why.contains("stiffness is not positive definite");
         let short = (1e-10..1e-8).contains(&row.distance.abs())
             && row.traction.max(row.displacement) < 1e-8;
         assert!(row.passed() || refused || short, "{row:#?}");
@@ -75,32 +73,41 @@ fn star_passes_where_cracks_meet_unless_the_stiffness_is_refused() {
     assert!(passed.count() >= 4 * 8, "far from nodes and through them");
 }
 
-/// Goal: the other spaces as they are. Edge pairs are exact for level cracks and for those alone; facet multipliers keep
-/// the displacement but lose the traction where there are too many of them; so do constant ones between held ends.
+/// Goal: edge pairs pass for cracks along the grid at every distance from its nodes, and on them, where they are pairs of
+/// nodes.
+#[test]
+fn edge_pairs_pass_every_patch_test_along_the_grid() {
+    let mut patches = flat(&DISTANCES).unwrap();
+    patches.extend(solid(&FEW).unwrap());
+    let level = |p: &Patch| p.mesh == "regular" && ["0°", "(0, 0, 1)"].contains(&&*p.crack);
+    patches.retain(level);
+    assert_eq!(patches.len(), 7 * DISTANCES.len() + 5 * FEW.len());
+    assert_passed(&rows(&patches, &[EdgePairs]));
+}
+
+/// Goal: the other spaces as they are. Edge pairs are not exact for cracks across the grid; facet multipliers keep the
+/// displacement but lose the traction where there are too many of them; so do constant ones between held ends.
 #[test]
 fn what_other_spaces_cannot_do_is_seen() {
     let mut patches = flat(&[3e-1, 1e-9]).unwrap();
     patches.retain(|p| p.mesh == "regular" && !meets(p));
     let found = rows(&patches, &[EdgePairs, Facet, P0]);
     let of = |space: &str, crack: &str, distance: f64| -> Vec<&PatchRow> {
-        let own = found
+        let at = |row: &&PatchRow| row.crack == crack && row.distance == distance;
+        found
             .iter()
-            .filter(|row| row.space == space && row.crack == crack && row.distance == distance);
-        own.collect()
+            .filter(|row| row.space == space)
+            .filter(at)
+            .collect()
     };
-    for row in of("edge-pairs", "0°", 3e-1) {
-        assert!(row.passed(), "{row:#?}");
-    }
     for crack in ["10°", "27°", "45°"] {
         for row in of("edge-pairs", crack, 3e-1) {
             assert!(row.state == State::Open || row.traction > 1e-2, "{row:#?}");
         }
     }
-    let straight = |row: &&PatchRow| row.crack.ends_with('°');
-    for row in found.iter().filter(straight) {
-        if row.space == "facet" || row.space == "p0" {
-            assert!(row.displacement < PASSED, "{row:#?}");
-        }
+    for row in found.iter().filter(|row| row.crack.ends_with('°')) {
+        let held = row.displacement < PASSED;
+        assert!(row.space == "edge-pairs" || held, "{row:#?}");
     }
     assert!(of("facet", "45°", 1e-9).iter().any(|r| r.traction > PASSED));
     assert!(of("p0", "0°", 3e-1).iter().any(|r| r.traction > 1e-2));
@@ -138,13 +145,14 @@ fn departures(space: &str, degrees: f64) -> Vec<(f64, f64)> {
 /// Source: the crack moves by ε h. Goal: the answer under friction and bending goes to that of the crack through the node,
 /// from both sides, with ε² (its first order is the shift, which a body symmetric about the node does not feel), down to
 /// rounding however ill-shaped the cut cells are. Facet multipliers leave a jump where all edges of the node are cut.
-/// Tolerance: measured 1.8e-2 ε² at most; rounding of a stiffness of condition 1e3.
+/// Tolerance: measured 1.8e-2 ε² at most, 9e-2 ε² for edge pairs along the grid; rounding of a stiffness of condition 1e3.
 #[test]
 fn the_answer_is_continuous_as_the_crack_comes_to_a_node() {
-    for degrees in [10.0, 27.0, 45.0] {
-        for (distance, off) in departures("star", degrees) {
-            let bound = 0.03 * distance * distance + 1e-12;
-            assert!(off < bound, "{degrees}° at {distance:e}: {off:e}");
+    let star = [10.0, 27.0, 45.0].map(|degrees| ("star", degrees, 0.03));
+    for (space, degrees, factor) in star.into_iter().chain([("edge-pairs", 0.0, 0.1)]) {
+        for (distance, off) in departures(space, degrees) {
+            let bound = factor * distance * distance + 1e-12;
+            assert_below(off, bound, (space, degrees, distance));
         }
     }
     let facet = departures("facet", 45.0);

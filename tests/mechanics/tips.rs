@@ -1,4 +1,4 @@
-//! Cracks that end inside the body: tips anywhere in a cell, on an edge, at a node; opening against the closed form.
+//! Cracks that end inside the body: tips anywhere in a cell, on an edge, at a node.
 
 use crate::common::*;
 use stickslip::model::body::{Body, BodyError};
@@ -9,12 +9,6 @@ fn sheared(crack: &str) -> String {
     let rest =
         crack.to_owned() + &support("\"bottom\"", "[0, 0]") + &support("\"top\"", "[1e-3, -2e-3]");
     plane([-2.0, -2.0], [2.0, 2.0], [8, 8], &rest)
-}
-
-/// Reaction at the top, x and y.
-fn answer(text: &str) -> [f64; 2] {
-    let found = solve(text);
-    [found.reaction("top", 0), found.reaction("top", 1)]
 }
 
 fn count(body: &Body, branch: bool) -> usize {
@@ -47,28 +41,6 @@ fn a_tip_inside_the_body_gets_branch_functions_and_an_end_outside_does_not() {
     for q in [[2.0, 0.7], [2.0, 2.0]] {
         let body = body(&text([-3.0, 0.3], q, "branch"));
         assert_eq!(count(&body, true), 0, "{q:?}");
-    }
-}
-
-/// Source: elasticity. Goal: the longer the crack, the softer the plate, with or without branch functions; the uncracked
-/// plate is the stiffest. Strict inequalities, no tolerance.
-#[test]
-fn a_longer_crack_makes_the_plate_softer() {
-    let shear = |p, q, tip| answer(&sheared(&crack(p, q, 0.0, tip)))[0];
-    let lengths = [0.4, 0.9, 1.4, 1.9, 2.6];
-    for tip in ["branch", "none"] {
-        let found: Vec<f64> = lengths
-            .iter()
-            .map(|&l| shear([-3.0, 0.1], [-1.8 + l, 0.13], tip))
-            .collect();
-        for pair in found.windows(2) {
-            assert!(pair[1].abs() < pair[0].abs(), "{tip}: {found:?}");
-        }
-    }
-    // Four more functions per node can only soften.
-    for &l in &lengths {
-        let q = [-1.8 + l, 0.13];
-        assert!(shear([-3.0, 0.1], q, "branch").abs() < shear([-3.0, 0.1], q, "none").abs());
     }
 }
 
@@ -111,10 +83,7 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
                 let mut worst = relative_difference(&beside[0], &beside[1]);
                 if let Some(exact) = solved(0.0) {
                     let largest = exact.p().iter().fold(0.0f64, |m, p| m.max(p.abs()));
-                    assert!(
-                        largest < exact.reaction("top", 1).abs(),
-                        "{q:?}: {largest:e}"
-                    );
+                    assert_below(largest, exact.reaction("top", 1).abs(), &q);
                     for other in beside {
                         worst = worst.max(relative_difference(&other, &answer(&exact)));
                     }
@@ -127,61 +96,6 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
             assert!(fine < 0.7 * coarse, "{q:?} {tip}: {coarse:e} {fine:e}");
         }
     }
-}
-
-/// Source: Westergaard 1939 / Tada, Paris & Irwin: crack of length 2a in an infinite plate under remote tension σ opens
-/// by 4 σ a/E' at its middle, E' = E/(1 − ν²) in plane strain; in a plate 20a wide by a factor 1.006 more, the finite
-/// width factor √sec(π a/W) of K_I.
-///
-/// ```text
-///   ↑↑↑↑↑↑↑   σ = 1e-3, E = 1, a = 1, W = H = 20
-///      ——     cells of 0.25 around the crack, growing outwards
-///   ↓↓↓↓↓↓↓
-/// ```
-/// Tolerance 3 %: topological enrichment at a/h = 4; without branch functions the crack ends at a cell edge and opens
-/// less, by more than the error with them.
-#[test]
-fn an_open_crack_opens_as_in_the_infinite_plate_and_better_with_branch_functions() {
-    let fine = (-6..=6).map(|i| f64::from(i) * 0.25 + 0.0);
-    let x: Vec<f64> = [-10.0, -7.0, -5.0, -3.5, -2.5, -2.0]
-        .into_iter()
-        .chain(fine)
-        .chain([2.0, 2.5, 3.5, 5.0, 7.0, 10.0])
-        .collect();
-    let y: Vec<f64> = [-10.0, -7.0, -5.0, -3.5, -2.5, -2.0]
-        .into_iter()
-        .chain((-6..6).map(|i| f64::from(i) * 0.25 + 0.125))
-        .chain([2.0, 2.5, 3.5, 5.0, 7.0, 10.0])
-        .collect();
-    let opening = |a: f64, tip: &str| {
-        let rest = crack([-a, 0.0], [a, 0.0], 0.3, tip)
-            + &support("[\"left\", \"bottom\"]", "[0, 0]")
-            + &support("[\"right\", \"bottom\"]", "[\"free\", 0]")
-            + &load("bottom", "traction_pa = [0, -1e-3]")
-            + &load("top", "traction_pa = [0, 1e-3]");
-        let text = format!(
-            "title = \"t\"\nmodel = \"plane-strain\"\nmaterial = {{ young_pa = 1, poisson = 0.3 }}\nmesh = {{ lines_m = [{x:?}, {y:?}] }}\n{rest}"
-        );
-        let found = solve(&text);
-        assert!(found.p().iter().all(|&p| p == 0.0), "the crack is open");
-        let gaps = found.jump.chunks_exact(2).map(|j| j[0]);
-        assert!(gaps.clone().all(|g| g > 0.0));
-        // The pair at x = 0.
-        let middle = found.body.points.iter().position(|p| p.x[0].abs() < 1e-9);
-        let gaps: Vec<f64> = gaps.collect();
-        gaps[middle.unwrap()] / (4.0 * 1e-3 * 0.91 * a)
-    };
-    // Tips mid-cell.
-    let a = 1.125;
-    let finite = 1.0 / (std::f64::consts::PI * a / 20.0).cos().sqrt();
-    let with = opening(a, "branch") / finite;
-    let without = opening(a, "none") / finite;
-    println!("opening over the closed form: {with:.4} with branch functions, {without:.4} without");
-    assert!((with - 1.0).abs() < 0.03, "{with}");
-    assert!(
-        (without - 1.0).abs() > 2.0 * (with - 1.0).abs(),
-        "{with} {without}"
-    );
 }
 
 /// Source: superposition of separate bodies. Goal: three cracks one above the other are numbered, placed and solved each

@@ -7,43 +7,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Sources of a package, its rooms, each of which may import those before it, and whether its files are looked at too.
+#[rustfmt::skip]
 const PACKAGES: [(&str, &[&str], bool); 3] = [
-    (
-        "methods/src",
-        &[
-            "error",
-            "algebra",
-            "contract",
-            "condensed",
-            "newton",
-            "splitting",
-            "conic",
-            "own_laws",
-        ],
-        false,
-    ),
-    (
-        "xfem/src",
-        &[
-            "geometry",
-            "material",
-            "mesh",
-            "quadrature",
-            "cut",
-            "enrichment",
-            "stiffness",
-            "fields",
-            "contact",
-            "intensity",
-            "exact",
-        ],
-        false,
-    ),
-    (
-        "src",
-        &["files", "case", "model", "run", "studies", "report", "cli"],
-        true,
-    ),
+    ("methods/src", &["error", "algebra", "contract", "condensed", "newton", "splitting", "conic", "own_laws"], false),
+    ("xfem/src", &[
+        "geometry", "material", "mesh", "quadrature", "cut", "enrichment", "stiffness", "fields", "contact", "intensity", "exact",
+    ], false),
+    ("src", &["files", "case", "model", "run", "studies", "report", "cli"], true),
 ];
 
 /// Names from the crate root, e.g. `report`, `page`.
@@ -350,19 +320,16 @@ fn circles_are_found_unless_they_are_pairs_of_one_concept() {
         ("a/z", "fn f() { crate::a::x::f() }"),
     ];
     assert_eq!((circle(&three), circle(&three[..2])), (1, 0));
-    // Two files of a folder, and a file with one of the folder of its name.
-    assert_eq!(
-        circle(&[("a/x", "use super::y::Y;"), ("a/y", "use super::x::X;")]),
-        0
-    );
-    assert_eq!(
-        circle(&[("a", "mod x;\nuse x::X;"), ("a/x", "use super::A;")]),
-        0
-    );
-    assert_eq!(
-        circle(&[("a/x", "use crate::b::B;"), ("b", "use crate::a::x::X;")]),
-        1
-    );
+    #[rustfmt::skip]
+    let pairs = [
+        // Two files of a folder, and a file with one of the folder of its name.
+        (["a/x", "use super::y::Y;"], ["a/y", "use super::x::X;"], 0),
+        (["a", "mod x;\nuse x::X;"], ["a/x", "use super::A;"], 0),
+        (["a/x", "use crate::b::B;"], ["b", "use crate::a::x::X;"], 1),
+    ];
+    for ([a, x], [b, y], count) in pairs {
+        assert_eq!(circle(&[(a, x), (b, y)]), count, "{a} {b}");
+    }
     // What a module passes on is the business of where it comes from.
     let passed = [
         ("a", "mod x;\nmod y;\npub use x::X;\npub use y::Y;"),

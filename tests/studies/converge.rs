@@ -1,10 +1,8 @@
 //! The convergence study: what is run, what it is measured against, what is written, and how it fails.
 
-use std::path::Path;
-use std::process::Output;
+use std::collections::BTreeMap;
 
 use crate::common::*;
-use assert_cmd::Command;
 use stickslip::case::{Case, ContactSpace, Tip};
 use stickslip::model::errors::Deviation;
 use stickslip::report::{Provenance, table};
@@ -16,6 +14,9 @@ use stickslip::studies::convergence::orders::{ErrorRow, Kind, OrderRow};
 use stickslip::studies::convergence::{ConvergencePlan, Measured, Regularity, Sample, orders};
 use stickslip_methods::Status;
 
+/// A row by column.
+type Row = BTreeMap<String, String>;
+
 /// Files that are written beside the figures.
 const FILES: [&str; 7] = [
     "convergence.csv",
@@ -26,11 +27,6 @@ const FILES: [&str; 7] = [
     "orders.tex",
     "provenance.toml",
 ];
-
-fn stickslip(arguments: &[&str], dir: &Path) -> Output {
-    let mut program = Command::cargo_bin("stickslip").unwrap();
-    program.args(arguments).current_dir(dir).output().unwrap()
-}
 
 /// A plate pressed on its bottom; the crack starts at the left side and ends inside or on the right side.
 fn plate(right: f64, tip: &str) -> Case {
@@ -188,125 +184,69 @@ fn meshes_spaces_and_tips_come_from_the_case_unless_asked_for() {
 #[test]
 fn the_verb_extrapolates_the_reaction_of_the_plate() {
     let dir = tempfile::tempdir().unwrap();
-    let verb = |out: &str| {
-        let arguments = [
-            "converge",
-            "plate_mesh1",
-            "--refine",
-            "4,1,2",
-            "--spaces",
-            "edge-pairs",
-            "--out",
-            out,
-        ];
-        let output = stickslip(&arguments, dir.path());
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
-        assert!(output.stderr.is_empty());
-        let shown = String::from_utf8(output.stdout).unwrap();
+    let [one, two] = ["one", "two"].map(|out| {
+        let plate = ["converge", "plate_mesh1", "--refine", "4,1,2"];
+        let arguments = [&plate[..], &["--spaces", "edge-pairs", "--out", out]].concat();
+        let (shown, complaints) = ends_with(0, &arguments, dir.path());
+        assert!(complaints.is_empty());
         assert!(shown.contains("9 runs: 9 solved, 0 not"), "{shown}");
         assert!(
             shown.contains("whose errors are correlated with it"),
             "{shown}"
         );
-    };
-    verb("one");
-    verb("two");
-    let read = |out: &str, file: &str| {
-        std::fs::read_to_string(dir.path().join(out).join(file))
-            .unwrap_or_else(|e| panic!("{out}/{file}: {e}"))
-    };
-    for file in FILES {
-        assert!(!read("one", file).is_empty());
-    }
-    for file in [
-        "orders.csv",
-        "orders.md",
-        "orders.tex",
-        "figures/plate_mesh1.hybrid.mu-0.8.reaction-top-y.error.svg",
-    ] {
-        assert_eq!(read("one", file), read("two", file), "{file}");
-    }
-
-    let table = |file: &str| -> Vec<csv_row::Row> { csv_row::rows(&read("one", file)) };
-    let order = table("orders.csv").into_iter().find(|row| {
-        row["friction"] == "0.8" && row["quantity"] == "reaction" && row["at"] == "top y"
+        files(&dir.path().join(out))
     });
-    let order = order.unwrap();
-    let number = |row: &csv_row::Row, column: &str| row[column].parse::<f64>().unwrap();
-    assert_eq!(
-        (order["kind"].as_str(), order["tip"].as_str()),
-        ("richardson", "branch")
-    );
-    let off = (number(&order, "reference") + 1121.3e6).abs();
-    assert!(off < number(&order, "error_bar"), "{order:?}");
-    let rows = table("convergence.csv");
-    let own: Vec<&csv_row::Row> = rows
-        .iter()
-        .filter(|row| row["friction"] == "0.8" && row["at"] == "top y")
-        .collect();
-    assert_eq!(
-        own.iter().map(|r| r["refine"].as_str()).collect::<Vec<_>>(),
-        ["1", "2", "4"]
-    );
-    assert_eq!(own[2]["order"], order["order"]);
-    assert!(
-        own.windows(2)
-            .all(|pair| number(pair[0], "error") > number(pair[1], "error"))
-    );
-    for row in own {
-        let parts = [
-            "setup_s",
-            "assembly_s",
-            "factorisation_s",
-            "condensation_s",
-            "prepare_s",
-            "solve_s",
-        ];
-        let sum: f64 = parts.iter().map(|part| number(row, part)).sum();
-        assert!((number(row, "total_s") - sum).abs() < 1e-3 * sum, "{row:?}");
+    let figure = "figures/plate_mesh1.hybrid.mu-0.8.reaction-top-y.error.svg";
+    for file in FILES.iter().chain([&figure]) {
+        assert!(!one[*file].is_empty(), "{file}");
     }
-}
+    for file in ["orders.csv", "orders.md", "orders.tex", figure] {
+        assert!(one[file] == two[file], "{file}");
+    }
 
-mod csv_row {
-    use std::collections::BTreeMap;
-
-    pub type Row = BTreeMap<String, String>;
-
-    pub fn rows(text: &str) -> Vec<Row> {
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let header = reader.headers().unwrap().clone();
-        let own = |r: csv::StringRecord| {
-            let pairs = header.iter().zip(r.iter());
-            pairs.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
-        };
-        reader.records().map(|r| own(r.unwrap())).collect()
+    let table = |file: &str| {
+        let mut rows = csv_rows(std::str::from_utf8(&one[file]).unwrap());
+        rows.retain(|row| row["friction"] == "0.8" && row["at"] == "top y");
+        rows
+    };
+    let number = |row: &Row, column: &str| row[column].parse::<f64>().unwrap();
+    let orders = table("orders.csv");
+    let order = orders
+        .iter()
+        .find(|row| row["quantity"] == "reaction")
+        .unwrap();
+    assert_eq!((&*order["kind"], &*order["tip"]), ("richardson", "branch"));
+    let off = (number(order, "reference") + 1121.3e6).abs();
+    assert!(off < number(order, "error_bar"), "{order:?}");
+    let rows = table("convergence.csv");
+    let meshes: Vec<&str> = rows.iter().map(|row| &*row["refine"]).collect();
+    assert_eq!(meshes, ["1", "2", "4"]);
+    assert_eq!(rows[2]["order"], order["order"]);
+    let falls = |pair: &[Row]| number(&pair[0], "error") > number(&pair[1], "error");
+    assert!(rows.windows(2).all(falls));
+    for row in rows {
+        #[rustfmt::skip]
+        let parts = ["setup_s", "assembly_s", "factorisation_s", "condensation_s", "prepare_s", "solve_s"];
+        let sum: f64 = parts.iter().map(|part| number(&row, part)).sum();
+        assert_near(number(&row, "total_s"), sum, 1e-3 * sum, row);
     }
 }
 
 #[test]
 fn a_run_that_is_not_solved_ends_with_1_and_is_named() {
     let dir = tempfile::tempdir().unwrap();
-    let arguments = [
-        "converge",
-        "plate_mesh1",
-        "--refine",
-        "1",
+    let plate = ["converge", "plate_mesh1", "--refine", "1"];
+    let method = [
         "--spaces",
         "edge-pairs",
         "--method",
         "nsgs:max_iterations=1",
     ];
-    let output = stickslip(&arguments, dir.path());
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let named = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(
-        named
-            .matches("gave-up: max-iterations: plate_mesh1 22x22 edge-pairs branch")
-            .count(),
-        3
-    );
+    let (_, named) = ends_with(1, &[plate, method].concat(), dir.path());
+    let line = "gave-up: max-iterations: plate_mesh1 22x22 edge-pairs branch";
+    assert_eq!(named.matches(line).count(), 3);
     let table = std::fs::read_to_string(dir.path().join("results/convergence.csv")).unwrap();
-    assert_eq!(csv_row::rows(&table).len(), 3);
+    assert_eq!(csv_rows(&table).len(), 3);
 }
 
 #[test]
@@ -330,15 +270,8 @@ fn bad_arguments_are_refused_and_leave_nothing_behind() {
         &["cyclic", "--method", "penalty"],
         &["cyclic", "--method", "hybrid", "--method", "b-newton"],
     ] {
-        let arguments: Vec<&str> = std::iter::once("converge")
-            .chain(bad.iter().copied())
-            .collect();
-        let output = stickslip(&arguments, dir.path());
-        assert_eq!(output.status.code(), Some(2), "{bad:?}");
-        assert!(
-            output.stdout.is_empty() && !output.stderr.is_empty(),
-            "{bad:?}"
-        );
+        let (shown, complaints) = ends_with(2, &[&["converge"], bad].concat(), dir.path());
+        assert!(shown.is_empty() && !complaints.is_empty(), "{bad:?}");
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
 }
@@ -347,25 +280,18 @@ fn bad_arguments_are_refused_and_leave_nothing_behind() {
 #[test]
 fn round_off_is_no_error() {
     let dir = tempfile::tempdir().unwrap();
-    let arguments = [
-        "converge",
-        "sliding_block_conforming",
-        "--refine",
-        "1,2,3",
-        "--spaces",
-        "edge-pairs",
-    ];
-    let output = stickslip(&arguments, dir.path());
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let read = |file: &str| std::fs::read_to_string(dir.path().join("results").join(file)).unwrap();
-    let rows = csv_row::rows(&read("orders.csv"));
-    let slip = rows.iter().filter(|row| row["quantity"] == "max_slip");
-    let slip: Vec<_> = slip
-        .map(|row| [&row["kind"], &row["error"], &row["order"]].map(String::as_str))
-        .collect();
-    assert_eq!(slip, [["finest", "0", "NaN"]; 2]);
-    let figure = "results/figures/sliding_block_conforming.hybrid.mu-0.1.max_slip.error.svg";
-    assert!(!dir.path().join(figure).exists());
+    let block = ["converge", "sliding_block_conforming", "--refine", "1,2,3"];
+    let arguments = [&block[..], &["--spaces", "edge-pairs"]].concat();
+    ends_with(0, &arguments, dir.path());
+    let results = dir.path().join("results");
+    let mut rows = csv_rows(&std::fs::read_to_string(results.join("orders.csv")).unwrap());
+    rows.retain(|row| row["quantity"] == "max_slip");
+    let slip = rows
+        .iter()
+        .map(|row| ["kind", "error", "order"].map(|c| &*row[c]));
+    assert_eq!(slip.collect::<Vec<_>>(), [["finest", "0", "NaN"]; 2]);
+    let figure = "figures/sliding_block_conforming.hybrid.mu-0.1.max_slip.error.svg";
+    assert!(!results.join(figure).exists());
 }
 
 /// Goal: rows come in the order of their table, whatever the order of the runs.

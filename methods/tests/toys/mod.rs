@@ -1,8 +1,11 @@
 //! Small systems with known answers, and the way tests run methods on them.
 
+use std::fmt::Debug;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SupportedConeT};
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use stickslip_methods::*;
@@ -22,7 +25,7 @@ pub fn elastic(
 }
 
 /// Parts from dense K and B; structural zeros are left out.
-pub fn parts(
+fn parts(
     dim: usize,
     k: &Rows,
     b: &Rows,
@@ -30,17 +33,6 @@ pub fn parts(
     frictionless: bool,
 ) -> ElasticParts {
     let n = k.len();
-    let (mut col_ptr, mut row_idx, mut values) = (vec![0], vec![], vec![]);
-    for j in 0..n {
-        for i in j..n {
-            if i == j || k[i][j] != 0.0 {
-                row_idx.push(i);
-                values.push(k[i][j]);
-            }
-        }
-        col_ptr.push(row_idx.len());
-    }
-    let stiffness = SymmetricMatrix::new(n, col_ptr, row_idx, values).unwrap();
     let (mut row_ptr, mut col_idx, mut entries) = (vec![0], vec![], vec![]);
     for row in b {
         for (j, &x) in row.iter().enumerate().filter(|(_, x)| **x != 0.0) {
@@ -49,13 +41,11 @@ pub fn parts(
         }
         row_ptr.push(col_idx.len());
     }
-    let jump = JumpOperator::new(b.len(), n, row_ptr, col_idx, entries).unwrap();
-    let weight = vec![1.0; b.len() / dim];
     ElasticParts {
         dim,
-        stiffness,
-        jump,
-        weight,
+        stiffness: sparse(k),
+        jump: JumpOperator::new(b.len(), n, row_ptr, col_idx, entries).unwrap(),
+        weight: vec![1.0; b.len() / dim],
         order: (0..n).collect(),
         floating,
         frictionless,
@@ -63,16 +53,24 @@ pub fn parts(
     }
 }
 
-/// Unit matrix, scaled by row.
+/// Lower half of a symmetric matrix, without its structural zeros.
+pub fn sparse(a: &Rows) -> SymmetricMatrix {
+    let (mut col_ptr, mut row_idx, mut values) = (vec![0], vec![], vec![]);
+    for j in 0..a.len() {
+        for i in (j..a.len()).filter(|&i| i == j || a[i][j] != 0.0) {
+            row_idx.push(i);
+            values.push(a[i][j]);
+        }
+        col_ptr.push(row_idx.len());
+    }
+    SymmetricMatrix::new(a.len(), col_ptr, row_idx, values).unwrap()
+}
+
+/// A diagonal matrix.
 pub fn diagonal(entries: &[f64]) -> Rows {
     let n = entries.len();
-    (0..n)
-        .map(|i| {
-            (0..n)
-                .map(|j| if i == j { entries[i] } else { 0.0 })
-                .collect()
-        })
-        .collect()
+    let row = |i: usize| (0..n).map(move |j| if i == j { entries[i] } else { 0.0 });
+    (0..n).map(|i| row(i).collect()).collect()
 }
 
 /// A system with the same friction everywhere.
@@ -82,11 +80,21 @@ pub fn system(elastic: &Arc<Elastic>, mu: f64) -> ContactSystem {
 
 /// A load without offset.
 pub fn force(system: &ContactSystem, f: &[f64]) -> Load {
+    load(f.to_vec(), vec![0.0; system.dim() * system.points()])
+}
+
+/// A load of forces and gaps.
+pub fn load(force: Vec<f64>, offset: Vec<f64>) -> Load {
     Load {
-        force: f.to_vec(),
-        offset: vec![0.0; system.dim() * system.points()],
+        force,
+        offset,
         traction: vec![],
     }
+}
+
+/// A load of gaps alone, for bodies known by their Delassus operator.
+pub fn free_jump(q: &[f64]) -> Load {
+    load(vec![0.0; q.len()], q.to_vec())
 }
 
 /// Runs one increment from the unloaded state.
@@ -99,11 +107,53 @@ pub fn run(
 ) -> Outcome {
     let start = ContactState::zero(system);
     let rest = Load::zero(system.elastic());
-    run_from(
-        method,
-        options,
-        &increment(system, load, &rest, &start, tol),
-    )
+    let increment = increment(system, load, &rest, &start, tol);
+    build(method, options)
+        .solve(&increment, &mut Silent)
+        .unwrap()
+}
+
+/// As [`run`], by a method that must claim to have solved it.
+#[track_caller]
+pub fn solved(
+    method: &Method,
+    options: &[(&str, f64)],
+    system: &ContactSystem,
+    load: &Load,
+    tol: f64,
+) -> Outcome {
+    let outcome = run(method, options, system, load, tol);
+    let at = (method.name, options, system.dim(), system.friction()[0]);
+    assert_eq!(outcome.status, Status::Converged, "{at:?}");
+    outcome
+}
+
+/// Runs methods on a toy: those that claim to have solved it, as all that are listed must.
+pub fn claims<'a>(
+    methods: impl Iterator<Item = Candidate> + 'a,
+    system: &'a ContactSystem,
+    load: &'a Load,
+    tol: f64,
+) -> impl Iterator<Item = (Candidate, Outcome)> + 'a {
+    let run = move |m: Candidate| {
+        let outcome = run(&m, &m.given, system, load, tol);
+        (m, outcome)
+    };
+    methods.map(run).filter(|(m, found)| converged(m, found))
+}
+
+/// Demands that two states are one within a tolerance relative to the larger entries.
+#[track_caller]
+pub fn assert_same(found: &ContactState, exact: &ContactState, tol: f64, at: impl Debug) {
+    let u = difference(&found.u, &exact.u);
+    let p = difference(&found.p, &exact.p);
+    assert!(u < tol && p < tol, "{at:?}: {u:.1e} {p:.1e}");
+}
+
+/// Demands a number within a tolerance.
+#[track_caller]
+pub fn assert_near(found: f64, exact: f64, tol: f64, at: impl Debug) {
+    assert!((found - exact).abs() < tol, "{at:?}: {found} {exact}");
 }
 
 /// An increment.
@@ -122,13 +172,6 @@ pub fn increment<'a>(
         index: 0,
         tolerance,
     }
-}
-
-/// Runs one increment with a fresh instance.
-pub fn run_from(method: &Method, options: &[(&str, f64)], increment: &Increment<'_>) -> Outcome {
-    build(method, options)
-        .solve(increment, &mut Silent)
-        .unwrap()
 }
 
 /// Builds a method with options.
@@ -175,40 +218,58 @@ const SOLVES_EVERY_TOY: [&str; 15] = [
 ];
 
 /// Whether a method claims to have solved a toy, as those listed must.
-pub fn converged(method: &Method, outcome: &Outcome, at: &str) -> bool {
-    let claims = outcome.status == Status::Converged;
-    let status = outcome.status;
+pub fn converged(method: &Method, outcome: &Outcome) -> bool {
+    let (name, status) = (method.name, outcome.status);
+    let claims = status == Status::Converged;
     assert!(
-        claims || !SOLVES_EVERY_TOY.contains(&method.name),
-        "{} {at}: {status}",
-        method.name
+        claims || !SOLVES_EVERY_TOY.contains(&name),
+        "{name}: {status}"
     );
     claims
 }
 
+/// A method with the options it is given, and the accuracy to ask for.
+pub struct Candidate {
+    pub method: &'static Method,
+    pub given: Vec<(&'static str, f64)>,
+    pub accuracy: f64,
+}
+
+impl Deref for Candidate {
+    type Target = Method;
+
+    fn deref(&self) -> &Method {
+        self.method
+    }
+}
+
 /// Methods that solve the contact laws themselves.
-pub fn exact() -> impl Iterator<Item = &'static Method> {
-    methods().filter(|m| m.exact)
+pub fn exact() -> impl Iterator<Item = Candidate> {
+    general().filter(|m| m.exact)
 }
 
 /// Methods that need nothing but K and B: a toy has no stress that a traction operator could stand for.
-pub fn general() -> impl Iterator<Item = &'static Method> {
-    methods().filter(|m| !build(m, &[]).needs().traction)
+pub fn general() -> impl Iterator<Item = Candidate> {
+    let general = methods().filter(|m| !build(m, &[]).needs().traction);
+    general.map(|method| Candidate {
+        method,
+        given: vec![],
+        accuracy: if method.exact { 1e-8 } else { 1e-5 },
+    })
 }
 
-/// Those methods, with options that make the inexact ones good to about 1e-6, and the accuracy to ask for.
-pub fn all() -> impl Iterator<Item = (&'static Method, Vec<(&'static str, f64)>, f64)> {
-    general().map(|m| {
-        let sharp: Vec<_> = [
+/// Those methods, with options that make the inexact ones good to about 1e-6.
+pub fn all() -> impl Iterator<Item = Candidate> {
+    general().map(|mut m| {
+        let sharp = [
             ("normal", 1e7),
             ("tangential", 1e7),
             ("gap", 1e-7),
             ("slip", 1e-7),
-        ]
-        .into_iter()
-        .filter(|(name, _)| !m.exact && m.options.iter().any(|o| o.name() == *name))
-        .collect();
-        (m, sharp, if m.exact { 1e-8 } else { 1e-5 })
+        ];
+        let has = |name: &str| !m.exact && m.options.iter().any(|o| o.name() == name);
+        m.given = sharp.into_iter().filter(|(name, _)| has(name)).collect();
+        m
     })
 }
 
@@ -389,7 +450,7 @@ pub fn block(a: f64, h: f64, bar: f64, lateral: f64) -> Arc<Elastic> {
 }
 
 /// A dense matrix as clarabel takes it.
-pub fn csc(rows: &Rows) -> CscMatrix<f64> {
+fn csc(rows: &Rows) -> CscMatrix<f64> {
     let (m, n) = (rows.len(), rows[0].len());
     let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
     for j in 0..n {
@@ -400,4 +461,24 @@ pub fn csc(rows: &Rows) -> CscMatrix<f64> {
         colptr.push(rowval.len());
     }
     CscMatrix::new(m, n, colptr, rowval, nzval)
+}
+
+/// min ½ x·H x + g·x subject to right − A x in the cones, by clarabel.
+pub fn minimise(
+    hessian: &Rows,
+    linear: &[f64],
+    (a, right, cones): (&Rows, &[f64], &[SupportedConeT<f64>]),
+    accuracy: f64,
+) -> DefaultSolution<f64> {
+    let mut upper = hessian.clone();
+    (0..upper.len()).for_each(|i| upper[i][..i].fill(0.0));
+    let mut settings = DefaultSettings::default();
+    settings.verbose = false;
+    settings.tol_gap_abs = accuracy;
+    settings.tol_gap_rel = accuracy;
+    settings.tol_feas = accuracy;
+    let (hessian, a) = (csc(&upper), csc(a));
+    let mut solver = DefaultSolver::new(&hessian, linear, &a, right, cones, settings).unwrap();
+    solver.solve();
+    solver.solution
 }

@@ -183,27 +183,14 @@ fn contact_spaces_have_their_names() {
 #[test]
 fn keys_of_shapes_are_required_and_documented() {
     let document = include_str!("../../../docs/case-format.md");
-    for (text, from, shape, keys) in [
-        (
-            PLANE,
-            POINTS,
-            "arc",
-            &["centre_m", "radius_m", "from_deg", "to_deg"][..],
-        ),
+    #[rustfmt::skip]
+    let rows = [
+        (PLANE, POINTS, "arc", &["centre_m", "radius_m", "from_deg", "to_deg"][..]),
         (SOLID, PLANE_CRACK, "plane", &["point_m", "normal"]),
-        (
-            SOLID,
-            PLANE_CRACK,
-            "disc",
-            &["centre_m", "normal", "radius_m"],
-        ),
-        (
-            SOLID,
-            PLANE_CRACK,
-            "ellipse",
-            &["centre_m", "normal", "axis", "half_axes_m"],
-        ),
-    ] {
+        (SOLID, PLANE_CRACK, "disc", &["centre_m", "normal", "radius_m"]),
+        (SOLID, PLANE_CRACK, "ellipse", &["centre_m", "normal", "axis", "half_axes_m"]),
+    ];
+    for (text, from, shape, keys) in rows {
         let value = |key: &str| match key {
             "centre_m" if shape == "arc" => "[0, 0]",
             "half_axes_m" => "[1, 2]",

@@ -76,39 +76,17 @@ fn the_closed_form_arrives_with_its_parameters_in_order() {
 #[test]
 fn faults_of_the_closed_form_are_refused_at_their_place() {
     let line = "solution = \"uniform-slip\"\npressure_pa = 3e5";
-    for (to, mark, allowed) in [
-        (
-            "solution = \"uniform\"",
-            "\"uniform\"",
-            "uniform-slip, partial-slip",
-        ),
+    #[rustfmt::skip]
+    let rows = [
+        ("solution = \"uniform\"", "\"uniform\"", "uniform-slip, partial-slip"),
         ("solution = 3", "3", "uniform-slip, partial-slip"),
-        (
-            "solution = \"partial-slip\"\npressure_pa = 3e5",
-            "pressure_pa",
-            "solution, history",
-        ),
-        (
-            "solution = \"uniform-slip\"\npressure = 3e5",
-            "pressure",
-            "solution, pressure_pa, shear_pa, history",
-        ),
-        (
-            "solution = \"uniform-slip\"\npressure_pa = \"high\"",
-            "\"high\"",
-            "finite numbers",
-        ),
-        (
-            "solution = \"uniform-slip\"\npressure_pa = inf",
-            "inf",
-            "finite numbers",
-        ),
-        (
-            "solution = \"partial-slip\"\nhistory = \"sine\"",
-            "\"sine\"",
-            "ramp, constant",
-        ),
-    ] {
+        ("solution = \"partial-slip\"\npressure_pa = 3e5", "pressure_pa", "solution, history"),
+        ("solution = \"uniform-slip\"\npressure = 3e5", "pressure", "solution, pressure_pa, shear_pa, history"),
+        ("solution = \"uniform-slip\"\npressure_pa = \"high\"", "\"high\"", "finite numbers"),
+        ("solution = \"uniform-slip\"\npressure_pa = inf", "inf", "finite numbers"),
+        ("solution = \"partial-slip\"\nhistory = \"sine\"", "\"sine\"", "ramp, constant"),
+    ];
+    for (to, mark, allowed) in rows {
         assert_refused(&plate(), line, to, mark, allowed);
     }
     for (to, allowed) in [
@@ -137,17 +115,13 @@ fn faults_of_the_closed_form_are_refused_at_their_place() {
 fn supports_and_loads_take_values_from_the_closed_form() {
     let displacement = "displacement_m = [\"free\", -0.1]\nhistory = [[0, 0], [1, 2.5]]";
     let number = Some(Amount::Number(-0.1));
-    for (to, wanted) in [
+    #[rustfmt::skip]
+    let rows = [
         ("displacement_m = \"exact\"", [Some(Amount::Exact); 2]),
-        (
-            "displacement_m = [\"exact\", \"free\"]",
-            [Some(Amount::Exact), None],
-        ),
-        (
-            "displacement_m = [\"exact\", -0.1]\nhistory = \"constant\"",
-            [Some(Amount::Exact), number],
-        ),
-    ] {
+        ("displacement_m = [\"exact\", \"free\"]", [Some(Amount::Exact), None]),
+        ("displacement_m = [\"exact\", -0.1]\nhistory = \"constant\"", [Some(Amount::Exact), number]),
+    ];
+    for (to, wanted) in rows {
         let case = parse(&plate().replace(displacement, to)).unwrap();
         assert_eq!(case.supports[1].displacement, wanted);
     }
@@ -162,68 +136,20 @@ fn supports_and_loads_take_values_from_the_closed_form() {
     assert!(matches!(case.loads[1].kind, LoadKind::ExactBody));
 
     let own = "no history here";
-    for (from, to, mark, allowed) in [
-        (
-            displacement,
-            "displacement_m = \"exakt\"",
-            "\"exakt\"",
-            "2 entries or \"exact\"",
-        ),
-        (
-            displacement,
-            "displacement_m = [\"exakt\", 0]",
-            "\"exakt\"",
-            "\"free\" or \"exact\"",
-        ),
-        (
-            displacement,
-            "displacement_m = \"exact\"\nhistory = \"ramp\"",
-            "\"ramp\"",
-            own,
-        ),
-        (
-            displacement,
-            "displacement_m = [\"exact\", \"free\"]\nhistory = \"ramp\"",
-            "\"ramp\"",
-            own,
-        ),
-        (
-            "pressure_pa = 1e5\nhistory = \"constant\"",
-            "traction_pa = \"exact\"\nhistory = \"constant\"",
-            "\"constant\"",
-            own,
-        ),
-        (
-            "pressure_pa = 1e5",
-            "pressure_pa = \"exact\"",
-            "\"exact\"",
-            "at_origin_pa",
-        ),
-        (
-            "pressure_pa = 1e5\nhistory = \"constant\"",
-            "traction_pa = \"given\"",
-            "\"given\"",
-            "an array",
-        ),
-        (
-            "body_n_per_m3 = [0, -1e4]",
-            "body_n_per_m3 = \"exact\"\nhistory = \"ramp\"",
-            "\"ramp\"",
-            own,
-        ),
-        (
-            "body_n_per_m3 = [0, -1e4]",
-            "body_n_per_m3 = \"exact\"\ncrack_side = 1",
-            "1",
-            "no crack_side",
-        ),
-        (
-            "body_n_per_m3 = [0, -1e4]",
-            "body_n_per_m3 = [\"exact\", 0]",
-            "\"exact\"",
-            "finite numbers",
-        ),
-    ] {
+    #[rustfmt::skip]
+    let rows = [
+        (displacement, "displacement_m = \"exakt\"", "\"exakt\"", "2 entries or \"exact\""),
+        (displacement, "displacement_m = [\"exakt\", 0]", "\"exakt\"", "\"free\" or \"exact\""),
+        (displacement, "displacement_m = \"exact\"\nhistory = \"ramp\"", "\"ramp\"", own),
+        (displacement, "displacement_m = [\"exact\", \"free\"]\nhistory = \"ramp\"", "\"ramp\"", own),
+        ("pressure_pa = 1e5\nhistory = \"constant\"", "traction_pa = \"exact\"\nhistory = \"constant\"", "\"constant\"", own),
+        ("pressure_pa = 1e5", "pressure_pa = \"exact\"", "\"exact\"", "at_origin_pa"),
+        ("pressure_pa = 1e5\nhistory = \"constant\"", "traction_pa = \"given\"", "\"given\"", "an array"),
+        ("body_n_per_m3 = [0, -1e4]", "body_n_per_m3 = \"exact\"\nhistory = \"ramp\"", "\"ramp\"", own),
+        ("body_n_per_m3 = [0, -1e4]", "body_n_per_m3 = \"exact\"\ncrack_side = 1", "1", "no crack_side"),
+        ("body_n_per_m3 = [0, -1e4]", "body_n_per_m3 = [\"exact\", 0]", "\"exact\"", "finite numbers"),
+    ];
+    for (from, to, mark, allowed) in rows {
         assert_refused(&plate(), from, to, mark, allowed);
     }
     // Without [exact] there is nothing to take.
@@ -254,45 +180,19 @@ fn tractions_and_pressures_may_vary_linearly() {
         panic!("{:?}", case.loads[0])
     };
     assert_eq!([0, 1].map(|a| t[a].at(&[4.0, 9.0, 0.0])), [7.0, 1.0]);
-    for (to, mark, allowed) in [
-        (
-            "pressure_pa = { at_origin_pa = inf, gradient_pa_per_m = [2, 3] }",
-            "inf",
-            "finite numbers",
-        ),
-        (
-            "pressure_pa = { at_origin_pa = 1, gradient_pa_per_m = [2] }",
-            "[2]",
-            "2 entries",
-        ),
-        (
-            "pressure_pa = { at_origin_pa = 1, gradient_pa_per_m = [2, nan] }",
-            "nan",
-            "finite numbers",
-        ),
-        (
-            "pressure_pa = { at_origin = 1, gradient_pa_per_m = [2, 3] }",
-            "at_origin",
-            "at_origin_pa, gradient_pa_per_m",
-        ),
-        (
-            "pressure_pa = { gradient_pa_per_m = [2, 3] }",
-            "{ grad",
-            "`at_origin_pa`",
-        ),
-        (
-            "pressure_pa = { at_origin_pa = 1 }",
-            "{ at",
-            "`gradient_pa_per_m`",
-        ),
+    #[rustfmt::skip]
+    let rows = [
+        ("pressure_pa = { at_origin_pa = inf, gradient_pa_per_m = [2, 3] }", "inf", "finite numbers"),
+        ("pressure_pa = { at_origin_pa = 1, gradient_pa_per_m = [2] }", "[2]", "2 entries"),
+        ("pressure_pa = { at_origin_pa = 1, gradient_pa_per_m = [2, nan] }", "nan", "finite numbers"),
+        ("pressure_pa = { at_origin = 1, gradient_pa_per_m = [2, 3] }", "at_origin", "at_origin_pa, gradient_pa_per_m"),
+        ("pressure_pa = { gradient_pa_per_m = [2, 3] }", "{ grad", "`at_origin_pa`"),
+        ("pressure_pa = { at_origin_pa = 1 }", "{ at", "`gradient_pa_per_m`"),
         ("pressure_pa = \"high\"", "\"high\"", "gradient_pa_per_m"),
-        (
-            "traction_pa = [1, \"high\"]",
-            "\"high\"",
-            "gradient_pa_per_m",
-        ),
+        ("traction_pa = [1, \"high\"]", "\"high\"", "gradient_pa_per_m"),
         ("traction_pa = [1]", "[1]", "2 entries"),
-    ] {
+    ];
+    for (to, mark, allowed) in rows {
         assert_refused(PLANE, "pressure_pa = 1e5", to, mark, allowed);
     }
 }
@@ -317,57 +217,24 @@ fn initial_stresses_and_one_sided_body_forces_are_read() {
             (side, &*number.to_string())
         );
     }
-    for (from, to, mark, allowed) in [
+    #[rustfmt::skip]
+    let rows = [
         (body, "initial_stress_pa = [1, 2]", "[1, 2]", "3 entries"),
-        (
-            body,
-            "initial_stress_pa = [1, 2, \"exact\"]",
-            "\"exact\"",
-            "finite numbers",
-        ),
-        (
-            body,
-            "initial_stress_pa = \"exact\"",
-            "\"exact\"",
-            "an array",
-        ),
-        (
-            body,
-            "initial_stress_pa = [1, 2, 3]\nwhere = \"x > 0\"",
-            "\"x > 0\"",
-            "neither",
-        ),
-        (
-            body,
-            "initial_stress_pa = [4, 2, 3]\ncrack_side = 1",
-            "1",
-            "beside body_n_per_m3",
-        ),
-        (
-            body,
-            "body_n_per_m3 = [0, -4]\ncrack_side = 7",
-            "7",
-            "integers from 1 to 2",
-        ),
-        (
-            body,
-            "body_n_per_m3 = [0, -4]\ncrack_side = 0.5",
-            "0.5",
-            "integers from 1 to 2",
-        ),
-        (
-            "pressure_pa = 1e5",
-            "pressure_pa = 3e5\ncrack_side = 1",
-            "1",
-            "beside body_n_per_m3",
-        ),
+        (body, "initial_stress_pa = [1, 2, \"exact\"]", "\"exact\"", "finite numbers"),
+        (body, "initial_stress_pa = \"exact\"", "\"exact\"", "an array"),
+        (body, "initial_stress_pa = [1, 2, 3]\nwhere = \"x > 0\"", "\"x > 0\"", "neither"),
+        (body, "initial_stress_pa = [4, 2, 3]\ncrack_side = 1", "1", "beside body_n_per_m3"),
+        (body, "body_n_per_m3 = [0, -4]\ncrack_side = 7", "7", "integers from 1 to 2"),
+        (body, "body_n_per_m3 = [0, -4]\ncrack_side = 0.5", "0.5", "integers from 1 to 2"),
+        ("pressure_pa = 1e5", "pressure_pa = 3e5\ncrack_side = 1", "1", "beside body_n_per_m3"),
         (
             body,
             "body_n_per_m3 = [0, -4]\ncrack_side = 2\n[[crack]]\npoints_m = [[5, 0], [9, 0]]\nfriction = 0",
             "2\n",
             "exactly one [[crack]]",
         ),
-    ] {
+    ];
+    for (from, to, mark, allowed) in rows {
         assert_refused(PLANE, from, to, mark, allowed);
     }
     let error = refused(&SOLID.replace(line, "initial_stress_pa = [1, 2, 3]"));

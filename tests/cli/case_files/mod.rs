@@ -115,112 +115,83 @@ fn refused(text: &str) -> CaseError {
 
 /// Line and column, from 1, of the byte `at`.
 fn place(text: &str, at: usize) -> (usize, usize) {
-    let line = text[..at].split('\n').count();
-    let column = text[..at]
-        .split('\n')
-        .next_back()
-        .map_or(0, |l| l.chars().count())
-        + 1;
-    (line, column)
+    let (before, line) = text[..at].rsplit_once('\n').unwrap_or(("", &text[..at]));
+    let above = if at == line.len() {
+        0
+    } else {
+        before.matches('\n').count() + 1
+    };
+    (above + 1, line.chars().count() + 1)
 }
 
 #[test]
 fn every_table_arrives_in_the_case() {
     let case = accepted(PLANE);
+    assert_eq!([&*case.name, &case.title], ["plate", "Plate"]);
+    assert_eq!(case.model, Model::PlaneStrain);
+    assert_eq!(case.quadrature, Quadrature::SubCells);
+    assert_eq!([case.material.young, case.material.poisson], [1e10, 0.3]);
+    let [x, y] = &case.mesh.grid.lines[..] else {
+        panic!("{:?}", case.mesh.grid.lines)
+    };
     assert_eq!(
-        (case.name.as_str(), case.title.as_str()),
-        ("plate", "Plate")
-    );
-    assert_eq!(
-        (case.model, case.quadrature),
-        (Model::PlaneStrain, Quadrature::SubCells)
-    );
-    assert_eq!((case.material.young, case.material.poisson), (1e10, 0.3));
-    assert_eq!(
-        case.mesh
-            .grid
-            .lines
-            .iter()
-            .map(Vec::len)
-            .collect::<Vec<_>>(),
-        [23, 24]
-    );
-    assert_eq!(
-        (
-            case.mesh.grid.lines[0][0],
-            case.mesh.grid.lines[0][11],
-            case.mesh.grid.lines[0][22]
-        ),
-        (-10.0, 0.0, 10.0)
+        (x.len(), y.len(), x[0], x[11], x[22]),
+        (23, 24, -10.0, 0.0, 10.0)
     );
     let follow = case.mesh.grid.follow.as_ref().unwrap();
+    assert_eq!(follow.angle, std::f64::consts::FRAC_PI_4);
+    assert_eq!(follow.half_length, 5.5);
+    let crack = &case.cracks[0];
+    let points = vec![[-4.0, -4.0], [4.0, 4.0]];
+    assert_eq!(crack.geometry, CrackShape::Polyline(points));
     assert_eq!(
-        (follow.angle, follow.half_length),
-        (std::f64::consts::FRAC_PI_4, 5.5)
+        (crack.tip, crack.contact),
+        (Tip::Branch, ContactSpace::EdgePairs)
     );
-    assert_eq!(
-        case.cracks[0].geometry,
-        CrackShape::Polyline(vec![[-4.0, -4.0], [4.0, 4.0]])
-    );
-    assert_eq!(case.cracks[0].tip, Tip::Branch);
-    assert_eq!(case.cracks[0].contact, ContactSpace::EdgePairs);
     let support = &case.supports[1];
     assert_eq!(support.on.sides, ["left", "top"]);
     assert_eq!(support.displacement, [None, Some(Amount::Number(-0.1))]);
-    assert_eq!(
-        support.history,
-        History::Points(vec![[0.0, 0.0], [1.0, 2.5]])
-    );
+    let history = History::Points(vec![[0.0, 0.0], [1.0, 2.5]]);
+    assert_eq!(support.history, history);
     let condition = support.on.condition.as_ref().unwrap();
     assert!(condition.holds(&[1.0, 2.1, 0.0]) && !condition.holds(&[1.0, 2.0, 0.0]));
-    assert!(
-        matches!(&case.loads[0].kind, LoadKind::Pressure(on, p) if on.sides == ["left"] && p.at(&[3.0; 3]) == 1e5)
-    );
+    let LoadKind::Pressure(on, p) = &case.loads[0].kind else {
+        panic!("{:?}", case.loads[0])
+    };
+    assert!(on.sides == ["left"] && p.at(&[3.0; 3]) == 1e5);
     assert!(matches!(&case.loads[1].kind, LoadKind::Body(f, None) if *f == [0.0, -1e4]));
     assert_eq!((case.path.increments, case.path.end), (4, 2.0));
-    assert_eq!(
-        (&case.sweep.friction[..], &case.sweep.refine[..]),
-        (&[0.1, 0.8][..], &[1, 3][..])
-    );
+    assert_eq!(case.sweep.friction, [0.1, 0.8]);
+    assert_eq!(case.sweep.refine, [1, 3]);
     let method = &case.methods[0];
     // In file order, which is not the alphabetical one.
+    let options = [("regularisation", 1e-12), ("max_iterations", 50.0)];
     assert_eq!(
         method.options,
-        [
-            ("regularisation".into(), 1e-12),
-            ("max_iterations".into(), 50.0)
-        ]
+        options.map(|(name, v)| (name.to_owned(), v))
     );
     assert_eq!(&case.source[method.option_spans[0].clone()], "1e-12");
     let expect = &case.expects[0];
-    assert_eq!(
-        (expect.value, expect.tolerance, expect.kind),
-        (-9.7e8, Tolerance::Relative(1e-3), ExpectKind::Published)
-    );
-    assert_eq!(
-        (expect.friction, expect.refine, expect.increment),
-        (Some(0.8), Some(3), Some(2))
-    );
+    assert_eq!(expect.value, -9.7e8);
+    assert_eq!(expect.tolerance, Tolerance::Relative(1e-3));
+    assert_eq!(expect.kind, ExpectKind::Published);
+    let at = (expect.friction, expect.refine, expect.increment);
+    assert_eq!(at, (Some(0.8), Some(3), Some(2)));
     assert_eq!(expect.assumptions, ["plane strain"]);
 }
 
 #[test]
 fn absent_keys_take_their_documented_defaults() {
     let case = accepted(SOLID);
-    assert_eq!(
-        (case.quadrature, case.tier.as_str()),
-        (Quadrature::SubCells, "high")
-    );
+    assert_eq!(case.quadrature, Quadrature::SubCells);
+    assert_eq!(case.tier.as_str(), "high");
     assert_eq!((case.path.increments, case.path.end), (1, 1.0));
     assert!(case.sweep.friction.is_empty() && case.sweep.refine == [1]);
-    assert_eq!(case.cracks[0].tip, Tip::None);
-    assert_eq!(case.cracks[0].contact, ContactSpace::Star);
+    let crack = &case.cracks[0];
+    assert_eq!((crack.tip, crack.contact), (Tip::None, ContactSpace::Star));
     assert_eq!(case.loads[0].history, History::Ramp);
-    let plane = CrackShape::Plane {
-        point: [0.0, 0.0, 0.7],
-        normal: [0.0, 0.6, 0.8],
-    };
-    assert_eq!(case.cracks[0].geometry, plane);
+    let (point, normal) = ([0.0, 0.0, 0.7], [0.0, 0.6, 0.8]);
+    assert_eq!(crack.geometry, CrackShape::Plane { point, normal });
     let plate = accepted(&PLANE.replace("tip = \"branch\"\n", ""));
     assert_eq!(plate.cracks[0].tip, Tip::Branch);
 }
@@ -231,19 +202,15 @@ fn the_documented_example_is_accepted() {
     let (_, example) = document.split_once("```toml\n").unwrap();
     let (example, _) = example.split_once("```").unwrap();
     let case = accepted(example);
-    assert_eq!(
-        (case.cracks.len(), case.supports.len(), case.expects.len()),
-        (1, 2, 1)
-    );
+    let counts = [case.cracks.len(), case.supports.len(), case.expects.len()];
+    assert_eq!(counts, [1, 2, 1]);
 }
 
 #[test]
 fn comments_line_endings_and_a_byte_order_mark_change_nothing() {
     let windows = format!("\u{feff}# a comment\r\n{}", SOLID.replace('\n', "\r\n"));
-    assert_eq!(
-        accepted(&windows).mesh.grid.lines,
-        accepted(SOLID).mesh.grid.lines
-    );
+    let lines = |text: &str| accepted(text).mesh.grid.lines;
+    assert_eq!(lines(&windows), lines(SOLID));
     let error = refused(&windows.replace("friction = 0", "friction = -1"));
     assert_eq!((error.line(), error.column()), (11, 12), "{error}");
     assert_eq!(error.source_line(), "friction = -1");

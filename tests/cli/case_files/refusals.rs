@@ -330,7 +330,8 @@ fn expectations_no_run_can_meet_are_refused() {
 #[test]
 fn conditions_are_refused_at_the_column_inside_the_string() {
     let from = "where = \"x <= 1 and y > 2\"";
-    for (to, mark, value, allowed) in [
+    #[rustfmt::skip]
+    let rows = [
         ("where = \"x <= 1 and w > 2\"", "w >", "w", "x, y"),
         ("where = \"x <= 1 and z > 2\"", "z >", "z", "2D"),
         ("where = \"x <= 1 and y ! 2\"", "! 2", "!", "<="),
@@ -338,14 +339,10 @@ fn conditions_are_refused_at_the_column_inside_the_string() {
         ("where = \"x <= inf\"", "inf", "inf", "finite number"),
         ("where = \"\"\"\nx <= 1 or w > 2\"\"\"", "w >", "w", "x, y"),
         // An escape moves the columns: the whole value is marked.
-        (
-            "where = \"\\u0078 <= 1 and w > 2\"",
-            "\"\\u0078",
-            "w",
-            "x, y",
-        ),
+        ("where = \"\\u0078 <= 1 and w > 2\"", "\"\\u0078", "w", "x, y"),
         ("where = \"\"", "\"\"", "\"\"", "x, y"),
-    ] {
+    ];
+    for (to, mark, value, allowed) in rows {
         assert_refused_at(PLANE, from, to, mark, value, allowed);
     }
 }
@@ -403,44 +400,18 @@ fn motions_of_the_grid_are_read_and_refused_at_their_place() {
         .grid;
     assert_eq!(mesh.distort.unwrap().seed, 1);
     assert!(mesh.twist.is_none());
-    for (table, mark, allowed) in [
-        (
-            "[mesh.twist]\nangle_deg = 180",
-            "180",
-            "-180 < angle_deg < 180",
-        ),
-        (
-            "[mesh.twist]\nangle_deg = nan",
-            "nan",
-            "-180 < angle_deg < 180",
-        ),
+    #[rustfmt::skip]
+    let rows = [
+        ("[mesh.twist]\nangle_deg = 180", "180", "-180 < angle_deg < 180"),
+        ("[mesh.twist]\nangle_deg = nan", "nan", "-180 < angle_deg < 180"),
         ("[mesh.twist]\nangle = 20", "angle", "angle_deg"),
-        (
-            "[mesh.distort]\namplitude = 0.5",
-            "0.5",
-            "0 <= amplitude < 0.5",
-        ),
-        (
-            "[mesh.distort]\namplitude = -0.1",
-            "-0.1",
-            "0 <= amplitude < 0.5",
-        ),
-        (
-            "[mesh.distort]\namplitude = 0.1\nseed = -1",
-            "-1",
-            "integers from 0",
-        ),
-        (
-            "[mesh.distort]\namplitude = 0.1\nseed = 4294967296",
-            "4294967296",
-            "integers from 0",
-        ),
-        (
-            "[mesh.distort]\namplitude = 0.1\nseeds = 4",
-            "seeds",
-            "amplitude, seed",
-        ),
-    ] {
+        ("[mesh.distort]\namplitude = 0.5", "0.5", "0 <= amplitude < 0.5"),
+        ("[mesh.distort]\namplitude = -0.1", "-0.1", "0 <= amplitude < 0.5"),
+        ("[mesh.distort]\namplitude = 0.1\nseed = -1", "-1", "integers from 0"),
+        ("[mesh.distort]\namplitude = 0.1\nseed = 4294967296", "4294967296", "integers from 0"),
+        ("[mesh.distort]\namplitude = 0.1\nseeds = 4", "seeds", "amplitude, seed"),
+    ];
+    for (table, mark, allowed) in rows {
         let to = format!("{cells}\n\n{table}");
         assert_refused_at(PLANE, cells, &to, mark, mark, allowed);
     }

@@ -36,20 +36,16 @@ fn ten_megabytes_of_garbage_are_refused_at_once_and_briefly() {
     fs::write(&path, garbage).unwrap();
     let start = Instant::now();
     let error = case::read(&path).unwrap_err();
-    assert!(
-        start.elapsed() < Duration::from_millis(100),
-        "{:?}",
-        start.elapsed()
-    );
+    let elapsed = start.elapsed();
+    assert!(elapsed < Duration::from_millis(100), "{elapsed:?}");
     let shown = error.to_string();
-    assert!(
-        shown.contains("garbage.toml:1:1: ") && shown.contains("got 10485760 bytes"),
-        "{shown}"
-    );
-    assert!(
-        shown.contains("at most 1048576 bytes") && shown.len() < 1000,
-        "{shown}"
-    );
+    for words in [
+        "garbage.toml:1:1: ",
+        "got 10485760 bytes",
+        "at most 1048576 bytes",
+    ] {
+        assert!(shown.contains(words) && shown.len() < 1000, "{shown}");
+    }
 }
 
 #[test]
@@ -71,17 +67,10 @@ fn a_megabyte_on_one_line_is_refused_with_a_short_message() {
         ),
     ] {
         let start = Instant::now();
-        let shown = refused(&text).to_string();
-        assert!(
-            shown.chars().count() < 1000,
-            "{} characters",
-            shown.chars().count()
-        );
-        assert!(
-            start.elapsed() < Duration::from_secs(5),
-            "{:?}",
-            start.elapsed()
-        );
+        let length = refused(&text).to_string().chars().count();
+        assert!(length < 1000, "{length} characters");
+        let elapsed = start.elapsed();
+        assert!(elapsed < Duration::from_secs(5), "{elapsed:?}");
     }
 }
 
@@ -115,24 +104,17 @@ fn files_that_are_not_text_are_refused_at_the_first_bad_byte() {
 fn control_characters_never_reach_the_terminal() {
     let error = refused("title = \"\u{1b}[31mred\"\n");
     assert_eq!((error.line(), error.column()), (1, 10), "{error}");
-    assert!(
-        !error
-            .to_string()
-            .chars()
-            .any(|c| c.is_control() && c != '\n'),
-        "{error}"
-    );
+    let control = |c: char| c.is_control() && c != '\n';
+    assert!(!error.to_string().contains(control), "{error}");
 }
 
 #[test]
 fn files_that_cannot_be_read_are_refused_by_name() {
     let dir = tempfile::tempdir().unwrap();
     let missing = dir.path().join("missing.toml");
-    let error = case::read(&missing).unwrap_err();
+    let error = case::read(&missing).unwrap_err().to_string();
     assert!(
-        error
-            .to_string()
-            .contains("missing.toml: cannot be read: got "),
+        error.contains("missing.toml: cannot be read: got "),
         "{error}"
     );
     let error = case::read(dir.path()).unwrap_err();

@@ -185,103 +185,34 @@ fn every_defect_is_named() {
     let nan = f64::NAN;
     let triplets = Raw::triplets;
     let columns = Raw::columns;
-    for (raw, parts) in [
-        (
-            triplets().integers("spacedim", &[4]),
-            ["fclib_local/spacedim[0] = 4", "2 or 3"],
-        ),
-        (
-            triplets().integers("spacedim", &[3]),
-            ["vectors/q has 4 entries", "multiple of spacedim = 3"],
-        ),
-        (
-            triplets().integers("spacedim", &[2, 2]),
-            ["spacedim has 2 entries", "expected 1"],
-        ),
-        (
-            triplets().without("spacedim"),
-            ["fclib_local/spacedim is missing", ""],
-        ),
-        (
-            triplets().reals("vectors/mu", &[0.5, -0.1]),
-            ["vectors/mu[1] = -0.1", "0 and above"],
-        ),
-        (
-            triplets().reals("vectors/mu", &[0.5]),
-            ["vectors/mu has 1 entries", "expected 2"],
-        ),
-        (
-            triplets().reals("vectors/q", &[0.0, nan, 0.0, 0.0]),
-            ["vectors/q[1] = NaN", "finite"],
-        ),
-        (
-            triplets().reals("vectors/q", &[0.0, f64::INFINITY, 0.0, 0.0]),
-            ["vectors/q[1] = inf", "finite"],
-        ),
-        (
-            triplets().without("vectors/q"),
-            ["fclib_local/vectors/q is missing", ""],
-        ),
-        (
-            triplets()
-                .without("vectors/q")
-                .integers("vectors/q", &[0; 4]),
-            ["vectors/q holds i32", "expected reals"],
-        ),
-        (
-            triplets().without("W/p").reals("W/p", &[0.0; 10]),
-            ["W/p holds f64", "expected integers"],
-        ),
-        (
-            triplets().integers("W/m", &[6]),
-            ["W/m[0] = 6", "4, as the vectors say"],
-        ),
+    #[rustfmt::skip]
+    let rows = [
+        (triplets().integers("spacedim", &[4]), ["fclib_local/spacedim[0] = 4", "2 or 3"]),
+        (triplets().integers("spacedim", &[3]), ["vectors/q has 4 entries", "multiple of spacedim = 3"]),
+        (triplets().integers("spacedim", &[2, 2]), ["spacedim has 2 entries", "expected 1"]),
+        (triplets().without("spacedim"), ["fclib_local/spacedim is missing", ""]),
+        (triplets().reals("vectors/mu", &[0.5, -0.1]), ["vectors/mu[1] = -0.1", "0 and above"]),
+        (triplets().reals("vectors/mu", &[0.5]), ["vectors/mu has 1 entries", "expected 2"]),
+        (triplets().reals("vectors/q", &[0.0, nan, 0.0, 0.0]), ["vectors/q[1] = NaN", "finite"]),
+        (triplets().reals("vectors/q", &[0.0, f64::INFINITY, 0.0, 0.0]), ["vectors/q[1] = inf", "finite"]),
+        (triplets().without("vectors/q"), ["fclib_local/vectors/q is missing", ""]),
+        (triplets() .without("vectors/q") .integers("vectors/q", &[0; 4]), ["vectors/q holds i32", "expected reals"]),
+        (triplets().without("W/p").reals("W/p", &[0.0; 10]), ["W/p holds f64", "expected integers"]),
+        (triplets().integers("W/m", &[6]), ["W/m[0] = 6", "4, as the vectors say"]),
         (triplets().integers("W/n", &[-4]), ["W/n[0] = -4", "4"]),
-        (
-            triplets().integers("W/nz", &[-3]),
-            ["W/nz[0] = -3", "compressed rows"],
-        ),
-        (
-            triplets().integers("W/nz", &[11]),
-            ["W/p has 10 entries", "expected 11"],
-        ),
-        (
-            triplets().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, 4]),
-            ["W/i[9] = 4", "0 to 3"],
-        ),
-        (
-            triplets().integers("W/p", &[-1, 0, 0, 1, 1, 2, 2, 2, 3, 3]),
-            ["W/p[0] = -1", "0 to 3"],
-        ),
-        (
-            columns().integers("W/p", &[0, 3, 5, 8]),
-            ["W/p has 4 entries", "expected 5"],
-        ),
-        (
-            columns().integers("W/p", &[1, 3, 5, 8, 10]),
-            ["W/p[0] = 1", "allowed: 0"],
-        ),
-        (
-            columns().integers("W/p", &[0, 5, 3, 8, 10]),
-            ["W/p[2] = 3", "5 to 10"],
-        ),
-        (
-            columns().integers("W/p", &[0, 3, 5, 8, 12]),
-            ["W/p[4] = 12", "8 to 10"],
-        ),
-        (
-            columns().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, -3]),
-            ["W/i[9] = -3", "0 to 3"],
-        ),
-        (
-            columns().reals("W/x", &[4.0, 1.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, nan]),
-            ["W/x[9] = NaN", "finite"],
-        ),
-        (
-            columns().reals("W/x", &[4.0, 9.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, 2.0]),
-            ["row 0, column 1", "symmetric"],
-        ),
-    ] {
+        (triplets().integers("W/nz", &[-3]), ["W/nz[0] = -3", "compressed rows"]),
+        (triplets().integers("W/nz", &[11]), ["W/p has 10 entries", "expected 11"]),
+        (triplets().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, 4]), ["W/i[9] = 4", "0 to 3"]),
+        (triplets().integers("W/p", &[-1, 0, 0, 1, 1, 2, 2, 2, 3, 3]), ["W/p[0] = -1", "0 to 3"]),
+        (columns().integers("W/p", &[0, 3, 5, 8]), ["W/p has 4 entries", "expected 5"]),
+        (columns().integers("W/p", &[1, 3, 5, 8, 10]), ["W/p[0] = 1", "allowed: 0"]),
+        (columns().integers("W/p", &[0, 5, 3, 8, 10]), ["W/p[2] = 3", "5 to 10"]),
+        (columns().integers("W/p", &[0, 3, 5, 8, 12]), ["W/p[4] = 12", "8 to 10"]),
+        (columns().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, -3]), ["W/i[9] = -3", "0 to 3"]),
+        (columns().reals("W/x", &[4.0, 1.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, nan]), ["W/x[9] = NaN", "finite"]),
+        (columns().reals("W/x", &[4.0, 9.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, 2.0]), ["row 0, column 1", "symmetric"]),
+    ];
+    for (raw, parts) in rows {
         let error = raw.read().unwrap_err();
         assert!(
             parts.iter().all(|part| error.contains(part)),
