@@ -93,7 +93,13 @@ fn open_crack_is_one_linear_solve_and_is_never_condensed() {
     let free = solve(&k, &f);
     let jump = mul(&b, &free);
     // An initial gap that the load does not close.
-    let gap = |r: usize| if r % 2 == 0 { jump[r].abs() + 0.1 } else { 0.0 };
+    let gap = |r: usize| {
+        if r.is_multiple_of(2) {
+            jump[r].abs() + 0.1
+        } else {
+            0.0
+        }
+    };
     let load = load(f, (0..6).map(gap).collect());
     for m in general() {
         let body = elastic(2, &k, &b, vec![], false);

@@ -83,7 +83,7 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
                 let mut worst = relative_difference(&beside[0], &beside[1]);
                 if let Some(exact) = solved(0.0) {
                     let largest = exact.p().iter().fold(0.0f64, |m, p| m.max(p.abs()));
-                    assert_below(largest, exact.reaction("top", 1).abs(), &q);
+                    assert_below(largest, exact.reaction("top", 1).abs(), q);
                     for other in beside {
                         worst = worst.max(relative_difference(&other, &answer(&exact)));
                     }

@@ -472,11 +472,13 @@ pub fn minimise(
 ) -> DefaultSolution<f64> {
     let mut upper = hessian.clone();
     (0..upper.len()).for_each(|i| upper[i][..i].fill(0.0));
-    let mut settings = DefaultSettings::default();
-    settings.verbose = false;
-    settings.tol_gap_abs = accuracy;
-    settings.tol_gap_rel = accuracy;
-    settings.tol_feas = accuracy;
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: accuracy,
+        tol_gap_rel: accuracy,
+        tol_feas: accuracy,
+        ..DefaultSettings::default()
+    };
     let (hessian, a) = (csc(&upper), csc(a));
     let mut solver = DefaultSolver::new(&hessian, linear, &a, right, cones, settings).unwrap();
     solver.solve();

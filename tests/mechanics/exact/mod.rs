@@ -139,7 +139,7 @@ fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() 
     for point in &results.points {
         let ratio = -point.point.p_a / point.point.p_n;
         assert!((ratio / point.key.friction - 1.0).abs() < 1e-7, "{point:?}");
-        assert_near(point.point.slip_a_m / 1e-3, 1.0, 1e-7, &point);
+        assert_near(point.point.slip_a_m / 1e-3, 1.0, 1e-7, point);
     }
 }
 
