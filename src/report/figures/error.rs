@@ -120,7 +120,17 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     }
     let tips = distinct(rows.iter().map(|row| &row.variant.tip)).len();
     let columns = if tips > 1 { tips } else { panels.len() }.min(3);
-    let own_legends = true;
+    // One legend is enough where all panels say the same.
+    let labels = |panel: &Panel| {
+        panel
+            .series
+            .iter()
+            .map(|s| s.label.clone())
+            .collect::<Vec<_>>()
+    };
+    let own_legends = panels
+        .windows(2)
+        .any(|pair| labels(&pair[0]) != labels(&pair[1]));
     let figure = Figure::new(&title, &caption, columns, panels);
     Figure {
         own_legends,
