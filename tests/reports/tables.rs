@@ -217,7 +217,7 @@ fn wrong_answers_have_no_profile_and_no_time() {
         &bundle,
         "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.crack-1.profile.svg",
     );
-    assert!(profile.contains("b-newton") && !profile.contains("latin"));
+    assert!(profile.contains("2 exact methods agree") && !profile.contains("latin"));
     let history = text(
         &bundle,
         "figures/plate_mesh1.22x22.edge-pairs.mu-0.1.residual.svg",

@@ -61,7 +61,7 @@ pub fn agreement(
                 plain(methods[*worst]),
                 significant(percent, 2)
             ),
-            false => format!("; {} has no values there", plain(methods[*worst])),
+            false => format!("; {} cannot be compared", plain(methods[*worst])),
         };
     }
     let labels: Vec<&str> = apart.iter().map(|i| methods[*i]).collect();

@@ -55,9 +55,8 @@ pub fn add(
             let series = Series::new(label, Style::curve(index), own.collect());
             panel.series.push(series);
         }
-        let (rise, run) = (CORNER_ORDER, 1.0);
         let label = format!("order {CORNER_ORDER} of the corners");
-        panel.guides.push(Guide { rise, run, label });
+        panel.guides.push(Guide::new(CORNER_ORDER, 1.0, &label));
         panels.push(panel);
     }
     let off = limits

@@ -9,6 +9,7 @@ use crate::report::plot::{Axis, Figure, Guide, Panel, Series, Style, italic};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow, ROUND_OFF};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// What it is.
@@ -36,46 +37,34 @@ pub fn add(
     errors: &[ErrorRow],
     orders: &[OrderRow],
 ) -> Result<(), ReportError> {
-    let mut figures: BTreeMap<(String, String), Vec<&OrderRow>> = BTreeMap::new();
+    let mut figures: BTreeMap<String, Vec<&OrderRow>> = BTreeMap::new();
     for row in orders {
-        let variant = &row.variant;
-        let mu = format!("mu-{}", value(variant.friction));
-        let stem = |what: &str| file_name(&[&variant.case, &variant.method, &mu, what]);
-        let own = format!("{} {}", row.quantity, row.at);
         // Cracks, tips and points of a front are compared with each other, components of a reaction are not.
-        let what = if row.at.starts_with("crack-") {
-            &row.quantity
-        } else {
-            own.trim()
-        };
-        figures
-            .entry((stem(what), stem(own.trim())))
-            .or_default()
-            .push(row);
+        let together = row.at.starts_with("crack-");
+        let at = if together { "crack-" } else { &row.at };
+        figures.entry(name(row, at)).or_default().push(row);
     }
-    let figures: Vec<((String, String), Vec<&OrderRow>)> = figures.into_iter().collect();
-    for places in figures.chunk_by(|a, b| a.0.0 == b.0.0) {
-        let mut all: Vec<&OrderRow> = places.iter().flat_map(|(_, rows)| rows).copied().collect();
-        all.sort_by_key(|row| {
+    for mut rows in figures.into_values() {
+        rows.sort_by_key(|row| {
             let (at, tip) = panel_key(row);
             (at, tip_rank(tip), tip, look(&row.variant.space))
         });
-        if all.chunk_by(|a, b| panel_key(a) == panel_key(b)).count() <= PANELS {
-            let name = if places.len() > 1 {
-                &places[0].0.0
-            } else {
-                &places[0].0.1
-            };
-            KIND.add(bundle, name, figure(&all, errors).svg()?)?;
-            continue;
-        }
-        for ((_, name), rows) in places {
-            let at = |row: &&&OrderRow| rows.iter().any(|own| std::ptr::eq(*own, **row));
-            let own: Vec<&OrderRow> = all.iter().filter(at).copied().collect();
-            KIND.add(bundle, name, figure(&own, errors).svg()?)?;
+        let panels = rows.chunk_by(|a, b| panel_key(a) == panel_key(b)).count();
+        for own in rows.chunk_by(|a, b| a.at == b.at || panels <= PANELS) {
+            let one = own.iter().all(|row| row.at == own[0].at);
+            let name = name(own[0], if one { &own[0].at } else { "" });
+            KIND.add(bundle, &name, figure(own, errors).svg()?)?;
         }
     }
     Ok(())
+}
+
+/// What tells the figure of a quantity at a place apart.
+fn name(row: &OrderRow, at: &str) -> String {
+    let variant = &row.variant;
+    let mu = format!("mu-{}", value(variant.friction));
+    let what = format!("{} {at}", row.quantity);
+    file_name(&[&variant.case, &variant.method, &mu, what.trim()])
 }
 
 /// Place and enrichment.
@@ -91,44 +80,28 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     let what = quantity_name::name(&first.quantity, if one_place { &first.at } else { "" });
     let power = if first.dim == 2 { "h⁻²" } else { "h⁻³" };
     let x = Axis::log(&format!("unknowns {} ∝ {power}", italic("N")));
-    let y = Axis::log(&format!(
-        "{}: {what}",
-        if exact { "error" } else { "relative error" }
-    ));
+    let error = if exact { "error" } else { "relative error" };
+    let y = Axis::log(&format!("{error}: {what}"));
     let panel = |own: &[&OrderRow]| {
         let mut panel = Panel::new(x.clone(), y.clone(), 48.0);
         let place = (!one_place).then(|| quantity_name::place(&own[0].at));
-        let heading: Vec<String> = place
-            .into_iter()
-            .chain(tip_name(&own[0].variant.tip))
-            .collect();
-        panel.heading = heading.join("; ");
+        let parts = [place, tip_name(&own[0].variant.tip)];
+        panel.heading = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
         panel.series = own.iter().map(|row| curve(row, errors)).collect();
-        let mut theory: Vec<f64> = own.iter().filter_map(|row| row.theory).collect();
-        theory.sort_by(f64::total_cmp);
-        theory.dedup();
-        let guide = |order: f64, label| Guide {
-            rise: -order,
-            run: first.dim as f64,
-            label,
-        };
-        panel.guides = theory
-            .iter()
-            .map(|p| guide(*p, format!("theory: {}", value(*p))))
-            .collect();
-        if theory.is_empty() {
-            panel.guides.push(guide(1.0, String::new()));
+        let mut theory = distinct(own.iter().map(|row| row.theory));
+        theory.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        let silent = theory.iter().all(Option::is_none);
+        for order in theory.into_iter().filter(|order| silent || order.is_some()) {
+            let label = order.map_or(String::new(), |p| format!("theory: {}", value(p)));
+            let guide = Guide::new(-order.unwrap_or(1.0), first.dim as f64, &label);
+            panel.guides.push(guide);
         }
         panel
     };
-    let panels: Vec<Panel> = rows
-        .chunk_by(|a, b| panel_key(a) == panel_key(b))
-        .map(panel)
-        .collect();
-    let known = rows
-        .iter()
-        .filter(|row| row.order.is_finite() && !is_exact(&measured(row, errors)));
-    let mut known: Vec<&&OrderRow> = known.collect();
+    let by_panel = rows.chunk_by(|a, b| panel_key(a) == panel_key(b));
+    let panels: Vec<Panel> = by_panel.map(panel).collect();
+    let mut known = rows.to_vec();
+    known.retain(|row| row.order.is_finite() && !is_exact(&measured(row, errors)));
     known.sort_by(|a, b| a.order.total_cmp(&b.order));
     let told = |row: &OrderRow| format!("{} ({})", number(row.order), row.variant.space);
     let title = match known[..] {
@@ -148,7 +121,17 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     }
     let tips = distinct(rows.iter().map(|row| &row.variant.tip)).len();
     let columns = if tips > 1 { tips } else { panels.len() }.min(3);
-    let own_legends = true;
+    // One legend is enough where all panels say the same.
+    let labels = |panel: &Panel| {
+        panel
+            .series
+            .iter()
+            .map(|s| s.label.clone())
+            .collect::<Vec<_>>()
+    };
+    let own_legends = panels
+        .windows(2)
+        .any(|pair| labels(&pair[0]) != labels(&pair[1]));
     let figure = Figure::new(&title, &caption, columns, panels);
     Figure {
         own_legends,

@@ -48,11 +48,9 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
                 let runs = found.entry((name, &quantity.at)).or_default();
                 let run = runs.entry((rank(method), method));
                 let (key, rows) = run.or_insert((&row.key, Vec::new()));
-                *key = if row.key.increment > key.increment {
-                    &row.key
-                } else {
-                    *key
-                };
+                if row.key.increment > key.increment {
+                    *key = &row.key;
+                }
                 rows.push(row);
             }
             // A solid has slip along b too, which is no loop in a plane.
@@ -102,20 +100,15 @@ fn figure(paths: &[(&RunKey, Path)], crack: &str, results: &Results) -> Figure {
     let all = || paths.iter().flat_map(|(_, path)| path);
     let largest = [0, 1].map(|c| all().map(|p| p[c].abs()).fold(f64::MIN_POSITIVE, f64::max));
     let scaled = |(_, path): &(_, Path)| -> Vec<f64> {
-        path.iter()
-            .flat_map(|p| [0, 1].map(|c| p[c] / largest[c]))
-            .collect()
+        let part = |p: &[f64; 2]| [0, 1].map(|c| p[c] / largest[c]);
+        path.iter().flat_map(part).collect()
     };
     let scaled: Vec<Vec<f64>> = paths.iter().map(scaled).collect();
     let methods: Vec<&str> = paths.iter().map(|(key, _)| key.method.as_str()).collect();
     let found = agreement(&methods, &scaled, |_, _| true);
     let [slip, force] = [prefixed(largest[0], "m"), prefixed(largest[1], "N/m")];
-    let y = format!(
-        "shear force −{}{} [{}]",
-        italic("P"),
-        subscript("a"),
-        force.1
-    );
+    let symbol = format!("{}{}", italic("P"), subscript("a"));
+    let y = format!("shear force −{symbol} [{}]", force.1);
     let x = Axis::linear(&format!("mean slip [{}]", slip.1));
     let mut panel = Panel::new(x, Axis::linear(&y), 56.0);
     for (run, label, style) in found.curves {
@@ -138,16 +131,11 @@ fn dissipation(key: &RunKey, results: &Results) -> Option<String> {
     let own = |row: &&QuantityRow| row.key == *key && row.quantity.name == "dissipation";
     let quantity = &results.quantities.iter().find(own)?.quantity;
     let found = significant(quantity.value, 4);
-    let stated = results
-        .expectations
-        .iter()
-        .find(|row| row.kind == "analytic" && row.quantity == "dissipation" && row.key == *key);
+    let mut stated = results.expectations.iter().filter(|row| row.key == *key);
+    let stated = stated.find(|row| row.kind == "analytic" && row.quantity == "dissipation");
     let stated = stated.map(|row| format!(", closed form {}", significant(row.expected, 4)));
-    let unit = plain(&quantity.unit);
-    Some(format!(
-        "Friction takes {found} {unit}{}",
-        stated.unwrap_or_default()
-    ))
+    let (unit, stated) = (plain(&quantity.unit), stated.unwrap_or_default());
+    Some(format!("Friction takes {found} {unit}{stated}"))
 }
 
 #[cfg(test)]

@@ -26,36 +26,31 @@ const ROUND_OFF: f64 = 1e-10;
 /// Difference that can be seen, as a fraction of the largest value.
 const VISIBLE: f64 = 0.01;
 
-/// A quantity along the crack: name, unit, its value at a point and in closed form.
-type Along = (
-    String,
-    &'static str,
-    fn(&PointRow) -> f64,
-    fn(&ExactRow) -> f64,
-);
+/// Quantities along the crack by number: p_n, |p_t|, slip, normal gap.
+const UNITS: [&str; 4] = ["Pa", "Pa", "m", "m"];
 
-fn quantities() -> [Along; 4] {
+fn name(quantity: usize) -> String {
     let p = |index: &str| format!("{}{}", italic("p"), subscript(index));
-    let normal = |row: &PointRow| row.point.p_n / row.point.weight;
-    let tangential = |row: &PointRow| row.point.p_a.hypot(row.point.p_b) / row.point.weight;
-    [
-        (p("n"), "Pa", normal, |row| row.p_n_pa),
-        (format!("|{}|", p("t")), "Pa", tangential, |row| {
-            row.p_a_pa.abs()
-        }),
-        (
-            "slip".into(),
-            "m",
-            |row| row.point.slip_a_m,
-            |row| row.slip_a_m,
-        ),
-        (
-            "normal gap".into(),
-            "m",
-            |row| row.point.gap_m,
-            |row| row.gap_m,
-        ),
-    ]
+    match quantity {
+        0 => p("n"),
+        1 => format!("|{}|", p("t")),
+        2 => "slip".into(),
+        _ => "normal gap".into(),
+    }
+}
+
+fn found(row: &PointRow, quantity: usize) -> f64 {
+    let point = &row.point;
+    match quantity {
+        0 => point.p_n / point.weight,
+        1 => point.p_a.hypot(point.p_b) / point.weight,
+        2 => point.slip_a_m,
+        _ => point.gap_m,
+    }
+}
+
+fn closed(row: &ExactRow, quantity: usize) -> f64 {
+    [row.p_n_pa, row.p_a_pa.abs(), row.slip_a_m, row.gap_m][quantity]
 }
 
 /// One figure per problem and crack with all methods that did what they claim, and per body and crack one with all friction
@@ -64,8 +59,8 @@ fn quantities() -> [Along; 4] {
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    let mut honest = results.runs.iter().filter(|row| row.verdict.is_honest());
-    let honest: Vec<&RunKey> = honest.by_ref().map(|row| &row.key).collect();
+    let honest = results.runs.iter().filter(|row| row.verdict.is_honest());
+    let honest: Vec<&RunKey> = honest.map(|row| &row.key).collect();
     // By body, crack and method.
     type Sweeps<'a> = BTreeMap<(String, usize, usize, &'a str), Vec<Run<'a, PointRow>>>;
     let mut sweeps: Sweeps<'_> = BTreeMap::new();
@@ -73,10 +68,8 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
         runs.retain(|(key, _)| honest.contains(key));
         let points = runs.iter().flat_map(|(_, rows)| rows);
         let plane = points.filter(|row| row.point.force_unit == "N/m");
-        for crack in plane
-            .map(|row| row.point.crack)
-            .collect::<BTreeSet<usize>>()
-        {
+        let cracks: BTreeSet<usize> = plane.map(|row| row.point.crack).collect();
+        for crack in cracks {
             let mut own = runs.clone();
             for (_, rows) in &mut own {
                 rows.retain(|row| row.point.crack == crack);
@@ -116,30 +109,24 @@ struct Profile<'a> {
 
 impl<'a> Profile<'a> {
     fn new(runs: &'a [Run<'a, PointRow>], exact: &'a [ExactRow], crack: usize) -> Self {
-        let mut closed: BTreeMap<u64, Vec<&ExactRow>> = BTreeMap::new();
+        let mut curves: BTreeMap<u64, Vec<&ExactRow>> = BTreeMap::new();
         for row in exact.iter().filter(|row| row.crack == crack) {
             let of = (&row.case, row.friction, row.increment);
-            if runs
-                .iter()
-                .any(|(key, _)| of == (&key.case, key.friction, key.increment))
-            {
-                closed.entry(row.friction.to_bits()).or_default().push(row);
+            let own = |(key, _): &Run<'_, _>| of == (&key.case, key.friction, key.increment);
+            if runs.iter().any(own) {
+                curves.entry(row.friction.to_bits()).or_default().push(row);
             }
         }
-        let by_place = |a: &&ExactRow, b: &&ExactRow| a.s_m.total_cmp(&b.s_m);
-        closed
-            .values_mut()
-            .for_each(|curve| curve.sort_by(by_place));
-        let places = runs
-            .iter()
-            .flat_map(|(_, rows)| rows)
-            .map(|row| row.point.s_m.abs());
-        let round_off = ROUND_OFF * places.fold(0.0, f64::max);
+        for curve in curves.values_mut() {
+            curve.sort_by(|a, b| a.s_m.total_cmp(&b.s_m));
+        }
+        let rows = runs.iter().flat_map(|(_, rows)| rows);
+        let length = rows.map(|row| row.point.s_m.abs()).fold(0.0, f64::max);
         Self {
             runs,
-            exact: closed,
+            exact: curves,
             crack,
-            round_off,
+            round_off: ROUND_OFF * length,
         }
     }
 
@@ -148,37 +135,32 @@ impl<'a> Profile<'a> {
         rows.any(|row| row.point.status == status)
     }
 
-    fn largest(&self, (_, _, of, exact): &Along) -> f64 {
-        let closed = self.exact.values().flatten().map(|row| exact(row).abs());
+    fn largest(&self, quantity: usize) -> f64 {
+        let exact = self.exact.values().flatten();
+        let exact = exact.map(|row| closed(row, quantity));
         let rows = self.runs.iter().flat_map(|(_, rows)| rows);
-        let values = rows.map(|row| of(row).abs()).chain(closed);
-        values.filter(|v| v.is_finite()).fold(0.0, f64::max)
+        let values = rows.map(|row| found(row, quantity)).chain(exact);
+        let values = values.filter(|v| v.is_finite());
+        values.fold(0.0, |largest, v| v.abs().max(largest))
     }
 
     /// All methods on one problem; differences are compared with the largest traction and the largest jump.
     fn by_method(&self) -> Figure {
-        let all = quantities();
-        let largest: Vec<f64> = all.iter().map(|along| self.largest(along)).collect();
+        let largest = [0, 1, 2, 3].map(|quantity| self.largest(quantity));
         let traction = largest[0].max(largest[1]).max(f64::MIN_POSITIVE);
         let jump = largest[2]
             .max(largest[3])
-            .max(self.round_off)
-            .max(f64::MIN_POSITIVE);
+            .max(self.round_off.max(f64::MIN_POSITIVE));
+        let scale = [traction, traction, jump, jump];
         let values = |(_, rows): &Run<'_, PointRow>| -> Vec<f64> {
-            let scale = |unit: &str| if unit == "m" { jump } else { traction };
-            let along = |(_, unit, of, _): &Along| -> Vec<f64> {
-                rows.iter().map(|row| of(row) / scale(unit)).collect()
-            };
-            all.iter().flat_map(along).collect()
+            let of = |q: usize| rows.iter().map(move |row| found(row, q) / scale[q]);
+            (0..4).flat_map(of).collect()
         };
         let scaled: Vec<Vec<f64>> = self.runs.iter().map(values).collect();
-        let methods: Vec<&str> = self
-            .runs
-            .iter()
-            .map(|(key, _)| key.method.as_str())
-            .collect();
+        let methods = self.runs.iter().map(|(key, _)| key.method.as_str());
         let status = |run: usize| self.runs[run].1.iter().map(|row| &row.point.status);
-        let found = agreement(&methods, &scaled, |a, b| status(a).eq(status(b)));
+        let alike = |a, b| status(a).eq(status(b));
+        let found = agreement(&methods.collect::<Vec<_>>(), &scaled, alike);
         let note = "differences as fractions of the largest traction or jump";
         let caption = format!("{}, crack {}; {note}", problem(self.runs[0].0), self.crack);
         self.figure(&found.title, &caption, &found.curves)
@@ -186,18 +168,14 @@ impl<'a> Profile<'a> {
 
     /// One method with several friction coefficients.
     fn by_friction(&self) -> Figure {
-        let (factor, unit) = prefixed(self.largest(&quantities()[2]), "m");
+        let (factor, unit) = prefixed(self.largest(2), "m");
         let told = |(key, rows): &Run<'_, PointRow>| {
-            let slip = rows
-                .iter()
-                .map(|row| row.point.slip_a_m.abs())
+            let slips = rows.iter().map(|row| row.point.slip_a_m.abs());
+            let slip = slips
+                .filter(|slip| *slip >= self.round_off)
                 .fold(0.0, f64::max);
-            let slip = if slip < self.round_off { 0.0 } else { slip };
-            format!(
-                "{} {unit} at {}",
-                significant(slip * factor, 3),
-                friction(key.friction)
-            )
+            let slip = significant(slip * factor, 3);
+            format!("{slip} {unit} at {}", friction(key.friction))
         };
         let ends = [&self.runs[0], &self.runs[self.runs.len() - 1]].map(told);
         let title = format!("Largest slip {}", ends.join(", "));
@@ -215,14 +193,11 @@ impl<'a> Profile<'a> {
     }
 
     fn figure(&self, title: &str, caption: &str, curves: &[(usize, String, Style)]) -> Figure {
-        let all = quantities();
         // Gaps of closed points are round-off; a panel of round-off says nothing.
-        let opens = self.has("open") || self.largest(&all[3]) > 1e-6 * self.largest(&all[2]);
-        let shown = &all[..if opens { 4 } else { 3 }];
-        let mut panels: Vec<Panel> = shown
-            .iter()
-            .map(|along| self.panel(along, curves))
-            .collect();
+        let opens = self.has("open") || self.largest(3) > 1e-6 * self.largest(2);
+        let shown = if opens { 4 } else { 3 };
+        let panels = (0..shown).map(|quantity| self.panel(quantity, curves));
+        let mut panels: Vec<Panel> = panels.collect();
         for status in ["stick", "slip", "open"] {
             if self.has(status) {
                 let (marker, filled) = status_marker(status);
@@ -234,50 +209,46 @@ impl<'a> Profile<'a> {
         Figure::new(title, caption, columns, panels)
     }
 
-    fn panel(&self, along: &Along, curves: &[(usize, String, Style)]) -> Panel {
-        let (name, unit, of, exact) = along;
-        let largest = self.largest(along);
+    fn panel(&self, quantity: usize, curves: &[(usize, String, Style)]) -> Panel {
+        let (largest, unit) = (self.largest(quantity), UNITS[quantity]);
         // Jumps of sticking points are round-off: they are drawn as zero, not on an axis of attometres.
-        let (factor, unit) = match *unit == "m" && largest < self.round_off {
-            true => (0.0, unit.to_string()),
+        let (factor, unit) = match unit == "m" && largest < self.round_off {
+            true => (0.0, unit.to_owned()),
             false => prefixed(largest, unit),
         };
-        let y = Axis::linear(&format!("{name} [{unit}]")).through(&[0.0]);
+        let y = Axis::linear(&format!("{} [{unit}]", name(quantity))).through(&[0.0]);
         let mut panel = Panel::new(Axis::linear("distance along the crack [m]"), y, 34.0);
         let (first, band) = (&self.runs[curves[0].0].1, curves[0].2.behind);
         for (index, (run, label, style)) in curves.iter().enumerate() {
             let (key, rows) = &self.runs[*run];
-            if name.starts_with('|') && key.friction > 0.0 && (index == 0 || !band) {
-                let limit = |row: &PointRow| key.friction * (quantities()[0].2)(row).max(0.0);
+            if quantity == 1 && key.friction > 0.0 && (index == 0 || !band) {
+                let limit = |row: &PointRow| key.friction * found(row, 0).max(0.0);
                 let points = rows.iter().map(|row| [row.point.s_m, limit(row) * factor]);
-                let label = format!(
-                    "slip limit {} {}{}",
-                    italic("μ"),
-                    italic("p"),
-                    subscript("n")
-                );
-                panel
-                    .series
-                    .push(Series::new(label, Style::limit(), points.collect()));
+                let label = format!("slip limit {} {}", italic("μ"), name(0));
+                let series = Series::new(label, Style::limit(), points.collect());
+                panel.series.push(series);
             }
-            let points = rows.iter().map(|row| [row.point.s_m, of(row) * factor]);
+            let value = |row: &PointRow| found(row, quantity) * factor;
+            let points = rows.iter().map(|row| [row.point.s_m, value(row)]);
             let mut series = Series::new(label, style.clone(), points.collect());
             // Marks that would lie on those of the first curve are left out, so that both can be seen.
             let hidden = |n: usize, row: &PointRow| {
                 let below = first.get(n).filter(|_| index > 0 && band);
                 below.is_some_and(|b| {
-                    let near = (of(b) - of(row)).abs() < VISIBLE * largest;
+                    let near = (value(b) - value(row)).abs() < VISIBLE * largest * factor;
                     near && b.point.status == row.point.status
                 })
             };
-            let mark = |(n, row): (usize, &&PointRow)| {
-                (!hidden(n, row)).then(|| status_marker(&row.point.status))
-            };
-            series.marks = rows.iter().enumerate().map(mark).collect();
+            for (n, row) in rows.iter().enumerate() {
+                let mark = (!hidden(n, row)).then(|| status_marker(&row.point.status));
+                series.marks.push(mark);
+            }
             panel.series.push(series);
         }
         for curve in self.exact.values() {
-            let points = curve.iter().map(|row| [row.s_m, exact(row) * factor]);
+            let points = curve
+                .iter()
+                .map(|row| [row.s_m, closed(row, quantity) * factor]);
             let series = Series::new("closed form", Style::exact(), points.collect());
             panel.series.push(series);
         }

@@ -1,20 +1,19 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 
-use super::kind::Kind;
 use super::quantity_name;
 use super::runs::{distinct, friction, least};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
 use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
-use crate::studies::convergence::orders::{self, ErrorRow, ROUND_OFF};
+use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
 use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
 use crate::studies::sweep::analysis::problem_names;
 use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
 
 /// What it is.
-pub static KIND: Kind = Kind {
+pub static KIND: super::kind::Kind = super::Kind {
     file: "time_to_accuracy.*.svg",
     question: "How long does a wanted accuracy of the answer take, from mesh to method?",
     shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per \
@@ -41,64 +40,44 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
 
 fn figure(one: &Refinement, caveat: &str) -> Figure {
     // Against its own finest mesh a sequence says nothing.
-    let first = one
-        .orders
-        .iter()
-        .find(|row| row.kind != orders::Kind::Finest);
-    let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(orders::Kind::Finest);
+    let mut orders = one.orders.iter();
+    let first = orders.find(|row| row.kind != Kind::Finest);
+    let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(Kind::Finest);
     let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
     let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
-    let best = shown
-        .iter()
-        .filter(|row| Some(row.refine) == finest && row.seconds.total() > 0.0);
-    let best = least(best, |row| row.seconds.total());
+    let total = |row: &ErrorRow| row.seconds.total();
+    let timed = |row: &&&ErrorRow| Some(row.refine) == finest && total(row) > 0.0;
+    let best = least(shown.iter().filter(timed), |row| total(row));
     let further: Vec<&str> = best.iter().map(|row| row.variant.method.as_str()).collect();
     let name = first.map_or_else(String::new, |row| {
         quantity_name::name(&row.quantity, &row.at)
     });
-    let mut panel = Panel::new(
-        Axis::log("total time [s]"),
-        Axis::log(&format!("error: {name}")),
-        56.0,
-    );
+    let y = Axis::log(&format!("error: {name}"));
+    let mut panel = Panel::new(Axis::log("total time [s]"), y, 56.0);
     for (method, (label, style)) in methods.iter().zip(looks(&methods, &further)) {
         let own = shown.iter().filter(|row| row.variant.method == *method);
-        panel.series.push(Series::new(
-            label,
-            style,
-            own.map(|row| [row.seconds.total(), row.error]).collect(),
-        ));
+        let points = own.map(|row| [total(row), row.error]).collect();
+        panel.series.push(Series::new(label, style, points));
     }
     let observed = first.map_or(f64::NAN, |row| row.order);
     let off = |order: &f64| (order - observed).abs();
     let nearest = least(ORDERS, off);
     let nearest = nearest.filter(|order| off(order) < 0.5 * order);
-    let guide = |order: f64| Guide {
-        rise: -order,
-        run: one.dim as f64,
-        label: String::new(),
-    };
-    panel.guides = nearest.map(guide).into_iter().collect();
+    let guide = |order: f64| Guide::new(-order, one.dim as f64, "");
+    panel.guides.extend(nearest.map(guide));
     let title = best.map_or("Time to accuracy".to_owned(), |row| {
-        let (error, seconds) = (
-            significant(row.error, 2),
-            significant(row.seconds.total(), 2),
-        );
-        format!(
-            "{} is first at an error of {error}, in {seconds} s",
-            plain(&row.variant.method)
-        )
+        let [error, seconds] = [row.error, total(row)].map(|x| significant(x, 2));
+        let method = plain(&row.variant.method);
+        format!("{method} is first at an error of {error}, in {seconds} s")
     });
     let against = match first.map(|row| row.kind) {
-        Some(orders::Kind::Exact) => "closed form",
+        Some(Kind::Exact) => "closed form",
         _ => "extrapolated limit",
     };
     let triangle = nearest.map_or(String::new(), |order| {
-        format!(
-            "; triangle: order {} in h, time proportional to the unknowns",
-            value(order)
-        )
+        let order = value(order);
+        format!("; triangle: order {order} in h, time proportional to the unknowns")
     });
     let caption = format!(
         "{}, {}, {}, error against the {against}{caveat}{triangle}",

@@ -76,6 +76,14 @@ pub struct Guide {
     pub label: String,
 }
 
+impl Guide {
+    /// A power law y ~ x^(rise/run).
+    pub fn new(rise: f64, run: f64, label: &str) -> Self {
+        let label = label.to_owned();
+        Self { rise, run, label }
+    }
+}
+
 /// One coordinate system.
 #[derive(Debug, Clone)]
 pub struct Panel {

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, plain};
 use crate::run::registry::methods;
+use stickslip_methods::Method;
 
 /// Red, green, blue.
 pub type Rgb = [u8; 3];
@@ -212,17 +213,15 @@ pub fn base(label: &str) -> &str {
 
 /// Order of methods in figures: that of the registry, then what it does not know.
 pub fn rank(label: &str) -> usize {
-    let place = methods()
-        .iter()
-        .position(|method| method.name == base(label));
-    place.unwrap_or(methods().len())
+    let own = |method: &&Method| method.name == base(label);
+    methods().iter().position(own).unwrap_or(methods().len())
 }
 
 /// Whether the method solves the contact laws themselves; false for what the registry does not know.
 pub fn is_exact(label: &str) -> bool {
     methods()
-        .iter()
-        .any(|method| method.name == base(label) && method.exact)
+        .get(rank(label))
+        .is_some_and(|method| method.exact)
 }
 
 /// Marker of a contact status and whether it is filled.
@@ -243,10 +242,8 @@ pub fn draw_marker(
     colour: Rgb,
 ) {
     let around = |offsets: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        offsets
-            .iter()
-            .map(|o| [at[0] + size * o[0], at[1] + size * o[1]])
-            .collect()
+        let place = |o: &[f64; 2]| [at[0] + size * o[0], at[1] + size * o[1]];
+        offsets.iter().map(place).collect()
     };
     let outline = match marker {
         Marker::Disc => {
@@ -261,9 +258,9 @@ pub fn draw_marker(
                 Marker::Cross => [[[-0.9, -0.9], [0.9, 0.9]], [[-0.9, 0.9], [0.9, -0.9]]],
                 _ => [[[-1.1, 0.0], [1.1, 0.0]], [[0.0, -1.1], [0.0, 1.1]]],
             };
-            lines
-                .iter()
-                .for_each(|line| canvas.line(&around(line), colour, 0.3));
+            for line in lines {
+                canvas.line(&around(&line), colour, 0.3);
+            }
             return;
         }
         Marker::Square => around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
