@@ -233,10 +233,10 @@ fn a_folder_that_cannot_be_written_ends_with_2_before_anything_runs() {
 #[test]
 fn the_main_job_is_what_runs_without_a_verb() {
     let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("reports"), "mine").unwrap();
+    std::fs::write(dir.path().join("results"), "mine").unwrap();
     let plain = ends_with(2, &[], dir.path());
-    assert!(plain.1.contains("reports"), "{}", plain.1);
-    for named in [&["paper"][..], &["paper", "--out", "reports"]] {
+    assert!(plain.1.contains("results"), "{}", plain.1);
+    for named in [&["paper"][..], &["paper", "--out", "results"]] {
         assert_eq!(ends_with(2, named, dir.path()), plain);
     }
 }
