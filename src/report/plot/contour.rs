@@ -6,7 +6,7 @@ use super::canvas::*;
 use super::figure::{Panel, draw_labels, room_for_labels};
 use super::mesh::{Box2, DISPLACEMENT, deformed, fail, outline, point_vector, stroke};
 use super::panel::{Place, draw_panel};
-use super::style::{BLACK, LIGHT};
+use super::style::{BLACK, MIDDLE};
 use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
 use crate::report::number::significant;
@@ -194,7 +194,7 @@ impl Body {
     /// Bands of a field between the undeformed and the deformed outline.
     fn draw(&self, canvas: &mut Canvas, field: &Field, paper: impl Fn([f64; 2]) -> Pixel) {
         let place = |which: usize, point: usize| paper(self.places[which][point]);
-        stroke(canvas, &self.outline, |p| place(0, p), LIGHT, 0.15);
+        stroke(canvas, &self.outline, |p| place(0, p), MIDDLE, 0.2);
         let corner = |p: usize| (place(1, p), field.values[p]);
         let triangles = self.faces.iter().flat_map(|face| split(face, corner));
         let triangles: Vec<Triangle> = triangles.collect();
