@@ -8,10 +8,9 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::html::Link;
-use super::overview::is_headline;
 use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
-use crate::report::figures::Kind;
+use crate::report::figures::{Kind, fastest, robustness, table1, work_precision};
 
 /// Folders inside folders that are looked into: `accuracy/figures`, one more for what users arrange.
 const DEPTH: usize = 3;
@@ -21,6 +20,14 @@ const KINDS: [&str; 5] = ["csv", "md", "tex", "svg", "toml"];
 
 /// Folders that are left out: fields for ParaView are many, large and not for reading.
 const SKIPPED: [&str; 1] = ["fields"];
+
+/// Kinds of figures that open the page, one of each.
+const HEADLINES: [&Kind; 4] = [
+    &table1::KIND,
+    &fastest::KIND,
+    &work_precision::KIND,
+    &robustness::KIND,
+];
 
 /// A report folder.
 #[derive(Debug)]
@@ -104,6 +111,12 @@ impl Folder {
         found
     }
 
+    /// Figures that open the page, as far as the folder has them.
+    pub fn headlines(&self) -> Vec<&str> {
+        let first = |kind: &&Kind| self.matching(|name| kind.has(name)).into_iter().next();
+        HEADLINES.iter().filter_map(first).collect()
+    }
+
     fn bytes(&self, path: &str) -> Result<Vec<u8>, PageError> {
         let full = self.root.join(path);
         fs::read(&full).map_err(|e| FolderError::io("read file", &full, e).into())
@@ -180,7 +193,10 @@ impl Folder {
             figures: Vec::new(),
             links: Vec::new(),
         };
-        for path in self.matching(|name| kind.has(name) && !is_headline(name)) {
+        let opening = self.headlines();
+        let mut own = self.matching(|name| kind.has(name));
+        own.retain(|path| !opening.contains(path));
+        for path in own {
             match self.figure(path, budget)? {
                 Some(figure) => group.figures.push(figure),
                 None => group.links.push(Link {

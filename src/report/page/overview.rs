@@ -5,14 +5,6 @@ use super::{Budget, Folder, PageError};
 use crate::report::number::significant;
 use crate::run::verdict::{Verdict, VerdictKind};
 
-/// Figures that open the page, where the folder has them.
-const HEADLINES: [&str; 4] = [
-    "table1.svg",
-    "fastest.svg",
-    "robustness.svg",
-    "headline.svg",
-];
-
 /// What a kind of verdict says.
 fn meaning(kind: VerdictKind) -> &'static str {
     match kind {
@@ -38,10 +30,8 @@ pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, 
     if !facts.is_empty() {
         blocks.push(Block::Facts(facts));
     }
-    for name in HEADLINES {
-        for path in folder.named(name) {
-            blocks.extend(folder.figure(path, budget)?.map(Block::Figure));
-        }
+    for path in folder.headlines() {
+        blocks.extend(folder.figure(path, budget)?.map(Block::Figure));
     }
     if blocks.is_empty() {
         return Ok(None);
@@ -138,9 +128,4 @@ fn advice(folder: &Folder) -> Result<Option<Block>, PageError> {
         title: "Which method to use, over all problems of the study",
         terms: lines.collect(),
     }))
-}
-
-/// Whether the page opens with this figure.
-pub fn is_headline(name: &str) -> bool {
-    HEADLINES.contains(&name)
 }
