@@ -7,6 +7,7 @@
 pub mod convergence;
 mod error;
 pub mod figures;
+pub mod names;
 pub mod number;
 pub mod page;
 pub mod paper;

@@ -10,7 +10,8 @@ use super::error::CliError;
 use super::output::say;
 use super::progress::Bar;
 use crate::files::interchange::matrix_market;
-use crate::report::standard::{self, problem_name};
+use crate::report::names::{self, problem_name};
+use crate::report::standard;
 use crate::report::table::{Column, Order, Row, columns, readable};
 use crate::report::{Bundle, prepare_output};
 use crate::run::choice::Choice;
@@ -119,7 +120,7 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
         let solved = problem.run(&chosen, args.tier, &bar);
         results.append(solved.results);
         for solution in solved.solutions {
-            let stem = standard::stem(&solution.key);
+            let stem = names::stem(&solution.key);
             for (part, values) in [("r", &solution.reaction), ("u", &solution.velocity)] {
                 let text = matrix_market::vector(values);
                 solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;

@@ -18,6 +18,7 @@ mod heatmap;
 mod legend;
 mod mesh;
 mod panel;
+mod series;
 mod solid;
 mod style;
 
@@ -25,6 +26,7 @@ pub use axis::{Axis, prefixed};
 pub use canvas::{italic, plain, subscript};
 pub use contact::contact_status;
 pub use contour::{displacement, von_mises};
-pub use figure::{Draw, Figure, Guide, Panel, Series};
+pub use figure::Figure;
 pub use heatmap::{Cell, HeatMap};
+pub use series::{Draw, Guide, Panel, Series};
 pub use style::{Marker, Rgb, Style, base, is_exact, looks, rank, status_marker};

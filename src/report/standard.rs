@@ -3,6 +3,7 @@
 //! Profiles show the last increment of runs that did what they claim: solved the contact laws or, named as such, their own
 //! approximate ones. A wrong answer never stands beside right ones; residual histories show every run. Names are made from the run's key, see [`stem`] and `docs/schema.md`.
 
+use super::names::stem;
 use super::number::value;
 use super::tables::runs::ExpectSummary;
 use super::{Bundle, Provenance, ReportError, figures, table, vtu};
@@ -60,25 +61,6 @@ pub fn write(dir: &Path, results: &Results, provenance: &Provenance) -> Result<(
     Ok(bundle(results, provenance)?.commit(dir)?)
 }
 
-/// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
-/// digits, `.`, `-`, `_` and `=` replaced by `-`.
-pub fn stem(key: &RunKey) -> String {
-    let friction = value(key.friction);
-    file_name(&[
-        &key.case,
-        &key.mesh,
-        &key.space,
-        &key.method,
-        &format!("mu-{friction}"),
-    ])
-}
-
-pub(super) fn file_name(parts: &[&str]) -> String {
-    let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
-    let clean = |c: char| if allowed(c) { c } else { '-' };
-    parts.join(".").chars().map(clean).collect()
-}
-
 /// The last increment of every run.
 pub fn last_runs(rows: &[RunRow]) -> Vec<RunRow> {
     let last = last_increments(rows.iter().map(|row| &row.key));
@@ -133,12 +115,6 @@ fn last_increments<'a>(keys: impl Iterator<Item = &'a RunKey>) -> BTreeMap<RunNa
 
 fn is_last(last: &BTreeMap<RunName, usize>, key: &RunKey) -> bool {
     last.get(&run_name(key)) == Some(&key.increment)
-}
-
-/// File name part for the problem of a run, without its method: `case.mesh.space.mu-0.1`.
-pub fn problem_name(key: &RunKey) -> String {
-    let friction = format!("mu-{}", value(key.friction));
-    file_name(&[&key.case, &key.mesh, &key.space, &friction])
 }
 
 /// Adds `fields/<stem>.*.vtu` and `.pvd`.

@@ -266,7 +266,7 @@ fn provenance_is_in_its_own_file_only() {
 fn file_names_hold_no_separators() {
     let mut odd = key(METHODS[0], 0.1);
     (odd.space, odd.method) = ("edge-pairs/gauss-6".into(), "penalty[k=1e12, μ]".into());
-    let stem = standard::stem(&odd);
+    let stem = stickslip::report::names::stem(&odd);
     assert_eq!(
         stem,
         "plate_mesh1.22x22.edge-pairs-gauss-6.penalty-k=1e12----.mu-0.1"

@@ -2,8 +2,8 @@
 
 use super::kind::Kind;
 use super::runs::problem;
+use crate::report::names::stem;
 use crate::report::plot::{contact_status, displacement, plain, von_mises};
-use crate::report::standard::stem;
 use crate::report::{Bundle, ReportError};
 use crate::run::record::RunFields;
 

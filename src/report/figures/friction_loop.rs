@@ -3,10 +3,10 @@
 use super::agreement::agreement;
 use super::kind::Kind;
 use super::runs::{Run, problem};
+use crate::report::names::problem_name;
 use crate::report::number::significant;
 use crate::report::plot::subscript;
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, italic, plain, prefixed, rank};
-use crate::report::standard::problem_name;
 use crate::report::{Bundle, ReportError};
 use crate::run::record::{QuantityRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};

@@ -3,10 +3,10 @@
 use super::agreement::agreement;
 use super::kind::Kind;
 use super::runs::{Run, body, by_problem, friction, problem};
+use crate::report::names::file_name;
 use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
-use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::run::record::{ExactRow, PointRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,8 +1,8 @@
 //! Rows grouped by problem and run, and words for them.
 
+use crate::report::names::problem_name;
 use crate::report::number::value;
 use crate::report::plot::{italic, plain, rank};
-use crate::report::standard::problem_name;
 use crate::run::record::RunKey;
 use crate::studies::sweep::record::Record;
 use std::collections::BTreeMap;

@@ -2,9 +2,9 @@
 
 use super::kind::Kind;
 use super::runs::{friction, least, made_with};
+use crate::report::names::file_name;
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Rgb, Series, Style, plain};
-use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::analysis::{

@@ -2,9 +2,9 @@
 
 use super::quantity_name;
 use super::runs::{distinct, friction, least};
+use crate::report::names::file_name;
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
-use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
 use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
@@ -13,7 +13,7 @@ use crate::studies::sweep::cell::Problem;
 use crate::studies::sweep::record::Record;
 
 /// What it is.
-pub static KIND: super::kind::Kind = super::Kind {
+pub static KIND: super::kind::Kind = super::kind::Kind {
     file: "time_to_accuracy.*.svg",
     question: "How long does a wanted accuracy of the answer take, from mesh to method?",
     shows: "Discretisation error of one quantity against the total time of a run, mesh by mesh, a curve per \

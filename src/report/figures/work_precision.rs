@@ -2,9 +2,9 @@
 
 use super::kind::Kind;
 use super::runs::{friction, least, made_with};
+use crate::report::names::file_name;
 use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
-use crate::report::standard::file_name;
 use crate::report::{Bundle, ReportError};
 use crate::studies::sweep::analysis::series::{Point, Series as Sequence, Swept, series};
 use crate::studies::sweep::analysis::{problem_names, problems};

@@ -7,7 +7,8 @@ use super::axis::{Axis, range};
 use super::canvas::*;
 use super::legend::Legend;
 use super::panel::{Place, Triangle, draw_panel};
-use super::style::{BLACK, Marker, Style};
+use super::series::Panel;
+use super::style::BLACK;
 use crate::report::ReportError;
 
 /// Room for the tick labels and the label of an x axis, and below a panel without them [mm].
@@ -15,128 +16,19 @@ const AXIS_MM: f64 = 10.0;
 const BELOW_MM: f64 = 2.0;
 const GAP_MM: f64 = 5.0;
 const HEADING_MM: f64 = 3.0;
-/// Height of a row of a named axis [mm].
-const ROW_MM: f64 = 4.4;
 
-/// How a series is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Draw {
-    /// Points joined in their order.
-    Line,
-    /// The value of a point holds until the next, the last one to the end of the axis.
-    Stairs,
-    /// Like [`Draw::Line`], with arrows in its direction.
-    Path,
-    /// Bars along x at each point, from and to the ends of its interval.
-    Bars,
-}
-
-/// Points of one look.
-#[derive(Debug, Clone)]
-pub struct Series {
-    /// In the legend; empty for none.
-    pub label: String,
-    /// Of line and markers.
-    pub style: Style,
-    /// What joins the points.
-    pub draw: Draw,
-    /// x and y; what has no place on the axes is left out.
-    pub points: Vec<[f64; 2]>,
-    /// Ends in x of the interval about every point; empty without intervals.
-    pub intervals: Vec<[f64; 2]>,
-    /// Marker and filling per point, or none; empty where all are the style's.
-    pub marks: Vec<Option<(Marker, bool)>>,
-    /// Texts in bars or behind points and their intervals; empty without.
-    pub texts: Vec<String>,
-}
-
-impl Series {
-    /// Points joined in their order, with the markers of the style.
-    pub fn new(label: impl Into<String>, style: Style, points: Vec<[f64; 2]>) -> Self {
-        Self {
-            label: label.into(),
-            style,
-            draw: Draw::Line,
-            points,
-            intervals: Vec::new(),
-            marks: Vec::new(),
-            texts: Vec::new(),
-        }
+/// Values that an axis must cover.
+fn values(panel: &Panel, c: usize, triangles: &[Triangle]) -> Vec<f64> {
+    let mut values: Vec<f64> = panel.points().map(|p| p[c]).collect();
+    if c == 1 {
+        values.extend(&panel.levels);
+        values.extend(triangles.iter().map(Triangle::lowest));
+    } else if panel.axes[1].named().is_some() {
+        // Elsewhere intervals say how sure a point is; the points alone make the range.
+        let intervals = panel.series.iter().flat_map(|s| &s.intervals);
+        values.extend(intervals.flatten());
     }
-}
-
-/// A power law to compare with: y ~ x^(rise/run), as a triangle below all curves; with a label also as a dotted line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Guide {
-    /// Number at the upright leg, positive where y grows with x.
-    pub rise: f64,
-    /// Number at the horizontal leg.
-    pub run: f64,
-    /// In the legend; empty for the triangle alone.
-    pub label: String,
-}
-
-impl Guide {
-    /// A power law y ~ x^(rise/run).
-    pub fn new(rise: f64, run: f64, label: &str) -> Self {
-        let label = label.to_owned();
-        Self { rise, run, label }
-    }
-}
-
-/// One coordinate system.
-#[derive(Debug, Clone)]
-pub struct Panel {
-    /// Above the panel; may be empty.
-    pub heading: String,
-    /// x and y.
-    pub axes: [Axis; 2],
-    /// Of the frame [mm]; named y axes take what their names need.
-    pub height: f64,
-    /// What is drawn, the last on top.
-    pub series: Vec<Series>,
-    /// Horizontal lines.
-    pub levels: Vec<f64>,
-    /// Both axes logarithmic.
-    pub guides: Vec<Guide>,
-}
-
-impl Panel {
-    /// A panel of these axes and this height [mm].
-    pub fn new(x: Axis, y: Axis, height: f64) -> Self {
-        Self {
-            heading: String::new(),
-            height: y.named().map_or(height, |names| ROW_MM * names as f64),
-            axes: [x, y],
-            series: Vec::new(),
-            levels: Vec::new(),
-            guides: Vec::new(),
-        }
-    }
-
-    pub(super) fn has(&self, point: &[f64; 2]) -> bool {
-        (0..2).all(|c| self.axes[c].has(point[c]))
-    }
-
-    /// Points with a place.
-    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> {
-        let all = self.series.iter().flat_map(|s| s.points.iter().copied());
-        all.filter(|p| self.has(p))
-    }
-
-    /// Values that an axis must cover.
-    fn values(&self, c: usize, triangles: &[Triangle]) -> Vec<f64> {
-        let mut values: Vec<f64> = self.points().map(|p| p[c]).collect();
-        if c == 1 {
-            values.extend(&self.levels);
-            values.extend(triangles.iter().map(Triangle::lowest));
-        } else if self.axes[1].named().is_some() {
-            // Elsewhere intervals say how sure a point is; the points alone make the range.
-            let intervals = self.series.iter().flat_map(|s| &s.intervals);
-            values.extend(intervals.flatten());
-        }
-        values
-    }
+    values
 }
 
 /// A whole figure. Labels may hold [`subscript`](super::subscript) and [`italic`](super::italic).
@@ -259,7 +151,7 @@ impl Figure {
         let fit = |(panel, _): &(Panel, _), c: usize| {
             let axis = &panel.axes[c];
             let alike = fitted.iter().filter(|(p, _)| p.axes[c].label == axis.label);
-            let values: Vec<f64> = alike.flat_map(|(p, laws)| p.values(c, laws)).collect();
+            let values: Vec<f64> = alike.flat_map(|(p, laws)| values(p, c, laws)).collect();
             let room = [width / 14.0, panel.height / 8.0][c];
             let count = (room as usize).clamp(2, 7);
             let found = axis.fitted(values, count);

@@ -1,7 +1,7 @@
 //! Legends: samples and labels in rows below a figure.
 
 use super::canvas::{Anchor, Canvas, TICK_PT, text_width, wrapped};
-use super::figure::{Draw, Panel, Series};
+use super::series::{Draw, Panel, Series};
 use super::style::{BLACK, draw_marker};
 
 const ROW_MM: f64 = 3.6;

@@ -2,7 +2,7 @@
 
 use super::axis::range;
 use super::canvas::{Anchor, Canvas, SMALL_PT, text_width};
-use super::figure::{Draw, Panel, Series};
+use super::series::{Draw, Panel, Series};
 use super::style::{BLACK, GREY, LIGHT, Rgb, Style, WHITE, draw_marker};
 use crate::report::number::significant;
 

@@ -1,0 +1,30 @@
+//! Names of files.
+
+use super::number::value;
+use crate::run::record::RunKey;
+
+/// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
+/// digits, `.`, `-`, `_` and `=` replaced by `-`.
+pub fn stem(key: &RunKey) -> String {
+    let friction = value(key.friction);
+    file_name(&[
+        &key.case,
+        &key.mesh,
+        &key.space,
+        &key.method,
+        &format!("mu-{friction}"),
+    ])
+}
+
+/// Parts joined by dots; other characters than letters, digits, `.`, `-`, `_` and `=` become `-`.
+pub fn file_name(parts: &[&str]) -> String {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
+    let clean = |c: char| if allowed(c) { c } else { '-' };
+    parts.join(".").chars().map(clean).collect()
+}
+
+/// File name part for the problem of a run, without its method: `case.mesh.space.mu-0.1`.
+pub fn problem_name(key: &RunKey) -> String {
+    let friction = format!("mu-{}", value(key.friction));
+    file_name(&[&key.case, &key.mesh, &key.space, &friction])
+}
