@@ -43,6 +43,16 @@ pub struct Limits {
     pub patience: usize,
 }
 
+impl Limits {
+    /// Both.
+    pub fn new(iterations: usize, patience: usize) -> Self {
+        Self {
+            iterations,
+            patience,
+        }
+    }
+}
+
 /// What becomes of an iterate that was checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {

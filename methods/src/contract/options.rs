@@ -43,11 +43,43 @@ pub struct Switch {
     pub help: &'static str,
 }
 
-/// Declares options as constants, one a line: `NAME: Type(name, default, least, most): help;`.
+/// Declares the settings of a method by their options, one a line: `name: Kind(default, least, most), help;`. A `Count` is a
+/// [`Whole`] read as `usize`. Single options are constants: `NAME: Kind("name", default, least, most): help;`.
 macro_rules! options {
-    ($($id:ident: $kind:ident($name:literal, $default:expr $(, $min:expr, $max:expr)?): $help:literal;)*) => {
-        $(const $id: $kind = $kind { name: $name, default: $default, $(min: $min, max: $max,)? help: $help };)*
+    ($settings:ident { $($name:ident: $kind:ident($($value:expr),+), $help:expr;)* }) => {
+        #[derive(Clone, Copy)]
+        pub(crate) struct $settings {
+            $($name: options!(@type $kind),)*
+        }
+
+        impl $settings {
+            pub(crate) const OPTIONS: &'static [$crate::OptionSpec] =
+                &[$(options!(@spec $kind, stringify!($name), $help, $($value),+)),*];
+
+            fn new(options: &$crate::Options) -> Self {
+                Self { $($name: options!(@read options, $kind, stringify!($name), $help, $($value),+),)* }
+            }
+        }
     };
+    ($($id:ident: $kind:ident($name:literal, $($value:expr),+): $help:literal;)*) => {
+        $(pub(crate) const $id: $crate::$kind = options!(@new $kind, $name, $help, $($value),+);)*
+    };
+    (@type Real) => { f64 };
+    (@type Whole) => { i64 };
+    (@type Count) => { usize };
+    (@type Switch) => { bool };
+    (@new Switch, $name:expr, $help:expr, $default:expr) => {
+        $crate::Switch { name: $name, default: $default, help: $help }
+    };
+    (@new $kind:ident, $name:expr, $help:expr, $default:expr, $min:expr, $max:expr) => {
+        $crate::$kind { name: $name, default: $default, min: $min, max: $max, help: $help }
+    };
+    (@spec Count, $($of:expr),+) => { options!(@spec Whole, $($of),+) };
+    (@spec $kind:ident, $($of:expr),+) => { $crate::OptionSpec::$kind(options!(@new $kind, $($of),+)) };
+    (@read $options:ident, Real, $($of:expr),+) => { $options.real(&options!(@new Real, $($of),+)) };
+    (@read $options:ident, Whole, $($of:expr),+) => { $options.whole(&options!(@new Whole, $($of),+)) };
+    (@read $options:ident, Count, $($of:expr),+) => { $options.count(&options!(@new Whole, $($of),+)) };
+    (@read $options:ident, Switch, $($of:expr),+) => { $options.switch(&options!(@new Switch, $($of),+)) };
 }
 pub(crate) use options;
 

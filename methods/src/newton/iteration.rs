@@ -14,20 +14,21 @@ use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::line_search::LineSearch;
-use crate::newton::step::Tangent;
+use crate::newton::step::{MONOLITHIC, Tangent};
 use crate::{
     Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, MethodError,
-    Monitor, Needs, Options, Real, Status, Whole,
+    Monitor, Needs, OptionSpec, Options, Status, Whole, options,
 };
 
-/// Scale of the equations, an option of every scheme.
-pub(crate) const R: Real = Real {
-    name: "r",
-    default: 1.0,
-    min: 1e-3,
-    max: 1e3,
-    help: "multiple of 1/W_ii that turns gaps and slips into forces",
-};
+options! {
+    R: Real("r", 1.0, 1e-3, 1e3): "multiple of 1/W_ii that turns gaps and slips into forces";
+}
+
+/// Options of a scheme that gives up after so many steps.
+pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
+    let steps = OptionSpec::Whole(max_iterations);
+    [OptionSpec::Real(R), steps, Tangent::OPTION]
+}
 
 /// Steps without progress after which an iteration counts as cycling.
 const PATIENCE: usize = 60;
@@ -82,13 +83,10 @@ impl<S: Scheme> Newton<S> {
         Self {
             scheme,
             multiple: options.real(&R),
-            limits: Limits {
-                iterations: options.count(max_iterations),
-                patience: PATIENCE,
-            },
+            limits: Limits::new(options.count(max_iterations), PATIENCE),
             line_search: true,
             rescue: true,
-            tangent: Tangent::new(options),
+            tangent: Tangent::new(options.switch(&MONOLITHIC)),
         }
     }
 

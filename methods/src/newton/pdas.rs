@@ -48,9 +48,10 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::newton::iteration::{Newton, R, Scheme, augmented_branch, augmented_equations, trial};
-use crate::newton::step::Tangent;
-use crate::{Method, OptionSpec, Whole, options};
+use crate::newton::iteration::{
+    Newton, Scheme, augmented_branch, augmented_equations, scheme_options, trial,
+};
+use crate::{Method, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -59,11 +60,7 @@ pub static METHOD: Method = Method {
     reference: "Hüeber, Stadler & Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572",
     summary: "guesses the open, sticking and slipping sets, solves for them, and reads the next sets from the signs",
     exact: true,
-    options: &[
-        OptionSpec::Real(R),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        Tangent::OPTION,
-    ],
+    options: &scheme_options(MAX_ITERATIONS),
     source: include_str!("pdas.rs"),
     build: |options| {
         Box::new(Newton {

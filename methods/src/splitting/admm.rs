@@ -45,8 +45,7 @@ use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Real, Whole, options,
+    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, Options, options,
 };
 
 /// Registry entry.
@@ -56,19 +55,17 @@ pub static METHOD: Method = Method {
     reference: "Tasora, Mangoni, Benatti & Garziera, Int. J. Numer. Meth. Engng 122 (2021) 4093",
     summary: "alternates linear equilibrium and projections on Coulomb's cone, with De Saxce's correction",
     exact: true,
-    options: &[
-        OptionSpec::Real(PENALTY),
-        OptionSpec::Real(OVER_RELAXATION),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("admm.rs"),
     build: |options| Box::new(Admm::new(options)),
 };
 
 options! {
-    PENALTY: Real("penalty", 1.0, 1e-3, 1e3): "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
-    OVER_RELAXATION: Real("over_relaxation", 1.6, 0.5, 1.9): "over-relaxation; 1 is the plain method";
-    MAX_ITERATIONS: Whole("max_iterations", 20_000, 1, 10_000_000): "pairs of steps before giving up";
+    Settings {
+        penalty: Real(1.0, 1e-3, 1e3), "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
+        over_relaxation: Real(1.6, 0.5, 1.9), "over-relaxation; 1 is the plain method";
+        max_iterations: Count(20_000, 1, 10_000_000), "pairs of steps before giving up";
+    }
 }
 
 /// Iterations without progress after which the iteration counts as stalled.
@@ -84,9 +81,7 @@ const MAX_MOVE: f64 = 4.0;
 const KEPT: usize = 3;
 
 struct Admm {
-    penalty: f64,
-    over_relaxation: f64,
-    limits: Limits,
+    settings: Settings,
     /// The linear step with its power of 2, the last one used at the end.
     stages: Vec<(i32, Arc<GlobalStage>)>,
 }
@@ -94,12 +89,7 @@ struct Admm {
 impl Admm {
     fn new(options: &Options) -> Self {
         Self {
-            penalty: options.real(&PENALTY),
-            over_relaxation: options.real(&OVER_RELAXATION),
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
+            settings: Settings::new(options),
             stages: Vec::new(),
         }
     }
@@ -116,7 +106,7 @@ impl Admm {
         let stage = if let Some(place) = kept {
             self.stages.remove(place).1
         } else {
-            let k = self.penalty * problem.operator.rho * 2.0_f64.powi(power);
+            let k = self.settings.penalty * problem.operator.rho * 2.0_f64.powi(power);
             problem.counters.factorisations += 1;
             Arc::new(GlobalStage::along(problem.operator.clone(), k)?)
         };
@@ -134,14 +124,15 @@ impl CondensedMethod for Admm {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
+        let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let (mut power, mut balance) = (0, Balance::default());
         let mut stage = self.stage(problem, power)?;
         let mut pair = Pair::start(problem);
         let mut cone = Cone::start(problem, &pair, stage.k0());
-        let (mut changes, mut alpha) = (0, self.over_relaxation);
+        let (mut changes, mut alpha) = (0, self.settings.over_relaxation);
 
         let status = loop {
-            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+            if let Some(status) = pair.ends(problem, changes, limits, monitor)? {
                 break status;
             }
             if problem.idle() >= STAGNATION {

@@ -24,7 +24,7 @@ use crate::geometry::{Point, add_scaled, norm, resolve, sub};
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, required};
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
 const ON_CIRCLE: f64 = 1e-10;
@@ -34,12 +34,12 @@ pub const SPEC: SolutionSpec = SolutionSpec {
     name: "circular-interface",
     summary: "2D disc parted by a circular arc, contact without friction, pressure p₀ + p₂ cos 2θ on its rim",
     parameters: &[
-        ParameterSpec::required(
+        required(
             "outer_radius_m",
             "radius R₁ of the rim, about the centre of the arc",
         ),
-        ParameterSpec::required("pressure_pa", "mean pressure p₀ on the rim"),
-        ParameterSpec::required(
+        required("pressure_pa", "mean pressure p₀ on the rim"),
+        required(
             "pressure_wave_pa",
             "amplitude p₂ of the pressure varying as cos 2θ",
         ),

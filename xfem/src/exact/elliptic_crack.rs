@@ -18,29 +18,24 @@ use std::f64::consts::PI;
 
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{Point, add_scaled, cross, dot, sub};
+use crate::geometry::{Point, add_scaled, combine, cross, dot, sub};
 use crate::material::{Material, Model};
 
 use super::parts::elliptic_disc::disc_potential;
 use super::parts::elliptic_slip::{compliance, slip};
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
-
-/// A component of stress.
-const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
-    ParameterSpec::optional(name, summary, 0.0)
-}
+use super::solution::{Field, Setting, Solution, SolutionSpec, growing, stress};
 
 /// The registered solution.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "elliptic-crack",
     summary: "elliptic or circular crack in an infinite solid under remote stress, slipping, sticking or open",
     parameters: &[
-        component("stress_xx_pa", "remote stress σ_xx, tension positive"),
-        component("stress_yy_pa", "remote stress σ_yy"),
-        component("stress_zz_pa", "remote stress σ_zz"),
-        component("stress_xy_pa", "remote stress σ_xy"),
-        component("stress_yz_pa", "remote stress σ_yz"),
-        component("stress_xz_pa", "remote stress σ_xz"),
+        stress("stress_xx_pa", "remote stress σ_xx, tension positive"),
+        stress("stress_yy_pa", "remote stress σ_yy"),
+        stress("stress_zz_pa", "remote stress σ_zz"),
+        stress("stress_xy_pa", "remote stress σ_xy"),
+        stress("stress_yz_pa", "remote stress σ_yz"),
+        stress("stress_xz_pa", "remote stress σ_xz"),
     ],
     build,
 };
@@ -153,14 +148,6 @@ impl State {
         y
     }
 
-    fn global(&self, v: [f64; 3]) -> Point {
-        let mut x = [0.0; 3];
-        for (value, e) in v.iter().zip(&self.frame) {
-            x = add_scaled(&x, *value, e);
-        }
-        x
-    }
-
     /// √(1 − x²/a² − y²/b²), 0 outside the crack.
     fn profile(&self, x: &Point) -> f64 {
         let [x, y, _] = self.local(x);
@@ -182,7 +169,7 @@ impl Field for State {
                 - poisson * trace * from_centre[k])
                 / young
         });
-        add_scaled(&self.global(layer), 1.0, &uniform)
+        add_scaled(&combine(&self.frame, layer), 1.0, &uniform)
     }
 
     fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
@@ -233,7 +220,7 @@ impl Field for State {
         let [a, b] = self.ellipse.half_axes;
         let (sin, cos) = nearest.parameter.sin_cos();
         let scale = 0.5 * shear * (PI * (cos / a).hypot(sin / b)).sqrt();
-        let slip = self.global([self.jump[0], self.jump[1], 0.0]);
+        let slip = combine(&self.frame, [self.jump[0], self.jump[1], 0.0]);
         Some([
             scale * self.jump[2] / (1.0 - poisson),
             scale * dot(&slip, &ahead) / (1.0 - poisson),

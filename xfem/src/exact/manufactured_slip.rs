@@ -28,24 +28,26 @@ use crate::material::Lame;
 use super::parts::jet::hump;
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
+use super::solution::{
+    Field, Setting, Solution, SolutionSpec, growing, needed, optional, required,
+};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "manufactured-slip",
     summary: "2D body cut by a straight crack: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        ParameterSpec::required("pressure_pa", "mean pressure p₀ > 0"),
-        ParameterSpec::required(
+        required("pressure_pa", "mean pressure p₀ > 0"),
+        required(
             "pressure_wave_pa",
             "amplitude p₁ of its variation, |p₁| < p₀",
         ),
-        ParameterSpec::required("slip_m", "largest slip s₀ >= 0"),
-        ParameterSpec::required(
+        required("slip_m", "largest slip s₀ >= 0"),
+        required(
             "wave_length_m",
             "length L of a slipping and a sticking half wave, which meet at the midpoint of the crack",
         ),
-        ParameterSpec::optional(
+        optional(
             "stick_dip",
             "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
             1.0,
@@ -58,16 +60,12 @@ fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, Str
     let &[pressure, wave, slip, length, dip] = values else {
         return Err("pressure, its wave, slip, wave length and dip are needed".into());
     };
-    for (holds, message) in [
+    needed(&[
         (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
         (slip >= 0.0, "slip_m >= 0"),
         (length > 0.0, "wave_length_m > 0"),
         (0.0 < dip && dip < 2.0, "0 < stick_dip < 2"),
-    ] {
-        if !holds {
-            return Err(format!("needed: {message}"));
-        }
-    }
+    ])?;
     let crack = LineCrack::new(setting)?;
     // Refuses solids.
     PlaneElasticity::new(setting)?;

@@ -21,18 +21,18 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::Mode;
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-opening",
     summary: "straight 2D crack in an infinite plate under stress growing linearly along it: partly open, partly closed",
     parameters: &[
-        ParameterSpec::required(
+        required(
             "pressure_pa",
             "pressure p₀ of the uncracked body at the midpoint of the crack, negative: tension",
         ),
-        ParameterSpec::required(
+        required(
             "pressure_rise_pa",
             "p₁: that pressure at the second end of the crack less that at the midpoint",
         ),

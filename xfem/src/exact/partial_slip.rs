@@ -22,19 +22,19 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-slip",
     summary: "straight 2D crack in an infinite plate, pressure linear along it, shear scaled by the load factor: partial slip, cycles",
     parameters: &[
-        ParameterSpec::required("pressure_pa", "pressure p₀ at the midpoint of the crack"),
-        ParameterSpec::required(
+        required("pressure_pa", "pressure p₀ at the midpoint of the crack"),
+        required(
             "pressure_rise_pa",
             "p₁: pressure at the second end less that at the midpoint, |p₁| < p₀",
         ),
-        ParameterSpec::required("shear_pa", "remote shear stress t·σ·n at load factor 1"),
+        required("shear_pa", "remote shear stress t·σ·n at load factor 1"),
     ],
     build,
 };

@@ -23,18 +23,18 @@ use crate::geometry::{Point, add_scaled};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "sliding-block",
     summary: "2D block parted from side to side, lateral pressure, top pushed down by the load factor: rigid slip, cycles",
     parameters: &[
-        ParameterSpec::required(
+        required(
             "pressure_pa",
             "pressure q > 0 on the lateral sides, constant",
         ),
-        ParameterSpec::required(
+        required(
             "displacement_m",
             "downward displacement v of the top at load factor 1",
         ),

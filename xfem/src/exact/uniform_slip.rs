@@ -25,16 +25,16 @@ use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, stress};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "uniform-slip",
     summary: "straight 2D crack in an infinite plate under uniform remote stress: stick, full slip or open",
     parameters: &[
-        ParameterSpec::optional("stress_xx_pa", "remote stress σ_xx, tension positive", 0.0),
-        ParameterSpec::optional("stress_yy_pa", "remote stress σ_yy", 0.0),
-        ParameterSpec::optional("stress_xy_pa", "remote stress σ_xy", 0.0),
+        stress("stress_xx_pa", "remote stress σ_xx, tension positive"),
+        stress("stress_yy_pa", "remote stress σ_yy"),
+        stress("stress_xy_pa", "remote stress σ_xy"),
     ],
     build,
 };

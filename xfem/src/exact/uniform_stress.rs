@@ -22,7 +22,7 @@ use crate::material::Model;
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, stress};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;
@@ -30,23 +30,18 @@ const ROUNDING: f64 = 1e-12;
 /// A point closer to an open crack than this, in units of the body's diagonal, lies on it: its side is asked for.
 const ON_CRACK: f64 = 1e-10;
 
-/// A component of stress.
-const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
-    ParameterSpec::optional(name, summary, 0.0)
-}
-
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "uniform-stress",
     summary: "uniform stress, the crack of any shape closed and sticking (or free of traction); 2D and 3D",
     parameters: &[
-        component("stress_xx_pa", "stress σ_xx, tension positive"),
-        component("stress_yy_pa", "stress σ_yy"),
-        component("stress_zz_pa", "stress σ_zz, solids only"),
-        component("stress_xy_pa", "stress σ_xy"),
-        component("stress_yz_pa", "stress σ_yz, solids only"),
-        component("stress_xz_pa", "stress σ_xz, solids only"),
-        component(
+        stress("stress_xx_pa", "stress σ_xx, tension positive"),
+        stress("stress_yy_pa", "stress σ_yy"),
+        stress("stress_zz_pa", "stress σ_zz, solids only"),
+        stress("stress_xy_pa", "stress σ_xy"),
+        stress("stress_yz_pa", "stress σ_yz, solids only"),
+        stress("stress_xz_pa", "stress σ_xz, solids only"),
+        stress(
             "opening_m",
             "opening δ >= 0 of a straight crack or plane without traction",
         ),
