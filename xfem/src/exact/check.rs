@@ -152,6 +152,41 @@ pub fn check_path(
     states
 }
 
+/// Tolerances of a check: of tractions [Pa], of jumps [m], and the step of differences with that of the field equations.
+#[derive(Clone, Copy)]
+pub struct Tolerances {
+    pub contact: [f64; 2],
+    pub elastic: [f64; 2],
+}
+
+/// A form over a path: contact laws at points `on` the crack after every increment, field equations `off` it, and the
+/// intensities of a straight crack where the form states any; the states.
+pub fn check_form(
+    solution: &dyn Solution,
+    of: &Setting<'_>,
+    path: &[f64],
+    [on, off]: [&[Point]; 2],
+    tolerances: Tolerances,
+) -> Vec<Box<dyn Field>> {
+    let states = check_path(solution, of, path, on, tolerances.contact);
+    for state in &states {
+        let [step, tolerance] = tolerances.elastic;
+        check_elasticity(state.as_ref(), of, off, step, tolerance);
+        if let CrackShape::Polyline(points) = of.crack {
+            let tip = [points[0][0], points[0][1], 0.0];
+            if points.len() == 2 && state.intensity(&tip).is_some_and(|k| k != [0.0; 3]) {
+                check_intensity(state.as_ref(), of);
+            }
+        }
+    }
+    states
+}
+
+/// A straight crack.
+pub fn line(from: [f64; 2], to: [f64; 2]) -> CrackShape {
+    CrackShape::Polyline(vec![from, to])
+}
+
 /// Points along a straight crack, off its ends.
 pub fn along(crack: &LineCrack) -> Vec<Point> {
     let at = |k| crack.point((f64::from(k) / 100.0 - 0.995) * crack.half_length, 0.0);

@@ -395,26 +395,6 @@ mod tests {
     }
 
     #[test]
-    fn traction_is_the_force_on_side_one() {
-        let shape = plane([1.0, 0.3, 2.0]);
-        let mut of = setting(&shape);
-        of.model = Model::Solid;
-        let field = held(&of, &[-1.0, -1.1, -0.9, 0.1, 0.0, 0.1])
-            .unwrap()
-            .at(&[2.0])
-            .unwrap();
-        let axes = axes(&shape, &[0.0; 3]);
-        let t = field.traction(&[0.0; 3]);
-        let mut sum = apply(&field.stress(&[0.0; 3], 1.0), &axes[0]);
-        for (component, axis) in t.iter().zip(&axes) {
-            for k in 0..3 {
-                sum[k] += component * axis[k];
-            }
-        }
-        assert!(norm(&sum) < 1e-14);
-    }
-
-    #[test]
     fn a_crack_free_of_traction_may_stand_open_and_no_other() {
         let line = CrackShape::Polyline(vec![[-1.0, 0.5], [3.0, 0.5]]);
         let arc = CrackShape::arc([0.0, 0.0], 1.0, [0.0, 1.0]);

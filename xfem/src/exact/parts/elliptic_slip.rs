@@ -111,28 +111,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn friction_holds_what_the_drop_leaves() {
-        let c = compliance([1.0, 0.5], MATERIAL);
-        let c = [c[0], c[1]];
-        for (tau, bound) in [
-            ([0.5, 0.5], 0.4),
-            ([-0.5, 1e-9], 0.4),
-            ([0.0, 0.7], 0.4),
-            ([0.3, -0.4], 0.5 - 1e-12),
-            ([0.3, -0.4], 0.0),
-        ] {
-            let d = slip(tau, bound, c);
-            let size = d[0].hypot(d[1]);
-            for k in 0..2 {
-                let left = tau[k] - d[k] / c[k];
-                assert!(
-                    (left - bound * d[k] / size).abs() < 1e-15,
-                    "{tau:?} {bound}: {d:?}"
-                );
-            }
-        }
-        assert_eq!(slip([0.3, -0.4], 0.5, c), [0.0; 2]);
-    }
 }
