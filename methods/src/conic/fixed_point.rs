@@ -16,8 +16,8 @@ use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, End, Forces, Limits, MethodError, Monitor, Options,
-    options,
+    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, MethodError, Monitor,
+    Options, options,
 };
 
 /// Tolerance of a cone program, relative to the natural map before it.
@@ -89,11 +89,7 @@ impl FixedPoint {
 }
 
 impl CondensedMethod for FixedPoint {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let mut x = problem.start();
         let mut program = ConeProgram::new(problem, self.law, &x.p)?;

@@ -321,25 +321,11 @@ impl Options {
 mod tests {
     use super::*;
 
-    const R: Real = Real {
-        name: "r",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        help: "scale",
-    };
-    const LIMIT: Whole = Whole {
-        name: "max_iterations",
-        default: 50,
-        min: 1,
-        max: 1_000_000_000,
-        help: "limit",
-    };
-    const POLISH: Switch = Switch {
-        name: "polish",
-        default: true,
-        help: "finish by Newton steps",
-    };
+    options! {
+        R: Real("r", 1.0, 1e-3, 1e3): "scale";
+        LIMIT: Whole("max_iterations", 50, 1, 1_000_000_000): "limit";
+        POLISH: Switch("polish", true): "finish by Newton steps";
+    }
 
     fn given(name: &str, value: f64) -> Result<Options, OptionError> {
         let specs = [
@@ -354,8 +340,9 @@ mod tests {
     fn values_outside_the_range_are_refused_with_value_and_range() {
         for value in [1e4, 0.0, -1.0, f64::NAN, f64::INFINITY] {
             let text = given("r", value).unwrap_err().to_string();
+            let allowed = "a number from 0.001 to 1000";
             assert!(
-                text.contains(&format!("{value}")) && text.contains("a number from 0.001 to 1000"),
+                text.contains(&format!("{value}")) && text.contains(allowed),
                 "{text}"
             );
         }
@@ -370,10 +357,8 @@ mod tests {
     #[test]
     fn unknown_names_are_refused_with_the_known_ones() {
         let text = given("gamma", 1.0).unwrap_err().to_string();
-        assert!(
-            text.contains("gamma") && text.contains("r, max_iterations, polish"),
-            "{text}"
-        );
+        let known = "r, max_iterations, polish";
+        assert!(text.contains("gamma") && text.contains(known), "{text}");
     }
 
     #[test]

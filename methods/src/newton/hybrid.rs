@@ -49,8 +49,8 @@ use crate::newton::iteration::{Newton, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, Status,
-    options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, MethodError, Monitor,
+    Status, options,
 };
 
 /// Registry entry.
@@ -87,11 +87,7 @@ const MAX_RESTARTS: usize = 8;
 const RESTART_SWEEPS: usize = 20;
 
 impl CondensedMethod for Hybrid {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut rounds = Rounds::new(problem, self);
         loop {
             if let Some(end) = rounds.sweep(problem, monitor)? {

@@ -45,8 +45,7 @@ use crate::condensed::branches::Branches;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
 use crate::{
-    Check, CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor,
-    options,
+    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -86,11 +85,7 @@ struct Iterate {
 }
 
 impl CondensedMethod for InteriorPoint {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
         let Forces { p: mut P, mut beta } = problem.start();
         let mut branches = Branches::default();

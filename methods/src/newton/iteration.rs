@@ -16,7 +16,7 @@ use crate::contract::law::{Branch, return_map};
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{MONOLITHIC, Tangent};
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, MethodError,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Limits, MethodError,
     Monitor, Needs, OptionSpec, Options, Status, Whole, options,
 };
 
@@ -203,11 +203,7 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
         self.tangent.needs()
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let start = problem.start();
         self.run(problem, start, monitor)
     }

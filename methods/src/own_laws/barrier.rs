@@ -57,7 +57,7 @@ use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
 use crate::own_laws::unloaded::unloaded;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Iteration, Method, MethodError, Monitor, Status,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Iteration, Method, Monitor, Status,
     options,
 };
 
@@ -158,11 +158,7 @@ impl Balance {
 }
 
 impl CondensedMethod for Barrier {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let (rho, unit) = (problem.operator.rho, problem.mean_jump());
         if unit == 0.0 || problem.increment.unloaded() {
             return unloaded(problem);

@@ -55,8 +55,8 @@ use crate::newton::springs::recorded;
 use crate::newton::step::Tangent;
 use crate::own_laws::stabilisation::Stabilisation;
 use crate::{
-    CondensedMethod, ContactProblem, ContactSystem, End, Method, MethodError, Monitor, Needs,
-    Options, Status, options,
+    CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, MethodError, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -146,11 +146,7 @@ impl CondensedMethod for Nitsche {
         }
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let terms = self.terms(problem)?;
         problem.claim = terms.claim();
         // The Newton iteration measures jumps on the scale of ρ, the claim measures them on that of Γ.

@@ -36,8 +36,8 @@ use crate::newton::springs::{Springs, recorded};
 use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
 use crate::{
-    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Method, MethodError,
-    Monitor, Needs, Options, Status, options,
+    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Method, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -96,11 +96,7 @@ impl CondensedMethod for Penalty {
         }
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let rho = problem.operator.rho;
         // Springs start unloaded along the normal, and loaded by the friction force of the start along the tangent.
         let mut anchor = problem.rows.restrict(&problem.increment.start.p);

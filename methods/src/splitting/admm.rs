@@ -45,7 +45,8 @@ use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, Options, options,
+    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Options,
+    options,
 };
 
 /// Registry entry.
@@ -119,11 +120,7 @@ impl Admm {
 }
 
 impl CondensedMethod for Admm {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let (mut power, mut balance) = (0, Balance::default());
         let mut stage = self.stage(problem, power)?;
@@ -265,43 +262,24 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::condensed::problem::Begin;
-    use crate::{
-        Claim, ContactState, ContactSystem, DelassusForm, Elastic, Increment, Load, SymmetricMatrix,
-    };
+    use crate::condensed::fixture::with_contact;
+    use crate::{Elastic, SymmetricMatrix};
 
     #[test]
     fn only_the_last_factors_are_kept() {
         let w = SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
         let body = Elastic::from_delassus(2, w, vec![]).unwrap();
-        let system = ContactSystem::new(body.clone(), vec![0.3]).unwrap();
-        let load = Load {
-            force: vec![-1.0, 0.0],
-            offset: vec![0.0; 2],
-            traction: vec![],
-        };
-        let increment = Increment {
-            system: &system,
-            load: &load,
-            start_load: &Load::zero(&body),
-            start: &ContactState::zero(&system),
-            index: 0,
-            tolerance: 1e-9,
-        };
-        let begun = ContactProblem::begin(&increment, DelassusForm::Formed, |_| Claim::Exact);
-        let Begin::Contact(mut problem) = begun.unwrap() else {
-            panic!("the point closes");
-        };
-        let mut admm = Admm::new(&Options::new(METHOD.options, &[]).unwrap());
-        let counted = |admm: &mut Admm, problem: &mut ContactProblem<'_>, power: i32| {
-            let k0 = admm.stage(problem, power).unwrap().k0();
-            assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
-            assert!(admm.stages.len() <= KEPT);
-            problem.counters.factorisations
-        };
-        for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)] {
-            let found = counted(&mut admm, &mut problem, power);
-            assert_eq!(found, factorisations, "power {power}");
-        }
+        let load = (vec![-1.0, 0.0], vec![0.0; 2]);
+        with_contact(&body, vec![0.3], load, |_, mut problem| {
+            let mut admm = Admm::new(&Options::new(METHOD.options, &[]).unwrap());
+            for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)]
+            {
+                let k0 = admm.stage(&mut problem, power).unwrap().k0();
+                assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
+                assert!(admm.stages.len() <= KEPT);
+                let found = problem.counters.factorisations;
+                assert_eq!(found, factorisations, "power {power}");
+            }
+        });
     }
 }

@@ -30,8 +30,8 @@
 use crate::newton::springs::Springs;
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Limits, Method, MethodError,
-    Monitor, Needs, Options, Status, options,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Limits, Method, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -85,11 +85,7 @@ impl CondensedMethod for AugmentedLagrangian {
         self.tangent.needs()
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let k = self.settings.stiffness * problem.operator.rho;
         let outer = Limits::new(self.settings.max_outer, PATIENCE);
         let mut x = problem.start();

@@ -35,7 +35,8 @@ use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, Options, options,
+    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Options,
+    options,
 };
 
 /// Registry entry.
@@ -89,11 +90,7 @@ impl Latin {
 }
 
 impl CondensedMethod for Latin {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let global = self.stage(problem)?;
         let mut pair = Pair::start(problem);

@@ -34,7 +34,7 @@ use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -64,11 +64,7 @@ const STAGNATION: usize = 300;
 const MAX_HALVINGS: usize = 4;
 
 impl CondensedMethod for Nsgs {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
         let saddle = Saddle::new(problem.operator.clone());
         let sweeps = Sweeps::new(problem, &saddle);

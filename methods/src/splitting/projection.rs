@@ -42,7 +42,7 @@ use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -75,11 +75,7 @@ const SMALLEST: f64 = 0.3;
 const SHRINK: f64 = 2.0 / 3.0;
 
 impl CondensedMethod for Projection {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let extragradient = self.variant == 1;
         let limits = Limits::new(self.max_iterations, PATIENCE);
         let step = Step::new(problem, extragradient);
