@@ -330,6 +330,14 @@ impl<'a> ContactProblem<'a> {
         ratio(e, self.reference_force(p))
     }
 
+    /// Adds an entry to the history.
+    pub(crate) fn note(&mut self, natural_map: f64, changes: usize) {
+        self.history.push(Iteration {
+            natural_map,
+            changes,
+        });
+    }
+
     /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
     pub(crate) fn ends(
         &mut self,
@@ -341,10 +349,7 @@ impl<'a> ContactProblem<'a> {
         if natural_map < IMPROVEMENT * self.best.0 {
             self.best = (natural_map, self.counters.iterations);
         }
-        self.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+        self.note(natural_map, changes);
         let iteration = self.counters.iterations;
         if natural_map <= self.stop {
             Some(Status::Converged)

@@ -57,8 +57,7 @@ use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
 use crate::own_laws::unloaded::unloaded;
 use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Iteration, Method, Monitor, Status,
-    options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Method, Monitor, Status, options,
 };
 
 /// Registry entry.
@@ -259,10 +258,7 @@ impl Barrier {
     ) -> Option<Status> {
         let v = problem.jump(&at.P, beta);
         let natural_map = problem.natural_map(&at.P, &v);
-        problem.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+        problem.note(natural_map, changes);
         let iteration = problem.counters.iterations;
         if !residual.is_finite() {
             return Some(Status::Diverged);

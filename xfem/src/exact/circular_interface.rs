@@ -24,7 +24,7 @@ use crate::geometry::{Point, add_scaled, norm, resolve, sub};
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, required};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
 const ON_CIRCLE: f64 = 1e-10;
@@ -48,9 +48,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[rim, pressure, wave] = values else {
-        return Err("an outer radius and two pressures are needed".into());
-    };
+    let &[rim, pressure, wave] = exactly(values)?;
     let &CrackShape::Arc {
         centre,
         radius,

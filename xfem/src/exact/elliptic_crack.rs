@@ -23,7 +23,7 @@ use crate::material::{Material, Model};
 
 use super::parts::elliptic_disc::disc_potential;
 use super::parts::elliptic_slip::{compliance, slip};
-use super::solution::{Field, Setting, Solution, SolutionSpec, growing, stress};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, growing, stress};
 
 /// The registered solution.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -47,9 +47,7 @@ fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, Str
     if setting.model != Model::Solid {
         return Err("elliptic-crack is a solution of solids".into());
     }
-    let &[xx, yy, zz, xy, yz, xz] = values else {
-        return Err("elliptic-crack takes six components of stress".into());
-    };
+    let &[xx, yy, zz, xy, yz, xz] = exactly(values)?;
     Ok(Box::new(EllipticCrack {
         ellipse,
         material: setting.material,

@@ -29,7 +29,7 @@ use super::parts::jet::hump;
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
 use super::solution::{
-    Field, Setting, Solution, SolutionSpec, growing, needed, optional, required,
+    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, required,
 };
 
 /// Registry entry.
@@ -57,9 +57,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, wave, slip, length, dip] = values else {
-        return Err("pressure, its wave, slip, wave length and dip are needed".into());
-    };
+    let &[pressure, wave, slip, length, dip] = exactly(values)?;
     needed(&[
         (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
         (slip >= 0.0, "slip_m >= 0"),

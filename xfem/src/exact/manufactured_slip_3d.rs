@@ -33,7 +33,7 @@ use crate::quadrature::gauss;
 use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
 use super::parts::line_crack::axes;
 use super::solution::{
-    Field, Setting, Solution, SolutionSpec, growing, needed, optional, required,
+    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, required,
 };
 
 /// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
@@ -74,11 +74,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, wave, slip, length, slip_wave, angle, dip] = values else {
-        return Err(
-            "pressure, its wave, slip, wave length, wave of slip, angle and dip are needed".into(),
-        );
-    };
+    let &[pressure, wave, slip, length, slip_wave, angle, dip] = exactly(values)?;
     needed(&[
         (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
         (slip >= 0.0, "slip_m >= 0"),

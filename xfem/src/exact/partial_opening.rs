@@ -21,7 +21,7 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::Mode;
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, required};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -41,9 +41,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, rise] = values else {
-        return Err("a pressure and its rise are needed".into());
-    };
+    let &[pressure, rise] = exactly(values)?;
     Ok(Box::new(PartialOpening {
         crack: LineCrack::new(setting)?,
         elastic: PlaneElasticity::new(setting)?,

@@ -22,7 +22,7 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, required};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -40,9 +40,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, rise, shear] = values else {
-        return Err("pressure, its rise and a shear stress are needed".into());
-    };
+    let &[pressure, rise, shear] = exactly(values)?;
     if rise.abs() >= pressure {
         return Err(
             "the crack must be pressed everywhere: |pressure_rise_pa| < pressure_pa".into(),

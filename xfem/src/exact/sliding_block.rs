@@ -23,7 +23,7 @@ use crate::geometry::{Point, add_scaled};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, required};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -43,9 +43,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, displacement] = values else {
-        return Err("a pressure and a displacement are needed".into());
-    };
+    let &[pressure, displacement] = exactly(values)?;
     if pressure <= 0.0 {
         return Err("pressure_pa must be positive: without it the block is a mechanism".into());
     }

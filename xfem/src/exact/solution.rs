@@ -56,6 +56,13 @@ pub(super) const fn stress(name: &'static str, summary: &'static str) -> Paramet
     optional(name, summary, 0.0)
 }
 
+/// The values of so many parameters.
+pub(super) fn exactly<const N: usize>(values: &[f64]) -> Result<&[f64; N], String> {
+    values
+        .try_into()
+        .map_err(|_| format!("{N} values are needed"))
+}
+
 /// Refuses values by the first condition that does not hold.
 pub(super) fn needed(conditions: &[(bool, &str)]) -> Result<(), String> {
     match conditions.iter().find(|(holds, _)| !holds) {

@@ -25,7 +25,7 @@ use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, stress};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, stress};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -41,9 +41,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
     let crack = LineCrack::new(setting)?;
-    let &[xx, yy, xy] = values else {
-        return Err("three stress components are needed".into());
-    };
+    let &[xx, yy, xy] = exactly(values)?;
     Ok(Box::new(UniformSlip {
         crack,
         elastic: PlaneElasticity::new(setting)?,

@@ -22,7 +22,7 @@ use crate::material::Model;
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, stress};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, stress};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;
@@ -50,9 +50,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[xx, yy, zz, xy, yz, xz, opening] = values else {
-        return Err("six stress components and an opening are needed".into());
-    };
+    let &[xx, yy, zz, xy, yz, xz, opening] = exactly(values)?;
     let flat = match setting.crack {
         CrackShape::Plane { .. } => true,
         CrackShape::Polyline(points) => points.len() == 2,
