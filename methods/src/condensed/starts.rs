@@ -186,23 +186,3 @@ pub fn contact_wise_margin(system: &ContactSystem) -> Result<f64, MethodError> {
     let least = (0..rows.points()).map(margin).fold(f64::INFINITY, f64::min);
     Ok(operator.rho * least)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::condensed::fixture::with_contact;
-    use crate::{Elastic, SymmetricMatrix};
-
-    #[test]
-    fn redundant_points_are_tied_by_one_of_the_possible_forces() {
-        let values = vec![1.0; 6];
-        let w = SymmetricMatrix::new(4, vec![0, 2, 4, 5, 6], vec![0, 2, 1, 3, 2, 3], values);
-        let body = Elastic::from_delassus(2, w.unwrap(), vec![]).unwrap();
-        let load = (vec![0.0; 4], vec![-1.0, 0.1, -1.0, 0.1]);
-        let p = with_contact(&body, vec![0.3; 2], load, |increment, problem| {
-            forces(Start::Stick, increment, Some(&problem)).unwrap()
-        });
-        assert!((p[0] + p[2] - 1.0).abs() < 1e-8, "{p:?}");
-        assert!((p[1] + p[3] + 0.1).abs() < 1e-8, "{p:?}");
-    }
-}

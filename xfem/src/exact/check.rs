@@ -37,7 +37,7 @@ fn derivative<const N: usize>(
 /// σ = Hooke(∇u) and div σ + f = 0 at points off the crack, by differences of `step`; `tolerance` is a stress [Pa].
 ///
 /// The differences must not reach over the crack, where the side would change.
-pub fn check_elasticity(
+fn check_elasticity(
     field: &dyn Field,
     of: &Setting<'_>,
     points: &[Point],
@@ -135,23 +135,6 @@ pub fn check_contact(
     }
 }
 
-/// Contact laws at points of the crack after every increment of a path, against the increment before; the states.
-pub fn check_path(
-    solution: &dyn Solution,
-    of: &Setting<'_>,
-    path: &[f64],
-    points: &[Point],
-    tolerance: [f64; 2],
-) -> Vec<Box<dyn Field>> {
-    let at = |k: usize| solution.at(&path[..k]).unwrap();
-    let states: Vec<Box<dyn Field>> = (1..=path.len()).map(at).collect();
-    for (k, now) in states.iter().enumerate() {
-        let before = k.checked_sub(1).map(|k| states[k].as_ref());
-        check_contact(now.as_ref(), before, of, points, tolerance);
-    }
-    states
-}
-
 /// Tolerances of a check: of tractions [Pa], of jumps [m], and the step of differences with that of the field equations.
 #[derive(Clone, Copy)]
 pub struct Tolerances {
@@ -168,8 +151,11 @@ pub fn check_form(
     [on, off]: [&[Point]; 2],
     tolerances: Tolerances,
 ) -> Vec<Box<dyn Field>> {
-    let states = check_path(solution, of, path, on, tolerances.contact);
-    for state in &states {
+    let at = |k: usize| solution.at(&path[..k]).unwrap();
+    let states: Vec<Box<dyn Field>> = (1..=path.len()).map(at).collect();
+    for (k, state) in states.iter().enumerate() {
+        let before = k.checked_sub(1).map(|k| states[k].as_ref());
+        check_contact(state.as_ref(), before, of, on, tolerances.contact);
         let [step, tolerance] = tolerances.elastic;
         check_elasticity(state.as_ref(), of, off, step, tolerance);
         if let CrackShape::Polyline(points) = of.crack {
@@ -194,7 +180,7 @@ pub fn along(crack: &LineCrack) -> Vec<Point> {
 }
 
 /// K at both ends of a straight crack against the stress just ahead, in the frame (ahead, n).
-pub fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
+fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
     let CrackShape::Polyline(points) = of.crack else {
         panic!("not a straight crack")
     };
