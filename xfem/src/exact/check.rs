@@ -71,11 +71,11 @@ fn check_elasticity(
                     if a == b {
                         hooke += lame.lambda * trace;
                     }
-                    let error = (sigma[a][b] - hooke).abs();
+                    let found = sigma[a][b];
+                    let error = (found - hooke).abs();
                     assert!(
                         error <= tolerance,
-                        "Hooke at {x:?} [{a}{b}]: {} {hooke}",
-                        sigma[a][b]
+                        "Hooke at {x:?} [{a}{b}]: {found} {hooke}"
                     );
                 }
             }
@@ -102,10 +102,8 @@ pub fn check_contact(
         for side in [1.0, -1.0] {
             let found = resolve(&axes, &apply(&field.stress(x, side), &axes[0]));
             for (t, s) in traction.iter().zip(found) {
-                assert!(
-                    (t + s).abs() <= stress,
-                    "face {side} at {x:?}: {traction:?} {found:?}"
-                );
+                let off = (t + s).abs();
+                assert!(off <= stress, "face {side} at {x:?}: {t} {s}");
             }
         }
         let jump = field.jump(x);
@@ -126,10 +124,8 @@ pub fn check_contact(
         if size > 100.0 * length {
             for (t, d) in [t_a, t_b].into_iter().zip(slip) {
                 let expected = -bound * d / size;
-                assert!(
-                    (t - expected).abs() <= stress,
-                    "friction at {x:?}: {t} {expected}"
-                );
+                let off = (t - expected).abs();
+                assert!(off <= stress, "friction at {x:?}: {t} {expected}");
             }
         }
     }
@@ -160,7 +156,7 @@ pub fn check_form(
         check_elasticity(state.as_ref(), of, off, step, tolerance);
         if let CrackShape::Polyline(points) = of.crack {
             let tip = [points[0][0], points[0][1], 0.0];
-            if points.len() == 2 && state.intensity(&tip).is_some_and(|k| k != [0.0; 3]) {
+            if points.len() == 2 && state.intensity(&tip).is_some() {
                 check_intensity(state.as_ref(), of);
             }
         }
@@ -195,11 +191,8 @@ fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
         let root = (2.0 * std::f64::consts::PI * rho).sqrt();
         for (k, stress) in found.iter().zip([dot(&n, &on_n), dot(&ahead, &on_n)]) {
             // What is left is √ρ times the stress that is not singular, at most of order one in all tests.
-            assert!(
-                (k - root * stress).abs() < 3.0 * root,
-                "{k} {}",
-                root * stress
-            );
+            let limit = root * stress;
+            assert!((k - limit).abs() < 3.0 * root, "{k} {limit}");
         }
     }
 }
