@@ -38,8 +38,15 @@ pub(crate) trait Scheme: Send {
     /// Which smooth piece of H a point is on.
     type Piece: Copy + PartialEq;
 
-    /// H.
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3];
+    /// H; P − Π(P − r v), Π the return mapping, unless the scheme has its own: the equations of the augmented Lagrangian.
+    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+        let mut H = trial(r, P, v);
+        return_map(mu, &mut H[..P.len()]);
+        for k in 0..P.len() {
+            H[k] = P[k] - H[k];
+        }
+        H
+    }
 
     /// The piece at (P, v).
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
@@ -248,16 +255,6 @@ impl At<'_, '_> {
         };
         points.map(row).collect()
     }
-}
-
-/// P − Π(P − r v) at one point, Π the return mapping: the equations of the augmented Lagrangian.
-pub(crate) fn augmented_equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut H = trial(r, P, v);
-    return_map(mu, &mut H[..P.len()]);
-    for k in 0..P.len() {
-        H[k] = P[k] - H[k];
-    }
-    H
 }
 
 /// The branch of Π(P − r v).

@@ -41,9 +41,7 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
-use crate::newton::iteration::{
-    Newton, Scheme, augmented_branch, augmented_equations, scheme_options, trial,
-};
+use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options, trial};
 use crate::{Method, options};
 
 /// Registry entry.
@@ -68,10 +66,6 @@ pub(crate) struct AlartCurnier;
 
 impl Scheme for AlartCurnier {
     type Piece = Branch;
-
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        augmented_equations(mu, r, P, v)
-    }
 
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
         augmented_branch(mu, r, P, v)
