@@ -1,6 +1,8 @@
 //! The increment seen from the contact points, and the pieces that methods on them are built from.
 
 pub(crate) mod branches;
+#[cfg(test)]
+pub(crate) mod fixture;
 pub(crate) mod forces;
 pub(crate) mod local;
 pub(crate) mod local_form;
@@ -14,7 +16,7 @@ pub(crate) mod starts;
 pub(crate) mod sweeps;
 pub(crate) mod whole_body;
 
-pub use forces::{End, Forces};
+pub use forces::{End, Ended, Forces};
 pub use local_form::LocalForm;
 pub use method::CondensedMethod;
 pub use problem::{Check, ContactProblem, Limits};

@@ -121,34 +121,62 @@ pub enum MethodError {
     StartIsHistory,
 }
 
+impl MethodError {
+    /// [`Range`](Self::Range).
+    pub(crate) fn range(
+        what: &'static str,
+        index: usize,
+        value: f64,
+        allowed: &'static str,
+    ) -> Self {
+        Self::Range {
+            what,
+            index,
+            value,
+            allowed,
+        }
+    }
+
+    /// [`Pattern`](Self::Pattern).
+    pub(crate) fn pattern(what: &'static str, index: usize, reason: &'static str) -> Self {
+        Self::Pattern {
+            what,
+            index,
+            reason,
+        }
+    }
+}
+
 /// Refuses arrays of the wrong length.
 pub(crate) fn check_len(
     what: &'static str,
     found: usize,
     expected: usize,
 ) -> Result<(), MethodError> {
-    if found == expected {
-        Ok(())
-    } else {
-        Err(MethodError::Size {
-            what,
-            expected,
-            found,
-        })
+    let wrong = MethodError::Size {
+        what,
+        expected,
+        found,
+    };
+    (found == expected).then_some(()).ok_or(wrong)
+}
+
+/// Refuses the first entry that is not allowed.
+fn check_entries(
+    what: &'static str,
+    values: impl Iterator<Item = f64>,
+    allowed: &'static str,
+    holds: fn(f64) -> bool,
+) -> Result<(), MethodError> {
+    match values.enumerate().find(|(_, value)| !holds(*value)) {
+        None => Ok(()),
+        Some((index, value)) => Err(MethodError::range(what, index, value, allowed)),
     }
 }
 
 /// Refuses NaN and infinite entries.
 pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), MethodError> {
-    match values.iter().position(|v| !v.is_finite()) {
-        None => Ok(()),
-        Some(index) => Err(MethodError::Range {
-            what,
-            index,
-            value: values[index],
-            allowed: "finite",
-        }),
-    }
+    check_entries(what, values.iter().copied(), "finite", f64::is_finite)
 }
 
 /// Refuses entries that are not positive and finite.
@@ -156,15 +184,6 @@ pub(crate) fn check_positive(
     what: &'static str,
     values: impl Iterator<Item = f64>,
 ) -> Result<(), MethodError> {
-    for (index, value) in values.enumerate() {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(MethodError::Range {
-                what,
-                index,
-                value,
-                allowed: "positive and finite",
-            });
-        }
-    }
-    Ok(())
+    let holds = |value: f64| value > 0.0 && value.is_finite();
+    check_entries(what, values, "positive and finite", holds)
 }

@@ -49,11 +49,8 @@ mod tests {
             assert!(SOLUTIONS[..k].iter().all(|s| s.name != spec.name));
             assert!(solution(spec.name).is_some_and(|s| s.summary == spec.summary));
             for (j, parameter) in spec.parameters.iter().enumerate() {
-                assert!(
-                    spec.parameters[..j]
-                        .iter()
-                        .all(|p| p.name != parameter.name)
-                );
+                let mut before = spec.parameters[..j].iter();
+                assert!(before.all(|p| p.name != parameter.name));
             }
         }
         assert!(solution("no-such-solution").is_none());

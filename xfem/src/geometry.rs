@@ -62,6 +62,12 @@ pub fn resolve<const N: usize>(axes: &[Point; N], v: &Point) -> [f64; N] {
     axes.map(|axis| dot(&axis, v))
 }
 
+/// The vector with given components along unit vectors.
+pub fn combine(axes: &[Point; 3], components: [f64; 3]) -> Point {
+    let terms = components.iter().zip(axes);
+    terms.fold([0.0; 3], |x, (value, e)| add_scaled(&x, *value, e))
+}
+
 /// Where a condition ends that holds at `holding` and not at `failing`, by bisection.
 pub fn bisect(mut holding: f64, mut failing: f64, holds: impl Fn(f64) -> bool) -> f64 {
     // Halvings down to rounding.

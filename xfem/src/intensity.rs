@@ -105,7 +105,6 @@ pub fn jump_fit_along(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::tip_frame::FrontShape;
     use crate::intensity::williams::{Mode, Williams};
     use crate::material::{Material, Model};
 
@@ -121,13 +120,7 @@ mod tests {
 
     fn tip() -> TipFrame {
         let (s, c) = (-2.1f64).sin_cos();
-        TipFrame {
-            crack: 0,
-            position: [1.0, 2.0, 0.5],
-            ahead: [c, 0.0, s],
-            normal: [0.0, 1.0, 0.0],
-            shape: FrontShape::Straight,
-        }
+        TipFrame::straight(0, [1.0, 2.0, 0.5], [c, 0.0, s], [0.0, 1.0, 0.0])
     }
 
     /// Source: Williams 1957. Goal: the unit fields, and any jump √r (c₀ + c₁ r), to rounding.

@@ -287,10 +287,8 @@ mod tests {
                 } else {
                     0.0
                 };
-                assert!(
-                    (found - exact).abs() < 1e-14,
-                    "n = {n}, degree {degree}: {found} {exact}"
-                );
+                let error = (found - exact).abs();
+                assert!(error < 1e-14, "n = {n}, degree {degree}: {found} {exact}");
             }
         }
     }

@@ -125,13 +125,16 @@ impl Delassus for Dense {
     }
 }
 
+/// W and its diagonal.
+pub(crate) type Condensed = (Mat<f64>, Vec<f64>);
+
 /// W for the listed rows of B, full (both triangles), exactly symmetric, and the squared columns of Y: the diagonal of W
 /// as [`diagonal`] gives it.
 pub(crate) fn condense(
     factor: &Factor,
     jump: &JumpOperator,
     rows: &[usize],
-) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+) -> Result<Condensed, MethodError> {
     let m = rows.len();
     check_rows(m)?;
     let half = Half::new(factor, jump, rows);
@@ -434,12 +437,7 @@ mod tests {
         })
         .unwrap();
         let error = body.condensed().err().unwrap();
-        assert_eq!(
-            error,
-            MethodError::TooManyRows {
-                rows: n,
-                limit: MAX_CONDENSED_ROWS
-            }
-        );
+        let limit = MAX_CONDENSED_ROWS;
+        assert_eq!(error, MethodError::TooManyRows { rows: n, limit });
     }
 }

@@ -25,13 +25,7 @@ impl SymmetricMatrix {
         check_pointers("stiffness column pointers", &col_ptr, n, row_idx.len())?;
         check_len("stiffness values", values.len(), row_idx.len())?;
         check_finite("stiffness values", &values)?;
-        let bad = |index, reason| {
-            Err(MethodError::Pattern {
-                what: "stiffness",
-                index,
-                reason,
-            })
-        };
+        let bad = |index, reason| Err(MethodError::pattern("stiffness", index, reason));
         for j in 0..n {
             let rows = &row_idx[col_ptr[j]..col_ptr[j + 1]];
             if rows.first() != Some(&j) {
@@ -135,11 +129,11 @@ impl JumpOperator {
         check_len("jump operator values", values.len(), col_idx.len())?;
         check_finite("jump operator values", &values)?;
         if let Some(index) = col_idx.iter().position(|&j| j >= cols) {
-            return Err(MethodError::Pattern {
-                what: "jump operator",
+            return Err(MethodError::pattern(
+                "jump operator",
                 index,
-                reason: "a column index exceeds the number of unknowns",
-            });
+                "a column index exceeds the number of unknowns",
+            ));
         }
         Ok(Self {
             rows,
@@ -207,13 +201,7 @@ fn check_pointers(
     entries: usize,
 ) -> Result<(), MethodError> {
     check_len(what, ptr.len(), n + 1)?;
-    let bad = |index, reason| {
-        Err(MethodError::Pattern {
-            what,
-            index,
-            reason,
-        })
-    };
+    let bad = |index, reason| Err(MethodError::pattern(what, index, reason));
     if ptr[0] != 0 {
         return bad(0, "must start at 0");
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use faer::Mat;
 
 use crate::MethodError;
-use crate::algebra::delassus;
+use crate::algebra::delassus::{self, Condensed};
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::Factor;
 use crate::algebra::floating::{ModeJumps, pins};
@@ -33,19 +33,11 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Solves K X = F in place for all columns together, without refinement.
     fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError>;
 
-    /// W = B K⁻¹ Bᵀ on the listed rows of B, and its diagonal as [`delassus_diagonal`](Self::delassus_diagonal) gives it.
-    fn delassus(
-        &self,
-        jump: &JumpOperator,
-        rows: &[usize],
-    ) -> Result<(Mat<f64>, Vec<f64>), MethodError>;
+    /// W = B K⁻¹ Bᵀ on the listed rows of B, and its diagonal as [`compliances`](Self::compliances) gives it.
+    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError>;
 
     /// The diagonal of W alone: W is not formed.
-    fn delassus_diagonal(
-        &self,
-        jump: &JumpOperator,
-        rows: &[usize],
-    ) -> Result<Vec<f64>, MethodError>;
+    fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError>;
 
     /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
     fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64;
@@ -133,19 +125,11 @@ impl Stiffness for SparseStiffness {
         self.factor()?.solve_columns(x)
     }
 
-    fn delassus(
-        &self,
-        jump: &JumpOperator,
-        rows: &[usize],
-    ) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         delassus::condense(self.factor()?, jump, rows)
     }
 
-    fn delassus_diagonal(
-        &self,
-        jump: &JumpOperator,
-        rows: &[usize],
-    ) -> Result<Vec<f64>, MethodError> {
+    fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
         delassus::diagonal(self.factor()?, jump, rows)
     }
 
@@ -210,16 +194,12 @@ impl Stiffness for DelassusOnly {
         Err(MethodError::NoStiffness)
     }
 
-    fn delassus(
-        &self,
-        _: &JumpOperator,
-        rows: &[usize],
-    ) -> Result<(Mat<f64>, Vec<f64>), MethodError> {
+    fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
         Ok((delassus::dense(&self.w)?, diagonal))
     }
 
-    fn delassus_diagonal(&self, _: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
+    fn compliances(&self, _: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
         Ok(rows.iter().map(|&i| self.w.diagonal(i)).collect())
     }
 

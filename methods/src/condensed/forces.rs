@@ -2,6 +2,7 @@
 
 use crate::algebra::dense::along;
 use crate::contract::state::Status;
+use crate::error::MethodError;
 
 /// Contact forces on the rows in use and amplitudes of the rigid motions, or a step of both.
 #[derive(Debug, Clone)]
@@ -21,6 +22,9 @@ impl Forces {
         }
     }
 }
+
+/// How an iteration ended, unless it could not begin.
+pub type Ended = Result<End, MethodError>;
 
 /// How an iteration ended, and where.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! What methods on the condensed increment do alike: begin, iterate, finish.
 
-use crate::condensed::forces::End;
+use crate::condensed::forces::{End, Ended};
 use crate::condensed::problem::{Begin, ContactProblem};
 use crate::contract::registry::{Enforcement, Needs};
 use crate::contract::state::{Claim, Monitor, Outcome, Status};
@@ -28,11 +28,7 @@ pub trait CondensedMethod: Send {
     ///
     /// # Errors
     /// Input that no method could treat; see [`MethodError`].
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError>;
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended;
 }
 
 impl End {

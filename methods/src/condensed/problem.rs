@@ -43,6 +43,16 @@ pub struct Limits {
     pub patience: usize,
 }
 
+impl Limits {
+    /// Both.
+    pub fn new(iterations: usize, patience: usize) -> Self {
+        Self {
+            iterations,
+            patience,
+        }
+    }
+}
+
 /// What becomes of an iterate that was checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
@@ -320,6 +330,14 @@ impl<'a> ContactProblem<'a> {
         ratio(e, self.reference_force(p))
     }
 
+    /// Adds an entry to the history.
+    pub(crate) fn note(&mut self, natural_map: f64, changes: usize) {
+        self.history.push(Iteration {
+            natural_map,
+            changes,
+        });
+    }
+
     /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
     pub(crate) fn ends(
         &mut self,
@@ -331,10 +349,7 @@ impl<'a> ContactProblem<'a> {
         if natural_map < IMPROVEMENT * self.best.0 {
             self.best = (natural_map, self.counters.iterations);
         }
-        self.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+        self.note(natural_map, changes);
         let iteration = self.counters.iterations;
         if natural_map <= self.stop {
             Some(Status::Converged)

@@ -186,39 +186,3 @@ pub fn contact_wise_margin(system: &ContactSystem) -> Result<f64, MethodError> {
     let least = (0..rows.points()).map(margin).fold(f64::INFINITY, f64::min);
     Ok(operator.rho * least)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{ContactSystem, Elastic, Load, SymmetricMatrix};
-
-    #[test]
-    fn redundant_points_are_tied_by_one_of_the_possible_forces() {
-        let values = vec![1.0; 6];
-        let w = SymmetricMatrix::new(4, vec![0, 2, 4, 5, 6], vec![0, 2, 1, 3, 2, 3], values);
-        let body = Elastic::from_delassus(2, w.unwrap(), vec![]).unwrap();
-        let system = ContactSystem::new(body.clone(), vec![0.3; 2]).unwrap();
-        let load = Load {
-            force: vec![0.0; 4],
-            offset: vec![-1.0, 0.1, -1.0, 0.1],
-            traction: vec![],
-        };
-        let increment = Increment {
-            system: &system,
-            load: &load,
-            start_load: &Load::zero(&body),
-            start: &ContactState::zero(&system),
-            index: 0,
-            tolerance: 1e-9,
-        };
-        let Begin::Contact(problem) =
-            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
-                .unwrap()
-        else {
-            panic!("the points close");
-        };
-        let p = forces(Start::Stick, &increment, Some(&problem)).unwrap();
-        assert!((p[0] + p[2] - 1.0).abs() < 1e-8, "{p:?}");
-        assert!((p[1] + p[3] + 0.1).abs() < 1e-8, "{p:?}");
-    }
-}

@@ -251,57 +251,25 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
-    use crate::condensed::problem::Begin;
-    use crate::contract::elastic::{Elastic, ElasticParts};
+    use crate::condensed::fixture::with_contact;
     use crate::contract::law::{project_ball, project_cone};
-    use crate::contract::state::{Claim, ContactState};
-    use crate::contract::system::{ContactSystem, Increment, Load};
+    use crate::{Elastic, SymmetricMatrix};
 
     /// One point on springs of stiffness k in all directions; W = I/k and q = f/k.
     fn springs(dim: usize, k: f64) -> Arc<Elastic> {
-        let (ends, all): (Vec<usize>, Vec<usize>) = ((0..=dim).collect(), (0..dim).collect());
-        let parts = ElasticParts {
-            dim,
-            stiffness: SymmetricMatrix::new(dim, ends.clone(), all.clone(), vec![k; dim]).unwrap(),
-            jump: JumpOperator::new(dim, dim, ends, all.clone(), vec![1.0; dim]).unwrap(),
-            weight: vec![1.0],
-            order: all,
-            floating: vec![],
-            frictionless: false,
-            traction: None,
-        };
-        Elastic::new(parts).unwrap()
+        let (ends, all) = ((0..=dim).collect(), (0..dim).collect());
+        let w = SymmetricMatrix::new(dim, ends, all, vec![1.0 / k; dim]).unwrap();
+        Elastic::from_delassus(dim, w, vec![]).unwrap()
     }
 
     /// P for a load and several parameters, one program for all.
     fn solve(law: Law, k: f64, mu: f64, f: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
-        let dim = f.len();
-        let system = ContactSystem::new(springs(dim, k), vec![mu]).unwrap();
-        let load = |force: Vec<f64>| Load {
-            force,
-            offset: vec![0.0; dim],
-            traction: vec![],
-        };
-        let (load, start_load) = (load(f.to_vec()), load(vec![0.0; dim]));
-        let start = ContactState::zero(&system);
-        let increment = Increment {
-            system: &system,
-            load: &load,
-            start_load: &start_load,
-            start: &start,
-            index: 0,
-            tolerance: 1e-9,
-        };
-        let Begin::Contact(problem) =
-            ContactProblem::begin(&increment, crate::DelassusForm::Formed, |_| Claim::Exact)
-                .unwrap()
-        else {
-            panic!("the load must close the contact");
-        };
-        let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();
-        let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().0;
-        parameters.iter().map(solve).collect()
+        let load = (f.to_vec(), vec![0.0; f.len()]);
+        with_contact(&springs(f.len(), k), vec![mu], load, |_, problem| {
+            let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();
+            let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().0;
+            parameters.iter().map(solve).collect()
+        })
     }
 
     fn assert_close(found: &[f64], exact: &[f64], size: f64) {

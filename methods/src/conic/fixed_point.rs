@@ -16,8 +16,8 @@ use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, End, Forces, Limits, MethodError, Monitor, OptionSpec,
-    Options, Switch, Whole, options,
+    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, MethodError, Monitor,
+    Options, options,
 };
 
 /// Tolerance of a cone program, relative to the natural map before it.
@@ -34,23 +34,16 @@ const PATIENCE: usize = 20;
 const POLISH_PATIENCE: usize = 30;
 
 options! {
-    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "cone programs and Newton steps before giving up";
-    ANDERSON: Whole("anderson", 5, 0, 20): "differences that Anderson acceleration keeps; 0: the plain fixed point";
-    POLISHED: Switch("polish", true): "1: finish by Newton steps, which reach what the cone programs cannot";
+    Settings {
+        max_iterations: Count(200, 1, 1_000_000), "cone programs and Newton steps before giving up";
+        anderson: Count(5, 0, 20), "differences that Anderson acceleration keeps; 0: the plain fixed point";
+        polish: Switch(true), "1: finish by Newton steps, which reach what the cone programs cannot";
+    }
 }
-
-/// What both methods can be told.
-pub(crate) static OPTIONS: [OptionSpec; 3] = [
-    OptionSpec::Whole(MAX_ITERATIONS),
-    OptionSpec::Whole(ANDERSON),
-    OptionSpec::Switch(POLISHED),
-];
 
 /// The fixed point of one law.
 pub(crate) struct FixedPoint {
-    limits: Limits,
-    anderson: usize,
-    polish: bool,
+    settings: Settings,
     law: Law,
     /// a of one point from μ, P, v.
     parameter: fn(f64, &[f64], &[f64]) -> f64,
@@ -60,12 +53,7 @@ impl FixedPoint {
     /// As the options say.
     pub fn new(options: &Options, law: Law, parameter: fn(f64, &[f64], &[f64]) -> f64) -> Self {
         Self {
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
-            anderson: options.count(&ANDERSON),
-            polish: options.switch(&POLISHED),
+            settings: Settings::new(options),
             law,
             parameter,
         }
@@ -81,10 +69,7 @@ impl FixedPoint {
         let mut newton = Newton {
             scheme: AlartCurnier,
             multiple: 1.0,
-            limits: Limits {
-                patience: POLISH_PATIENCE,
-                ..self.limits
-            },
+            limits: Limits::new(self.settings.max_iterations, POLISH_PATIENCE),
             line_search: true,
             rescue: false,
             tangent: Tangent::Condensed,
@@ -104,27 +89,24 @@ impl FixedPoint {
 }
 
 impl CondensedMethod for FixedPoint {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let mut x = problem.start();
         let mut program = ConeProgram::new(problem, self.law, &x.p)?;
-        let mut anderson = Anderson::new(self.anderson);
+        let mut anderson = Anderson::new(self.settings.anderson);
         let mut branches = Branches::default();
         let mut accuracy = Accuracy::new(problem);
         let mut restarted = false;
         loop {
             let v = problem.jump(&x.p, &x.beta);
             let natural_map = problem.natural_map(&x.p, &v);
-            if self.polish && at_floor(problem, natural_map) {
+            if self.settings.polish && at_floor(problem, natural_map) {
                 return self.polished(problem, x, monitor);
             }
             if stuck(problem, natural_map) && !restarted {
                 restarted = true;
                 problem.begin_phase();
-                anderson = Anderson::new(self.anderson);
+                anderson = Anderson::new(self.settings.anderson);
                 if let Some(p) = tied_forces(problem) {
                     let beta = problem.start_amplitudes(&p);
                     x = Forces { p, beta };
@@ -132,7 +114,7 @@ impl CondensedMethod for FixedPoint {
                 }
             }
             let changes = branches.changes(problem, &x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), changes, self.limits, monitor)? {
+            match problem.check(natural_map, (&x.p, &x.beta), changes, limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => {
                     // The program holds q.

@@ -41,7 +41,7 @@
 
 use crate::Method;
 use crate::conic::cone_program::Law;
-use crate::conic::fixed_point::{FixedPoint, OPTIONS};
+use crate::conic::fixed_point::{FixedPoint, Settings};
 use crate::contract::law::tangential_norm;
 
 /// Registry entry.
@@ -51,7 +51,7 @@ pub static METHOD: Method = Method {
     reference: "Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011) 155",
     summary: "second-order cone programs, each with the gap shifted by the slip that the one before has left",
     exact: true,
-    options: &OPTIONS,
+    options: Settings::OPTIONS,
     source: include_str!("socp.rs"),
     build: |options| Box::new(FixedPoint::new(options, Law::Cone, shift)),
 };

@@ -44,7 +44,7 @@
 
 use crate::Method;
 use crate::conic::cone_program::Law;
-use crate::conic::fixed_point::{FixedPoint, OPTIONS};
+use crate::conic::fixed_point::{FixedPoint, Settings};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -53,7 +53,7 @@ pub static METHOD: Method = Method {
     reference: "Haslinger, Hlaváček & Nečas, Handbook of Numerical Analysis IV (1996) 313",
     summary: "contact with a given friction bound, taken from the normal forces of the problem before",
     exact: true,
-    options: &OPTIONS,
+    options: Settings::OPTIONS,
     source: include_str!("tresca.rs"),
     build: |options| Box::new(FixedPoint::new(options, Law::Bound, bound)),
 };

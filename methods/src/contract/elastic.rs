@@ -104,11 +104,11 @@ impl Elastic {
         let mut seen = vec![false; n];
         for (index, &j) in parts.order.iter().enumerate() {
             if j >= n || std::mem::replace(&mut seen[j], true) {
-                return Err(MethodError::Pattern {
-                    what: "elimination order",
+                return Err(MethodError::pattern(
+                    "elimination order",
                     index,
-                    reason: "not a permutation of the unknowns",
-                });
+                    "not a permutation of the unknowns",
+                ));
             }
         }
         let points = parts.weight.len();
@@ -149,12 +149,12 @@ impl Elastic {
     ) -> Result<Arc<Self>, MethodError> {
         let m = w.size();
         if let Some(index) = (0..m).find(|&j| w.diagonal(j) < 0.0) {
-            return Err(MethodError::Range {
-                what: "Delassus operator diagonal",
+            return Err(MethodError::range(
+                "Delassus operator diagonal",
                 index,
-                value: w.diagonal(index),
-                allowed: "not negative",
-            });
+                w.diagonal(index),
+                "not negative",
+            ));
         }
         let (jump, weight) = (JumpOperator::identity(m), vec![1.0; m / dim.max(1)]);
         check_contact(dim, m, &jump, &weight, &floating)?;
@@ -295,7 +295,7 @@ impl Elastic {
     /// The diagonal of W on some of [`rows`](Self::rows). W is not formed for it.
     pub(crate) fn diagonal(&self, rows: &RowSet) -> Result<Vec<f64>, MethodError> {
         let all = self.rows();
-        let build = || self.stiffness.delassus_diagonal(&self.jump, &all.source);
+        let build = || self.stiffness.compliances(&self.jump, &all.source);
         let diagonal = self.diagonal.get_or_init(build);
         let diagonal = diagonal.as_ref().map_err(Clone::clone)?;
         let places = rows.positions_in(&all);
@@ -384,12 +384,7 @@ fn check_contact(
     floating: &[Vec<f64>],
 ) -> Result<(), MethodError> {
     if !(dim == 2 || dim == 3) {
-        return Err(MethodError::Range {
-            what: "dimension",
-            index: 0,
-            value: dim as f64,
-            allowed: "2 or 3",
-        });
+        return Err(MethodError::range("dimension", 0, dim as f64, "2 or 3"));
     }
     check_len("jump operator rows", jump.rows(), dim * weight.len())?;
     check_len("jump operator columns", jump.cols(), unknowns)?;

@@ -43,11 +43,43 @@ pub struct Switch {
     pub help: &'static str,
 }
 
-/// Declares options as constants, one a line: `NAME: Type(name, default, least, most): help;`.
+/// Declares the settings of a method by their options, one a line: `name: Kind(default, least, most), help;`. A `Count` is a
+/// [`Whole`] read as `usize`. Single options are constants: `NAME: Kind("name", default, least, most): help;`.
 macro_rules! options {
-    ($($id:ident: $kind:ident($name:literal, $default:expr $(, $min:expr, $max:expr)?): $help:literal;)*) => {
-        $(const $id: $kind = $kind { name: $name, default: $default, $(min: $min, max: $max,)? help: $help };)*
+    ($settings:ident { $($name:ident: $kind:ident($($value:expr),+), $help:expr;)* }) => {
+        #[derive(Clone, Copy)]
+        pub(crate) struct $settings {
+            $($name: options!(@type $kind),)*
+        }
+
+        impl $settings {
+            pub(crate) const OPTIONS: &'static [$crate::OptionSpec] =
+                &[$(options!(@spec $kind, stringify!($name), $help, $($value),+)),*];
+
+            fn new(options: &$crate::Options) -> Self {
+                Self { $($name: options!(@read options, $kind, stringify!($name), $help, $($value),+),)* }
+            }
+        }
     };
+    ($($id:ident: $kind:ident($name:literal, $($value:expr),+): $help:literal;)*) => {
+        $(pub(crate) const $id: $crate::$kind = options!(@new $kind, $name, $help, $($value),+);)*
+    };
+    (@type Real) => { f64 };
+    (@type Whole) => { i64 };
+    (@type Count) => { usize };
+    (@type Switch) => { bool };
+    (@new Switch, $name:expr, $help:expr, $default:expr) => {
+        $crate::Switch { name: $name, default: $default, help: $help }
+    };
+    (@new $kind:ident, $name:expr, $help:expr, $default:expr, $min:expr, $max:expr) => {
+        $crate::$kind { name: $name, default: $default, min: $min, max: $max, help: $help }
+    };
+    (@spec Count, $($of:expr),+) => { options!(@spec Whole, $($of),+) };
+    (@spec $kind:ident, $($of:expr),+) => { $crate::OptionSpec::$kind(options!(@new $kind, $($of),+)) };
+    (@read $options:ident, Real, $($of:expr),+) => { $options.real(&options!(@new Real, $($of),+)) };
+    (@read $options:ident, Whole, $($of:expr),+) => { $options.whole(&options!(@new Whole, $($of),+)) };
+    (@read $options:ident, Count, $($of:expr),+) => { $options.count(&options!(@new Whole, $($of),+)) };
+    (@read $options:ident, Switch, $($of:expr),+) => { $options.switch(&options!(@new Switch, $($of),+)) };
 }
 pub(crate) use options;
 
@@ -289,25 +321,11 @@ impl Options {
 mod tests {
     use super::*;
 
-    const R: Real = Real {
-        name: "r",
-        default: 1.0,
-        min: 1e-3,
-        max: 1e3,
-        help: "scale",
-    };
-    const LIMIT: Whole = Whole {
-        name: "max_iterations",
-        default: 50,
-        min: 1,
-        max: 1_000_000_000,
-        help: "limit",
-    };
-    const POLISH: Switch = Switch {
-        name: "polish",
-        default: true,
-        help: "finish by Newton steps",
-    };
+    options! {
+        R: Real("r", 1.0, 1e-3, 1e3): "scale";
+        LIMIT: Whole("max_iterations", 50, 1, 1_000_000_000): "limit";
+        POLISH: Switch("polish", true): "finish by Newton steps";
+    }
 
     fn given(name: &str, value: f64) -> Result<Options, OptionError> {
         let specs = [
@@ -322,8 +340,9 @@ mod tests {
     fn values_outside_the_range_are_refused_with_value_and_range() {
         for value in [1e4, 0.0, -1.0, f64::NAN, f64::INFINITY] {
             let text = given("r", value).unwrap_err().to_string();
+            let allowed = "a number from 0.001 to 1000";
             assert!(
-                text.contains(&format!("{value}")) && text.contains("a number from 0.001 to 1000"),
+                text.contains(&format!("{value}")) && text.contains(allowed),
                 "{text}"
             );
         }
@@ -338,10 +357,8 @@ mod tests {
     #[test]
     fn unknown_names_are_refused_with_the_known_ones() {
         let text = given("gamma", 1.0).unwrap_err().to_string();
-        assert!(
-            text.contains("gamma") && text.contains("r, max_iterations, polish"),
-            "{text}"
-        );
+        let known = "r, max_iterations, polish";
+        assert!(text.contains("gamma") && text.contains(known), "{text}");
     }
 
     #[test]

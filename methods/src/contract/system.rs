@@ -36,13 +36,12 @@ impl ContactSystem {
         check_len("friction", friction.len(), elastic.points())?;
         for (index, &value) in friction.iter().enumerate() {
             if !(value >= 0.0 && value.is_finite()) {
-                let allowed = "not negative, finite";
-                return Err(MethodError::Range {
-                    what: "friction",
+                return Err(MethodError::range(
+                    "friction",
                     index,
                     value,
-                    allowed,
-                });
+                    "not negative, finite",
+                ));
             }
             if value > 0.0 && elastic.frictionless() {
                 return Err(MethodError::FrictionlessBody {
@@ -220,12 +219,12 @@ impl Increment<'_> {
         if self.tolerance > 0.0 && self.tolerance.is_finite() {
             Ok(())
         } else {
-            Err(MethodError::Range {
-                what: "tolerance",
-                index: 0,
-                value: self.tolerance,
-                allowed: "positive and finite",
-            })
+            Err(MethodError::range(
+                "tolerance",
+                0,
+                self.tolerance,
+                "positive and finite",
+            ))
         }
     }
 }

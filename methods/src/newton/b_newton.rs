@@ -49,9 +49,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
-use crate::newton::iteration::{At, Newton, R, Scheme, trial};
-use crate::newton::step::Tangent;
-use crate::{Forces, Method, MethodError, OptionSpec, Whole, options};
+use crate::newton::iteration::{At, Newton, Scheme, scheme_options, trial};
+use crate::{Forces, Method, MethodError, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -60,11 +59,7 @@ pub static METHOD: Method = Method {
     reference: "Christensen, Klarbring, Pang & Strömberg, Int. J. Numer. Meth. Engng 42 (1998) 145",
     summary: "Newton's method on the non-smooth equations min(r g, P_n) = 0 and P_t = proj(P_t - r d)",
     exact: true,
-    options: &[
-        OptionSpec::Real(R),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        Tangent::OPTION,
-    ],
+    options: &scheme_options(MAX_ITERATIONS),
     source: include_str!("b_newton.rs"),
     build: |options| Box::new(Newton::new(BEquations, options, &MAX_ITERATIONS)),
 };

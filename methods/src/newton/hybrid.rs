@@ -45,12 +45,12 @@ use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::b_newton::BEquations;
-use crate::newton::iteration::{Newton, R, Scheme};
+use crate::newton::iteration::{Newton, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Status, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, MethodError, Monitor,
+    Status, options,
 };
 
 /// Registry entry.
@@ -60,18 +60,17 @@ pub static METHOD: Method = Method {
     reference: "Acary, Brémond & Huber (2018), in Advanced Topics in Nonsmooth Dynamics, Springer",
     summary: "a few Gauss-Seidel sweeps, then Newton's method, in rounds with ever more sweeps until one succeeds",
     exact: true,
-    options: &[
-        OptionSpec::Real(R),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        OptionSpec::Whole(FIRST),
-    ],
+    options: Hybrid::OPTIONS,
     source: include_str!("hybrid.rs"),
     build: |options| Box::new(Hybrid::new(options)),
 };
 
 options! {
-    MAX_ITERATIONS: Whole("max_iterations", 50_000, 1, 100_000_000): "sweeps and Newton steps before giving up";
-    FIRST: Whole("first", 5, 1, 10_000): "sweeps of the first round";
+    Hybrid {
+        r: Real(1.0, 1e-3, 1e3), "multiple of 1/W_ii that turns gaps and slips into forces";
+        max_iterations: Count(50_000, 1, 100_000_000), "sweeps and Newton steps before giving up";
+        first: Count(5, 1, 10_000), "sweeps of the first round";
+    }
 }
 
 /// Newton steps without progress after which a run is given up.
@@ -87,28 +86,8 @@ const MAX_RESTARTS: usize = 8;
 /// Sweeps of the first round after a restart.
 const RESTART_SWEEPS: usize = 20;
 
-struct Hybrid {
-    first: usize,
-    r: f64,
-    max_iterations: usize,
-}
-
-impl Hybrid {
-    fn new(options: &Options) -> Self {
-        Self {
-            first: options.count(&FIRST),
-            r: options.real(&R),
-            max_iterations: options.count(&MAX_ITERATIONS),
-        }
-    }
-}
-
 impl CondensedMethod for Hybrid {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut rounds = Rounds::new(problem, self);
         loop {
             if let Some(end) = rounds.sweep(problem, monitor)? {
@@ -143,8 +122,7 @@ struct Rounds {
     restarts: usize,
     /// Where the sweeps ended last.
     best: Forces,
-    r: f64,
-    max_iterations: usize,
+    settings: Hybrid,
 }
 
 impl Rounds {
@@ -160,16 +138,12 @@ impl Rounds {
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
             best: problem.start(),
-            r: method.r,
-            max_iterations: method.max_iterations,
+            settings: *method,
         }
     }
 
     fn limits(&self, patience: usize) -> Limits {
-        Limits {
-            iterations: self.max_iterations,
-            patience,
-        }
+        Limits::new(self.settings.max_iterations, patience)
     }
 
     /// The sweeps of a round; how the method ends, if it does.
@@ -208,7 +182,7 @@ impl Rounds {
         problem.begin_phase();
         let mut newton = Newton {
             scheme,
-            multiple: self.r,
+            multiple: self.settings.r,
             limits: self.limits(NEWTON_PATIENCE),
             line_search: true,
             rescue: false,

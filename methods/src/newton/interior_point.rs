@@ -45,8 +45,7 @@ use crate::condensed::branches::Branches;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
 use crate::{
-    Check, CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor,
-    OptionSpec, Options, Real, Whole, options,
+    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -56,17 +55,16 @@ pub static METHOD: Method = Method {
     reference: "Kanno, Martins & Pinto da Costa, Int. J. Numer. Meth. Engng 65 (2006) 62",
     summary: "follows the central path of the contact laws, written as complementarity of second-order cones",
     exact: true,
-    options: &[
-        OptionSpec::Real(FRACTION),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: InteriorPoint::OPTIONS,
     source: include_str!("interior_point.rs"),
     build: |options| Box::new(InteriorPoint::new(options)),
 };
 
 options! {
-    FRACTION: Real("fraction", 0.99, 0.5, 0.9999): "fraction of the way to the boundary of the cones that a step may take";
-    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "steps before giving up";
+    InteriorPoint {
+        fraction: Real(0.99, 0.5, 0.9999), "fraction of the way to the boundary of the cones that a step may take";
+        max_iterations: Count(200, 1, 1_000_000), "steps before giving up";
+    }
 }
 
 /// Steps without progress after which the iteration counts as stalled.
@@ -75,20 +73,6 @@ const PATIENCE: usize = 40;
 const JAMMED: f64 = 0.02;
 /// Least depth of the start inside the cones, relative to the reference force per point.
 const SHALLOWEST: f64 = 0.1;
-
-struct InteriorPoint {
-    fraction: f64,
-    max_iterations: usize,
-}
-
-impl InteriorPoint {
-    fn new(options: &Options) -> Self {
-        Self {
-            fraction: options.real(&FRACTION),
-            max_iterations: options.count(&MAX_ITERATIONS),
-        }
-    }
-}
 
 /// Unknowns of the method, or a step of them.
 struct Iterate {
@@ -101,15 +85,8 @@ struct Iterate {
 }
 
 impl CondensedMethod for InteriorPoint {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
-        let limits = Limits {
-            iterations: self.max_iterations,
-            patience: PATIENCE,
-        };
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.max_iterations, PATIENCE);
         let Forces { p: mut P, mut beta } = problem.start();
         let mut branches = Branches::default();
         let mut path: Option<Iterate> = None;

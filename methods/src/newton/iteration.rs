@@ -14,20 +14,21 @@ use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::line_search::LineSearch;
-use crate::newton::step::Tangent;
+use crate::newton::step::{MONOLITHIC, Tangent};
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Limits, MethodError,
-    Monitor, Needs, Options, Real, Status, Whole,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Limits, MethodError,
+    Monitor, Needs, OptionSpec, Options, Status, Whole, options,
 };
 
-/// Scale of the equations, an option of every scheme.
-pub(crate) const R: Real = Real {
-    name: "r",
-    default: 1.0,
-    min: 1e-3,
-    max: 1e3,
-    help: "multiple of 1/W_ii that turns gaps and slips into forces",
-};
+options! {
+    R: Real("r", 1.0, 1e-3, 1e3): "multiple of 1/W_ii that turns gaps and slips into forces";
+}
+
+/// Options of a scheme that gives up after so many steps.
+pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
+    let steps = OptionSpec::Whole(max_iterations);
+    [OptionSpec::Real(R), steps, Tangent::OPTION]
+}
 
 /// Steps without progress after which an iteration counts as cycling.
 const PATIENCE: usize = 60;
@@ -37,8 +38,15 @@ pub(crate) trait Scheme: Send {
     /// Which smooth piece of H a point is on.
     type Piece: Copy + PartialEq;
 
-    /// H.
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3];
+    /// H; P − Π(P − r v), Π the return mapping, unless the scheme has its own: the equations of the augmented Lagrangian.
+    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
+        let mut H = trial(r, P, v);
+        return_map(mu, &mut H[..P.len()]);
+        for k in 0..P.len() {
+            H[k] = P[k] - H[k];
+        }
+        H
+    }
 
     /// The piece at (P, v).
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
@@ -82,13 +90,10 @@ impl<S: Scheme> Newton<S> {
         Self {
             scheme,
             multiple: options.real(&R),
-            limits: Limits {
-                iterations: options.count(max_iterations),
-                patience: PATIENCE,
-            },
+            limits: Limits::new(options.count(max_iterations), PATIENCE),
             line_search: true,
             rescue: true,
-            tangent: Tangent::new(options),
+            tangent: Tangent::new(options.switch(&MONOLITHIC)),
         }
     }
 
@@ -205,11 +210,7 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
         self.tangent.needs()
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let start = problem.start();
         self.run(problem, start, monitor)
     }
@@ -254,16 +255,6 @@ impl At<'_, '_> {
         };
         points.map(row).collect()
     }
-}
-
-/// P − Π(P − r v) at one point, Π the return mapping: the equations of the augmented Lagrangian.
-pub(crate) fn augmented_equations(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut H = trial(r, P, v);
-    return_map(mu, &mut H[..P.len()]);
-    for k in 0..P.len() {
-        H[k] = P[k] - H[k];
-    }
-    H
 }
 
 /// The branch of Π(P − r v).

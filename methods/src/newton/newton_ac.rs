@@ -41,9 +41,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
-use crate::newton::iteration::{Newton, R, Scheme, augmented_branch, augmented_equations, trial};
-use crate::newton::step::Tangent;
-use crate::{Method, OptionSpec, Whole, options};
+use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options, trial};
+use crate::{Method, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -52,11 +51,7 @@ pub static METHOD: Method = Method {
     reference: "Alart & Curnier, Comput. Meth. Appl. Mech. Engng 92 (1991) 353",
     summary: "Newton's method on the stationarity conditions of the augmented Lagrangian",
     exact: true,
-    options: &[
-        OptionSpec::Real(R),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        Tangent::OPTION,
-    ],
+    options: &scheme_options(MAX_ITERATIONS),
     source: include_str!("newton_ac.rs"),
     build: |options| Box::new(Newton::new(AlartCurnier, options, &MAX_ITERATIONS)),
 };
@@ -71,10 +66,6 @@ pub(crate) struct AlartCurnier;
 
 impl Scheme for AlartCurnier {
     type Piece = Branch;
-
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        augmented_equations(mu, r, P, v)
-    }
 
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
         augmented_branch(mu, r, P, v)

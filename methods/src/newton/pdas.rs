@@ -48,9 +48,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::newton::iteration::{Newton, R, Scheme, augmented_branch, augmented_equations, trial};
-use crate::newton::step::Tangent;
-use crate::{Method, OptionSpec, Whole, options};
+use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options, trial};
+use crate::{Method, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -59,11 +58,7 @@ pub static METHOD: Method = Method {
     reference: "Hüeber, Stadler & Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572",
     summary: "guesses the open, sticking and slipping sets, solves for them, and reads the next sets from the signs",
     exact: true,
-    options: &[
-        OptionSpec::Real(R),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        Tangent::OPTION,
-    ],
+    options: &scheme_options(MAX_ITERATIONS),
     source: include_str!("pdas.rs"),
     build: |options| {
         Box::new(Newton {
@@ -78,17 +73,12 @@ options! {
     MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "changes of the sets before giving up";
 }
 
-/// The sets and their conditions; the loop is [`Newton::run`].
+/// The sets and their conditions, C_t divided by max(s, |z_t|) so that it is a force; the loop is [`Newton::run`].
 #[derive(Clone, Copy)]
 pub(crate) struct Sets;
 
 impl Scheme for Sets {
     type Piece = Branch;
-
-    /// C with C_t divided by max(s, |z_t|), so that it is a force.
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        augmented_equations(mu, r, P, v)
-    }
 
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
         augmented_branch(mu, r, P, v)

@@ -29,7 +29,7 @@ use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{Tangent, monolithic_step};
-use crate::{ContactProblem, Forces, Iteration, MethodError, Monitor, Status};
+use crate::{ContactProblem, Forces, MethodError, Monitor, Status};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
@@ -129,12 +129,8 @@ impl Springs<'_> {
         for iteration in 0.. {
             let mismatch = self.mismatch(problem, &r, &at);
             let residual = residual(problem, &at, &mismatch);
-            let changes = at
-                .branches
-                .iter()
-                .zip(&before)
-                .filter(|(a, b)| a != b)
-                .count();
+            let pairs = at.branches.iter().zip(&before);
+            let changes = pairs.filter(|(a, b)| a != b).count();
             problem.counters.local_solves += problem.rows.points();
             if !residual.is_finite() {
                 return Ok((Status::Diverged, at));
@@ -342,10 +338,7 @@ pub(crate) fn recorded<'m>(
         let v = jump(problem, at);
         let natural_map = problem.natural_map(&at.p, &v);
         problem.counters.iterations = problem.history.len();
-        problem.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+        problem.note(natural_map, changes);
         monitor.step(problem.counters.iterations, natural_map)
     }
 }

@@ -11,8 +11,7 @@ use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
 use crate::{
-    ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, Options,
-    Switch,
+    ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, options,
 };
 
 /// Where the linear problems of a method are solved.
@@ -23,20 +22,19 @@ pub(crate) enum Tangent {
     Monolithic(Option<Box<WholeBody>>),
 }
 
-/// The option that chooses.
-const MONOLITHIC: Switch = Switch {
-    name: "monolithic",
-    default: false,
-    help: "1: factor the matrix of the whole body in every iteration instead of the condensed one",
-};
+options! {
+    MONOLITHIC: Switch("monolithic", false): "1: factor the matrix of the whole body in every iteration instead of the condensed one";
+}
 
 impl Tangent {
-    /// The option that chooses.
+    /// What the option `monolithic` that chooses does.
+    pub const HELP: &str = MONOLITHIC.help;
+    /// The option.
     pub const OPTION: OptionSpec = OptionSpec::Switch(MONOLITHIC);
 
-    /// As the options say.
-    pub fn new(options: &Options) -> Self {
-        if options.switch(&MONOLITHIC) {
+    /// As the option says.
+    pub fn new(monolithic: bool) -> Self {
+        if monolithic {
             Tangent::Monolithic(None)
         } else {
             Tangent::Condensed

@@ -57,8 +57,7 @@ use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
 use crate::own_laws::unloaded::unloaded;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Iteration, Method, MethodError, Monitor,
-    OptionSpec, Options, Real, Status, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Method, Monitor, Status, options,
 };
 
 /// Registry entry.
@@ -68,21 +67,18 @@ pub static METHOD: Method = Method {
     reference: "Zhao, Choo, Jiang, Li, Jiang & Soga, Comput. Meth. Appl. Mech. Engng 393 (2022) 114820",
     summary: "keeps gaps open by a barrier energy with smoothed friction; its error is proportional to the width of the barrier",
     exact: false,
-    options: &[
-        OptionSpec::Real(GAP),
-        OptionSpec::Real(SLIP),
-        OptionSpec::Real(STIFFNESS),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: Barrier::OPTIONS,
     source: include_str!("barrier.rs"),
     build: |options| Box::new(Barrier::new(options)),
 };
 
 options! {
-    GAP: Real("gap", 1e-4, 1e-9, 1.0): "gap below which points repel each other, as a multiple of the mean jump without contact forces";
-    SLIP: Real("slip", 1e-4, 1e-9, 1.0): "slip from which on friction is full, as a multiple of the same jump";
-    STIFFNESS: Real("stiffness", 1.0, 1e-3, 1e3): "contact force at half the gap as a multiple of rho times the same jump";
-    MAX_ITERATIONS: Whole("max_iterations", 200, 1, 1_000_000): "Newton steps before giving up";
+    Barrier {
+        gap: Real(1e-4, 1e-9, 1.0), "gap below which points repel each other, as a multiple of the mean jump without contact forces";
+        slip: Real(1e-4, 1e-9, 1.0), "slip from which on friction is full, as a multiple of the same jump";
+        stiffness: Real(1.0, 1e-3, 1e3), "contact force at half the gap as a multiple of rho times the same jump";
+        max_iterations: Count(200, 1, 1_000_000), "Newton steps before giving up";
+    }
 }
 
 /// The smoothed equations are solved this much more accurately than asked: the judge holds the claim to them in another
@@ -98,24 +94,6 @@ const TO_BOUNDARY: f64 = 0.9;
 const IMPROVEMENT: f64 = 0.99;
 /// Steps without progress after which the iteration is moved on, or counts as stalled.
 const PATIENCE: usize = 30;
-
-struct Barrier {
-    gap: f64,
-    slip: f64,
-    stiffness: f64,
-    max_iterations: usize,
-}
-
-impl Barrier {
-    fn new(options: &Options) -> Self {
-        Self {
-            gap: options.real(&GAP),
-            slip: options.real(&SLIP),
-            stiffness: options.real(&STIFFNESS),
-            max_iterations: options.count(&MAX_ITERATIONS),
-        }
-    }
-}
 
 /// Unknowns of the method.
 #[derive(Clone)]
@@ -179,11 +157,7 @@ impl Balance {
 }
 
 impl CondensedMethod for Barrier {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let (rho, unit) = (problem.operator.rho, problem.mean_jump());
         if unit == 0.0 || problem.increment.unloaded() {
             return unloaded(problem);
@@ -284,10 +258,7 @@ impl Barrier {
     ) -> Option<Status> {
         let v = problem.jump(&at.P, beta);
         let natural_map = problem.natural_map(&at.P, &v);
-        problem.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+        problem.note(natural_map, changes);
         let iteration = problem.counters.iterations;
         if !residual.is_finite() {
             return Some(Status::Diverged);

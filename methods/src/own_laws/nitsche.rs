@@ -55,8 +55,8 @@ use crate::newton::springs::recorded;
 use crate::newton::step::Tangent;
 use crate::own_laws::stabilisation::Stabilisation;
 use crate::{
-    CondensedMethod, ContactProblem, ContactSystem, End, Method, MethodError, Monitor, Needs,
-    OptionSpec, Options, Real, Status, Whole, options,
+    CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, MethodError, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -66,19 +66,17 @@ pub static METHOD: Method = Method {
     reference: "Chouly & Hild, SIAM J. Numer. Anal. 51 (2013) 1295; Chouly, Hild & Renard, Math. Comput. 84 (2015) 1089",
     summary: "takes the contact forces from the stress at the crack and the jump, consistently and without multipliers",
     exact: false,
-    options: &[
-        OptionSpec::Real(GAMMA),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        OptionSpec::Whole(THETA),
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("nitsche.rs"),
     build: |options| Box::new(Nitsche::new(options)),
 };
 
 options! {
-    GAMMA: Real("gamma", 2.0, 1e-2, 1e6): "stabilisation gamma as a multiple of the constant of the discrete trace inequality";
-    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
-    THETA: Whole("theta", 1, -1, 1): "1 symmetric, 0 incomplete, -1 skew-symmetric variant";
+    Settings {
+        gamma: Real(2.0, 1e-2, 1e6), "stabilisation gamma as a multiple of the constant of the discrete trace inequality";
+        max_iterations: Count(100, 1, 1_000_000), "Newton steps before giving up";
+        theta: Whole(1, -1, 1), "1 symmetric, 0 incomplete, -1 skew-symmetric variant";
+    }
 }
 
 /// The law is solved this much more accurately than asked: the judge holds the claim to it in another norm.
@@ -89,9 +87,7 @@ const CLAIM_FRACTION: f64 = 0.1;
 const ROUND: usize = 20;
 
 struct Nitsche {
-    theta: f64,
-    gamma: f64,
-    max_iterations: usize,
+    settings: Settings,
     /// The terms of a system, kept for as long as it stays the same.
     terms: Option<Arc<Stabilisation>>,
 }
@@ -99,11 +95,13 @@ struct Nitsche {
 impl Nitsche {
     fn new(options: &Options) -> Self {
         Self {
-            theta: options.whole(&THETA) as f64,
-            gamma: options.real(&GAMMA),
-            max_iterations: options.count(&MAX_ITERATIONS),
+            settings: Settings::new(options),
             terms: None,
         }
+    }
+
+    fn theta(&self) -> f64 {
+        self.settings.theta as f64
     }
 
     fn terms(
@@ -114,7 +112,8 @@ impl Nitsche {
             Some(terms) if terms.belongs_to(&problem.operator) => Ok(terms.clone()),
             _ => {
                 let (system, operator) = (problem.increment.system, problem.operator.clone());
-                let terms = Stabilisation::new(system, operator, self.theta, self.gamma)?;
+                let terms =
+                    Stabilisation::new(system, operator, self.theta(), self.settings.gamma)?;
                 problem.counters.factorisations += 1;
                 Ok(self.terms.insert(Arc::new(terms)).clone())
             }
@@ -124,16 +123,16 @@ impl Nitsche {
 
 impl CondensedMethod for Nitsche {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        let least = 0.25 * (1.0 + self.theta).powi(2);
+        let least = 0.25 * (1.0 + self.theta()).powi(2);
         if system.elastic().traction().is_none() {
             Some(
                 "the body has no traction operator: the stress at its contact points is unknown"
                     .into(),
             )
-        } else if self.gamma <= least {
+        } else if self.settings.gamma <= least {
             Some(format!(
                 "theta = {} needs gamma > {least}: below, the stabilised operator is not positive",
-                self.theta
+                self.theta()
             ))
         } else {
             None
@@ -147,11 +146,7 @@ impl CondensedMethod for Nitsche {
         }
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let terms = self.terms(problem)?;
         problem.claim = terms.claim();
         // The Newton iteration measures jumps on the scale of ρ, the claim measures them on that of Γ.
@@ -162,7 +157,7 @@ impl CondensedMethod for Nitsche {
         let mut corrections = 0;
 
         let status = loop {
-            let left = (self.max_iterations).saturating_sub(problem.counters.iterations);
+            let left = (self.settings.max_iterations).saturating_sub(problem.counters.iterations);
             if left == 0 {
                 break Status::MaxIterations;
             }

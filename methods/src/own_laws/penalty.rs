@@ -36,8 +36,8 @@ use crate::newton::springs::{Springs, recorded};
 use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
 use crate::{
-    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Forces, Method, MethodError,
-    Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
+    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Method, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -47,20 +47,18 @@ pub static METHOD: Method = Method {
     reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97; Wriggers, Computational Contact Mechanics (2006)",
     summary: "replaces the contact laws by stiff springs with a frictional return mapping; its error falls like 1/stiffness",
     exact: false,
-    options: &[
-        OptionSpec::Real(NORMAL),
-        OptionSpec::Real(TANGENTIAL),
-        OptionSpec::Whole(MAX_ITERATIONS),
-        Tangent::OPTION,
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("penalty.rs"),
     build: |options| Box::new(Penalty::new(options)),
 };
 
 options! {
-    NORMAL: Real("normal", 1e4, 1e-2, 1e10): "normal penalty stiffness as a multiple of rho = rows/trace(W)";
-    TANGENTIAL: Real("tangential", 1e4, 1e-2, 1e10): "tangential penalty stiffness as a multiple of rho";
-    MAX_ITERATIONS: Whole("max_iterations", 100, 1, 1_000_000): "Newton steps before giving up";
+    Settings {
+        normal: Real(1e4, 1e-2, 1e10), "normal penalty stiffness as a multiple of rho = rows/trace(W)";
+        tangential: Real(1e4, 1e-2, 1e10), "tangential penalty stiffness as a multiple of rho";
+        max_iterations: Count(100, 1, 1_000_000), "Newton steps before giving up";
+        monolithic: Switch(false), Tangent::HELP;
+    }
 }
 
 /// The penalised equations are solved this much more accurately than asked, because the judge holds the claim to them in
@@ -68,19 +66,16 @@ options! {
 const CLAIM_FRACTION: f64 = 0.1;
 
 struct Penalty {
-    normal: f64,
-    tangential: f64,
-    max_iterations: usize,
+    settings: Settings,
     tangent: Tangent,
 }
 
 impl Penalty {
     fn new(options: &Options) -> Self {
+        let settings = Settings::new(options);
         Self {
-            normal: options.real(&NORMAL),
-            tangential: options.real(&TANGENTIAL),
-            max_iterations: options.count(&MAX_ITERATIONS),
-            tangent: Tangent::new(options),
+            tangent: Tangent::new(settings.monolithic),
+            settings,
         }
     }
 }
@@ -96,16 +91,12 @@ impl CondensedMethod for Penalty {
 
     fn claim(&self, rho: f64) -> Claim {
         Claim::Penalised {
-            normal: self.normal * rho,
-            tangential: self.tangential * rho,
+            normal: self.settings.normal * rho,
+            tangential: self.settings.tangential * rho,
         }
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let rho = problem.operator.rho;
         // Springs start unloaded along the normal, and loaded by the friction force of the start along the tangent.
         let mut anchor = problem.rows.restrict(&problem.increment.start.p);
@@ -113,8 +104,8 @@ impl CondensedMethod for Penalty {
             anchor[row] = 0.0;
         }
         let springs = Springs {
-            normal: self.normal * rho,
-            tangential: self.tangential * rho,
+            normal: self.settings.normal * rho,
+            tangential: self.settings.tangential * rho,
             anchor,
             coupled: None,
         };
@@ -122,7 +113,7 @@ impl CondensedMethod for Penalty {
         let mut start = springs.predict(problem, problem.start());
         let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
         loop {
-            let left = (self.max_iterations).saturating_sub(problem.history.len());
+            let left = (self.settings.max_iterations).saturating_sub(problem.history.len());
             let report = recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta));
             let tangent = &mut self.tangent;
             let (status, end) = springs.solve(problem, start, stop, left, tangent, report)?;
@@ -135,7 +126,7 @@ impl CondensedMethod for Penalty {
             if let Some(status) = confirm(problem, &at.p, &at.beta, &mut corrections)? {
                 return Ok(End { status, at });
             }
-            if problem.counters.iterations >= self.max_iterations {
+            if problem.counters.iterations >= self.settings.max_iterations {
                 let status = Status::MaxIterations;
                 return Ok(End { status, at });
             }

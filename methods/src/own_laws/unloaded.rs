@@ -4,7 +4,7 @@
 
 use crate::condensed::forces::{End, Forces};
 use crate::condensed::problem::{Check, ContactProblem};
-use crate::contract::state::{Iteration, Status};
+use crate::contract::state::Status;
 use crate::error::MethodError;
 
 /// What a body is lifted by, relative to its deepest penetration: rounding must not leave any.
@@ -17,10 +17,7 @@ pub(crate) fn unloaded(problem: &mut ContactProblem<'_>) -> Result<End, MethodEr
     let beta = lifted(problem, problem.start_amplitudes(&P));
     let v = problem.jump(&P, &beta);
     let natural_map = problem.natural_map(&P, &v);
-    problem.history.push(Iteration {
-        natural_map,
-        changes: 0,
-    });
+    problem.note(natural_map, 0);
     let status = if natural_map <= problem.stop {
         Status::Converged
     } else {

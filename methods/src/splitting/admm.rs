@@ -45,8 +45,8 @@ use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Real, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Options,
+    options,
 };
 
 /// Registry entry.
@@ -56,19 +56,17 @@ pub static METHOD: Method = Method {
     reference: "Tasora, Mangoni, Benatti & Garziera, Int. J. Numer. Meth. Engng 122 (2021) 4093",
     summary: "alternates linear equilibrium and projections on Coulomb's cone, with De Saxce's correction",
     exact: true,
-    options: &[
-        OptionSpec::Real(PENALTY),
-        OptionSpec::Real(OVER_RELAXATION),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("admm.rs"),
     build: |options| Box::new(Admm::new(options)),
 };
 
 options! {
-    PENALTY: Real("penalty", 1.0, 1e-3, 1e3): "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
-    OVER_RELAXATION: Real("over_relaxation", 1.6, 0.5, 1.9): "over-relaxation; 1 is the plain method";
-    MAX_ITERATIONS: Whole("max_iterations", 20_000, 1, 10_000_000): "pairs of steps before giving up";
+    Settings {
+        penalty: Real(1.0, 1e-3, 1e3), "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
+        over_relaxation: Real(1.6, 0.5, 1.9), "over-relaxation; 1 is the plain method";
+        max_iterations: Count(20_000, 1, 10_000_000), "pairs of steps before giving up";
+    }
 }
 
 /// Iterations without progress after which the iteration counts as stalled.
@@ -84,9 +82,7 @@ const MAX_MOVE: f64 = 4.0;
 const KEPT: usize = 3;
 
 struct Admm {
-    penalty: f64,
-    over_relaxation: f64,
-    limits: Limits,
+    settings: Settings,
     /// The linear step with its power of 2, the last one used at the end.
     stages: Vec<(i32, Arc<GlobalStage>)>,
 }
@@ -94,12 +90,7 @@ struct Admm {
 impl Admm {
     fn new(options: &Options) -> Self {
         Self {
-            penalty: options.real(&PENALTY),
-            over_relaxation: options.real(&OVER_RELAXATION),
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
+            settings: Settings::new(options),
             stages: Vec::new(),
         }
     }
@@ -116,7 +107,7 @@ impl Admm {
         let stage = if let Some(place) = kept {
             self.stages.remove(place).1
         } else {
-            let k = self.penalty * problem.operator.rho * 2.0_f64.powi(power);
+            let k = self.settings.penalty * problem.operator.rho * 2.0_f64.powi(power);
             problem.counters.factorisations += 1;
             Arc::new(GlobalStage::along(problem.operator.clone(), k)?)
         };
@@ -129,19 +120,16 @@ impl Admm {
 }
 
 impl CondensedMethod for Admm {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let (mut power, mut balance) = (0, Balance::default());
         let mut stage = self.stage(problem, power)?;
         let mut pair = Pair::start(problem);
         let mut cone = Cone::start(problem, &pair, stage.k0());
-        let (mut changes, mut alpha) = (0, self.over_relaxation);
+        let (mut changes, mut alpha) = (0, self.settings.over_relaxation);
 
         let status = loop {
-            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+            if let Some(status) = pair.ends(problem, changes, limits, monitor)? {
                 break status;
             }
             if problem.idle() >= STAGNATION {
@@ -274,43 +262,24 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::condensed::problem::Begin;
-    use crate::{
-        Claim, ContactState, ContactSystem, DelassusForm, Elastic, Increment, Load, SymmetricMatrix,
-    };
+    use crate::condensed::fixture::with_contact;
+    use crate::{Elastic, SymmetricMatrix};
 
     #[test]
     fn only_the_last_factors_are_kept() {
         let w = SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
         let body = Elastic::from_delassus(2, w, vec![]).unwrap();
-        let system = ContactSystem::new(body.clone(), vec![0.3]).unwrap();
-        let load = Load {
-            force: vec![-1.0, 0.0],
-            offset: vec![0.0; 2],
-            traction: vec![],
-        };
-        let increment = Increment {
-            system: &system,
-            load: &load,
-            start_load: &Load::zero(&body),
-            start: &ContactState::zero(&system),
-            index: 0,
-            tolerance: 1e-9,
-        };
-        let begun = ContactProblem::begin(&increment, DelassusForm::Formed, |_| Claim::Exact);
-        let Begin::Contact(mut problem) = begun.unwrap() else {
-            panic!("the point closes");
-        };
-        let mut admm = Admm::new(&Options::new(METHOD.options, &[]).unwrap());
-        let counted = |admm: &mut Admm, problem: &mut ContactProblem<'_>, power: i32| {
-            let k0 = admm.stage(problem, power).unwrap().k0();
-            assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
-            assert!(admm.stages.len() <= KEPT);
-            problem.counters.factorisations
-        };
-        for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)] {
-            let found = counted(&mut admm, &mut problem, power);
-            assert_eq!(found, factorisations, "power {power}");
-        }
+        let load = (vec![-1.0, 0.0], vec![0.0; 2]);
+        with_contact(&body, vec![0.3], load, |_, mut problem| {
+            let mut admm = Admm::new(&Options::new(METHOD.options, &[]).unwrap());
+            for (power, factorisations) in [(0, 1), (1, 2), (0, 2), (3, 3), (5, 4), (0, 4), (1, 5)]
+            {
+                let k0 = admm.stage(&mut problem, power).unwrap().k0();
+                assert_eq!(k0, problem.operator.rho * 2.0_f64.powi(power));
+                assert!(admm.stages.len() <= KEPT);
+                let found = problem.counters.factorisations;
+                assert_eq!(found, factorisations, "power {power}");
+            }
+        });
     }
 }

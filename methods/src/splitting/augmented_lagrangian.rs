@@ -30,8 +30,8 @@
 use crate::newton::springs::Springs;
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Limits, Method, MethodError,
-    Monitor, Needs, OptionSpec, Options, Real, Status, Whole, options,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Limits, Method, Monitor,
+    Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -41,20 +41,18 @@ pub static METHOD: Method = Method {
     reference: "Simo & Laursen, Comput. Struct. 42 (1992) 97",
     summary: "repeats a penalised solve, each time anchored at the contact forces of the last, until the springs are slack",
     exact: true,
-    options: &[
-        OptionSpec::Real(STIFFNESS),
-        OptionSpec::Whole(MAX_OUTER),
-        OptionSpec::Whole(MAX_INNER),
-        Tangent::OPTION,
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("augmented_lagrangian.rs"),
     build: |options| Box::new(AugmentedLagrangian::new(options)),
 };
 
 options! {
-    STIFFNESS: Real("stiffness", 1e3, 1e-2, 1e6): "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)";
-    MAX_OUTER: Whole("max_outer", 1000, 1, 1_000_000): "multiplier updates before giving up";
-    MAX_INNER: Whole("max_inner", 100, 1, 1_000_000): "Newton steps per inner problem before giving up";
+    Settings {
+        stiffness: Real(1e3, 1e-2, 1e6), "penalty stiffness of the inner problem as a multiple of rho = rows/trace(W)";
+        max_outer: Count(1000, 1, 1_000_000), "multiplier updates before giving up";
+        max_inner: Count(100, 1, 1_000_000), "Newton steps per inner problem before giving up";
+        monolithic: Switch(false), Tangent::HELP;
+    }
 }
 
 /// The inner problem is solved this much more accurately than the outer loop is stopped.
@@ -64,22 +62,16 @@ const INNER_FRACTION: f64 = 1e-2;
 const PATIENCE: usize = 200;
 
 struct AugmentedLagrangian {
-    stiffness: f64,
-    outer: Limits,
-    max_inner: usize,
+    settings: Settings,
     tangent: Tangent,
 }
 
 impl AugmentedLagrangian {
     fn new(options: &Options) -> Self {
+        let settings = Settings::new(options);
         Self {
-            stiffness: options.real(&STIFFNESS),
-            outer: Limits {
-                iterations: options.count(&MAX_OUTER),
-                patience: PATIENCE,
-            },
-            max_inner: options.count(&MAX_INNER),
-            tangent: Tangent::new(options),
+            tangent: Tangent::new(settings.monolithic),
+            settings,
         }
     }
 }
@@ -93,12 +85,9 @@ impl CondensedMethod for AugmentedLagrangian {
         self.tangent.needs()
     }
 
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
-        let k = self.stiffness * problem.operator.rho;
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let k = self.settings.stiffness * problem.operator.rho;
+        let outer = Limits::new(self.settings.max_outer, PATIENCE);
         let mut x = problem.start();
         let mut springs = Springs {
             normal: k,
@@ -112,7 +101,7 @@ impl CondensedMethod for AugmentedLagrangian {
         let status = loop {
             let v = problem.jump(&x.p, &x.beta);
             let natural_map = problem.natural_map(&x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), changes, self.outer, monitor)? {
+            match problem.check(natural_map, (&x.p, &x.beta), changes, outer, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => continue,
                 Check::End(status) => break status,
@@ -124,7 +113,7 @@ impl CondensedMethod for AugmentedLagrangian {
                 problem,
                 start,
                 inner_stop,
-                self.max_inner,
+                self.settings.max_inner,
                 &mut self.tangent,
                 |_, _, c| {
                     changes += c;

@@ -35,8 +35,8 @@ use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Real, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Options,
+    options,
 };
 
 /// Registry entry.
@@ -46,28 +46,24 @@ pub static METHOD: Method = Method {
     reference: "Dolbow, Moës & Belytschko, Comput. Meth. Appl. Mech. Engng 190 (2001) 6825",
     summary: "alternates the contact laws point by point with linear equilibrium along fixed search directions",
     exact: true,
-    options: &[
-        OptionSpec::Real(SEARCH_DIRECTION),
-        OptionSpec::Real(RELAXATION),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: Settings::OPTIONS,
     source: include_str!("latin.rs"),
     build: |options| Box::new(Latin::new(options)),
 };
 
 options! {
-    SEARCH_DIRECTION: Real("search_direction", 1.0, 1e-3, 1e3): "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W";
-    RELAXATION: Real("relaxation", 0.8, 0.1, 1.0): "relaxation of the global stage";
-    MAX_ITERATIONS: Whole("max_iterations", 20_000, 1, 10_000_000): "pairs of stages before giving up";
+    Settings {
+        search_direction: Real(1.0, 1e-3, 1e3), "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W";
+        relaxation: Real(0.8, 0.1, 1.0), "relaxation of the global stage";
+        max_iterations: Count(20_000, 1, 10_000_000), "pairs of stages before giving up";
+    }
 }
 
 /// Iterations without progress after which the iteration counts as stalled: plateaus of some hundred are normal.
 const PATIENCE: usize = 2000;
 
 struct Latin {
-    search_direction: f64,
-    relaxation: f64,
-    limits: Limits,
+    settings: Settings,
     /// The global stage, kept for as long as the system stays the same.
     global: Option<Arc<GlobalStage>>,
 }
@@ -75,12 +71,7 @@ struct Latin {
 impl Latin {
     fn new(options: &Options) -> Self {
         Self {
-            search_direction: options.real(&SEARCH_DIRECTION),
-            relaxation: options.real(&RELAXATION),
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
+            settings: Settings::new(options),
             global: None,
         }
     }
@@ -90,7 +81,8 @@ impl Latin {
             Some(stage) if stage.belongs_to(&problem.operator) => Ok(stage.clone()),
             _ => {
                 problem.counters.factorisations += 1;
-                let stage = GlobalStage::new(problem.operator.clone(), self.search_direction)?;
+                let stage =
+                    GlobalStage::new(problem.operator.clone(), self.settings.search_direction)?;
                 Ok(self.global.insert(Arc::new(stage)).clone())
             }
         }
@@ -98,18 +90,15 @@ impl Latin {
 }
 
 impl CondensedMethod for Latin {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let global = self.stage(problem)?;
         let mut pair = Pair::start(problem);
         let mut before: Vec<Branch> = Vec::new();
         let mut changes = 0;
 
         let status = loop {
-            if let Some(status) = pair.ends(problem, changes, self.limits, monitor)? {
+            if let Some(status) = pair.ends(problem, changes, limits, monitor)? {
                 break status;
             }
             let (target, branches) = global.local_stage(problem, &pair);
@@ -118,7 +107,7 @@ impl CondensedMethod for Latin {
             let Some(new) = global.global_stage(problem, &target) else {
                 break problem.singular();
             };
-            pair.relax(problem, self.relaxation, &new);
+            pair.relax(problem, self.settings.relaxation, &new);
         };
         let at = pair.into();
         Ok(End { status, at })

@@ -34,8 +34,7 @@ use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Real, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -45,17 +44,16 @@ pub static METHOD: Method = Method {
     reference: "Jourdan, Alart & Jean, Comput. Meth. Appl. Mech. Engng 155 (1998) 31",
     summary: "sweeps over the points and solves the contact law of each exactly with all others held",
     exact: true,
-    options: &[
-        OptionSpec::Real(RELAXATION),
-        OptionSpec::Whole(MAX_ITERATIONS),
-    ],
+    options: Nsgs::OPTIONS,
     source: include_str!("nsgs.rs"),
     build: |options| Box::new(Nsgs::new(options)),
 };
 
 options! {
-    RELAXATION: Real("relaxation", 1.0, 0.1, 1.9): "fraction of the step to the solution of each local problem";
-    MAX_ITERATIONS: Whole("max_iterations", 100_000, 1, 100_000_000): "sweeps over all points before giving up";
+    Nsgs {
+        relaxation: Real(1.0, 0.1, 1.9), "fraction of the step to the solution of each local problem";
+        max_iterations: Count(100_000, 1, 100_000_000), "sweeps over all points before giving up";
+    }
 }
 
 /// Sweeps without progress after which the iteration counts as stalled.
@@ -65,29 +63,9 @@ const STAGNATION: usize = 300;
 /// Halvings of the relaxation.
 const MAX_HALVINGS: usize = 4;
 
-struct Nsgs {
-    relaxation: f64,
-    limits: Limits,
-}
-
-impl Nsgs {
-    fn new(options: &Options) -> Self {
-        Self {
-            relaxation: options.real(&RELAXATION),
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
-        }
-    }
-}
-
 impl CondensedMethod for Nsgs {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.max_iterations, PATIENCE);
         let saddle = Saddle::new(problem.operator.clone());
         let sweeps = Sweeps::new(problem, &saddle);
         let mut x = saddle.start(problem);
@@ -95,7 +73,7 @@ impl CondensedMethod for Nsgs {
         let (mut changes, mut halvings) = (0, 0);
 
         let status = loop {
-            if let Some(status) = saddle.ends(problem, &mut x, changes, self.limits, monitor)? {
+            if let Some(status) = saddle.ends(problem, &mut x, changes, limits, monitor)? {
                 break status;
             }
             saddle.update_multipliers(problem, &mut x);

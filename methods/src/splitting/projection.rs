@@ -42,8 +42,7 @@ use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Forces, Limits, Method, MethodError, Monitor, OptionSpec,
-    Options, Whole, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
 };
 
 /// Registry entry.
@@ -53,17 +52,16 @@ pub static METHOD: Method = Method {
     reference: "De Saxce & Feng, Math. Comput. Modelling 28 (1998) 225",
     summary: "steps against the corrected jump and projects on Coulomb's cone, with a step length that adapts",
     exact: true,
-    options: &[
-        OptionSpec::Whole(MAX_ITERATIONS),
-        OptionSpec::Whole(VARIANT),
-    ],
+    options: Projection::OPTIONS,
     source: include_str!("projection.rs"),
     build: |options| Box::new(Projection::new(options)),
 };
 
 options! {
-    MAX_ITERATIONS: Whole("max_iterations", 100_000, 1, 100_000_000): "steps before giving up";
-    VARIANT: Whole("variant", 0, 0, 1): "0: fixed point, one projection per step; 1: extragradient, two";
+    Projection {
+        max_iterations: Count(100_000, 1, 100_000_000), "steps before giving up";
+        variant: Whole(0, 0, 1), "0: fixed point, one projection per step; 1: extragradient, two";
+    }
 }
 
 /// Iterations without progress after which the iteration counts as stalled: at large μ plateaus of several thousand end in
@@ -76,40 +74,21 @@ const SMALLEST: f64 = 0.3;
 /// Change of τ.
 const SHRINK: f64 = 2.0 / 3.0;
 
-struct Projection {
-    extragradient: bool,
-    limits: Limits,
-}
-
-impl Projection {
-    fn new(options: &Options) -> Self {
-        Self {
-            extragradient: options.whole(&VARIANT) == 1,
-            limits: Limits {
-                iterations: options.count(&MAX_ITERATIONS),
-                patience: PATIENCE,
-            },
-        }
-    }
-}
-
 impl CondensedMethod for Projection {
-    fn iterate(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
-        let step = Step::new(problem, self.extragradient);
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let extragradient = self.variant == 1;
+        let limits = Limits::new(self.max_iterations, PATIENCE);
+        let step = Step::new(problem, extragradient);
         let saddle = &step.saddle;
         let mut x = saddle.start(problem);
         let (mut tau, mut changes) = (1.0, 0);
         let mut before = vec![Branch::Open; problem.rows.points()];
 
         let status = loop {
-            if let Some(status) = saddle.ends(problem, &mut x, changes, self.limits, monitor)? {
+            if let Some(status) = saddle.ends(problem, &mut x, changes, limits, monitor)? {
                 break status;
             }
-            if !self.extragradient {
+            if !extragradient {
                 saddle.update_multipliers(problem, &mut x);
             }
             if problem.counters.iterations.is_multiple_of(REFRESH) {
@@ -118,7 +97,7 @@ impl CondensedMethod for Projection {
             let (trial, branches, next_tau) = step.adapted(problem, &x, &mut tau);
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
             before = branches;
-            x = match self.extragradient {
+            x = match extragradient {
                 true => step.project(problem, &x, &trial, tau).0,
                 false => trial,
             };

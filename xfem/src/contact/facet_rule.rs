@@ -286,10 +286,8 @@ mod tests {
                 |k: f64| ((far.max(near)).powf(k + 1.0) - far.min(near).powf(k + 1.0)) / (k + 1.0);
             for k in [0.0, 0.5, 1.0, 1.5, 2.5] {
                 let found = sum(&points, |p| r(p).powf(k));
-                assert!(
-                    (found - power(k)).abs() < 1e-13 * power(k),
-                    "{far} {near} {k}"
-                );
+                let error = (found - power(k)).abs();
+                assert!(error < 1e-13 * power(k), "{far} {near} {k}");
             }
             // ∫ hat of the first end × r: linear in r
             let slope = |p: &FacetPoint| (r(p) - near) / (far - near);
@@ -307,11 +305,8 @@ mod tests {
             .collect();
         for polygon in [&pentagon[..3], &pentagon[..4], &pentagon[..]] {
             let points = polygon_points(polygon, true);
-            assert!(
-                points
-                    .iter()
-                    .all(|p| (p.hats.iter().sum::<f64>() - 1.0).abs() < 1e-13)
-            );
+            let sums = points.iter().map(|p| p.hats.iter().sum::<f64>());
+            assert!(sums.into_iter().all(|sum| (sum - 1.0).abs() < 1e-13));
             let area: f64 = super::super::pairs::vertex_weights(polygon).iter().sum();
             assert!((sum(&points, |_| 1.0) - area).abs() < 1e-14);
             let fine = polygon_points(polygon, false);

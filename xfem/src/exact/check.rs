@@ -37,7 +37,7 @@ fn derivative<const N: usize>(
 /// σ = Hooke(∇u) and div σ + f = 0 at points off the crack, by differences of `step`; `tolerance` is a stress [Pa].
 ///
 /// The differences must not reach over the crack, where the side would change.
-pub fn check_elasticity(
+fn check_elasticity(
     field: &dyn Field,
     of: &Setting<'_>,
     points: &[Point],
@@ -71,11 +71,11 @@ pub fn check_elasticity(
                     if a == b {
                         hooke += lame.lambda * trace;
                     }
-                    let error = (sigma[a][b] - hooke).abs();
+                    let found = sigma[a][b];
+                    let error = (found - hooke).abs();
                     assert!(
                         error <= tolerance,
-                        "Hooke at {x:?} [{a}{b}]: {} {hooke}",
-                        sigma[a][b]
+                        "Hooke at {x:?} [{a}{b}]: {found} {hooke}"
                     );
                 }
             }
@@ -102,10 +102,8 @@ pub fn check_contact(
         for side in [1.0, -1.0] {
             let found = resolve(&axes, &apply(&field.stress(x, side), &axes[0]));
             for (t, s) in traction.iter().zip(found) {
-                assert!(
-                    (t + s).abs() <= stress,
-                    "face {side} at {x:?}: {traction:?} {found:?}"
-                );
+                let off = (t + s).abs();
+                assert!(off <= stress, "face {side} at {x:?}: {t} {s}");
             }
         }
         let jump = field.jump(x);
@@ -126,30 +124,49 @@ pub fn check_contact(
         if size > 100.0 * length {
             for (t, d) in [t_a, t_b].into_iter().zip(slip) {
                 let expected = -bound * d / size;
-                assert!(
-                    (t - expected).abs() <= stress,
-                    "friction at {x:?}: {t} {expected}"
-                );
+                let off = (t - expected).abs();
+                assert!(off <= stress, "friction at {x:?}: {t} {expected}");
             }
         }
     }
 }
 
-/// Contact laws at points of the crack after every increment of a path, against the increment before; the states.
-pub fn check_path(
+/// Tolerances of a check: of tractions [Pa], of jumps [m], and the step of differences with that of the field equations.
+#[derive(Clone, Copy)]
+pub struct Tolerances {
+    pub contact: [f64; 2],
+    pub elastic: [f64; 2],
+}
+
+/// A form over a path: contact laws at points `on` the crack after every increment, field equations `off` it, and the
+/// intensities of a straight crack where the form states any; the states.
+pub fn check_form(
     solution: &dyn Solution,
     of: &Setting<'_>,
     path: &[f64],
-    points: &[Point],
-    tolerance: [f64; 2],
+    [on, off]: [&[Point]; 2],
+    tolerances: Tolerances,
 ) -> Vec<Box<dyn Field>> {
     let at = |k: usize| solution.at(&path[..k]).unwrap();
     let states: Vec<Box<dyn Field>> = (1..=path.len()).map(at).collect();
-    for (k, now) in states.iter().enumerate() {
+    for (k, state) in states.iter().enumerate() {
         let before = k.checked_sub(1).map(|k| states[k].as_ref());
-        check_contact(now.as_ref(), before, of, points, tolerance);
+        check_contact(state.as_ref(), before, of, on, tolerances.contact);
+        let [step, tolerance] = tolerances.elastic;
+        check_elasticity(state.as_ref(), of, off, step, tolerance);
+        if let CrackShape::Polyline(points) = of.crack {
+            let tip = [points[0][0], points[0][1], 0.0];
+            if points.len() == 2 && state.intensity(&tip).is_some() {
+                check_intensity(state.as_ref(), of);
+            }
+        }
     }
     states
+}
+
+/// A straight crack.
+pub fn line(from: [f64; 2], to: [f64; 2]) -> CrackShape {
+    CrackShape::Polyline(vec![from, to])
 }
 
 /// Points along a straight crack, off its ends.
@@ -159,7 +176,7 @@ pub fn along(crack: &LineCrack) -> Vec<Point> {
 }
 
 /// K at both ends of a straight crack against the stress just ahead, in the frame (ahead, n).
-pub fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
+fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
     let CrackShape::Polyline(points) = of.crack else {
         panic!("not a straight crack")
     };
@@ -174,11 +191,8 @@ pub fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
         let root = (2.0 * std::f64::consts::PI * rho).sqrt();
         for (k, stress) in found.iter().zip([dot(&n, &on_n), dot(&ahead, &on_n)]) {
             // What is left is √ρ times the stress that is not singular, at most of order one in all tests.
-            assert!(
-                (k - root * stress).abs() < 3.0 * root,
-                "{k} {}",
-                root * stress
-            );
+            let limit = root * stress;
+            assert!((k - limit).abs() < 3.0 * root, "{k} {limit}");
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::geometry::{Point, add_scaled, norm, resolve, sub};
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// A point closer to the circle than this, in radii, lies on it: its side is the one asked for.
 const ON_CIRCLE: f64 = 1e-10;
@@ -34,12 +34,12 @@ pub const SPEC: SolutionSpec = SolutionSpec {
     name: "circular-interface",
     summary: "2D disc parted by a circular arc, contact without friction, pressure p₀ + p₂ cos 2θ on its rim",
     parameters: &[
-        ParameterSpec::required(
+        required(
             "outer_radius_m",
             "radius R₁ of the rim, about the centre of the arc",
         ),
-        ParameterSpec::required("pressure_pa", "mean pressure p₀ on the rim"),
-        ParameterSpec::required(
+        required("pressure_pa", "mean pressure p₀ on the rim"),
+        required(
             "pressure_wave_pa",
             "amplitude p₂ of the pressure varying as cos 2θ",
         ),
@@ -48,9 +48,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[rim, pressure, wave] = values else {
-        return Err("an outer radius and two pressures are needed".into());
-    };
+    let &[rim, pressure, wave] = exactly(values)?;
     let &CrackShape::Arc {
         centre,
         radius,
@@ -226,32 +224,32 @@ impl Field for CircularInterface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::exact::check::{Tolerances, check_form, setting};
     use crate::material::{Material, Model};
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
     fn at(centre: [f64; 2], r: f64, theta: f64) -> Point {
-        [
-            centre[0] + r * theta.cos(),
-            centre[1] + r * theta.sin(),
-            0.0,
-        ]
+        let (sin, cos) = theta.sin_cos();
+        [centre[0] + r * cos, centre[1] + r * sin, 0.0]
+    }
+
+    fn frictionless(shape: &CrackShape) -> Setting<'_> {
+        Setting {
+            friction: 0.0,
+            ..setting(shape)
+        }
     }
 
     #[test]
     fn the_contact_pressure_is_that_of_the_published_test() {
         let shape = CrackShape::arc([0.0, 0.0], 0.6, [0.0, FRAC_PI_2]);
-        let mut of = setting(&shape);
-        of.friction = 0.0;
+        let mut of = frictionless(&shape);
         of.material = Material::new(1e9, 0.2);
         let field = build(&of, &[1.0, 1e7, 1e5]).unwrap().at(&[1.0]).unwrap();
         let pressure = |theta: f64| field.traction(&at([0.0; 2], 0.6, theta))[0];
-        assert!(
-            (pressure(0.0) - 10.147926e6).abs() < 1.0,
-            "{}",
-            pressure(0.0)
-        );
-        assert!((pressure(FRAC_PI_2) - 9.852074e6).abs() < 1.0);
+        for (theta, exact) in [(0.0, 10.147926e6), (FRAC_PI_2, 9.852074e6)] {
+            assert!((pressure(theta) - exact).abs() < 1.0, "{theta}");
+        }
         // Symmetry.
         for r in [0.2, 0.5, 0.6, 0.7] {
             for side in [1.0, -1.0] {
@@ -266,8 +264,7 @@ mod tests {
     #[test]
     fn points_of_chords_are_taken_to_the_circle() {
         let shape = CrackShape::arc([0.1, -0.2], 0.6, [0.0, FRAC_PI_2]);
-        let mut of = setting(&shape);
-        of.friction = 0.0;
+        let of = frictionless(&shape);
         let field = build(&of, &[1.0, 1e-3, 1e-5]).unwrap().at(&[1.0]).unwrap();
         for theta in [0.2, FRAC_PI_2 / 2.0, 1.3] {
             let [on, off] = [0.6, 0.599].map(|r| at([0.1, -0.2], r, theta));
@@ -286,24 +283,23 @@ mod tests {
         for (from, to) in [(0.0, TAU), (TAU, 0.0), (0.3, 1.2)] {
             let shape = CrackShape::arc(centre, 0.6, [from, to]);
             for model in [Model::PlaneStrain, Model::PlaneStress] {
-                let mut of = setting(&shape);
+                let mut of = frictionless(&shape);
                 of.model = model;
-                of.friction = 0.0;
                 let solution = build(&of, &[0.9, 1.0, 0.3]).unwrap();
-                let field = solution.at(&[0.5]).unwrap();
                 let ring =
                     |r: f64| (0..24).map(move |k| at(centre, r, 0.1 + TAU * k as f64 / 24.0));
                 let off: Vec<Point> = [0.05, 0.3, 0.55, 0.65, 0.8]
                     .into_iter()
                     .flat_map(ring)
                     .collect();
-                check_elasticity(&*field, &of, &off, 1e-3, 1e-9);
                 let on: Vec<Point> = if to - from < 1.0 {
                     vec![at(centre, 0.6, 0.3), at(centre, 0.6, 0.8)]
                 } else {
                     ring(0.6).collect()
                 };
-                check_contact(&*field, None, &of, &on, [1e-13, 1e-14]);
+                let (contact, elastic) = ([1e-13, 1e-14], [1e-3, 1e-9]);
+                let tolerances = Tolerances { contact, elastic };
+                let field = &check_form(&*solution, &of, &[0.5], [&on, &off], tolerances)[0];
                 // The faces do slip.
                 assert!(field.jump(&at(centre, 0.6, PI / 4.0))[1].abs() > 0.01);
                 // Rim.
@@ -322,9 +318,8 @@ mod tests {
     #[test]
     fn opening_and_friction_are_refused() {
         let shape = CrackShape::arc([0.0, 0.0], 0.6, [0.0, 1.0]);
-        let mut of = setting(&shape);
-        assert!(build(&of, &[1.0, 1.0, 0.1]).is_err());
-        of.friction = 0.0;
+        assert!(build(&setting(&shape), &[1.0, 1.0, 0.1]).is_err());
+        let of = frictionless(&shape);
         assert!(build(&of, &[0.6, 1.0, 0.1]).is_err());
         assert!(build(&of, &[1.0, 1.0, 0.1]).unwrap().at(&[-1.0]).is_err());
         assert!(build(&of, &[1.0, 1.0, 0.9]).unwrap().at(&[1.0]).is_err());

@@ -26,13 +26,15 @@ use std::f64::consts::{PI, TAU};
 
 use crate::geometry::clip::{clip, crossing};
 use crate::geometry::crack_shape::CrackShape;
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::geometry::{Point, add_scaled, combine, dot, norm, sub};
 use crate::material::{Lame, Model};
 use crate::quadrature::gauss;
 
 use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
 use super::parts::line_crack::axes;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec, growing};
+use super::solution::{
+    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, required,
+};
 
 /// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
 const ON_PLANE: f64 = 1e-10;
@@ -42,27 +44,27 @@ pub const SPEC: SolutionSpec = SolutionSpec {
     name: "manufactured-slip-3d",
     summary: "solid cut by a plane: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        ParameterSpec::required("pressure_pa", "mean pressure p₀ > 0"),
-        ParameterSpec::required(
+        required("pressure_pa", "mean pressure p₀ > 0"),
+        required(
             "pressure_wave_pa",
             "amplitude p₁ of its variation, |p₁| < p₀",
         ),
-        ParameterSpec::required("slip_m", "slip s₀ >= 0 of a half wave's middle"),
-        ParameterSpec::required(
+        required("slip_m", "slip s₀ >= 0 of a half wave's middle"),
+        required(
             "wave_length_m",
             "length L of a slipping and a sticking half wave, which meet at the point of the plane",
         ),
-        ParameterSpec::optional(
+        optional(
             "slip_wave",
             "m, |m| < 1: variation of the slip along the half waves",
             0.5,
         ),
-        ParameterSpec::optional(
+        optional(
             "slip_angle_deg",
             "direction of slip, from the local axis a towards b",
             30.0,
         ),
-        ParameterSpec::optional(
+        optional(
             "stick_dip",
             "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
             1.0,
@@ -72,22 +74,14 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, wave, slip, length, slip_wave, angle, dip] = values else {
-        return Err(
-            "pressure, its wave, slip, wave length, wave of slip, angle and dip are needed".into(),
-        );
-    };
-    for (holds, message) in [
+    let &[pressure, wave, slip, length, slip_wave, angle, dip] = exactly(values)?;
+    needed(&[
         (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
         (slip >= 0.0, "slip_m >= 0"),
         (length > 0.0, "wave_length_m > 0"),
         (slip_wave.abs() < 1.0, "|slip_wave| < 1"),
         (0.0 < dip && dip < 2.0, "0 < stick_dip < 2"),
-    ] {
-        if !holds {
-            return Err(format!("needed: {message}"));
-        }
-    }
+    ])?;
     let CrackShape::Plane { point, .. } = *setting.crack else {
         return Err("the crack must be a plane".into());
     };
@@ -191,15 +185,6 @@ impl ManufacturedSlip {
         }
     }
 
-    /// Vector with components along a, b, n.
-    fn vector(&self, v: [f64; 3]) -> Point {
-        let mut x = [0.0; 3];
-        for (value, e) in v.iter().zip(&self.frame) {
-            x = add_scaled(&x, *value, e);
-        }
-        x
-    }
-
     /// ∫ μ p s dA over the plane inside a box: exact along x₂, Gauss along x₁ between vertices and ends of half waves.
     fn work_inside(&self, body: &[Point; 2]) -> Result<f64, String> {
         /// Points per interval, at most half a wave.
@@ -290,7 +275,10 @@ impl Field for ManufacturedSlip {
         let e = self.direction;
         let w = 0.5 * sign * s.d(0, 0) + y * g.d(0, 0) / mu;
         let l = p.d(0, 0) + 0.5 * sign * lambda * s.along(e, 0, 0);
-        self.vector([e[0] * w, e[1] * w, -y * l / (lambda + 2.0 * mu)])
+        combine(
+            &self.frame,
+            [e[0] * w, e[1] * w, -y * l / (lambda + 2.0 * mu)],
+        )
     }
 
     fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
@@ -312,7 +300,7 @@ impl Field for ManufacturedSlip {
         ];
         let mut sigma = [[0.0; 3]; 3];
         for (row, e) in local.iter().zip(&self.frame) {
-            let on = self.vector(*row);
+            let on = combine(&self.frame, *row);
             for r in 0..3 {
                 for t in 0..3 {
                     sigma[r][t] += e[r] * on[t];
@@ -334,11 +322,14 @@ impl Field for ManufacturedSlip {
         let in_plane = |a: usize, i: usize, j: usize| {
             (lambda + mu) * (l(i, j) / m - along(i, j)) - mu * e[a] * laplace
         };
-        self.vector([
-            in_plane(0, 1, 0),
-            in_plane(1, 0, 1),
-            -(1.0 + lambda / mu) * g.along(e, 0, 0) + mu * y * (l(2, 0) + l(0, 2)) / m,
-        ])
+        combine(
+            &self.frame,
+            [
+                in_plane(0, 1, 0),
+                in_plane(1, 0, 1),
+                -(1.0 + lambda / mu) * g.along(e, 0, 0) + mu * y * (l(2, 0) + l(0, 2)) / m,
+            ],
+        )
     }
 
     fn traction(&self, x: &Point) -> [f64; 3] {
@@ -360,7 +351,7 @@ impl Field for ManufacturedSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_elasticity, check_path, setting};
+    use crate::exact::check::{Tolerances, check_form, setting};
     use crate::geometry::unit;
 
     const VALUES: [f64; 7] = [1.0, 0.4, 0.03, 0.9, 0.6, 35.0, 1.3];
@@ -380,8 +371,7 @@ mod tests {
     /// Point of the crack's coordinates.
     fn at(shape: &CrackShape, x1: f64, x2: f64, y: f64) -> Point {
         let point = [0.1, -0.05, 0.2];
-        let [n, a, b] = axes(shape, &point);
-        add_scaled(&add_scaled(&add_scaled(&point, x1, &a), x2, &b), y, &n)
+        add_scaled(&point, 1.0, &combine(&axes(shape, &point), [y, x1, x2]))
     }
 
     #[test]
@@ -400,9 +390,9 @@ mod tests {
                 .flat_map(|[p, q]| [-0.6, -0.1, 0.2].map(|y| at(shape, *p, *q, y)))
                 .collect();
             assert!(off.len() > 300);
-            for now in check_path(&*solution, &of, &[0.3, 0.3, 1.0], &on, [1e-14; 2]) {
-                check_elasticity(&*now, &of, &off, 1e-4, 1e-9);
-            }
+            let (contact, elastic) = ([1e-14; 2], [1e-4, 1e-9]);
+            let tolerances = Tolerances { contact, elastic };
+            check_form(&*solution, &of, &[0.3, 0.3, 1.0], [&on, &off], tolerances);
         }
     }
 
@@ -416,10 +406,7 @@ mod tests {
             let mut sum = 0.0;
             for i in 0..n {
                 for j in 0..n {
-                    let (x1, x2) = (
-                        (f64::from(i) + 0.5) * step - 2.0,
-                        (f64::from(j) + 0.5) * step - 2.0,
-                    );
+                    let [x1, x2] = [i, j].map(|k| (f64::from(k) + 0.5) * step - 2.0);
                     let x = at(shape, x1, x2, 0.0);
                     if (0..3).all(|k| x[k] >= of.body[0][k] && x[k] <= of.body[1][k]) {
                         sum -= dot(&field.traction(&x), &field.jump(&x)) * step * step;
@@ -427,10 +414,8 @@ mod tests {
                 }
             }
             let stated = field.dissipation().unwrap();
-            assert!(
-                stated > 1e-3 && (stated - sum).abs() < 2e-3 * stated,
-                "{stated} {sum}"
-            );
+            let error = (stated - sum).abs();
+            assert!(stated > 1e-3 && error < 2e-3 * stated, "{stated} {sum}");
         }
     }
 

@@ -21,18 +21,18 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::Mode;
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-opening",
     summary: "straight 2D crack in an infinite plate under stress growing linearly along it: partly open, partly closed",
     parameters: &[
-        ParameterSpec::required(
+        required(
             "pressure_pa",
             "pressure p₀ of the uncracked body at the midpoint of the crack, negative: tension",
         ),
-        ParameterSpec::required(
+        required(
             "pressure_rise_pa",
             "p₁: that pressure at the second end of the crack less that at the midpoint",
         ),
@@ -41,9 +41,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, rise] = values else {
-        return Err("a pressure and its rise are needed".into());
-    };
+    let &[pressure, rise] = exactly(values)?;
     Ok(Box::new(PartialOpening {
         crack: LineCrack::new(setting)?,
         elastic: PlaneElasticity::new(setting)?,
@@ -91,9 +89,9 @@ impl Solution for PartialOpening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{along, check_contact, check_elasticity, check_intensity, setting};
+    use crate::exact::check::{Tolerances, along, check_form, line, setting};
     use crate::exact::parts::face_load::FaceLoad;
-    use crate::geometry::crack_shape::CrackShape;
+    use crate::material::Model;
     use std::f64::consts::PI;
 
     #[test]
@@ -101,52 +99,50 @@ mod tests {
         let overlapping = FaceLoad::new(Mode::Opening, 0.0, 1.0, 0.0, 1.0).intensity(1.0);
         assert!((overlapping - 0.8862269).abs() < 1e-7);
         assert!((overlapping - 0.5 * PI.sqrt()).abs() < 1e-15);
-        let shape = CrackShape::Polyline(vec![[-1.0, 0.0], [1.0, 0.0]]);
+        let shape = line([-1.0, 0.0], [1.0, 0.0]);
         let of = setting(&shape);
         let field = build(&of, &[0.0, -1.0]).unwrap().at(&[1.0]).unwrap();
         let k = field.intensity(&[1.0, 0.0, 0.0]).unwrap();
         assert!((k[0] - 0.9648017).abs() < 1e-7 && k[1] == 0.0, "{k:?}");
         assert_eq!(field.intensity(&[-1.0, 0.0, 0.0]), Some([0.0; 3]));
         // Open where s > −1/3.
-        assert!(
-            field.jump(&[-0.33, 0.0, 0.0])[0] > 0.0 && field.jump(&[-0.34, 0.0, 0.0])[0] == 0.0
-        );
+        let [open, closed] = [-0.33, -0.34].map(|s| field.jump(&[s, 0.0, 0.0])[0]);
+        assert!(open > 0.0 && closed == 0.0);
     }
 
     #[test]
     fn the_contact_laws_hold_in_every_state() {
-        let shape = CrackShape::Polyline(vec![[-0.5, -0.3], [0.4, 0.2]]);
-        let of = setting(&shape);
-        let along = along(&LineCrack::new(&of).unwrap());
+        let shape = line([-0.5, -0.3], [0.4, 0.2]);
         let off = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
+        let (contact, elastic) = ([1e-13, 1e-14], [3e-4, 1e-9]);
+        let tolerances = Tolerances { contact, elastic };
         let mut open_points = Vec::new();
-        for (pressure, rise) in [
-            (1.0, 0.5),
-            (0.2, 0.5),
-            (0.2, -0.5),
-            (0.0, 1.0),
-            (-0.1, -0.5),
-            (-0.3, 0.5),
-            (-1.0, 0.0),
-            (1.0, 0.0),
+        for pressures in [
+            [1.0, 0.5],
+            [0.2, 0.5],
+            [0.2, -0.5],
+            [0.0, 1.0],
+            [-0.1, -0.5],
+            [-0.3, 0.5],
+            [-1.0, 0.0],
+            [1.0, 0.0],
         ] {
-            let solution = build(&of, &[pressure, rise]).unwrap();
-            for factor in [1.0, -1.0] {
-                let field = solution.at(&[0.3, factor]).unwrap();
-                check_contact(&*field, None, &of, &along, [1e-13, 1e-14]);
-                check_elasticity(&*field, &of, &off, 3e-4, 1e-9);
-                check_intensity(&*field, &of);
-                open_points.push(along.iter().filter(|x| field.jump(x)[0] > 0.0).count());
+            for model in [Model::PlaneStrain, Model::PlaneStress] {
+                let of = Setting {
+                    model,
+                    ..setting(&shape)
+                };
+                let along = along(&LineCrack::new(&of).unwrap());
+                let solution = build(&of, &pressures).unwrap();
+                let path = [0.3, 1.0, -1.0];
+                for field in check_form(&*solution, &of, &path, [&along, &off], tolerances) {
+                    open_points.push(along.iter().filter(|x| field.jump(x)[0] > 0.0).count());
+                }
             }
         }
         // Closed, partly open and open states were all met.
         assert!(open_points.contains(&0) && open_points.contains(&200));
-        assert!(
-            open_points
-                .iter()
-                .filter(|n| (20..180).contains(*n))
-                .count()
-                >= 6
-        );
+        let partly = open_points.iter().filter(|n| (20..180).contains(*n));
+        assert!(partly.count() >= 6);
     }
 }

@@ -22,27 +22,25 @@ use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "partial-slip",
     summary: "straight 2D crack in an infinite plate, pressure linear along it, shear scaled by the load factor: partial slip, cycles",
     parameters: &[
-        ParameterSpec::required("pressure_pa", "pressure p₀ at the midpoint of the crack"),
-        ParameterSpec::required(
+        required("pressure_pa", "pressure p₀ at the midpoint of the crack"),
+        required(
             "pressure_rise_pa",
             "p₁: pressure at the second end less that at the midpoint, |p₁| < p₀",
         ),
-        ParameterSpec::required("shear_pa", "remote shear stress t·σ·n at load factor 1"),
+        required("shear_pa", "remote shear stress t·σ·n at load factor 1"),
     ],
     build,
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[pressure, rise, shear] = values else {
-        return Err("pressure, its rise and a shear stress are needed".into());
-    };
+    let &[pressure, rise, shear] = exactly(values)?;
     if rise.abs() >= pressure {
         return Err(
             "the crack must be pressed everywhere: |pressure_rise_pa| < pressure_pa".into(),
@@ -165,9 +163,9 @@ impl Solution for PartialSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{along, check_elasticity, check_intensity, check_path, setting};
+    use crate::exact::check::{Tolerances, along, check_form, line, setting};
     use crate::geometry::crack_shape::CrackShape;
-    use crate::material::Material;
+    use crate::material::{Material, Model};
     use std::f64::consts::PI;
 
     /// a = 1, G = 1, ν = 0.3, μ = 0.5.
@@ -176,10 +174,6 @@ mod tests {
             material: Material::new(2.6, 0.3),
             ..setting(shape)
         }
-    }
-
-    fn line() -> CrackShape {
-        CrackShape::Polyline(vec![[-1.0, 0.0], [1.0, 0.0]])
     }
 
     fn at(solution: &dyn Solution, path: &[f64]) -> Box<dyn Field> {
@@ -208,7 +202,7 @@ mod tests {
 
     #[test]
     fn first_loading_has_the_numbers_of_the_example() {
-        let shape = line();
+        let shape = line([-1.0, 0.0], [1.0, 0.0]);
         let of = example(&shape);
         let solution = build(&of, &[1.0, 0.6, 0.45]).unwrap();
         let field = at(&*solution, &[1.0]);
@@ -235,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_small_cycle_shakes_down() {
-        let shape = line();
+        let shape = line([-1.0, 0.0], [1.0, 0.0]);
         let of = example(&shape);
         let solution = build(&of, &[1.0, 0.6, 0.45]).unwrap();
         let first = at(&*solution, &[1.0]).dissipation();
@@ -246,31 +240,32 @@ mod tests {
         assert!(large.dissipation() > first);
     }
 
-    /// Both senses of the pressure, both signs of the shear, stick, partial and full slip, loops within loops.
+    /// Both senses of the pressure, both signs of the shear, stick, partial and full slip, loops within loops, both models.
     #[test]
     fn the_contact_laws_hold_along_a_path() {
-        let inclined = CrackShape::Polyline(vec![[-0.5, -0.3], [0.4, 0.2]]);
-        for (rise, shear) in [
-            (0.6, 0.45),
-            (-0.6, 0.45),
-            (0.6, -0.45),
-            (-0.3, 0.8),
-            (0.0, 0.6),
-            (0.9, 0.2),
+        let inclined = line([-0.5, -0.3], [0.4, 0.2]);
+        let path = [
+            0.5, 1.0, 0.3, -0.6, -0.1, -0.3, 0.4, 0.9, -1.2, 0.2, -0.9, 1.0, 1.5, -0.2,
+        ];
+        let off = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
+        let (contact, elastic) = ([1e-13, 1e-14], [3e-4, 1e-9]);
+        let tolerances = Tolerances { contact, elastic };
+        let (strain, stress) = (Model::PlaneStrain, Model::PlaneStress);
+        for (model, rise, shear) in [
+            (strain, 0.6, 0.45),
+            (stress, -0.6, 0.45),
+            (strain, 0.6, -0.45),
+            (stress, -0.3, 0.8),
+            (strain, 0.0, 0.6),
+            (strain, 0.9, 0.2),
         ] {
-            let of = example(&inclined);
+            let of = Setting {
+                model,
+                ..example(&inclined)
+            };
             let crack = LineCrack::new(&of).unwrap();
             let solution = build(&of, &[1.0, rise, shear]).unwrap();
-            let path = [
-                0.5, 1.0, 0.3, -0.6, -0.1, -0.3, 0.4, 0.9, -1.2, 0.2, -0.9, 1.0, 1.5, -0.2,
-            ];
-            let along = along(&crack);
-            let states = check_path(&*solution, &of, &path, &along, [1e-13, 1e-14]);
-            for state in &states {
-                check_intensity(state.as_ref(), &of);
-            }
-            let points = [[0.7, -0.5, 0.0], [-0.8, 0.4, 0.0], [0.2, 0.9, 0.0]];
-            check_elasticity(&*states[4], &of, &points, 3e-4, 1e-9);
+            check_form(&*solution, &of, &path, [&along(&crack), &off], tolerances);
             let end = crack.point(crack.half_length * (1.0 - 1e-12), 0.0);
             assert!((at(&*solution, &[0.01]).traction(&end)[0] - 1.0 - rise).abs() < 1e-11);
         }
@@ -278,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_crack_that_would_open_is_refused() {
-        let shape = line();
+        let shape = line([-1.0, 0.0], [1.0, 0.0]);
         assert!(build(&example(&shape), &[1.0, -1.0, 0.1]).is_err());
     }
 }

@@ -30,23 +30,44 @@ pub struct ParameterSpec {
     pub default: Option<f64>,
 }
 
-impl ParameterSpec {
-    /// A number that the case must give.
-    pub const fn required(name: &'static str, summary: &'static str) -> Self {
-        ParameterSpec {
-            name,
-            summary,
-            default: None,
-        }
+/// A number that the case must give.
+pub(super) const fn required(name: &'static str, summary: &'static str) -> ParameterSpec {
+    ParameterSpec {
+        name,
+        summary,
+        default: None,
     }
+}
 
-    /// A number with a default.
-    pub const fn optional(name: &'static str, summary: &'static str, default: f64) -> Self {
-        ParameterSpec {
-            name,
-            summary,
-            default: Some(default),
-        }
+/// A number with a default.
+pub(super) const fn optional(
+    name: &'static str,
+    summary: &'static str,
+    default: f64,
+) -> ParameterSpec {
+    ParameterSpec {
+        default: Some(default),
+        ..required(name, summary)
+    }
+}
+
+/// A stress component, 0 unless given.
+pub(super) const fn stress(name: &'static str, summary: &'static str) -> ParameterSpec {
+    optional(name, summary, 0.0)
+}
+
+/// The values of so many parameters.
+pub(super) fn exactly<const N: usize>(values: &[f64]) -> Result<&[f64; N], String> {
+    values
+        .try_into()
+        .map_err(|_| format!("{N} values are needed"))
+}
+
+/// Refuses values by the first condition that does not hold.
+pub(super) fn needed(conditions: &[(bool, &str)]) -> Result<(), String> {
+    match conditions.iter().find(|(holds, _)| !holds) {
+        None => Ok(()),
+        Some((_, condition)) => Err(format!("needed: {condition}")),
     }
 }
 

@@ -25,25 +25,23 @@ use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, stress};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "uniform-slip",
     summary: "straight 2D crack in an infinite plate under uniform remote stress: stick, full slip or open",
     parameters: &[
-        ParameterSpec::optional("stress_xx_pa", "remote stress σ_xx, tension positive", 0.0),
-        ParameterSpec::optional("stress_yy_pa", "remote stress σ_yy", 0.0),
-        ParameterSpec::optional("stress_xy_pa", "remote stress σ_xy", 0.0),
+        stress("stress_xx_pa", "remote stress σ_xx, tension positive"),
+        stress("stress_yy_pa", "remote stress σ_yy"),
+        stress("stress_xy_pa", "remote stress σ_xy"),
     ],
     build,
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
     let crack = LineCrack::new(setting)?;
-    let &[xx, yy, xy] = values else {
-        return Err("three stress components are needed".into());
-    };
+    let &[xx, yy, xy] = exactly(values)?;
     Ok(Box::new(UniformSlip {
         crack,
         elastic: PlaneElasticity::new(setting)?,
@@ -96,16 +94,20 @@ impl Solution for UniformSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{
-        check_contact, check_elasticity, check_intensity, check_path, setting,
-    };
+    use crate::exact::check::{Tolerances, along, check_form, line, setting};
     use crate::geometry::Point;
-    use crate::geometry::crack_shape::CrackShape;
 
-    fn along(crack: &LineCrack) -> Vec<Point> {
-        (0..=20)
-            .map(|k| crack.point((k as f64 / 10.0 - 1.0) * 0.999 * crack.half_length, 0.0))
-            .collect()
+    const OFF: [Point; 3] = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
+    const TOLERANCES: Tolerances = Tolerances {
+        contact: [1e-13, 1e-14],
+        elastic: [3e-4, 1e-9],
+    };
+
+    /// States along a path under (xx, yy, xy), checked.
+    fn states(of: &Setting<'_>, stress: [f64; 3], path: &[f64]) -> Vec<Box<dyn Field>> {
+        let on = along(&LineCrack::new(of).unwrap());
+        let solution = build(of, &stress).unwrap();
+        check_form(&*solution, of, path, [&on, &OFF], TOLERANCES)
     }
 
     /// Uniaxial compression of an inclined crack: slip iff μ < tan θ, |K_II| = σ cos θ (sin θ − μ cos θ) √(πa), the upper
@@ -120,25 +122,17 @@ mod tests {
             (153.0, 0.3),
             (-60.0, 1.0),
         ] {
-            let theta = degrees.to_radians();
-            let (c, s) = (theta.cos(), theta.sin());
-            let centre = [0.1, -0.07];
-            let shape = CrackShape::Polyline(vec![
-                [centre[0] - a * c, centre[1] - a * s],
-                [centre[0] + a * c, centre[1] + a * s],
-            ]);
-            let mut of = setting(&shape);
-            of.friction = friction;
+            let (s, c) = degrees.to_radians().sin_cos();
+            let end = |sign: f64| [0.1 + sign * a * c, -0.07 + sign * a * s];
+            let shape = line(end(-1.0), end(1.0));
+            let of = Setting {
+                friction,
+                ..setting(&shape)
+            };
             let crack = LineCrack::new(&of).unwrap();
-            let solution = build(&of, &[0.0, -1.0, 0.0]).unwrap();
-            let field = solution.at(&[1.0]).unwrap();
-            let points = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
-            check_elasticity(&*field, &of, &points, 3e-4, 1e-9);
-            check_contact(&*field, None, &of, &along(&crack), [1e-13, 1e-14]);
-            check_intensity(&*field, &of);
+            let field = &states(&of, [0.0, -1.0, 0.0], &[1.0])[0];
             let drop = (s.abs() - friction * c.abs()).max(0.0) * c.abs();
-            let tip = crack.point(a, 0.0);
-            let k = field.intensity(&tip).unwrap();
+            let k = field.intensity(&crack.point(a, 0.0)).unwrap();
             assert_eq!(k[0], 0.0);
             assert!((k[1].abs() - drop * (PI * a).sqrt()).abs() < 1e-14);
             let modulus = 2.0 / (1.0 - 0.09);
@@ -147,21 +141,19 @@ mod tests {
             // Upper face relative to the lower one.
             let middle = crack.point(0.0, 0.0);
             let upper = crack.normal[1].signum();
-            let up = field.displacement(&middle, upper)[1] - field.displacement(&middle, -upper)[1];
-            assert!(if drop > 0.0 { up < -1e-3 } else { up == 0.0 });
+            let [up, down] = [upper, -upper].map(|side| field.displacement(&middle, side)[1]);
+            assert!(if drop > 0.0 {
+                up - down < -1e-3
+            } else {
+                up == down
+            });
         }
     }
 
     #[test]
     fn tension_opens_with_free_faces() {
-        let shape = CrackShape::Polyline(vec![[-0.3, -0.3], [0.3, 0.3]]);
-        let of = setting(&shape);
-        let crack = LineCrack::new(&of).unwrap();
-        let field = build(&of, &[0.2, 1.0, -0.3]).unwrap().at(&[1.0]).unwrap();
-        check_contact(&*field, None, &of, &along(&crack), [1e-13, 1e-14]);
-        let points = [[0.7, -0.4, 0.0], [-0.2, 0.6, 0.0]];
-        check_elasticity(&*field, &of, &points, 1e-3, 1e-8);
-        check_intensity(&*field, &of);
+        let shape = line([-0.3, -0.3], [0.3, 0.3]);
+        let field = &states(&setting(&shape), [0.2, 1.0, -0.3], &[1.0])[0];
         // n = (−1, 1)/√2: σ_nn = 0.6 + 0.3, σ_tn = 0.4.
         let root = (PI * 0.18_f64.sqrt()).sqrt();
         let k = field.intensity(&[0.3, 0.3, 0.0]).unwrap();
@@ -172,14 +164,10 @@ mod tests {
     /// Loading, unloading (the slip stays until the shear reverses), opening and closing again.
     #[test]
     fn the_contact_laws_hold_along_a_path() {
-        let shape = CrackShape::Polyline(vec![[-0.4, -0.1], [0.4, 0.1]]);
+        let shape = line([-0.4, -0.1], [0.4, 0.1]);
         for stress in [[0.0, -1.0, 0.9], [-0.2, -1.0, 0.1]] {
-            let of = setting(&shape);
-            let crack = LineCrack::new(&of).unwrap();
-            let solution = build(&of, &stress).unwrap();
             let path = [0.4, 1.0, 0.9, 0.5, 0.2, 0.05, -0.3, 0.2, 1.2];
-            let points = along(&crack);
-            let states = check_path(&*solution, &of, &path, &points, [1e-13, 1e-14]);
+            let states = states(&setting(&shape), stress, &path);
             let dissipated = states.iter().map(|state| state.dissipation().unwrap());
             assert!(dissipated.is_sorted());
         }

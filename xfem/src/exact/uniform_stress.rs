@@ -22,7 +22,7 @@ use crate::material::Model;
 
 use super::parts::line_crack::{apply, axes};
 use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, ParameterSpec, Setting, Solution, SolutionSpec};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, stress};
 
 /// Excess over the friction bound, and tension, that count as rounding, per largest stress component.
 const ROUNDING: f64 = 1e-12;
@@ -30,23 +30,18 @@ const ROUNDING: f64 = 1e-12;
 /// A point closer to an open crack than this, in units of the body's diagonal, lies on it: its side is asked for.
 const ON_CRACK: f64 = 1e-10;
 
-/// A component of stress.
-const fn component(name: &'static str, summary: &'static str) -> ParameterSpec {
-    ParameterSpec::optional(name, summary, 0.0)
-}
-
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
     name: "uniform-stress",
     summary: "uniform stress, the crack of any shape closed and sticking (or free of traction); 2D and 3D",
     parameters: &[
-        component("stress_xx_pa", "stress σ_xx, tension positive"),
-        component("stress_yy_pa", "stress σ_yy"),
-        component("stress_zz_pa", "stress σ_zz, solids only"),
-        component("stress_xy_pa", "stress σ_xy"),
-        component("stress_yz_pa", "stress σ_yz, solids only"),
-        component("stress_xz_pa", "stress σ_xz, solids only"),
-        component(
+        stress("stress_xx_pa", "stress σ_xx, tension positive"),
+        stress("stress_yy_pa", "stress σ_yy"),
+        stress("stress_zz_pa", "stress σ_zz, solids only"),
+        stress("stress_xy_pa", "stress σ_xy"),
+        stress("stress_yz_pa", "stress σ_yz, solids only"),
+        stress("stress_xz_pa", "stress σ_xz, solids only"),
+        stress(
             "opening_m",
             "opening δ >= 0 of a straight crack or plane without traction",
         ),
@@ -55,9 +50,7 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 };
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
-    let &[xx, yy, zz, xy, yz, xz, opening] = values else {
-        return Err("six stress components and an opening are needed".into());
-    };
+    let &[xx, yy, zz, xy, yz, xz, opening] = exactly(values)?;
     let flat = match setting.crack {
         CrackShape::Plane { .. } => true,
         CrackShape::Polyline(points) => points.len() == 2,
@@ -257,7 +250,7 @@ impl Field for UniformStress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{check_contact, check_elasticity, setting};
+    use crate::exact::check::{Tolerances, check_contact, check_form, line, setting};
     use crate::geometry::ellipse::Ellipse;
     use crate::geometry::unit;
     use crate::material::Material;
@@ -266,46 +259,49 @@ mod tests {
         build(of, &[stress.as_slice(), &[0.0]].concat())
     }
 
-    fn plane(normal: Point) -> CrackShape {
-        CrackShape::plane([0.0, 0.0, 0.1], unit(&normal))
+    fn with<'a>(shape: &'a CrackShape, model: Model, friction: f64) -> Setting<'a> {
+        Setting {
+            model,
+            friction,
+            ..setting(shape)
+        }
+    }
+
+    fn tolerances(contact: [f64; 2], elastic: f64) -> Tolerances {
+        let elastic = [1e-2, elastic];
+        Tolerances { contact, elastic }
     }
 
     /// Block of 20 m on a plane of slope 1/2, pressed by 1e-6 m at E = 1e8 Pa with free sides: uniaxial stress of 5 Pa,
     /// P_n/w = 4 Pa, and shear of half the friction bound for μ = 1, for any ν in a solid.
     #[test]
     fn a_block_on_a_slope_sticks() {
-        let shape = plane([-1.0, 0.0, 2.0]);
+        let shape = CrackShape::plane([0.0, 0.0, 0.1], unit(&[-1.0, 0.0, 2.0]));
         for poisson in [0.0, 0.3] {
-            let mut of = setting(&shape);
-            of.model = Model::Solid;
-            of.friction = 1.0;
-            of.material = Material {
-                young: 1e8,
-                poisson,
-            };
+            let mut of = with(&shape, Model::Solid, 1.0);
+            of.material = Material::new(1e8, poisson);
             let solution = held(&of, &[0.0, 0.0, -5.0, 0.0, 0.0, 0.0]).unwrap();
-            let field = solution.at(&[0.5, 1.0]).unwrap();
+            let places: [&[Point]; 2] = [&[[0.2, 0.7, 0.2]], &[[0.3, 0.2, 0.9]]];
+            let tolerances = tolerances([1e-13, 1e-20], 1e-10);
+            let states = check_form(&*solution, &of, &[0.5, 1.0], places, tolerances);
+            let field = &states[1];
             let [p, a, b] = field.traction(&[0.0, 0.0, 0.1]);
             assert!((p - 4.0).abs() < 1e-14 && (a.hypot(b) - 2.0).abs() < 1e-14);
             let (top, bottom) = ([1.0, 2.0, 20.0], [1.0, 2.0, 0.0]);
             let pressed = field.displacement(&top, 1.0)[2] - field.displacement(&bottom, -1.0)[2];
             assert!((pressed + 1e-6).abs() < 1e-20);
-            check_elasticity(&*field, &of, &[[0.3, 0.2, 0.9]], 1e-2, 1e-10);
-            check_contact(&*field, None, &of, &[[0.2, 0.7, 0.2]], [1e-13, 1e-20]);
         }
-        // In the plane: any ν in plane stress.
-        let shape = CrackShape::Polyline(vec![[-1.0, -0.5], [1.0, 0.5]]);
-        let mut of = setting(&shape);
-        of.model = Model::PlaneStress;
-        of.friction = 0.5;
-        let solution = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
-        let field = solution.at(&[1.0]).unwrap();
-        let [p, a, _] = field.traction(&[0.0; 3]);
+        // In the plane: any ν in plane stress. The bound itself is admissible, less friction is not.
+        let shape = line([-1.0, -0.5], [1.0, 0.5]);
+        let state = |friction: f64| {
+            let of = with(&shape, Model::PlaneStress, friction);
+            held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0])
+                .unwrap()
+                .at(&[1.0])
+        };
+        let [p, a, _] = state(0.5).unwrap().traction(&[0.0; 3]);
         assert!((p - 4.0).abs() < 1e-14 && (a.abs() - 2.0).abs() < 1e-14);
-        // The bound itself is admissible, less friction is not.
-        of.friction = 0.4999;
-        let steep = held(&of, &[0.0, -5.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
-        assert!(steep.at(&[1.0]).is_err());
+        assert!(state(0.4999).is_err());
     }
 
     #[test]
@@ -313,45 +309,41 @@ mod tests {
         let arc = CrackShape::arc([0.1, 0.2], 0.6, [0.3, 0.3 + 2.0 * PI]);
         let chain = CrackShape::Polyline(vec![[-1.0, 0.0], [0.1, 0.3], [1.0, -0.4]]);
         for (shape, x) in [(&arc, [0.1, 0.8, 0.0]), (&chain, [0.55, -0.05, 0.0])] {
-            let mut of = setting(shape);
-            of.friction = 0.0;
+            let of = with(shape, Model::PlaneStrain, 0.0);
             let solution = held(&of, &[-3.0, -3.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
-            let field = solution.at(&[1.0]).unwrap();
-            check_contact(&*field, None, &of, &[x], [1e-14, 1e-15]);
+            let places: [&[Point]; 2] = [&[x], &[[0.5, 0.4, 0.0]]];
+            let tolerances = tolerances([1e-14, 1e-15], 1e-12);
+            let field = &check_form(&*solution, &of, &[1.0], places, tolerances)[0];
             assert!((field.traction(&x)[0] - 3.0).abs() < 1e-14);
             // u = −p (1 + ν)(1 − 2ν)/E x in plane strain.
-            let moved = field.displacement(&[0.7, 0.0, 0.0], 1.0)[0]
-                - field.displacement(&[0.2, 0.0, 0.0], 1.0)[0];
-            assert!((moved + 3.0 * 1.3 * 0.4 / 2.0 * 0.5).abs() < 1e-14);
+            let [far, near] = [0.7, 0.2].map(|x| field.displacement(&[x, 0.0, 0.0], 1.0)[0]);
+            assert!((far - near + 3.0 * 1.3 * 0.4 / 2.0 * 0.5).abs() < 1e-14);
             assert!(solution.at(&[1.0, -0.1]).is_err());
-            check_elasticity(&*field, &of, &[[0.5, 0.4, 0.0]], 1e-2, 1e-12);
         }
     }
 
     #[test]
     fn an_elliptic_crack_holds_under_six_components() {
-        let normal = unit(&[1.0, 1.0, 1.0]);
         let shape = CrackShape::Ellipse(Ellipse {
             centre: [0.1, 0.0, -0.2],
-            normal,
+            normal: unit(&[1.0, 1.0, 1.0]),
             axis: unit(&[1.0, -1.0, 0.0]),
             half_axes: [0.5, 0.3],
         });
-        let mut of = setting(&shape);
-        of.model = Model::Solid;
+        let of = with(&shape, Model::Solid, 0.5);
         let stress = [-1.0, -1.2, -0.9, 0.1, -0.15, 0.05];
-        let field = held(&of, &stress).unwrap().at(&[1.0]).unwrap();
-        check_contact(&*field, None, &of, &[[0.1, 0.0, -0.2]], [1e-14, 1e-15]);
-        check_elasticity(&*field, &of, &[[0.4, 0.3, 0.2]], 1e-2, 1e-12);
-        of.friction = 0.05;
-        assert!(held(&of, &stress).unwrap().at(&[1.0]).is_err());
+        let places: [&[Point]; 2] = [&[[0.1, 0.0, -0.2]], &[[0.4, 0.3, 0.2]]];
+        let solution = held(&of, &stress).unwrap();
+        let tolerances = tolerances([1e-14, 1e-15], 1e-12);
+        check_form(&*solution, &of, &[1.0], places, tolerances);
+        let slippery = with(&shape, Model::Solid, 0.05);
+        assert!(held(&slippery, &stress).unwrap().at(&[1.0]).is_err());
     }
 
     #[test]
     fn free_faces_are_admitted_and_tension_is_not() {
-        let shape = CrackShape::Polyline(vec![[-1.0, 0.0], [1.0, 0.0]]);
-        let mut of = setting(&shape);
-        of.friction = 0.0;
+        let shape = line([-1.0, 0.0], [1.0, 0.0]);
+        let of = with(&shape, Model::PlaneStrain, 0.0);
         for (yy, admitted) in [(0.0, true), (1e-9, false)] {
             let solution = held(&of, &[1.0, yy, 0.0, 0.0, 0.0, 0.0]).unwrap();
             assert_eq!(solution.at(&[1.0]).is_ok(), admitted);
@@ -366,31 +358,19 @@ mod tests {
         for k in 0..200 {
             let r = |m: usize| ((k * m) % 97) as f64 / 97.0;
             let from = 6.0 * r(13) - 3.0;
-            let arc = CrackShape::Arc {
-                centre: [0.0, 0.0],
-                radius: 1.0,
-                from,
-                to: from + 4.0 * r(31) - 2.0,
+            let to = from + 4.0 * r(31) - 2.0;
+            let arc = CrackShape::arc([0.0, 0.0], 1.0, [from, to]);
+            let of = with(&arc, Model::PlaneStrain, r(7));
+            let [xx, yy, xy] = [-1.0 - r(3), -1.0 - r(5), r(11) - 0.5];
+            let solution = held(&of, &[xx, yy, 0.0, xy, 0.0, 0.0]).unwrap();
+            let accepted = solution.at(&[1.0]).is_ok();
+            let slack = |j: i32| {
+                let (sin, cos) = (from + (to - from) * f64::from(j) / 20000.0).sin_cos();
+                let s = [xx * cos + xy * sin, xy * cos + yy * sin];
+                let p = -(s[0] * cos + s[1] * sin);
+                of.friction * p - (s[1] * cos - s[0] * sin).abs()
             };
-            let mut of = setting(&arc);
-            of.friction = r(7);
-            let stress = [-1.0 - r(3), -1.0 - r(5), 0.0, r(11) - 0.5, 0.0, 0.0];
-            let accepted = held(&of, &stress).unwrap().at(&[1.0]).is_ok();
-            let CrackShape::Arc { to, .. } = arc else {
-                unreachable!()
-            };
-            let least = (0..=20000)
-                .map(|j| {
-                    let t = from + (to - from) * j as f64 / 20000.0;
-                    let n = [t.cos(), t.sin()];
-                    let s = [
-                        stress[0] * n[0] + stress[3] * n[1],
-                        stress[3] * n[0] + stress[1] * n[1],
-                    ];
-                    let p = -(s[0] * n[0] + s[1] * n[1]);
-                    of.friction * p - (s[1] * n[0] - s[0] * n[1]).abs()
-                })
-                .fold(f64::INFINITY, f64::min);
+            let least = (0..=20000).map(slack).fold(f64::INFINITY, f64::min);
             if least.abs() > 1e-6 {
                 assert_eq!(accepted, least > 0.0, "{k}: {least}");
                 verdicts[usize::from(accepted)] += 1;
@@ -400,47 +380,23 @@ mod tests {
     }
 
     #[test]
-    fn traction_is_the_force_on_side_one() {
-        let shape = plane([1.0, 0.3, 2.0]);
-        let mut of = setting(&shape);
-        of.model = Model::Solid;
-        let field = held(&of, &[-1.0, -1.1, -0.9, 0.1, 0.0, 0.1])
-            .unwrap()
-            .at(&[2.0])
-            .unwrap();
-        let axes = axes(&shape, &[0.0; 3]);
-        let t = field.traction(&[0.0; 3]);
-        let mut sum = apply(&field.stress(&[0.0; 3], 1.0), &axes[0]);
-        for (component, axis) in t.iter().zip(&axes) {
-            for k in 0..3 {
-                sum[k] += component * axis[k];
-            }
-        }
-        assert!(norm(&sum) < 1e-14);
-    }
-
-    #[test]
     fn a_crack_free_of_traction_may_stand_open_and_no_other() {
-        let line = CrackShape::Polyline(vec![[-1.0, 0.5], [3.0, 0.5]]);
+        let flat = line([-1.0, 0.5], [3.0, 0.5]);
         let arc = CrackShape::arc([0.0, 0.0], 1.0, [0.0, 1.0]);
-        let mut of = setting(&line);
+        let mut of = setting(&flat);
         of.body = [[0.0; 3], [1.0, 1.0, 0.0]];
         let open = |of: &Setting<'_>, yy: f64, opening: f64| {
             build(of, &[2.0, yy, 0.0, 0.0, 0.0, 0.0, opening])
         };
-        let field = open(&of, 0.0, 0.1).unwrap().at(&[0.5]).unwrap();
-        let closed = open(&of, 0.0, 0.0).unwrap().at(&[0.5]).unwrap();
-        for (x, side, moved) in [
-            ([0.3, 0.7, 0.0], -1.0, 0.05),
-            ([0.3, 0.3, 0.0], 1.0, 0.0),
-            ([0.3, 0.5, 0.0], 1.0, 0.05),
-            ([0.3, 0.5, 0.0], -1.0, 0.0),
+        let [field, closed] = [0.1, 0.0].map(|by| open(&of, 0.0, by).unwrap().at(&[0.5]).unwrap());
+        for (y, side, moved) in [
+            (0.7, -1.0, 0.05),
+            (0.3, 1.0, 0.0),
+            (0.5, 1.0, 0.05),
+            (0.5, -1.0, 0.0),
         ] {
-            let d = sub(
-                &field.displacement(&x, side),
-                &closed.displacement(&x, side),
-            );
-            assert!(norm(&sub(&d, &[0.0, moved, 0.0])) < 1e-16);
+            let [u, v] = [&field, &closed].map(|field| field.displacement(&[0.3, y, 0.0], side));
+            assert!(norm(&sub(&sub(&u, &v), &[0.0, moved, 0.0])) < 1e-16);
         }
         check_contact(&*field, None, &of, &[[0.2, 0.5, 0.0]], [1e-15, 1e-15]);
         assert!(open(&of, -1.0, 0.1).unwrap().at(&[1.0]).is_err());

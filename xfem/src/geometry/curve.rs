@@ -250,10 +250,8 @@ mod tests {
                 let (x, tangent) = curve.at(s);
                 for phi in [0.02, -0.02, 1e-9] {
                     let found = curve.nearest(&add_scaled(&x, phi, &turned(&tangent)));
-                    assert!(
-                        (found.phi - phi).abs() < 1e-13,
-                        "{curve:?} {s} {phi}: {found:?}"
-                    );
+                    let error = (found.phi - phi).abs();
+                    assert!(error < 1e-13, "{curve:?} {s} {phi}: {found:?}");
                     assert!((found.s - s).abs() < 1e-12, "{curve:?} {s}: {found:?}");
                 }
             }

@@ -56,11 +56,7 @@ impl Ellipse {
         let length = outward[0].hypot(outward[1]);
         let outward = [outward[0] / length, outward[1] / length];
         let in_space = |v: [f64; 2]| {
-            let along = [
-                v[0] * self.axis[0],
-                v[0] * self.axis[1],
-                v[0] * self.axis[2],
-            ];
+            let along = self.axis.map(|e| v[0] * e);
             add_scaled(&along, v[1], &second)
         };
         Nearest {
@@ -75,11 +71,8 @@ impl Ellipse {
     pub fn point(&self, parameter: f64) -> Point {
         let [a, b] = self.half_axes;
         let along = add_scaled(&self.centre, a * parameter.cos(), &self.axis);
-        add_scaled(
-            &along,
-            b * parameter.sin(),
-            &cross(&self.normal, &self.axis),
-        )
+        let second = cross(&self.normal, &self.axis);
+        add_scaled(&along, b * parameter.sin(), &second)
     }
 
     /// Frame of the front at a nearest point: ahead, crack normal n, tangent = ahead × n.
@@ -192,29 +185,6 @@ mod tests {
         add_scaled(&x, height, &e.normal)
     }
 
-    #[test]
-    fn a_circle_has_psi_r_minus_a() {
-        let e = ellipse(0.7, 0.7);
-        for (p, q) in [
-            (0.1, 0.2),
-            (-0.5, 0.4),
-            (1e-9, 0.0),
-            (0.0, -3.0),
-            (0.7, 0.0),
-        ] {
-            let found = e.nearest(&at(&e, p, q, 0.9));
-            let r = f64::hypot(p, q);
-            assert!(
-                (found.psi - (r - 0.7)).abs() < 1e-15,
-                "{p} {q}: {}",
-                found.psi
-            );
-            let radial = sub(&at(&e, p / r, q / r, 0.0), &e.centre);
-            assert!(norm(&sub(&found.ahead, &radial)) < 1e-14);
-        }
-        assert!((e.nearest(&e.centre).psi + 0.7).abs() < 1e-15);
-    }
-
     proptest! {
         #[test]
         fn agrees_with_a_search_along_the_front(
@@ -258,8 +228,16 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_points_have_finite_and_exact_answers() {
-        let e = ellipse(1.0, 0.5);
+    fn degenerate_points_and_circles_have_finite_and_exact_answers() {
+        let check = |e: &Ellipse, [p, q]: [f64; 2], psi: f64, tolerance: f64| {
+            let found = e.nearest(&at(e, p, q, 0.9));
+            assert!(
+                (found.psi - psi).abs() < tolerance,
+                "({p}, {q}): {found:?} {psi}"
+            );
+            assert!((norm(&found.ahead) - 1.0).abs() < 1e-14);
+            found
+        };
         // (point, ψ): centre, foot of the evolute's cusp, vertices, on both axes.
         for (p, q, psi) in [
             (0.0, 0.0, -0.5),
@@ -273,13 +251,21 @@ mod tests {
             (0.75, 1e-14, -0.25),
             (1e-300, 1e-300, -0.5),
         ] {
-            let found = e.nearest(&at(&e, p, q, 0.0));
-            assert!(
-                (found.psi - psi).abs() < 1e-14,
-                "({p}, {q}): {} {psi}",
-                found.psi
-            );
-            assert!((norm(&found.ahead) - 1.0).abs() < 1e-14);
+            check(&ellipse(1.0, 0.5), [p, q], psi, 1e-14);
+        }
+        let circle = ellipse(0.7, 0.7);
+        check(&circle, [0.0, 0.0], -0.7, 1e-15);
+        for [p, q] in [
+            [0.1, 0.2],
+            [-0.5, 0.4],
+            [1e-9, 0.0],
+            [0.0, -3.0],
+            [0.7, 0.0],
+        ] {
+            let r = f64::hypot(p, q);
+            let found = check(&circle, [p, q], r - 0.7, 1e-15);
+            let radial = sub(&at(&circle, p / r, q / r, 0.0), &circle.centre);
+            assert!(norm(&sub(&found.ahead, &radial)) < 1e-14);
         }
     }
 
@@ -290,9 +276,7 @@ mod tests {
         let found = e.meet(&x, &cross(&e.normal, &e.axis)).unwrap();
         let expected = at(&e, 0.9, 0.5 * (1.0f64 - 0.81).sqrt(), 0.0);
         assert!(norm(&sub(&found, &expected)) < 1e-15);
-        assert!(
-            e.meet(&at(&e, 2.0, 0.0, 0.0), &cross(&e.normal, &e.axis))
-                .is_none()
-        );
+        let beyond = at(&e, 2.0, 0.0, 0.0);
+        assert!(e.meet(&beyond, &cross(&e.normal, &e.axis)).is_none());
     }
 }

@@ -192,11 +192,8 @@ mod tests {
         assert!(contains(&left, &[0.1, 0.5, 0.0]) && contains(&right, &[0.9, 0.5, 0.0]));
         for part in [left, right] {
             assert!((filled(&part) - area(&part)).abs() < 1e-15);
-            assert!(
-                triangles(&part)
-                    .iter()
-                    .all(|t| doubled_area(&t[0], &t[1], &t[2]) > 0.0)
-            );
+            let turns = |t: &[Point; 3]| doubled_area(&t[0], &t[1], &t[2]) > 0.0;
+            assert!(triangles(&part).iter().all(turns));
         }
     }
 

@@ -50,6 +50,17 @@ pub struct TipCoordinates {
 }
 
 impl TipFrame {
+    /// A straight front at a place; `ahead` and `normal` are its frame.
+    pub fn straight(crack: usize, position: Point, ahead: Point, normal: Point) -> Self {
+        TipFrame {
+            crack,
+            position,
+            ahead,
+            normal,
+            shape: FrontShape::Straight,
+        }
+    }
+
     /// True for the front of a 3D crack.
     pub fn shape_is_ellipse(&self) -> bool {
         matches!(self.shape, FrontShape::Ellipse(_))
@@ -156,13 +167,7 @@ mod tests {
 
     fn frame() -> TipFrame {
         let (s, c) = 0.5f64.sin_cos();
-        TipFrame {
-            crack: 0,
-            position: [0.3, -0.2, 0.0],
-            ahead: [c, s, 0.0],
-            normal: [-s, c, 0.0],
-            shape: FrontShape::Straight,
-        }
+        TipFrame::straight(0, [0.3, -0.2, 0.0], [c, s, 0.0], [-s, c, 0.0])
     }
 
     #[test]

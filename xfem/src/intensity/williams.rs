@@ -104,7 +104,6 @@ impl<'a> Williams<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::tip_frame::FrontShape;
     use crate::geometry::{add_scaled, dot};
     use crate::material::{Lame, Material, Model, stress};
 
@@ -113,13 +112,7 @@ mod tests {
     #[test]
     fn unit_fields_have_unit_intensity_free_faces_and_equilibrium() {
         let (s, c) = 0.7f64.sin_cos();
-        let tip = TipFrame {
-            crack: 0,
-            position: [0.2, 0.1, 0.0],
-            ahead: [c, s, 0.0],
-            normal: [-s, c, 0.0],
-            shape: FrontShape::Straight,
-        };
+        let tip = TipFrame::straight(0, [0.2, 0.1, 0.0], [c, s, 0.0], [-s, c, 0.0]);
         let material = Material::new(3.0, 0.27);
         for model in [Model::PlaneStrain, Model::PlaneStress, Model::Solid] {
             let lame = Lame::new(material, model);

@@ -253,17 +253,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_fold_is_refused() {
-        let mut spec = GridSpec::new(vec![vec![-1.0, 0.0, 1.0]; 2]);
-        spec.follow = Some(Follow {
-            point: [0.0; 3],
-            angle: 1.4,
-            half_length: f64::INFINITY,
-        });
-        assert!(box_mesh(&spec).is_err());
-    }
-
     fn twist(degrees: f64) -> Option<Twist> {
         Some(Twist {
             angle: f64::to_radians(degrees),

@@ -152,10 +152,8 @@ mod tests {
             assert!((area - 1.15).abs() < 1e-8, "{tip:?}: {area}");
             let found = integral(&points, |x| 1.0 / norm(&sub(x, &tip)));
             let exact = inverse_distance(&square, &tip);
-            assert!(
-                (found - exact).abs() < 1e-7 * exact,
-                "{tip:?}: {found} {exact}"
-            );
+            let error = (found - exact).abs();
+            assert!(error < 1e-7 * exact, "{tip:?}: {found} {exact}");
         }
     }
 }

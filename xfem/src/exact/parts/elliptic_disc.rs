@@ -235,7 +235,7 @@ fn carlson_rd(x: f64, y: f64, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::dot;
+    use crate::geometry::{dot, norm, sub};
     use crate::quadrature::gauss;
 
     #[test]
@@ -285,25 +285,6 @@ mod tests {
     ];
 
     #[test]
-    fn first_derivatives_are_those_of_the_integral() {
-        for axes in DISCS {
-            for x in OFF {
-                let found = disc_potential(axes, x, 1.0).first;
-                let exact = by_quadrature(axes, x, |r| {
-                    let r3 = dot(&r, &r).powf(1.5);
-                    r.map(|c| -c / r3)
-                });
-                for i in 0..3 {
-                    assert!(
-                        (found[i] - exact[i]).abs() < 1e-9,
-                        "{axes:?} {x:?}: {found:?} {exact:?}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
     fn the_displacement_is_the_double_layer_of_the_jump() {
         let (d, nu) = ([0.4, -0.7, 0.9], 0.3);
         for axes in DISCS {
@@ -318,12 +299,8 @@ mod tests {
                             / (r2.powf(1.5) * 8.0 * PI * (1.0 - nu))
                     })
                 });
-                for i in 0..3 {
-                    assert!(
-                        (found[i] - exact[i]).abs() < 1e-9,
-                        "{axes:?} {x:?}: {found:?} {exact:?}"
-                    );
-                }
+                let error = norm(&sub(&found, &exact));
+                assert!(error < 1e-9, "{axes:?} {x:?}: {found:?} {exact:?}");
             }
         }
     }
@@ -350,43 +327,22 @@ mod tests {
                     let slope = |f: &dyn Fn(&DiscPotential) -> f64| {
                         (8.0 * (f(&p) - f(&m)) - (f(&pp) - f(&mm))) / (12.0 * d)
                     };
+                    let close = |found: f64, exact: f64, tolerance: f64, scale: f64| {
+                        let error = (found - exact).abs();
+                        assert!(
+                            error < tolerance * (1.0 + scale.abs()),
+                            "{axes:?} {x:?} {k}"
+                        );
+                    };
                     for i in 0..3 {
                         let exact = slope(&|v| v.first[i]);
-                        let scale = 1.0 + exact.abs();
-                        assert!(
-                            (here.second[i][k] - exact).abs() < 1e-7 * scale,
-                            "{axes:?} {x:?} {i}{k}"
-                        );
-                        assert!(
-                            (here.z_second[i][k] - x[2] * here.second[i][k]).abs() < 1e-13 * scale
-                        );
+                        close(here.second[i][k], exact, 1e-7, exact);
+                        close(here.z_second[i][k], x[2] * here.second[i][k], 1e-13, exact);
                         for j in 0..3 {
                             let exact = x[2] * slope(&|v| v.second[i][j]);
-                            let scale = 1.0 + exact.abs();
-                            assert!(
-                                (here.z_third[i][j][k] - exact).abs() < 1e-7 * scale,
-                                "{axes:?} {x:?} {i}{j}{k}: {} {exact}",
-                                here.z_third[i][j][k]
-                            );
+                            close(here.z_third[i][j][k], exact, 1e-7, exact);
                         }
                     }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_normal_derivative_jumps_by_4_pi_times_the_density() {
-        for side in [1.0, -1.0] {
-            let v = disc_potential([1.0, 0.5], [0.3, 0.2, 0.0], side);
-            let density = f64::sqrt(1.0 - 0.09 - 0.16);
-            assert!((v.first[2] + side * 2.0 * PI * density).abs() < 1e-14);
-            // And continuously so: the same a little off the disc.
-            let near = disc_potential([1.0, 0.5], [0.3, 0.2, side * 1e-9], -side);
-            for i in 0..3 {
-                assert!((v.first[i] - near.first[i]).abs() < 1e-7);
-                for j in 0..3 {
-                    assert!((v.second[i][j] - near.second[i][j]).abs() < 1e-7);
                 }
             }
         }

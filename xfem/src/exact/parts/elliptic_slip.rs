@@ -78,10 +78,8 @@ mod tests {
     #[test]
     fn compliances_are_those_with_complete_elliptic_integrals() {
         let (k, e) = complete(0.75);
-        assert!(
-            (k - 2.156_515_647_499_643).abs() < 1e-14
-                && (e - 1.211_056_027_568_459_5).abs() < 1e-14
-        );
+        assert!((k - 2.156_515_647_499_643).abs() < 1e-14);
+        assert!((e - 1.211_056_027_568_459_5).abs() < 1e-14);
         let (g, nu) = (1.0, 0.3);
         for ratio in [0.1, 0.5, 0.8] {
             let found = compliance([1.0, ratio], MATERIAL);
@@ -92,10 +90,10 @@ mod tests {
                 2.0 * ratio * (1.0 - nu) * m / (g * ((m + nu * m1) * e - nu * m1 * k)),
                 2.0 * ratio * (1.0 - nu) / (g * e),
             ];
-            for i in 0..3 {
+            for (c, exact) in found.iter().zip(exact) {
                 assert!(
-                    (found[i] - exact[i]).abs() < 1e-13 * exact[i],
-                    "{ratio}: {found:?} {exact:?}"
+                    (c - exact).abs() < 1e-13 * exact,
+                    "{ratio}: {found:?} {exact}"
                 );
             }
         }
@@ -110,29 +108,5 @@ mod tests {
                 assert!((c - exact).abs() < 1e-11 * exact);
             }
         }
-    }
-
-    #[test]
-    fn friction_holds_what_the_drop_leaves() {
-        let c = compliance([1.0, 0.5], MATERIAL);
-        let c = [c[0], c[1]];
-        for (tau, bound) in [
-            ([0.5, 0.5], 0.4),
-            ([-0.5, 1e-9], 0.4),
-            ([0.0, 0.7], 0.4),
-            ([0.3, -0.4], 0.5 - 1e-12),
-            ([0.3, -0.4], 0.0),
-        ] {
-            let d = slip(tau, bound, c);
-            let size = d[0].hypot(d[1]);
-            for k in 0..2 {
-                let left = tau[k] - d[k] / c[k];
-                assert!(
-                    (left - bound * d[k] / size).abs() < 1e-15,
-                    "{tau:?} {bound}: {d:?}"
-                );
-            }
-        }
-        assert_eq!(slip([0.3, -0.4], 0.5, c), [0.0; 2]);
     }
 }

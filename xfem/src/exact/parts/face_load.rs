@@ -189,45 +189,6 @@ mod tests {
     }
 
     #[test]
-    fn the_faces_carry_the_load_and_open_by_the_jump() {
-        for model in [Model::PlaneStrain, Model::PlaneStress] {
-            let c = elastic(model);
-            for load in loads() {
-                let along = if load.mode == Mode::Opening { 1 } else { 0 };
-                for k in 1..20 {
-                    let xi = 0.5 * (k as f64 / 10.0 - 1.0);
-                    let x = 0.2 + xi;
-                    let wanted = -(load.mean() + load.slope * xi);
-                    for y in [0.0, -0.0] {
-                        let s = load.stress(x, y);
-                        let [normal, shear] = match load.mode {
-                            Mode::Opening => [wanted, 0.0],
-                            Mode::Shear => [0.0, wanted],
-                        };
-                        assert!((s[1] - normal).abs() < 1e-14 && (s[2] - shear).abs() < 1e-14);
-                    }
-                    let (up, down) = (
-                        load.displacement(&c, x, 0.0),
-                        load.displacement(&c, x, -0.0),
-                    );
-                    let apart = [up[0] - down[0], up[1] - down[1]];
-                    assert!((apart[along] - load.jump(&c, x)).abs() < 1e-14);
-                    assert!(apart[1 - along].abs() < 1e-14);
-                }
-                // Beside the zone the body is whole.
-                for x in [-0.4, 0.8] {
-                    assert_eq!(load.jump(&c, x), 0.0);
-                    let (up, down) = (
-                        load.displacement(&c, x, 0.0),
-                        load.displacement(&c, x, -0.0),
-                    );
-                    assert!((up[0] - down[0]).abs() < 1e-15 && (up[1] - down[1]).abs() < 1e-15);
-                }
-            }
-        }
-    }
-
-    #[test]
     fn the_intensity_is_the_limit_of_stress_and_of_the_jump() {
         let c = elastic(Model::PlaneStrain);
         let rho = 1e-10;
@@ -246,14 +207,6 @@ mod tests {
                 assert!((k - behind).abs() < 1e-4, "{load:?} {k} {behind}");
             }
         }
-    }
-
-    #[test]
-    fn a_smooth_end_has_a_finite_stress() {
-        let load = FaceLoad::smooth_at_far_end(Mode::Shear, 0.2, 0.5, 0.9);
-        assert_eq!(load.intensity(1.0), 0.0);
-        // −(A + B b) with A = −B b/2.
-        assert!((load.stress(0.7, 0.0)[2] + 0.225).abs() < 1e-15);
     }
 
     #[test]

@@ -163,24 +163,6 @@ pub fn axes(shape: &CrackShape, x: &Point) -> [Point; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::setting;
-
-    #[test]
-    fn a_tensor_survives_the_way_into_the_crack_frame_and_back() {
-        let shape = CrackShape::Polyline(vec![[0.1, -0.2], [0.7, 0.3]]);
-        let crack = LineCrack::new(&setting(&shape)).unwrap();
-        for crack in [crack, crack.reversed()] {
-            let sigma = crack.tensor(crack.components([1.0, -2.0, 0.5]));
-            assert!((sigma[0][0] - 1.0).abs() < 1e-14);
-            assert!((sigma[1][1] + 2.0).abs() < 1e-14);
-            assert!((sigma[0][1] - 0.5).abs() < 1e-14 && (sigma[1][0] - 0.5).abs() < 1e-14);
-        }
-        // The side asked for counts on the crack only, and belongs to the case's normal.
-        let on = crack.point(0.1, 0.0);
-        assert!(crack.place(&on, 1.0).1.is_sign_positive());
-        assert!(crack.reversed().place(&on, 1.0).1.is_sign_negative());
-        assert!(crack.place(&crack.point(0.1, 0.2), -1.0).1 > 0.0);
-    }
 
     #[test]
     fn the_normal_is_the_tangent_turned_to_the_left() {

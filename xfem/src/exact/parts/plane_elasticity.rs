@@ -48,38 +48,3 @@ impl PlaneElasticity {
         ]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::exact::check::setting;
-    use crate::geometry::crack_shape::CrackShape;
-    use crate::material::Material;
-
-    #[test]
-    fn the_constants_are_those_of_the_table() {
-        let shape = CrackShape::Polyline(Vec::new());
-        let (e, nu) = (2.0, 0.3);
-        let mut plane = setting(&shape);
-        plane.material = Material::new(e, nu);
-        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
-        for (model, kappa, modulus, ratio) in [
-            (
-                Model::PlaneStrain,
-                3.0 - 4.0 * nu,
-                e / (1.0 - nu * nu),
-                nu / (1.0 - nu),
-            ),
-            (Model::PlaneStress, (3.0 - nu) / (1.0 + nu), e, nu),
-        ] {
-            plane.model = model;
-            let c = PlaneElasticity::new(&plane).unwrap();
-            close(c.kappa, kappa);
-            close(c.modulus, modulus);
-            close(c.ratio, ratio);
-            close((c.kappa + 1.0) / (2.0 * c.shear), 4.0 / modulus);
-        }
-        plane.model = Model::Solid;
-        assert!(PlaneElasticity::new(&plane).is_err());
-    }
-}
