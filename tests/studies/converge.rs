@@ -18,10 +18,8 @@ use stickslip_methods::Status;
 type Row = BTreeMap<String, String>;
 
 /// Files that are written beside the figures.
-const FILES: [&str; 7] = [
+const FILES: [&str; 5] = [
     "convergence.csv",
-    "convergence.md",
-    "convergence.tex",
     "orders.csv",
     "orders.md",
     "orders.tex",

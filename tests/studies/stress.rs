@@ -148,7 +148,7 @@ fn the_program_writes_the_same_files_whatever_the_threads() {
         assert_eq!(one, two);
     }
     assert!(one["robustness.csv"].contains("penalty[normal=1e3]"));
-    assert!(one["figures/robustness.svg"].contains("own laws kept, in 3D [%]"));
+    assert!(one["figures/robustness.svg"].contains("own laws kept [%]"));
 }
 
 #[test]

@@ -188,7 +188,7 @@ fn two_shards_merged_equal_one_run() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}");
     assert!(
-        text.starts_with("30 cells in A and B, 30 found the same bit by bit"),
+        text.contains("30 cells in both, 30 found the same bit by bit"),
         "{text}"
     );
     let name = fs::read_dir(at("merged").join("cells")).unwrap().next();

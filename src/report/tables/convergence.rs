@@ -111,8 +111,7 @@ impl Row for ErrorRow {
 
 impl Row for OrderRow {
     const NAME: &'static str = "orders";
-    const TITLE: &'static str =
-        "Observed beside theoretical orders of convergence over the last two halvings";
+    const TITLE: &'static str = "Observed beside theoretical orders of convergence over the last two halvings (reference exact: closed form; richardson: limit extrapolated from the three finest meshes, whose errors are correlated with it; finest: no power law, distance from the finest mesh)";
     const QUESTION: &'static str = "Do the errors fall as fast as theory promises?";
     const ORDER: Order<Self> = Order::By(|a, b| {
         compare_variants(&a.variant, &b.variant)
