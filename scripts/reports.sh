@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 parts=${*:-paper accuracy spaces robustness bench keep}
 cargo build --locked --release
-stickslip=target/release/stickslip
+stickslip=${CARGO_TARGET_DIR:-target}/release/stickslip
 
 # What is committed of a folder: tables by name (all forms, or with .csv that one), then figures.
 keep() {

@@ -29,7 +29,7 @@ use html::{Block, Grid, Link, Section};
 pub const FILE: &str = "index.html";
 
 /// Most bytes of figures inside the page, before they are encoded; what comes later is linked.
-const FIGURE_BYTES: usize = 450_000;
+const FIGURE_BYTES: usize = 400_000;
 
 /// Longest table inside the page; longer ones are linked.
 const ROWS: usize = 250;

@@ -196,6 +196,12 @@ impl About {
         self
     }
 
+    /// Its file has so many decimals.
+    pub const fn decimals(mut self, decimals: usize) -> Self {
+        self.digits = Digits::Fixed(decimals);
+        self
+    }
+
     /// It is a residual, rounding errors as 0.
     pub const fn residual(mut self) -> Self {
         self.digits = Digits::Residual;

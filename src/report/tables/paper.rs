@@ -154,7 +154,7 @@ impl Row for ConvergedRow {
             "mesh" "" .key() = r.mesh.clone(), "`I`, `II`, or `I turned`: Mesh I turned by 20 degrees at its centre beneath the same crack";
             "finest_h_m" "m" .named("finest h").fixed(4) = r.finest_h_m, "largest distance of neighbouring grid lines on the finest mesh";
             "order" "–" .significant(3).fixed(2) = r.order, "observed order in h over the last two halvings";
-            "limit_mn_per_m" "MN/m" .significant(6).fixed(3) = r.limit_mn_per_m, "limit of the reaction at the top for vanishing cell width, extrapolated from the three finest meshes; `NaN` where they follow no power law";
+            "limit_mn_per_m" "MN/m" .decimals(3).fixed(3) = r.limit_mn_per_m, "limit of the reaction at the top for vanishing cell width, extrapolated from the three finest meshes; `NaN` where they follow no power law";
             "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m, "its uncertainty, as `error_bar` in `convergence.csv`";
             "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "reaction that Table 1 prints for this mesh; empty where it has none";
             "printed_difference" "–" .significant(3).named("printed − limit").percent(2) = r.printed_difference(), "(printed − limit) / limit";
