@@ -113,8 +113,8 @@ pub fn run(
     };
     let mut paper = Paper::default();
     for (name, _) in shipped::CASES {
-        if extent == Extent::Full || !LONG.contains(&name) {
-            let pictured = extent == Extent::Full || CASES.contains(&name);
+        if extent == Extent::Full || !LONG.contains(name) {
+            let pictured = extent == Extent::Full || CASES.contains(name);
             let settings = if pictured { settings } else { numbers_only };
             let results = run_case(&case(name)?, &[], settings, progress)?;
             paper.results.append(results);
