@@ -46,11 +46,11 @@ pub struct PointState {
     pub slip_a_m: f64,
     /// Tangential jump along b, total [m]; 0 in 2D.
     pub slip_b_m: f64,
-    /// Contact force along n on side 1, compression > 0 [`force_unit`].
+    /// Contact force along n on side 1, compression > 0 [N/m in 2D, N in 3D].
     pub p_n: f64,
-    /// Contact force along a on side 1 [`force_unit`].
+    /// Contact force along a on side 1 [N/m in 2D, N in 3D].
     pub p_a: f64,
-    /// Contact force along b on side 1; 0 in 2D [`force_unit`].
+    /// Contact force along b on side 1; 0 in 2D [N/m in 2D, N in 3D].
     pub p_b: f64,
     /// `N/m` in 2D (per metre of thickness), `N` in 3D.
     pub force_unit: String,

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A chapter without files is left out, so one page fits the report of the main job, the results of a single run and the
-//! folders of the studies. Columns, headings and digits are those of the [catalogue](super::tables::catalogue); numbers are
+//! folders of the studies. Columns, headings and digits are those of the [`catalogue`]; numbers are
 //! read from the CSV files. The same folder gives the same bytes.
 
 mod error;

@@ -168,7 +168,7 @@ fn the_committed_report_makes_one_page() {
     for text in [
         "973.540",
         "href=\"figures/cost.svg\"",
-        "href=\"accuracy/orders.md\"",
+        "href=\"accuracy/orders.csv\"",
     ] {
         assert!(html.contains(text), "{text}");
     }

@@ -273,7 +273,7 @@ pub fn draw_marker(
     canvas.line(&closed, colour, 0.25);
 }
 
-/// Labels and looks of the curves of methods in one figure: [`HIGHLIGHTED`] methods and `further` ones stand out, all others
+/// Labels and looks of the curves of methods in one figure: `HIGHLIGHTED` methods and `further` ones stand out, all others
 /// share grey and one label.
 pub fn looks(labels: &[&str], further: &[&str]) -> Vec<(String, Style)> {
     let mut extra = 0;
