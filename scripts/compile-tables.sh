@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compiles every LaTeX table below a report folder in one document: scripts/compile-tables.sh REPORTS_DIR [OUT.pdf]
-# Fails if a table does not compile, or does not fit an A4 page with margins of 25 mm. Needs pdflatex with booktabs, longtable, pdflscape
-# and siunitx 3 (on Debian texlive-latex-recommended and texlive-science).
+# Fails if a table does not compile, or does not fit an A4 page with margins of 25 mm. Needs pdflatex with adjustbox, booktabs, longtable, pdflscape
+# and siunitx 3 (on Debian texlive-latex-extra and texlive-science).
 set -euo pipefail
 
 if (($# < 1 || $# > 2)); then
@@ -23,7 +23,7 @@ mapfile -d '' tables < <(cd "$reports" && find . -name '*.tex' -print0 | LC_ALL=
 {
     echo '\documentclass[a4paper]{article}'
     echo '\usepackage[margin=25mm]{geometry}'
-    echo '\usepackage{booktabs,longtable,pdflscape,siunitx}'
+    echo '\usepackage{adjustbox,booktabs,longtable,pdflscape,siunitx}'
     echo '\begin{document}'
     for number in "${!tables[@]}"; do
         # Copies: TeX cannot read every path. The names go to the log, beside what it complains about.
