@@ -17,18 +17,6 @@ pub enum ReportError {
         /// What does not fit, with sizes.
         reason: String,
     },
-    /// A table row whose length differs from the number of columns.
-    #[error("table `{title}`: row {row} has {found} cells, expected {expected}")]
-    TableShape {
-        /// Table title.
-        title: String,
-        /// Row, from 1.
-        row: usize,
-        /// Cells in the row.
-        found: usize,
-        /// Columns of the table.
-        expected: usize,
-    },
     /// The drawing library failed.
     #[error("drawing failed: {0}")]
     Drawing(String),

@@ -22,6 +22,7 @@ pub use sheet::Sheet;
 
 use super::Bundle;
 use super::figures;
+use super::table::Description;
 use super::tables::{Chapter, catalogue};
 use html::{Block, Grid, Link, Section};
 
@@ -44,8 +45,11 @@ pub fn of_folder(dir: &Path) -> Result<String, PageError> {
     let mut sections: Vec<Section> = overview::section(&folder, &mut budget)?
         .into_iter()
         .collect();
+    let tables = catalogue();
     for chapter in Chapter::ALL {
-        sections.extend(section(chapter, &folder, &mut budget)?);
+        let own = tables.iter().filter(|(of, _)| *of == chapter);
+        let own = own.map(|(_, table)| table);
+        sections.extend(section(chapter, own, &folder, &mut budget)?);
     }
     if sections.is_empty() {
         return Err(PageError::Empty {
@@ -56,8 +60,9 @@ pub fn of_folder(dir: &Path) -> Result<String, PageError> {
 }
 
 /// Figures, then tables; nothing without any.
-fn section(
+fn section<'a>(
     chapter: Chapter,
+    tables: impl Iterator<Item = &'a Description>,
     folder: &Folder,
     budget: &mut Budget,
 ) -> Result<Option<Section>, PageError> {
@@ -66,7 +71,7 @@ fn section(
         blocks.extend(folder.figures(kind, budget)?.map(Block::Figures));
     }
     let mut links = Vec::new();
-    for (_, table) in catalogue().iter().filter(|(own, _)| *own == chapter) {
+    for table in tables {
         for path in folder.named(&table.file()) {
             let sheet = folder.sheet(path)?;
             let (rows, columns) = sheet.size();

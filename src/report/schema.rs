@@ -9,10 +9,10 @@ const TEMPLATE: &str = include_str!("schema.md");
 
 /// The manual.
 pub fn manual() -> String {
-    let mut tables = String::new();
+    let (mut tables, all) = (String::new(), catalogue());
     for chapter in Chapter::ALL {
         tables += &format!("## {}\n\n{}\n\n", chapter.title(), chapter.lead());
-        for (_, table) in catalogue().iter().filter(|(own, _)| *own == chapter) {
+        for (_, table) in all.iter().filter(|(own, _)| *own == chapter) {
             tables += &table.chapter();
             tables.push('\n');
         }

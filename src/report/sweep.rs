@@ -1,8 +1,8 @@
 //! Records of a sweep as tables and figures.
 //!
 //! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
-//! `success.*`. All others belong to the machine. Times stand beside
-//! honest verdicts only, see [`published_times`](crate::studies::sweep::analysis::published_times).
+//! `success.*`. All others belong to the machine. Times stand beside honest verdicts only, see
+//! [`published_times`](crate::studies::sweep::analysis::published_times).
 
 use stickslip_methods::Tier;
 
