@@ -90,19 +90,28 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
     })
 }
 
-/// `tip`; a plane goes through the whole solid and has none.
+/// `tip`; a plane goes through the whole solid and has none. By default a tip in the plane has branch functions within a
+/// radius that fits, a front in a solid those of its cells: there a radius costs more than it brings.
 fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
     let endless = matches!(shape, CrackShape::Plane { .. });
     let Some(value) = value else {
-        return Ok(if endless { Tip::None } else { Tip::Branch });
+        return Ok(match shape {
+            CrackShape::Plane { .. } => Tip::None,
+            CrackShape::Ellipse(_) => Tip::Branch,
+            CrackShape::Polyline(_) | CrackShape::Arc { .. } => Tip::Auto,
+        });
     };
     let tip = if value.any_table().is_ok() {
         let table = value.table(&["branch_radius_m"])?;
         Tip::Radius(table.positive("branch_radius_m")?)
     } else if value.string().is_ok() {
-        value.one_of(&[("none", Tip::None), ("branch", Tip::Branch)])?
+        value.one_of(&[
+            ("none", Tip::None),
+            ("auto", Tip::Auto),
+            ("branch", Tip::Branch),
+        ])?
     } else {
-        return Err(value.refuse("none, branch or { branch_radius_m = R }", "wrong type"));
+        return Err(value.refuse("none, auto, branch or { branch_radius_m = R }", "wrong type"));
     };
     if endless && tip != Tip::None {
         return Err(value.refuse(

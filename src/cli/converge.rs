@@ -43,9 +43,10 @@ fn space(text: &str) -> Result<ContactSpace, String> {
 fn tip(text: &str) -> Result<Tip, String> {
     match (text, text.parse::<f64>()) {
         ("none", _) => Ok(Tip::None),
+        ("auto", _) => Ok(Tip::Auto),
         ("branch", _) => Ok(Tip::Branch),
         (_, Ok(radius)) if radius > 0.0 && radius.is_finite() => Ok(Tip::Radius(radius)),
-        _ => Err("none, branch, or a radius > 0 in m".into()),
+        _ => Err("none, auto, branch, or a radius > 0 in m".into()),
     }
 }
 

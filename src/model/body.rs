@@ -10,7 +10,8 @@ use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface,
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
 use stickslip_xfem::contact::{self, conforming};
-use stickslip_xfem::cut::crack::{Crack, arms};
+use stickslip_xfem::cut::arms::arms;
+use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::material::Lame;
@@ -331,7 +332,8 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError>
             Crack::new(number, &spec.geometry, spec.tip, mesh)
         })
         .collect();
-    Ok((arms(cracks, mesh), doubled))
+    let cracks = arms(cracks, mesh).map_err(|e| crack_error(case, &e.into()))?;
+    Ok((cracks, doubled))
 }
 
 /// Numbers those that are kept, in their order, and counts them.

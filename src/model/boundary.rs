@@ -34,8 +34,8 @@ pub fn region_name(region: &Region) -> String {
 /// Prescribed unknowns of all supports by unknown number (function-major). A later support wins.
 ///
 /// A facet supported as a whole has its displacement prescribed on both sides of a crack: the enriched functions that do
-/// not vanish on it are fixed too. They are 0 where a number is stated. Under the closed form a Heaviside function takes
-/// the value that interpolates both sides; branch functions are 0, which leaves the interpolation of the standard ones.
+/// not vanish on it are fixed too. They are 0 where a number is stated. Under the closed form a piece function takes the
+/// value that interpolates both sides; branch functions are 0, which leaves the interpolation of the standard ones.
 pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usize, Prescribed> {
     let mesh = integrator.mesh;
     let dim = mesh.dim();
@@ -73,7 +73,7 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
                     }
                     for f in enriched_on(integrator, facet.cell, &part) {
                         let kind = integrator.enrichment.functions[f].kind;
-                        let jumps = matches!(kind, FunctionKind::Heaviside { .. });
+                        let jumps = matches!(kind, FunctionKind::Piece { .. });
                         fix(f, &|amount| match amount {
                             Amount::Exact if jumps => Amount::Exact,
                             _ => Amount::Number(0.0),
@@ -101,8 +101,8 @@ fn enriched_on(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) ->
     let lives = |i: usize, f: u32| match enrichment.functions[f as usize].kind {
         FunctionKind::Standard => false,
         FunctionKind::Branch { .. } => true,
-        // H differs from its value at the node somewhere on the part.
-        FunctionKind::Heaviside { .. } => regions
+        // Its piece holds some of the part.
+        FunctionKind::Piece { .. } => regions
             .iter()
             .any(|r| steps[r * functions.len() + i] != 0.0),
     };

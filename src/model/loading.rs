@@ -3,7 +3,7 @@
 //! ```text
 //!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
 //!   f = f_ext − K u_prescribed   at the free unknowns,      offset = B u_prescribed
-//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ s_j (u(x_j, s_j) − u⁻(x_j)),  s_j = H(x_j)
+//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = u⁻(x_j) − u(x_j, s_j)
 //!   u⁻(x) = 2 u(x', −s) − u(2 x' − x, −s)   u of the other side, continued to x: x' foot of x on the crack
 //! ```
 //!
@@ -223,18 +223,18 @@ fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usi
         let jumps = |&(_, i): &(usize, usize)| {
             body.enrichment.functions[i / dim].kind != FunctionKind::Standard
         };
-        let half_jump = if list.iter().any(jumps) {
+        let jump = if list.iter().any(jumps) {
             let foot = sides.foot(x);
             let mirrored = add_scaled(&foot, 1.0, &sub(&foot, x));
             let (near, far) = (
                 field.displacement(&foot, -side),
                 field.displacement(&mirrored, -side),
             );
-            [0, 1, 2].map(|a| 0.5 * side * (own[a] - (2.0 * near[a] - far[a])))
+            [0, 1, 2].map(|a| 2.0 * near[a] - far[a] - own[a])
         } else {
             [0.0; 3]
         };
-        let value = |entry| if jumps(entry) { half_jump } else { own };
+        let value = |entry| if jumps(entry) { jump } else { own };
         list.iter()
             .map(|entry| (entry.1, value(entry)[entry.1 % dim]))
             .collect()

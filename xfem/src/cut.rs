@@ -1,9 +1,12 @@
 //! Cracks in the cells of a mesh: level sets, parts of cut cells, where cracks end.
 
+pub mod arms;
 pub mod crack;
+pub mod flat;
 pub mod part;
 pub mod partition;
 pub mod placement;
+pub mod trace;
 
 /// True if a cell has nodes strictly on both sides of the level φ.
 pub fn is_split(phi: &[f64]) -> bool {

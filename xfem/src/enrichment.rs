@@ -1,34 +1,37 @@
 //! The functions of a body with cracks: which there are, and which live in each cell.
 
 pub mod basis;
-pub mod carriers;
 pub mod cell_facets;
 pub mod cell_functions;
 pub mod error;
 pub mod facets;
 pub mod pieces;
+pub mod supports;
+pub mod tips;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Parent};
+use crate::cut::crack::Crack;
 use crate::cut::is_split;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
+use crate::cut::trace::{Trace, TraceError};
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
 use crate::mesh::cell::MOST_NODES;
 
 use self::basis::{Function, FunctionKind, Region};
-use self::carriers::Carriers;
 pub use self::error::EnrichmentError;
+use self::supports::{Pieces, Place, support_pieces};
+use self::tips::Tips;
 
 /// All functions of the body and of every cell.
 #[derive(Debug, Clone)]
 pub struct Enrichment {
     /// Functions, the standard ones first in node order, then the enriched ones by node and kind.
     pub functions: Vec<Function>,
-    /// Shift of every function: H(x_j) or g_l(x_k); 0 for standard ones.
+    /// Shift of every function: g_l(x_k) of branch functions, 0 of others.
     pub shifts: Vec<f64>,
     /// Tips and fronts inside the body that carry branch functions.
     pub tips: Vec<TipFrame>,
@@ -38,6 +41,8 @@ pub struct Enrichment {
     cores: Vec<BTreeSet<u32>>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
+    /// Cells with the end of a crack that are left whole, divided up to it.
+    endings: BTreeMap<usize, Partition>,
     cell_ptr: Vec<usize>,
     cell_functions: Vec<u32>,
     /// Starts of the step constants of every cell: region by region, function by function.
@@ -50,32 +55,50 @@ pub struct Enrichment {
 }
 
 impl Enrichment {
-    /// Enriches the nodes around the given cracks; none of them may run along cell facets.
+    /// Enriches the nodes around the given arms; none of them may run along cell facets.
+    ///
+    /// # Errors
+    /// A crack wholly outside, along cell facets in part, or one that leaves a cell no clean parts.
     pub fn new(mesh: &Mesh, cracks: &[Crack]) -> Result<Self, EnrichmentError> {
-        let Carriers {
-            enriched,
-            inside,
-            tips,
-            tip_cells,
-            cores,
-        } = Carriers::new(mesh, cracks)?;
-        let mut partitions = BTreeMap::new();
-        for (cell, list) in inside {
-            let partition = Partition::new(mesh, cell, cracks, &list).map_err(|reason| {
-                let crack = list.last().map_or(0, |&c| cracks[c].number);
-                EnrichmentError::Partition {
-                    crack,
-                    reason,
-                    at: mesh.centre(cell),
-                }
-            })?;
-            partitions.insert(cell, partition);
+        let trace = Trace::new(mesh, cracks).map_err(|e| match e {
+            TraceError::AlongEdge(arm, at) => EnrichmentError::Mixed {
+                crack: cracks[arm].number,
+                at,
+            },
+            TraceError::Lost(arm, at) => EnrichmentError::Lost {
+                crack: cracks[arm].number,
+                at,
+            },
+        })?;
+        let tips = match mesh.dim() {
+            2 => Tips::flat(mesh, cracks, &trace)?,
+            _ => Tips::solid(mesh, cracks),
+        };
+        for crack in cracks {
+            let own = |p: &Partition| p.faces.iter().any(|f| cracks[f.crack].number == crack.number);
+            let mut divided = tips.partitions.values().chain(tips.endings.values());
+            if !divided.any(own) {
+                let traced = trace.chains.values().flatten();
+                let mut traced = traced.filter(|c| cracks[c.arm].number == crack.number);
+                return Err(match traced.next() {
+                    Some(_) => EnrichmentError::TooShort { crack: crack.number },
+                    None => EnrichmentError::Outside { crack: crack.number },
+                });
+            }
         }
+        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions);
         let standard = mesh.nodes.len();
         let plain = (0..standard as u32).map(|node| Function {
             node,
             kind: FunctionKind::Standard,
         });
+        let mut enriched = tips.functions;
+        for (&node, own) in &pieces {
+            enriched.extend((0..own.len() as u32).map(|piece| Function {
+                node,
+                kind: FunctionKind::Piece { piece },
+            }));
+        }
         let functions: Vec<Function> = plain.chain(enriched).collect();
         let first_of =
             |node: usize| functions[standard..].partition_point(|f| (f.node as usize) < node);
@@ -85,10 +108,9 @@ impl Enrichment {
         let shifts = functions
             .iter()
             .map(|f| match f.kind {
-                FunctionKind::Standard => 0.0,
-                FunctionKind::Heaviside { crack } => node_step(cracks, crack as usize, f.node),
+                FunctionKind::Standard | FunctionKind::Piece { .. } => 0.0,
                 FunctionKind::Branch { tip, order } => {
-                    let frame: &TipFrame = &tips[tip as usize];
+                    let frame: &TipFrame = &tips.frames[tip as usize];
                     let side = cracks[frame.crack].side_of(f.node as usize);
                     frame.branch(&mesh.nodes[f.node as usize], Some(side)).0[order as usize]
                 }
@@ -98,10 +120,11 @@ impl Enrichment {
             node_ptr,
             functions,
             shifts,
-            tips,
-            tip_cells,
-            cores,
-            partitions,
+            tips: tips.frames,
+            tip_cells: tips.cells,
+            cores: tips.cores,
+            partitions: tips.partitions,
+            endings: tips.endings,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
             step_ptr: vec![0],
@@ -111,14 +134,17 @@ impl Enrichment {
                 .collect(),
             standard,
         };
-        enrichment.index_cells(mesh, cracks);
+        enrichment.index_cells(mesh, cracks, &pieces);
         Ok(enrichment)
     }
 
     /// Function lists of the cells: standard ones, then the enriched ones that do not vanish in the cell.
-    ///
-    /// A node on the crack counts to side 1, so its Heaviside function reaches into the whole cells of side 2.
-    fn index_cells(&mut self, mesh: &Mesh, cracks: &[Crack]) {
+    fn index_cells(&mut self, mesh: &Mesh, cracks: &[Crack], pieces: &Pieces) {
+        // By node and piece: the places it holds.
+        let holds = |node: u32, piece: u32, place: &Place| {
+            let own = pieces.get(&node).and_then(|own| own.get(piece as usize));
+            own.is_some_and(|places| places.binary_search(place).is_ok())
+        };
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             let parts: Vec<Option<&Part>> = match self.partitions.get(&cell) {
@@ -130,9 +156,10 @@ impl Enrichment {
             for &node in nodes {
                 for f in self.enriched_of(node as usize) {
                     let steps: Vec<f64> = match self.functions[f].kind {
-                        FunctionKind::Heaviside { crack } => {
-                            let step = |part| cell_step(cracks, crack as usize, nodes, part);
-                            let steps = parts.iter().map(|part| step(*part) - self.shifts[f]);
+                        FunctionKind::Piece { piece } => {
+                            let inside = |region| holds(node, piece, &(cell, region));
+                            let regions = 0..parts.len();
+                            let steps = regions.map(|r| f64::from(u8::from(inside(r))));
                             let steps: Vec<f64> = steps.collect();
                             if steps.iter().all(|&s| s == 0.0) {
                                 continue;
@@ -141,13 +168,15 @@ impl Enrichment {
                         }
                         // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
-                            let index = self.tips[tip as usize].crack;
-                            let crack = &cracks[index];
+                            let crack = &cracks[self.tips[tip as usize].crack];
                             let elsewhere = match is_split(&crack.cell_phi(mesh, cell)) {
                                 true => 0.0,
                                 false => whole_side(crack, nodes),
                             };
-                            let side = |part: &Option<&Part>| part.and_then(|p| p.side(index));
+                            let of_crack = |s: &&(usize, Side)| cracks[s.0].number == crack.number;
+                            let side = |part: &Option<&Part>| {
+                                part.and_then(|p| p.sides.iter().find(of_crack)).map(|s| s.1)
+                            };
                             let sides = parts.iter().map(side);
                             sides.map(|side| side.unwrap_or(elsewhere)).collect()
                         }
@@ -166,6 +195,11 @@ impl Enrichment {
             }
             self.step_ptr.push(self.steps.len());
         }
+    }
+
+    /// Division of a cell that a crack ends in and that is left whole, because the end carries no branch functions.
+    pub fn ending(&self, cell: usize) -> Option<&Partition> {
+        self.endings.get(&cell)
     }
 
     /// Division of a cell; `None` if no crack cuts it.
@@ -188,12 +222,19 @@ impl Enrichment {
         self.partition(cell)?.parts[region].side(crack)
     }
 
-    /// Constants of the functions of a cell, region by region and function by function: H − H(x_j) of a Heaviside
-    /// function, the side of its crack for a branch function (0: by position), 1 for a standard one.
+    /// Constants of the functions of a cell, region by region and function by function: 1 on its piece and 0 elsewhere for a
+    /// piece function, the side of its crack for a branch function (0: by position), 1 for a standard one.
     pub fn steps(&self, cell: usize) -> &[f64] {
         const STANDARD: [f64; MOST_NODES] = [1.0; MOST_NODES];
         let own = &self.steps[self.step_ptr[cell]..self.step_ptr[cell + 1]];
         if own.is_empty() { &STANDARD } else { own }
+    }
+
+    /// Constant of a function in a region of a cell, 0 if it does not live there.
+    pub fn step(&self, cell: usize, region: Region, function: usize) -> f64 {
+        let functions = self.cell(cell);
+        let place = functions.iter().position(|&f| f as usize == function);
+        place.map_or(0.0, |i| self.steps(cell)[region * functions.len() + i])
     }
 
     /// Enriched functions of a node.
@@ -266,33 +307,6 @@ impl Enrichment {
             }
         }
         users
-    }
-}
-
-/// Step of a crack at a node: its side, 0 beyond a crack it ends on.
-fn node_step(cracks: &[Crack], index: usize, node: u32) -> f64 {
-    let crack = &cracks[index];
-    let beyond = |p: &Parent| cracks[p.crack].side_of(node as usize) != p.side;
-    if crack.parents.iter().any(beyond) {
-        0.0
-    } else {
-        crack.side_of(node as usize)
-    }
-}
-
-/// Step of a crack in a part of a cell, or in a whole one.
-fn cell_step(cracks: &[Crack], index: usize, nodes: &[u32], part: Option<&Part>) -> f64 {
-    let side = |crack: usize| match part {
-        None => whole_side(&cracks[crack], nodes),
-        Some(part) => part
-            .side(crack)
-            .unwrap_or_else(|| 1.0f64.copysign(cracks[crack].distance(&part.middle()))),
-    };
-    let beyond = |p: &Parent| side(p.crack) != p.side;
-    if cracks[index].parents.iter().any(beyond) {
-        0.0
-    } else {
-        side(index)
     }
 }
 

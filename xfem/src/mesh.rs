@@ -149,6 +149,14 @@ impl Mesh {
         self.node_sizes().into_iter().fold(f64::INFINITY, f64::min)
     }
 
+    /// Rounding of positions: what differences of coordinates carry far from the origin [m].
+    pub fn rounding(&self) -> f64 {
+        /// Units in the last place: of a grid line, of a point of a crack, of their difference.
+        const UNITS: f64 = 8.0;
+        let largest = self.nodes.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        UNITS * f64::EPSILON * largest
+    }
+
     /// Lowest and highest coordinates [m].
     pub fn extents(&self) -> [Point; 2] {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -100,6 +100,5 @@ pub fn fronts(body: &Body) -> Vec<TipFrame> {
     let cracks = body.cracks.iter().enumerate();
     cracks
         .flat_map(|(index, crack)| placement::fronts(&body.mesh, index, crack))
-        .map(|(tip, _)| tip)
         .collect()
 }

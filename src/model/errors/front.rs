@@ -38,14 +38,20 @@ pub fn tip_fronts(body: &Body) -> Vec<(String, TipFrame)> {
     let mut tips = Vec::new();
     for (index, crack) in body.cracks.iter().enumerate() {
         let name = format!("crack-{}", crack.number + 1);
-        for (number, (tip, _)) in placement::fronts(&body.mesh, index, crack)
-            .into_iter()
-            .enumerate()
-        {
+        // Arms of a crack share its name, those of an ellipse its front.
+        let known = |tips: &[(String, TipFrame)]| {
+            let own = |t: &&(String, TipFrame)| t.0.starts_with(&format!("{name} "));
+            tips.iter().filter(own).count()
+        };
+        for tip in placement::fronts(&body.mesh, index, crack) {
             let FrontShape::Ellipse(ellipse) = &tip.shape else {
-                tips.push((format!("{name} tip-{}", number + 1), tip));
+                let number = known(&tips) + 1;
+                tips.push((format!("{name} tip-{number}"), tip));
                 continue;
             };
+            if known(&tips) > 0 {
+                continue;
+            }
             for k in 0..FRONT_POINTS {
                 let parameter = 2.0 * PI * k as f64 / FRONT_POINTS as f64;
                 let position = ellipse.point(parameter);

@@ -24,10 +24,11 @@ pub fn label(case: &Case) -> String {
     }
 }
 
-/// Name of an enrichment in tables, and on the command line: `none`, `branch` or the radius in m.
+/// Name of an enrichment in tables, and on the command line: `none`, `auto`, `branch` or the radius in m.
 fn name(tip: Tip) -> String {
     match tip {
         Tip::None => "none".into(),
+        Tip::Auto => "auto".into(),
         Tip::Branch => "branch".into(),
         Tip::Radius(radius) => radius.to_string(),
     }
@@ -38,7 +39,7 @@ pub fn regularity(case: &Case) -> Regularity {
     let mut inside = ending_inside(case).peekable();
     if inside.peek().is_none() {
         Regularity::Smooth
-    } else if inside.all(|crack| matches!(crack.tip, Tip::Radius(_))) {
+    } else if inside.all(|crack| matches!(crack.tip, Tip::Auto | Tip::Radius(_))) {
         Regularity::FixedRadius
     } else {
         Regularity::Tip

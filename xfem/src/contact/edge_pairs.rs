@@ -1,14 +1,14 @@
 //! The founding paper's contact points: one pair per crossed mesh edge, merged at a node the crack runs through.
 //!
 //! ```text
-//!   [[u]](x_c) = 2 Σ N_j(x_c) b_j + 2 √r Σ N_k(x_c) c_k1      (paper, Eq. 14)
+//!   [[u]](x_c) = ± Σ N_j(x_c) b_j + 2 √r Σ N_k(x_c) c_k1      (paper, Eq. 14)
 //! ```
 //!
 //! P is a point force. Off the grid lines the pairs miss the patch test; the integrated spaces do not.
 
 use crate::enrichment::basis::FunctionKind;
-use crate::enrichment::facets::CrackFacets;
-use crate::geometry::Point;
+use crate::enrichment::facets::{Corner, CrackFacets};
+use crate::geometry::{norm, sub};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::facet_rule::surface_points;
@@ -32,7 +32,7 @@ pub fn edge_pairs(
         .map(|corner| {
             let nodes = corner.nodes?;
             let at_tip = AT_TIP * sizes[nodes[0] as usize].min(sizes[nodes[1] as usize]);
-            let terms = jump_terms(integrator, index, nodes, &corner.x, at_tip);
+            let terms = jump_terms(integrator, index, corner, nodes, at_tip);
             (!terms.is_empty()).then(|| ContactPoint::of(crack, corner.x, 0.0, &terms))
         })
         .collect();
@@ -73,49 +73,49 @@ pub fn edge_pairs(
     Ok(surface)
 }
 
-/// Coefficients of the functions that jump at a point between two nodes (equal: at the node); a point closer than
-/// `at_tip` to a tip lies at the tip.
+/// Coefficients of the functions that jump at a corner on a mesh edge or node; one closer than `at_tip` to a tip lies at
+/// the tip.
 fn jump_terms(
     integrator: &CellIntegrator<'_>,
     index: usize,
+    corner: &Corner,
     nodes: [u32; 2],
-    x: &Point,
     at_tip: f64,
 ) -> Vec<(u32, f64)> {
-    let (crack, enrichment) = (&integrator.cracks[index], integrator.enrichment);
-    let [i, j] = nodes.map(|n| n as usize);
-    let shares = if i == j {
-        vec![(i, 1.0)]
+    let (cracks, enrichment) = (integrator.cracks, integrator.enrichment);
+    let [p, q] = nodes.map(|n| &integrator.mesh.nodes[n as usize]);
+    let x = &corner.x;
+    let shares = if nodes[0] == nodes[1] {
+        vec![(nodes[0], 1.0)]
     } else {
-        // N_i = |φ_j| / (|φ_i| + |φ_j|) on the edge
-        let (fi, fj) = (crack.phi[i].abs(), crack.phi[j].abs());
-        vec![(i, fj / (fi + fj)), (j, fi / (fi + fj))]
+        // N_i = |x − x_j| / |x_i − x_j| on the edge
+        let [from, to] = [p, q].map(|end| norm(&sub(x, end)));
+        vec![(nodes[0], to / (from + to)), (nodes[1], from / (from + to))]
     };
+    let (cell, regions) = corner.place;
     let mut terms = Vec::new();
     for &(node, share) in &shares {
-        for f in enrichment.enriched_of(node) {
+        for f in enrichment.enriched_of(node as usize) {
             let coefficient = match enrichment.functions[f].kind {
-                FunctionKind::Heaviside { crack } => {
-                    share * step_jump(integrator, index, crack as usize, x)
+                FunctionKind::Piece { .. } => {
+                    let [one, two] = regions.map(|region| enrichment.step(cell, region, f));
+                    share * (one - two)
                 }
-                FunctionKind::Branch { tip, order: 0 }
-                    if enrichment.tips[tip as usize].crack == index =>
-                {
+                FunctionKind::Branch { tip, order: 0 } => {
+                    let frame = &enrichment.tips[tip as usize];
                     // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
-                    let r = enrichment.tips[tip as usize].distance(x);
-                    if r > at_tip {
-                        // ρ on the edge, or at the node
-                        let ends = if i == j { &nodes[..1] } else { &nodes[..] };
-                        let mask = enrichment.ramp(tip as usize, ends);
-                        let inside = ends
-                            .iter()
-                            .enumerate()
-                            .filter(|(k, _)| mask & (1 << k) != 0);
-                        let rho: f64 = inside.map(|(k, _)| shares[k].1).sum();
-                        2.0 * r.sqrt() * share * rho
-                    } else {
-                        0.0
+                    if cracks[frame.crack].number != cracks[index].number
+                        || frame.distance(x) <= at_tip
+                    {
+                        continue;
                     }
+                    let [one, two] = [1.0, -1.0].map(|side| frame.branch(x, Some(side)).0[0]);
+                    // ρ on the edge, or at the node
+                    let ends: Vec<u32> = shares.iter().map(|share| share.0).collect();
+                    let mask = enrichment.ramp(tip as usize, &ends);
+                    let inside = shares.iter().enumerate().filter(|(k, _)| mask & (1 << k) != 0);
+                    let rho: f64 = inside.map(|(_, (_, share))| share).sum();
+                    (one - two) * share * rho
                 }
                 _ => 0.0,
             };
@@ -125,15 +125,4 @@ fn jump_terms(
         }
     }
     terms
-}
-
-/// Jump across the `index`-th crack of the step of a crack at a point of the former: its own step changes by 2; that of a
-/// crack which ends on it from one side to nothing.
-fn step_jump(integrator: &CellIntegrator<'_>, index: usize, stepping: usize, x: &Point) -> f64 {
-    let crack = &integrator.cracks[stepping];
-    if stepping == index {
-        return 2.0;
-    }
-    let parent = crack.parents.iter().find(|p| p.crack == index);
-    parent.map_or(0.0, |p| p.side * 1.0f64.copysign(crack.distance(x)))
 }

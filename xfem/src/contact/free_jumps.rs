@@ -1,9 +1,10 @@
 //! Where on a crack the displacement jumps and is free to do so: what a multiplier can act on.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
-use crate::enrichment::basis::FunctionKind;
+use crate::enrichment::basis::{FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
+use crate::geometry::{norm, sub};
 use crate::stiffness::cell_matrix::CellIntegrator;
 
 use super::pairs::{AT_TIP, vertex_weights};
@@ -14,19 +15,21 @@ const SLIVER: f64 = 1e-10;
 /// What the displacement does at a crossed mesh edge or node.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
-    /// Ends of the edge, where they carry a free jump; both ends equal at a node, the second then `None`.
+    /// Numbers of the jumps of the edge's ends that are free here; at a node the second is `None`. The same number stands for
+    /// the jump of one node between the same two pieces of its support.
     pub ends: [Option<u32>; 2],
     /// Fraction w of the edge between its first end and the crack.
     pub fraction: f64,
 }
 
-/// The facets of a crack, and the nodes whose displacement jumps across it and is free to do so.
+/// The facets of a crack, and the functions that jump across it and are free to do so.
 pub struct FreeJumps<'a> {
     /// Facets.
     pub facets: CrackFacets,
     integrator: &'a CellIntegrator<'a>,
     index: usize,
-    nodes: BTreeSet<u32>,
+    /// By function: none of its components is prescribed.
+    free: Vec<bool>,
     sizes: Vec<f64>,
 }
 
@@ -38,46 +41,73 @@ impl<'a> FreeJumps<'a> {
         held: impl Fn(usize) -> bool,
     ) -> Self {
         let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-        let jumps = |kind: FunctionKind| match kind {
-            FunctionKind::Heaviside { crack } => crack as usize == index,
-            FunctionKind::Branch { tip, order: 0 } => enrichment.tips[tip as usize].crack == index,
-            _ => false,
-        };
         let dim = mesh.dim();
-        let free = |f: usize| (0..dim).all(|a| !held(f * dim + a));
-        let functions = enrichment.functions.iter().enumerate();
+        let functions = 0..enrichment.functions.len();
         FreeJumps {
             facets: CrackFacets::new(mesh, index, &integrator.cracks[index], enrichment),
             integrator,
             index,
-            nodes: functions
-                .filter(|(f, function)| jumps(function.kind) && free(*f))
-                .map(|(_, function)| function.node)
-                .collect(),
+            free: functions.map(|f| (0..dim).all(|a| !held(f * dim + a))).collect(),
             sizes: mesh.node_sizes(),
         }
     }
 
+    /// Copies of a node on both sides of a place of the crack, if it jumps there and is free to; 0: its own.
+    fn jump(&self, node: u32, (cell, regions): (usize, [Region; 2])) -> Option<[usize; 2]> {
+        let CellIntegrator {
+            enrichment, cracks, ..
+        } = self.integrator;
+        let own = enrichment.enriched_of(node as usize);
+        let mut copies = [0, 0];
+        let mut jumps = false;
+        for (k, f) in own.enumerate() {
+            let differs = match enrichment.functions[f].kind {
+                FunctionKind::Piece { .. } => {
+                    let steps = regions.map(|region| enrichment.step(cell, region, f));
+                    for (copy, step) in copies.iter_mut().zip(steps) {
+                        if step != 0.0 {
+                            *copy = k + 1;
+                        }
+                    }
+                    steps[0] != steps[1]
+                }
+                FunctionKind::Branch { tip, order: 0 } => {
+                    let crack = enrichment.tips[tip as usize].crack;
+                    cracks[crack].number == cracks[self.index].number
+                }
+                _ => false,
+            };
+            jumps |= differs && self.free[f];
+        }
+        jumps.then_some(copies)
+    }
+
     /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
-        let tips = &self.integrator.enrichment.tips;
-        let phi = &self.integrator.cracks[self.index].phi;
-        let crossing = |corner: &Corner| {
+        let (mesh, tips) = (self.integrator.mesh, &self.integrator.enrichment.tips);
+        let mut numbers: BTreeMap<(u32, [usize; 2]), u32> = BTreeMap::new();
+        let mut crossing = |corner: &Corner| {
             let [i, j] = corner.nodes?;
             let size = self.sizes[i as usize].min(self.sizes[j as usize]);
             let mut distances = tips.iter().map(|tip| tip.distance(&corner.x));
             if distances.any(|distance| distance <= AT_TIP * size) {
                 return None;
             }
-            let free = |node: u32| self.nodes.contains(&node).then_some(node);
+            let mut free = |node: u32| {
+                let [one, two] = self.jump(node, corner.place)?;
+                let next = numbers.len() as u32;
+                let pair = [one.min(two), one.max(two)];
+                Some(*numbers.entry((node, pair)).or_insert(next))
+            };
             let ends = [free(i), if i == j { None } else { free(j) }];
-            let [fi, fj] = [i, j].map(|node| phi[node as usize].abs());
+            let away = |node: u32| norm(&sub(&corner.x, &mesh.nodes[node as usize]));
+            let [from, to] = [away(i), away(j)];
             ends.iter().any(Option::is_some).then_some(Crossing {
                 ends,
-                fraction: if i == j { 0.0 } else { fi / (fi + fj) },
+                fraction: if i == j { 0.0 } else { from / (from + to) },
             })
         };
-        self.facets.corners.iter().map(crossing).collect()
+        self.facets.corners.iter().map(&mut crossing).collect()
     }
 
     /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.
@@ -88,6 +118,6 @@ impl<'a> FreeJumps<'a> {
         let sizes = nodes.iter().map(|&n| self.sizes[n as usize]);
         let size = sizes.fold(f64::INFINITY, f64::min);
         area > SLIVER * size.powi(mesh.dim() as i32 - 1)
-            && nodes.iter().any(|n| self.nodes.contains(n))
+            && nodes.iter().any(|&n| self.jump(n, (facet.cell, facet.regions)).is_some())
     }
 }

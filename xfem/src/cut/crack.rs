@@ -14,11 +14,9 @@ use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{Point, bisect, dot, sub};
+use crate::geometry::{Point, dot, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
-
-use super::is_split;
 
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
@@ -26,11 +24,18 @@ use super::is_split;
 /// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
 pub const ON_CRACK: f64 = 1e-12;
 
+/// What is closer than this to a crack lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
+pub fn on_crack(size: f64, rounding: f64) -> f64 {
+    (ON_CRACK * size).max(rounding)
+}
+
 /// Tip enrichment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tip {
     /// No tip functions: the crack ends at the last cell edge it crosses.
     None,
+    /// Four branch functions on all nodes within a radius that the program chooses: a fixed part of the room around the tip.
+    Auto,
     /// Four branch functions on the nodes of the cells with the tip (topological enrichment).
     Branch,
     /// Four branch functions on all nodes within a radius of the tip [m] (geometric enrichment).
@@ -53,7 +58,27 @@ pub enum Geometry {
     Ellipse(Ellipse),
 }
 
-/// What an arm ends on.
+/// What a 2D arm ends in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The crack's own end: a tip, if it lies inside the body.
+    Free,
+    /// A bend, or the seam of a closed crack: the next arm goes on.
+    Bend,
+    /// Another crack.
+    Meeting,
+}
+
+/// A vertex of the polyline that stands for a 2D arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathVertex {
+    /// Abscissa along the crack [m].
+    pub s: f64,
+    /// Position [m].
+    pub x: Point,
+}
+
+/// The side of a plane on which an arm in a solid lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parent {
     /// Index of the crack it ends on.
@@ -71,9 +96,11 @@ pub struct Crack {
     pub geometry: Geometry,
     /// First and last abscissa of a 2D arm [m]; infinite in 3D.
     pub range: [f64; 2],
-    /// Whether the first and last abscissa are the crack's own ends, not a meeting with another crack.
-    pub free: [bool; 2],
-    /// Cracks at which it ends; its step is 0 on their other side.
+    /// What lies at the first and last abscissa.
+    pub ends: [End; 2],
+    /// 2D: the polyline through the cells, from the first to the last abscissa; an arc is a chain of chords.
+    pub path: Vec<PathVertex>,
+    /// 3D: planes at which it ends.
     pub parents: Vec<Parent>,
     /// Enrichment of tips inside the body.
     pub tip: Tip,
@@ -112,18 +139,26 @@ impl Crack {
         };
         let mut crack = Crack {
             number,
-            geometry,
             range,
-            free: [true; 2],
+            ends: match &geometry {
+                Geometry::Curve(curve) if curve.is_closed() => [End::Bend; 2],
+                _ => [End::Free; 2],
+            },
+            path: match &geometry {
+                Geometry::Curve(curve) => path(curve, mesh.smallest_edge()),
+                _ => Vec::new(),
+            },
+            geometry,
             parents: Vec::new(),
             tip,
             phi: Vec::new(),
         };
+        let rounding = mesh.rounding();
         crack.phi = mesh
             .nodes
             .iter()
             .zip(mesh.node_sizes())
-            .map(|(x, h)| snapped(crack.distance(x), ON_CRACK * h))
+            .map(|(x, h)| snapped(crack.distance(x), on_crack(h, rounding)))
             .collect();
         crack
     }
@@ -193,7 +228,10 @@ impl Crack {
         match &self.geometry {
             Geometry::Curve(curve) => {
                 // Where another crack takes over, both sides still part.
-                let margin = [0, 1].map(|k| if self.free[k] { slack } else { -slack.abs() });
+                let margin = self.ends.map(|end| match end {
+                    End::Free => slack,
+                    End::Bend | End::Meeting => -slack.abs(),
+                });
                 let s = curve.nearest(x).s;
                 curve.is_closed()
                     || (s > self.range[0] + margin[0] && s < self.range[1] - margin[1])
@@ -203,149 +241,52 @@ impl Crack {
         }
     }
 
-    /// The free ends of a 2D arm, those that no other crack takes: position and unit direction pointing out of the crack.
-    pub fn ends(&self) -> Vec<(Point, Point)> {
+    /// The free ends of a 2D arm, those that no other crack takes: which, position and unit direction pointing out of the
+    /// crack.
+    pub fn tips(&self) -> Vec<(usize, Point, Point)> {
         let Geometry::Curve(curve) = &self.geometry else {
             return Vec::new();
         };
-        if curve.is_closed() {
-            return Vec::new();
-        }
-        let mut ends = Vec::new();
-        if self.free[0] {
-            let (x, a) = curve.at(0.0);
-            ends.push((x, a.map(|v| -v)));
-        }
-        if self.free[1] {
-            ends.push(curve.at(self.range[1]));
-        }
-        ends
-    }
-}
-
-/// Cuts cracks at the earlier ones they meet. A crack keeps its index if nothing crosses it; arms follow in order.
-pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Vec<Crack> {
-    let mut done: Vec<Crack> = Vec::new();
-    for crack in cracks {
-        let next = match &crack.geometry {
-            Geometry::Curve(curve) => curve_arms(&crack, curve, &done, mesh),
-            _ => plane_arms(&crack, &done, mesh),
+        let tip = |k: usize| {
+            let (x, a) = curve.at(self.range[k]);
+            (k, x, if k == 0 { a.map(|v| -v) } else { a })
         };
-        done.extend(next);
+        (0..2)
+            .filter(|&k| self.ends[k] == End::Free)
+            .map(tip)
+            .collect()
     }
-    done
+
+    /// Length of an arm [m]; infinite in 3D.
+    pub fn length(&self) -> f64 {
+        self.range[1] - self.range[0]
+    }
 }
 
-/// Arms of a 2D crack: its parts between the earlier cracks it meets.
-fn curve_arms(crack: &Crack, curve: &Curve, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
+/// The polyline that stands for a curve: its own vertices, or chords of an arc no longer than a quarter of a cell.
+fn path(curve: &Curve, cell: f64) -> Vec<PathVertex> {
+    /// Chords of an arc: with the least, they leave the circle by 3e-3 of the radius; the most bound the work.
+    const CHORDS: [f64; 2] = [40.0, 4096.0];
     let length = curve.length();
-    let size = mesh.smallest_edge();
-    // Closer than this to a crack is on it: nobody gives a point on a slanted crack to all digits.
-    let slack = 1e-4 * size;
-    let mut cuts: Vec<(f64, usize)> = Vec::new();
-    for (index, other) in earlier.iter().enumerate() {
-        for s in meetings(curve, other, 0.25 * size, slack) {
-            if !cuts.iter().any(|c| (c.0 - s).abs() < 10.0 * slack) {
-                cuts.push((s, index));
+    match curve {
+        Curve::Chain(points) => {
+            let kinks = curve.kinks();
+            let inner = kinks.iter().copied();
+            let s = std::iter::once(0.0).chain(inner).chain([length]);
+            s.zip(points).map(|(s, &x)| PathVertex { s, x }).collect()
+        }
+        Curve::Arc { .. } => {
+            let count = (4.0 * length / cell).ceil().clamp(CHORDS[0], CHORDS[1]);
+            let mut vertices: Vec<PathVertex> = (0..=count as usize)
+                .map(|k| length * k as f64 / count)
+                .map(|s| PathVertex { s, x: curve.at(s).0 })
+                .collect();
+            if curve.is_closed()
+                && let Some(last) = vertices.len().checked_sub(1)
+            {
+                vertices[last].x = vertices[0].x;
             }
+            vertices
         }
     }
-    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut bounds: Vec<(f64, Option<usize>)> = vec![(0.0, None)];
-    bounds.extend(cuts.into_iter().map(|(s, index)| (s, Some(index))));
-    bounds.push((length, None));
-    // An end on another crack is no tip.
-    bounds.dedup_by(|b, a| {
-        let same = b.0 - a.0 <= 10.0 * slack;
-        if same && a.1.is_none() {
-            *a = *b;
-        }
-        same
-    });
-    bounds
-        .windows(2)
-        .map(|w| {
-            let middle =
-                |from: f64, to: f64| curve.at(from + 0.01 * (to - from).clamp(-size, size)).0;
-            let parent = |end: (f64, Option<usize>), inner: f64| {
-                end.1.map(|index| Parent {
-                    crack: index,
-                    side: earlier[index].distance(&middle(end.0, inner)).signum(),
-                })
-            };
-            Crack {
-                range: [w[0].0, w[1].0],
-                free: [w[0].1.is_none(), w[1].1.is_none()],
-                parents: [parent(w[0], w[1].0), parent(w[1], w[0].0)]
-                    .into_iter()
-                    .flatten()
-                    .collect(),
-                ..crack.clone()
-            }
-        })
-        .collect()
-}
-
-/// Abscissas of a curve at which it meets another 2D crack between that one's ends.
-fn meetings(curve: &Curve, other: &Crack, step: f64, slack: f64) -> Vec<f64> {
-    let length = curve.length();
-    let count = (length / step).ceil().max(1.0) as usize;
-    let distance = |s: f64| other.distance(&curve.at(s).0);
-    let on = |s: f64| {
-        let x = curve.at(s).0;
-        distance(s).abs() <= slack && {
-            let along = other.abscissa(&x);
-            along >= other.range[0] - slack && along <= other.range[1] + slack
-        }
-    };
-    // Zero is a side too: a meeting at a sample must not fall between two intervals.
-    let above = |s: f64| distance(s) >= 0.0;
-    let root = |low: f64, high: f64| {
-        let start = above(low);
-        bisect(low, high, |s| above(s) == start)
-    };
-    // An end on the other crack, whichever side rounding puts it on: the curve is followed to where they meet.
-    let ends = [0.0, length].into_iter().filter(|&s| on(s)).map(|s| {
-        let (before, after) = (s - 100.0 * slack, s + 100.0 * slack);
-        let crosses = distance(before) * distance(after) < 0.0;
-        if crosses { root(before, after) } else { s }
-    });
-    let mut found: Vec<f64> = ends.collect();
-    for k in 0..count {
-        let [low, high] = [k, k + 1].map(|k| length * k as f64 / count as f64);
-        if above(low) != above(high) {
-            found.extend(Some(root(low, high)).filter(|&s| on(s)));
-        }
-    }
-    found
-}
-
-/// Arms of a plane or ellipse: its parts on both sides of the earlier planes that it crosses inside the body.
-fn plane_arms(crack: &Crack, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
-    let mut parts = vec![crack.clone()];
-    for (index, other) in earlier.iter().enumerate() {
-        if !matches!(other.geometry, Geometry::Plane { .. }) || !meet(crack, other, mesh) {
-            continue;
-        }
-        parts = parts
-            .into_iter()
-            .flat_map(|part| {
-                [1.0, -1.0].map(|side| {
-                    let mut arm = part.clone();
-                    arm.parents.push(Parent { crack: index, side });
-                    arm
-                })
-            })
-            .collect();
-    }
-    parts
-}
-
-/// True if some cell is cut by both planes.
-fn meet(crack: &Crack, other: &Crack, mesh: &Mesh) -> bool {
-    (0..mesh.cell_count()).any(|cell| {
-        let inside = |c: &Crack| is_split(&c.cell_phi(mesh, cell));
-        let map = mesh.map(cell);
-        inside(crack) && inside(other) && crack.jumps_at(&map.centre(), -map.diagonal())
-    })
 }

@@ -5,18 +5,17 @@
 //!   branching      { 1+ 2+ }, { 1+ 2− }, { 1− }             the second crack ends on the first
 //! ```
 //!
-//! Cracks are taken in their order: each divides those parts of the cell on which it lives. In 2D parts are simple polygons
-//! cut along chains of segments, in 3D tetrahedra clipped by planes; nothing is rounded to a grid, slivers keep their
-//! relative size.
+//! In 2D parts are simple polygons cut along chains of segments ([`super::flat`]); in 3D tetrahedra clipped by planes, crack
+//! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
 use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, snapped};
-use crate::geometry::polygon::{self, Polygon};
-use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub};
+use crate::geometry::{Point, cross, dot, mean, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
-use super::crack::{Crack, Geometry};
+use super::crack::Crack;
 use super::part::{Face, FaceCorner, Part};
+
 
 /// A divided cell.
 #[derive(Debug, Clone, Default)]
@@ -25,114 +24,63 @@ pub struct Partition {
     pub parts: Vec<Part>,
     /// Faces, crack by crack.
     pub faces: Vec<Face>,
+    /// Pairs of parts that are one: between them lies a crack's continuation beyond its end.
+    pub joined: Vec<[usize; 2]>,
+    /// Where such a continuation meets the border of the cell [m].
+    pub hits: Vec<Point>,
+    /// Cracks that run into the cell but divide nothing: they end where they enter.
+    pub dropped: Vec<usize>,
 }
 
 /// Why a cell cannot be divided.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PartitionError {
-    /// The crack bends within the cell more than its crossings with the edges can tell.
-    #[error(
-        "the crack crosses the edges of a cell {0} times: the mesh is too coarse for its bends"
-    )]
-    Crossings(usize),
     /// The pieces do not fit together.
     #[error("the cracks in a cell leave no clean parts")]
     Muddle,
 }
 
 impl Partition {
-    /// Divides a cell by cracks (indices in rising order).
-    pub fn new(
+    /// Divides a 3D cell by cracks (indices in rising order); the parts on both sides of those that `end` in it are one.
+    pub fn solid(
         mesh: &Mesh,
         cell: usize,
         cracks: &[Crack],
         inside: &[usize],
-    ) -> Result<Self, PartitionError> {
+        ending: &[usize],
+    ) -> Self {
         let map = mesh.map(cell);
         let mut whole = Partition::whole(&map);
         for &index in inside {
             let phi = cracks[index].cell_phi(mesh, cell);
-            if mesh.dim() == 2 {
-                let chain = chain_in(&map, &phi, &cracks[index])?;
-                whole.divide_flat(index, &cracks[index], &chain)?;
-            } else {
-                whole.divide_solid(index, cracks, &map, &phi);
-            }
+            whole.divide_solid(index, cracks, &map, &phi);
         }
-        Ok(whole)
+        let pairs = whole.faces.iter().filter(|f| ending.contains(&f.crack));
+        whole.joined = pairs.map(|f| f.parts).collect();
+        whole
     }
 
     /// An undivided cell.
     pub fn whole(map: &CellMap) -> Self {
         Partition {
             parts: vec![Part::whole(map)],
-            faces: Vec::new(),
+            ..Partition::default()
         }
-    }
-
-    /// Cuts the polygon that a chain runs through; cuts the faces that its ends lie on.
-    fn divide_flat(
-        &mut self,
-        index: usize,
-        crack: &Crack,
-        chain: &[FaceCorner],
-    ) -> Result<(), PartitionError> {
-        let points: Vec<Point> = chain.iter().map(|c| c.0).collect();
-        let middle = add_scaled(&points[0], 0.5, &sub(&points[1], &points[0]));
-        let host = (0..self.parts.len())
-            .find(|&i| {
-                let part = &self.parts[i];
-                lives(crack, part) && polygon::contains(&part.polygon, &middle)
-            })
-            .ok_or(PartitionError::Muddle)?;
-        let [left, right] =
-            polygon::split(&self.parts[host].polygon, &points).ok_or(PartitionError::Muddle)?;
-        // The left of a curve is its side 1.
-        let halves = [left, right].map(|polygon| (polygon, Vec::new()));
-        let new = self.divide(host, index, halves);
-        // Earlier faces of the host now border on either part; one that an end of the chain touches is cut there.
-        let mut faces = Vec::new();
-        for face in std::mem::take(&mut self.faces) {
-            for piece in cut_at(face, &[chain[0], chain[chain.len() - 1]]) {
-                faces.push(self.reassigned(piece, host, new));
-            }
-        }
-        faces.extend(chain.windows(2).map(|w| Face {
-            crack: index,
-            corners: w.to_vec(),
-            parts: [host, new],
-        }));
-        self.faces = faces;
-        Ok(())
     }
 
     /// Divides a part by a crack into its halves on side 1 and side 2; the number of the latter.
-    fn divide(&mut self, host: usize, crack: usize, halves: [Half; 2]) -> usize {
+    fn divide(&mut self, host: usize, crack: usize, halves: [Vec<[Point; 4]>; 2]) -> usize {
         let mut other = self.parts[host].clone();
         let [upper, lower] = halves;
         for (part, half, side) in [
             (&mut self.parts[host], upper, 1.0),
             (&mut other, lower, -1.0),
         ] {
-            (part.polygon, part.tetrahedra) = half;
+            part.tetrahedra = half;
             part.sides.push((crack, side));
         }
         self.parts.push(other);
         self.parts.len() - 1
-    }
-
-    /// A face of a part that was divided, with the half it belongs to.
-    fn reassigned(&self, mut face: Face, host: usize, new: usize) -> Face {
-        let x = face.middle();
-        for part in &mut face.parts {
-            if *part == host {
-                let distance = |i: usize| polygon::border_distance(&self.parts[i].polygon, &x);
-                if distance(new) < distance(host) {
-                    *part = new;
-                }
-            }
-        }
-        face
     }
 
     /// Cuts the tetrahedra on which a planar crack lives.
@@ -163,8 +111,7 @@ impl Partition {
                 self.parts[host].sides.push((index, side));
                 continue;
             }
-            let tetrahedra = [upper, lower].map(|tetrahedra| (Vec::new(), tetrahedra));
-            halves[host] = Some(self.divide(host, index, tetrahedra));
+            halves[host] = Some(self.divide(host, index, [upper, lower]));
         }
         // Earlier faces are clipped by this plane where it lives.
         let lower = |part: usize| halves.get(part).copied().flatten();
@@ -210,9 +157,6 @@ impl Partition {
     }
 }
 
-/// Polygon (2D) and tetrahedra (3D) of a half of a part.
-type Half = (Polygon, Vec<[Point; 4]>);
-
 /// Whether a crack reaches into a part, or ends on another one before.
 fn lives(crack: &Crack, part: &Part) -> bool {
     let mut parents = crack.parents.iter();
@@ -234,50 +178,6 @@ fn clip_face(corners: &[FaceCorner], level: impl Fn(&Point) -> f64, side: Side) 
             None,
         )
     })
-}
-
-/// The crack inside a 2D cell from entry to exit, or from or to the crack it ends on.
-fn chain_in(map: &CellMap, phi: &[f64], crack: &Crack) -> Result<Vec<FaceCorner>, PartitionError> {
-    let Geometry::Curve(curve) = &crack.geometry else {
-        return Err(PartitionError::Muddle);
-    };
-    let mut ends: Vec<(f64, FaceCorner)> = crack
-        .crossings(map, phi)
-        .into_iter()
-        .map(|(x, nodes)| (curve.nearest(&x).s, (x, Some(nodes))))
-        .collect();
-    if ends.len() != 2 {
-        return Err(PartitionError::Crossings(ends.len()));
-    }
-    if curve.is_closed() && (ends[0].0 - ends[1].0).abs() > 0.5 * curve.length() {
-        // The cell holds the seam of a closed curve.
-        let low = if ends[0].0 < ends[1].0 { 0 } else { 1 };
-        ends[low].0 += curve.length();
-    }
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let size = map.diagonal();
-    // What ends on another crack in this cell stops there.
-    for (k, end) in ends.iter_mut().enumerate() {
-        let bound = crack.range[k];
-        let beyond = if k == 0 { bound - end.0 } else { end.0 - bound };
-        if !crack.free[k] && beyond > 1e-12 * size {
-            *end = (bound, (curve.at(bound).0, None));
-        }
-    }
-    let inside = |x: &Point| {
-        let xi = map.inverse(x);
-        xi.is_some_and(|xi| map.kind.contains(&xi, 0.0))
-    };
-    let inner = curve.between(ends[0].0, ends[1].0);
-    let inner: Vec<Point> = if inner.iter().all(inside) {
-        inner
-    } else {
-        Vec::new()
-    };
-    let mut chain = vec![ends[0].1];
-    chain.extend(inner.into_iter().map(|x| (x, None)));
-    chain.push(ends[1].1);
-    Ok(chain)
 }
 
 /// Corners of a convex polygon in cyclic order around their mean.
@@ -302,34 +202,6 @@ fn cyclic(mut corners: Vec<FaceCorner>) -> Vec<FaceCorner> {
     };
     corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
     corners
-}
-
-/// A 2D face cut at the given points that lie inside it.
-fn cut_at(face: Face, at: &[FaceCorner]) -> Vec<Face> {
-    let [p, q] = [face.corners[0], face.corners[1]];
-    let d = sub(&q.0, &p.0);
-    let length = norm(&d);
-    let mut cuts: Vec<(f64, FaceCorner)> = at
-        .iter()
-        .filter_map(|&(x, nodes)| {
-            let from = sub(&x, &p.0);
-            let t = dot(&from, &d) / (length * length);
-            let off = norm(&cross(&from, &d)) / length;
-            (nodes.is_none() && off <= 1e-3 * length && t > 1e-12 && t < 1.0 - 1e-12)
-                .then_some((t, (x, None)))
-        })
-        .collect();
-    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut corners = vec![p];
-    corners.extend(cuts.into_iter().map(|c| c.1));
-    corners.push(q);
-    corners
-        .windows(2)
-        .map(|w| Face {
-            corners: w.to_vec(),
-            ..face.clone()
-        })
-        .collect()
 }
 
 #[cfg(test)]

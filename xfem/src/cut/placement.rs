@@ -1,8 +1,8 @@
 //! Where cracks lie in a mesh: which cells they run through, in which they end, their tips and fronts inside the body.
 
-use crate::geometry::curve::Curve;
+use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, norm, sub};
+use crate::geometry::{Point, add_scaled};
 use crate::mesh::Mesh;
 
 use super::crack::{Crack, Geometry};
@@ -11,10 +11,7 @@ use super::is_split;
 /// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
 const ON_EDGE: f64 = 1e-9;
 
-/// Shortest arm in a cell, in units of the cell's diagonal: above rounding.
-const SHORTEST_ARM: f64 = 1e-12;
-
-/// How a cell that the crack's curve or plane splits lies along the crack.
+/// How a cell of a solid that the crack's plane splits lies along the crack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
     /// Beyond an end.
@@ -61,83 +58,65 @@ pub fn along(mesh: &Mesh, crack: &Crack, cell: usize) -> Along {
                 _ => Along::Ends,
             }
         }
-        Geometry::Curve(curve) if curve.is_closed() => Along::Through,
-        Geometry::Curve(_) => {
-            let s = points.iter().map(|(x, _)| crack.abscissa(x));
-            let (low, high) = s.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| {
-                (l.min(s), h.max(s))
-            });
-            let [first, last] = crack.range;
-            // A tip this close to an edge is on it; an arm that another crack ends exists however short it is.
-            let [at_first, at_last] = crack
-                .free
-                .map(|f| if f { tolerance } else { SHORTEST_ARM * size });
-            if high <= first + at_first || low >= last - at_last {
-                Along::Away
-            } else if (low < first - tolerance && crack.free[0])
-                || (high > last + tolerance && crack.free[1])
-            {
-                Along::Ends
-            } else {
-                Along::Through
-            }
-        }
+        // A plane crack is traced from edge to edge.
+        Geometry::Curve(_) => Along::Away,
     }
 }
 
-/// Tips and fronts of a crack inside the body with the cells they touch; those of a 3D front are told by its cells.
-pub fn fronts(mesh: &Mesh, index: usize, crack: &Crack) -> Vec<(TipFrame, Vec<usize>)> {
-    if let Geometry::Ellipse(ellipse) = &crack.geometry {
-        let frame = TipFrame {
-            crack: index,
-            position: ellipse.centre,
-            ahead: ellipse.axis,
-            normal: ellipse.normal,
-            shape: FrontShape::Ellipse(*ellipse),
-        };
-        return vec![(frame, Vec::new())];
-    }
-    let arc = |position: &Point| match &crack.geometry {
-        Geometry::Curve(curve @ Curve::Arc { .. }) => FrontShape::Arc {
-            curve: curve.clone(),
-            last: norm(&sub(position, &curve.at(curve.length()).0)) < 1e-9 * curve.length(),
-        },
-        _ => FrontShape::Straight,
+/// The front of an elliptic crack; `None` for others.
+pub fn front_frame(index: usize, crack: &Crack) -> Option<TipFrame> {
+    let Geometry::Ellipse(ellipse) = &crack.geometry else {
+        return None;
     };
-    ends_inside(mesh, crack)
-        .into_iter()
-        .map(|(position, ahead)| {
-            let frame = TipFrame {
-                crack: index,
-                position,
-                ahead,
-                normal: crack.frame(&position)[0],
-                shape: arc(&position),
+    Some(TipFrame {
+        crack: index,
+        position: ellipse.centre,
+        ahead: ellipse.axis,
+        normal: ellipse.normal,
+        shape: FrontShape::Ellipse(*ellipse),
+    })
+}
+
+/// The tip at an end (0 or 1) of a 2D arm, at a place next to it.
+pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> TipFrame {
+    let (ahead, shape) = match &crack.geometry {
+        Geometry::Curve(curve) => {
+            let along = curve.at(crack.range[end]).1;
+            let ahead = if end == 0 { along.map(|v| -v) } else { along };
+            let shape = match curve {
+                Curve::Arc { .. } => FrontShape::Arc {
+                    curve: curve.clone(),
+                    last: end == 1,
+                },
+                Curve::Chain(_) => FrontShape::Straight,
             };
-            (frame, cells_at(mesh, &position))
-        })
-        .collect()
-}
-
-/// Distance from a tip to the nearest kink, other end or meeting of its crack: branch functions know nothing of those [m].
-pub fn undisturbed(crack: &Crack, frame: &TipFrame) -> f64 {
-    let Geometry::Curve(curve) = &crack.geometry else {
-        return f64::INFINITY;
+            (ahead, shape)
+        }
+        _ => ([0.0; 3], FrontShape::Straight),
     };
-    let s = curve.nearest(&frame.position).s;
-    let others = curve.kinks().into_iter().chain(crack.range);
-    others
-        .map(|k| (k - s).abs())
-        .filter(|d| *d > 1e-9 * curve.length())
-        .fold(f64::INFINITY, f64::min)
+    let along = if end == 0 { ahead.map(|v| -v) } else { ahead };
+    TipFrame {
+        crack: index,
+        position: *position,
+        ahead,
+        normal: turned(&along),
+        shape,
+    }
 }
 
-/// Ends of a 2D crack strictly inside the body: position and direction ahead. An end on the outer boundary is no tip.
-pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(Point, Point)> {
+/// Tips and fronts of a crack inside the body.
+pub fn fronts(mesh: &Mesh, index: usize, crack: &Crack) -> Vec<TipFrame> {
+    let inside = ends_inside(mesh, crack).into_iter();
+    let tips = inside.map(|(end, x, _)| tip_frame(index, crack, end, &x));
+    front_frame(index, crack).into_iter().chain(tips).collect()
+}
+
+/// Ends of a 2D crack strictly inside the body: which, position and direction ahead. One on the outer boundary is no tip.
+pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(usize, Point, Point)> {
     crack
-        .ends()
+        .tips()
         .into_iter()
-        .filter(|(x, ahead)| {
+        .filter(|(_, x, ahead)| {
             let Some(&cell) = cells_at(mesh, x).first() else {
                 return false;
             };

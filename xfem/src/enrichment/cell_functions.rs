@@ -15,7 +15,7 @@ struct CellFunction {
     local: usize,
     /// Kind.
     kind: FunctionKind,
-    /// H(x_j) (Heaviside) or g_l(x_k) (branch) at the node.
+    /// g_l(x_k) of a branch function.
     shift: f64,
     /// Local nodes i of the cell over which the ramp ρ = Σ N_i of a branch function runs, one bit each; all: ρ = 1.
     ramp: u8,
@@ -89,7 +89,7 @@ impl<'a> CellFunctions<'a> {
             let (ni, dni) = (n[f.local], dn[f.local]);
             match f.kind {
                 FunctionKind::Standard => (*value, *gradient) = (ni, dni),
-                FunctionKind::Heaviside { .. } => {
+                FunctionKind::Piece { .. } => {
                     (*value, *gradient) = (ni * step, dni.map(|d| d * step));
                 }
                 FunctionKind::Branch { tip, order } => {

@@ -1,5 +1,6 @@
 //! Cracks that a mesh cannot carry.
 
+use crate::cut::arms::Overlap;
 use crate::cut::partition::PartitionError;
 use crate::geometry::Point;
 
@@ -18,14 +19,15 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
-    /// A crack ends in a cell that another one cuts.
-    #[error("crack {} ends in a cell that crack {} cuts, near {at:?}: let it end on that crack, or farther away", ending + 1, other + 1)]
-    Crowded {
-        /// The crack with the tip, from 0.
-        ending: usize,
-        /// The other crack, from 0.
-        other: usize,
-        /// Centre of the cell [m].
+    /// Two cracks in one place.
+    #[error(transparent)]
+    Overlap(#[from] Overlap),
+    /// The way of a crack through the cells is lost.
+    #[error("crack {} cannot be followed from cell to cell, near {at:?}", crack + 1)]
+    Lost {
+        /// Crack number, from 0.
+        crack: usize,
+        /// Where [m].
         at: Point,
     },
     /// A cell cannot be divided.

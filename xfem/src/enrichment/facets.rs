@@ -6,7 +6,7 @@ use crate::cut::crack::{Crack, Geometry};
 use crate::cut::part::Face;
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::curve::turned;
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, cross, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -19,6 +19,8 @@ pub struct Corner {
     pub x: Point,
     /// Ends of the mesh edge it lies on, lower number first; equal at a node; `None` inside a cell.
     pub nodes: Option<[u32; 2]>,
+    /// A cell there, and its regions on side 1 and side 2.
+    pub place: (usize, [Region; 2]),
 }
 
 /// A piece of a crack inside one cell, between two of its regions.
@@ -98,6 +100,7 @@ impl CrackFacets {
                     .map(|&(x, on)| Corner {
                         x,
                         nodes: on.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]),
+                        place: (cell, face.parts),
                     })
                     .collect();
                 let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
@@ -157,36 +160,15 @@ fn piece_frame(crack: &Crack, face: &Face, polygon: &[Corner]) -> [Point; 3] {
 /// A facet and the front that cut it.
 type Clipped = (Vec<Corner>, Option<FrontCut>);
 
-/// The part of a face between the free ends of a 2D crack or inside a 3D front; its new corners are tips or front points.
+/// The part of a face inside a 3D front; its new corners are points of the front.
 fn within(crack: &Crack, polygon: &[Corner], tolerance: f64) -> Option<Clipped> {
     match &crack.geometry {
         Geometry::Plane { .. } => Some((polygon.to_vec(), None)),
         Geometry::Ellipse(ellipse) => {
             inside_front(polygon, |x| snapped(ellipse.nearest(x).psi, tolerance))
         }
-        Geometry::Curve(curve) if curve.is_closed() => Some((polygon.to_vec(), None)),
-        Geometry::Curve(curve) => {
-            let d = sub(&polygon[1].x, &polygon[0].x);
-            let s: Vec<f64> = polygon.iter().map(|c| curve.nearest(&c.x).s).collect();
-            let cut_off = |i: usize| {
-                for (k, free) in crack.free.into_iter().enumerate() {
-                    let bound = crack.range[k];
-                    let beyond = if k == 0 { bound - s[i] } else { s[i] - bound };
-                    if free && beyond > tolerance {
-                        // On the face itself, which may be the chord of an arc.
-                        let t = (bound - s[0]) / (s[1] - s[0]);
-                        return Corner {
-                            x: add_scaled(&polygon[0].x, t, &d),
-                            nodes: None,
-                        };
-                    }
-                }
-                polygon[i]
-            };
-            let (a, b) = (cut_off(0), cut_off(1));
-            let along = dot(&sub(&b.x, &a.x), &unit(&d));
-            (along > tolerance).then(|| (vec![a, b], None))
-        }
+        // Traced up to its ends.
+        Geometry::Curve(_) => Some((polygon.to_vec(), None)),
     }
 }
 
@@ -199,7 +181,8 @@ fn inside_front(polygon: &[Corner], psi: impl Fn(&Point) -> f64) -> Option<Clipp
     let corners: Vec<(Corner, f64)> = polygon.iter().copied().zip(values.clone()).collect();
     let inside = clip_with(&corners, &values, -1.0, |i, j| {
         let x = bent_crossing(&polygon[i].x, values[i], &polygon[j].x, &psi);
-        (Corner { x, nodes: None }, 0.0)
+        let (nodes, place) = (None, polygon[i].place);
+        (Corner { x, nodes, place }, 0.0)
     });
     let part: Vec<Corner> = inside.iter().map(|c| c.0).collect();
     if part.len() < 3 || area(&part) <= 0.0 {

@@ -1,8 +1,7 @@
 //! Connected pieces of the cut body and the rigid motions its supports leave free.
 //!
-//! Every node has one copy per combination of constants that its Heaviside functions take around it: its own side, the
-//! other side of a crack, the sectors around a junction. Regions of cells join the copies they touch; what stays joined is
-//! a piece.
+//! Every node has one copy on its own piece of its support and one on every other. Regions of cells join the copies they
+//! touch; what stays joined is a piece of the body.
 
 use nalgebra::{DMatrix, SVD, SymmetricEigen};
 
@@ -41,13 +40,13 @@ pub enum MotionError {
 pub struct Pieces {
     /// Number of pieces.
     pub count: usize,
-    /// Copies of every node: constants of its Heaviside functions there (all 0 on the node's own side), and the piece.
+    /// Copies of every node: constants of its piece functions there (all 0 on the node's own piece), and the piece of the body.
     copies: Vec<Vec<(Vec<f64>, usize)>>,
 }
 
 /// Finds the pieces.
 pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
-    // Copies by node and constants; −2, 0 or 2, or ±1 beyond the end of an arm: exact.
+    // Copies by node and constants, 0 or 1.
     let mut number: Vec<Vec<(Vec<f64>, usize)>> = vec![Vec::new(); mesh.nodes.len()];
     let mut parent: Vec<usize> = Vec::new();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
@@ -70,7 +69,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     };
     // A node without cells of its own side still has a copy there.
     for node in 0..mesh.nodes.len() {
-        let none = vec![0.0; heaviside_of(enrichment, node).count()];
+        let none = vec![0.0; steps_of(enrichment, node).count()];
         copy_at(&mut parent, node, none);
     }
     for cell in 0..mesh.cell_count() {
@@ -79,7 +78,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
         for region in 0..enrichment.regions(cell) {
             let mut first = None;
             for &node in mesh.cell(cell) {
-                let constants = heaviside_of(enrichment, node as usize).map(|f| {
+                let constants = steps_of(enrichment, node as usize).map(|f| {
                     let place = functions.iter().position(|&g| g as usize == f);
                     place.map_or(0.0, |i| steps[region * functions.len() + i])
                 });
@@ -112,10 +111,10 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     Pieces { count, copies }
 }
 
-/// Heaviside functions of a node.
-fn heaviside_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
+/// Piece functions of a node.
+fn steps_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
     let own = enrichment.enriched_of(node);
-    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Heaviside { .. }))
+    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
 }
 
 impl Pieces {
@@ -141,7 +140,7 @@ impl Pieces {
             let x = &mesh.nodes[node];
             let own = r(copies[0].1, x);
             u[node * dim..(node + 1) * dim].copy_from_slice(&own[..dim]);
-            let functions: Vec<usize> = heaviside_of(enrichment, node).collect();
+            let functions: Vec<usize> = steps_of(enrichment, node).collect();
             let others = &copies[1..];
             if functions.is_empty() || others.is_empty() {
                 continue;

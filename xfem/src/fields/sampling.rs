@@ -4,10 +4,8 @@
 //! varies faster: here every triangle or tetrahedron is halved until no tip is closer than its diameter, and a cell that
 //! holds the tip itself is a fan with the tip as apex.
 
-use crate::cut::is_split;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
-use crate::cut::placement::reference_position;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, cross, diameter, norm, polygon, sub};
@@ -47,20 +45,9 @@ pub fn comparison_points(
         return Ok(points.map(plain).collect());
     }
     // A crack without tip functions ends in a cell that it does not split; the exact field jumps there all the same.
-    let ending = fronts.iter().map(|f| f.crack).find(|&index| {
-        let crack = &integrator.cracks[index];
-        partition.is_none()
-            && is_split(&crack.cell_phi(mesh, cell))
-            && fronts.iter().any(|f| {
-                let at = |x: &Point| reference_position(mesh, cell, x, 1e-9).is_some();
-                f.crack == index
-                    && (at(&f.position) || f.shape_is_ellipse() && near(&centre, diameter))
-            })
-    });
-    let divided = ending
-        .and_then(|index| Partition::new(mesh, cell, integrator.cracks, &[index]).ok())
-        .unwrap_or_else(|| Partition::whole(&map));
-    let parts = &partition.unwrap_or(&divided).parts;
+    let whole = Partition::whole(&map);
+    let divided = integrator.enrichment.ending(cell).unwrap_or(&whole);
+    let parts = &partition.unwrap_or(divided).parts;
     let rule: Vec<(WeightedPoint, usize)> = if mesh.dim() == 2 {
         (parts.iter().enumerate())
             .flat_map(|(number, part)| {

@@ -18,8 +18,8 @@ pub fn area(polygon: &[Point]) -> f64 {
         .sum()
 }
 
-/// Distance of a point from the segment p q [m].
-pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
+/// The point of the segment p q nearest to x [m].
+pub fn segment_foot(x: &Point, p: &Point, q: &Point) -> Point {
     let d = sub(q, p);
     let squared = dot(&d, &d);
     let t = if squared > 0.0 {
@@ -27,7 +27,12 @@ pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
     } else {
         0.0
     };
-    norm(&sub(x, &add_scaled(p, t, &d)))
+    add_scaled(p, t, &d)
+}
+
+/// Distance of a point from the segment p q [m].
+pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
+    norm(&sub(x, &segment_foot(x, p, q)))
 }
 
 /// Distance of a point from the outline [m].

@@ -3,7 +3,7 @@
 use super::clip::Side;
 use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
-use super::{Point, cross, dot, norm, sub};
+use super::{Point, add_scaled, cross, dot, norm, sub};
 
 /// A tip or front inside the body with its coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,11 @@ pub enum FrontShape {
         curve: Curve,
         /// Whether the tip is its last end.
         last: bool,
+    },
+    /// A straight crack with both its ends; the position is its middle.
+    Pair {
+        /// Half of its length [m].
+        half_length: f64,
     },
     /// The front of an elliptic crack in 3D.
     Ellipse(Ellipse),
@@ -70,7 +75,7 @@ impl TipFrame {
     pub fn coordinates(&self, x: &Point) -> TipCoordinates {
         let d = sub(x, &self.position);
         match &self.shape {
-            FrontShape::Straight => TipCoordinates {
+            FrontShape::Straight | FrontShape::Pair { .. } => TipCoordinates {
                 psi: dot(&d, &self.ahead),
                 phi: dot(&d, &self.normal),
                 psi_gradient: self.ahead,
@@ -104,10 +109,24 @@ impl TipFrame {
         }
     }
 
-    /// Distance r from the tip or front [m].
+    /// Distance r from the tip or front, the nearer of two [m].
     pub fn distance(&self, x: &Point) -> f64 {
         let at = self.coordinates(x);
-        at.psi.hypot(at.phi)
+        match self.shape {
+            FrontShape::Pair { half_length } => (at.psi.abs() - half_length).hypot(at.phi),
+            _ => at.psi.hypot(at.phi),
+        }
+    }
+
+    /// Tips of a 2D crack, where the branch functions are singular [m].
+    pub fn tips(&self) -> Vec<Point> {
+        match self.shape {
+            FrontShape::Straight | FrontShape::Arc { .. } => vec![self.position],
+            FrontShape::Pair { half_length } => [half_length, -half_length]
+                .map(|s| add_scaled(&self.position, s, &self.ahead))
+                .to_vec(),
+            FrontShape::Ellipse(_) => Vec::new(),
+        }
     }
 
     /// Frame at the point of the front nearest to x: ahead, crack normal, tangent = ahead × normal.
@@ -130,9 +149,16 @@ impl TipFrame {
             phi_gradient,
         } = self.coordinates(x);
         match side {
-            Some(side) if side > 0.0 => phi = phi.max(0.0),
-            Some(_) => phi = -((-phi).max(0.0)),
+            Some(side) if side > 0.0 => phi = phi.max(0.0).abs(),
+            Some(_) => phi = -((-phi).max(0.0).abs()),
             None => {}
+        }
+        if let FrontShape::Pair { half_length } = self.shape {
+            let (values, slopes) = pair_functions(half_length, psi, phi);
+            let gradients = slopes.map(|[g1, g2]| {
+                [0, 1, 2].map(|a| g1 * psi_gradient[a] + g2 * phi_gradient[a])
+            });
+            return (values, gradients);
         }
         let r = psi.hypot(phi);
         let theta = phi.atan2(psi);
@@ -159,6 +185,41 @@ impl TipFrame {
         }
         (values, gradients)
     }
+}
+
+/// Functions of both ends ± a of a straight crack and their derivatives along and across it (Westergaard 1939).
+///
+/// ```text
+///   z = x + i y,   ζ = √(z² − a²) ~ z far away, cut between the ends only,   Z = dζ/dz = z/ζ
+///   g = { Im (ζ − z), Re (ζ − z), y Re (Z − 1), y Im Z }        [[g₁]] = 2 √(a² − x²), the others are continuous
+/// ```
+///
+/// They hold the displacement of a crack in an infinite plane under uniform load, less its linear part.
+fn pair_functions(a: f64, x: f64, y: f64) -> ([f64; 4], [[f64; 2]; 4]) {
+    let root = |x: f64| {
+        let (r, angle) = (x.hypot(y), 0.5 * y.atan2(x));
+        [r.sqrt() * angle.cos(), r.sqrt() * angle.sin()]
+    };
+    let product = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
+    let [re, im] = product(root(x - a), root(x + a));
+    let square = re * re + im * im;
+    let values = |z: [f64; 2]| [im - y, re - x, y * (z[0] - 1.0), y * z[1]];
+    if square == 0.0 {
+        return (values([1.0, 0.0]), [[0.0; 2]; 4]);
+    }
+    let inverse = [re / square, -im / square];
+    let z = product([x, y], inverse);
+    // dZ/dz = (1 − Z²)/ζ
+    let [z2, z2i] = product(z, z);
+    let dz = product([1.0 - z2, -z2i], inverse);
+    // f analytic: ∂x Re f = Re f', ∂y Re f = −Im f', ∂x Im f = Im f', ∂y Im f = Re f'
+    let slopes = [
+        [z[1], z[0] - 1.0],
+        [z[0] - 1.0, -z[1]],
+        [y * dz[0], z[0] - 1.0 - y * dz[1]],
+        [y * dz[1], z[1] + y * dz[0]],
+    ];
+    (values(z), slopes)
 }
 
 #[cfg(test)]

@@ -73,12 +73,9 @@ impl SolverBasis {
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
             let kind = |f: usize| enrichment.functions[f].kind;
-            let ramped = |f: usize| match kind(f) {
-                FunctionKind::Branch { tip, .. } => enrichment.is_ramped(tip as usize),
-                _ => false,
-            };
-            let step = |f: &usize| matches!(kind(*f), FunctionKind::Heaviside { .. });
-            let dependent = own.clone().any(ramped) || own.clone().filter(step).count() > 1;
+            let branch = |f: usize| matches!(kind(f), FunctionKind::Branch { .. });
+            // Pieces are disjoint: their functions depend on no other.
+            let dependent = own.clone().any(branch);
             if !dependent || own.clone().any(&held) {
                 continue;
             }

@@ -1,0 +1,385 @@
+//! A 2D cell divided by the chains of the arms that run through it.
+//!
+//! Polygons are cut along chains whose ends are corners of theirs; a chain that ends on another waits until that is in its
+//! place. A chain with a free end goes on straight to the border of its polygon: the two parts beside that extension are
+//! one. What leads nowhere divides nothing.
+
+use crate::geometry::clip::Side;
+use crate::geometry::polygon::{self, Polygon};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
+use crate::mesh::Mesh;
+
+use super::crack::Crack;
+use super::part::{Face, FaceCorner, Part};
+use super::partition::{Partition, PartitionError};
+use super::trace::{Chain, Trace};
+
+/// A chain on its way into the cell.
+struct Pending {
+    vertices: Vec<Point>,
+    /// Arm of every segment, and the side that lies to its left: 1, or −1 if the chain runs against its arm.
+    arms: Vec<(usize, Side)>,
+    /// Whether its last vertex is a free end.
+    free: bool,
+}
+
+impl Pending {
+    fn new(chain: &Chain) -> Self {
+        let vertices: Vec<Point> = chain.vertices.iter().map(|v| v.x).collect();
+        let mut pending = Pending {
+            arms: vec![(chain.arm, 1.0); vertices.len() - 1],
+            vertices,
+            free: false,
+        };
+        if chain.tip[0] {
+            pending.reverse();
+        }
+        pending.free = chain.tip != [false; 2];
+        pending
+    }
+
+    fn reverse(&mut self) {
+        self.vertices.reverse();
+        self.arms.reverse();
+        for (_, side) in &mut self.arms {
+            *side = -*side;
+        }
+    }
+
+    fn first(&self) -> &Point {
+        &self.vertices[0]
+    }
+
+    fn last(&self) -> &Point {
+        &self.vertices[self.vertices.len() - 1]
+    }
+
+    /// From vertex to vertex.
+    fn piece(&self, from: usize, to: usize) -> Self {
+        Pending {
+            vertices: self.vertices[from..=to].to_vec(),
+            arms: self.arms[from..to].to_vec(),
+            free: self.free && to + 1 == self.vertices.len(),
+        }
+    }
+}
+
+/// A segment between two polygons, side 1 to its left.
+struct Segment {
+    arm: usize,
+    ends: [Point; 2],
+    /// Beyond the free end of its arm.
+    extension: bool,
+}
+
+/// A polygon with the sides it lies on.
+struct Region {
+    polygon: Polygon,
+    sides: Vec<(usize, Side)>,
+}
+
+/// A cell on its way to being divided.
+struct Division {
+    regions: Vec<Region>,
+    segments: Vec<Segment>,
+    /// Points of the border with the local nodes they lie between.
+    border: Vec<FaceCorner>,
+    /// Where extensions meet the border.
+    hits: Vec<Point>,
+    /// Size of the cell [m].
+    size: f64,
+}
+
+/// Divides a cell by chains.
+///
+/// # Errors
+/// Pieces that do not fit together.
+pub fn divide(
+    mesh: &Mesh,
+    cell: usize,
+    arms: &[Crack],
+    trace: &Trace,
+    chains: &[&Chain],
+) -> Result<Partition, PartitionError> {
+    let mut division = Division::new(mesh, cell, trace);
+    let mut pending: Vec<Pending> = chains.iter().map(|chain| Pending::new(chain)).collect();
+    while division.insert(&mut pending)? || join(arms, &mut pending) {}
+    let mut dropped = Vec::new();
+    for chain in pending {
+        if chain.free && division.is_corner(chain.first()) {
+            division.extend(chain)?;
+        } else {
+            dropped.extend(chain.arms.iter().map(|arm| arm.0));
+        }
+    }
+    let mut partition = division.finish(&mesh.map(cell))?;
+    partition.dropped = dropped;
+    Ok(partition)
+}
+
+/// Joins two chains that wait for each other, those of one crack first.
+fn join(arms: &[Crack], pending: &mut Vec<Pending>) -> bool {
+    // The ends that wait: place, crack.
+    let ends = |chain: &Pending| {
+        let number = |arm: &(usize, Side)| arms[arm.0].number;
+        let first = (*chain.first(), chain.arms.first().map(number), false);
+        let last = (*chain.last(), chain.arms.last().map(number), true);
+        if chain.free { vec![first] } else { vec![first, last] }
+    };
+    let mut best: Option<(bool, [(usize, bool); 2])> = None;
+    for (i, one) in pending.iter().enumerate() {
+        for (j, two) in pending.iter().enumerate().take(i) {
+            for a in ends(one) {
+                for b in ends(two).into_iter().filter(|b| b.0 == a.0) {
+                    let same = a.1 == b.1;
+                    if best.is_none_or(|(known, _)| same && !known) {
+                        best = Some((same, [(i, a.2), (j, b.2)]));
+                    }
+                }
+            }
+        }
+    }
+    let Some((_, [(i, at_last), (j, other_last)])) = best else {
+        return false;
+    };
+    let mut one = pending.remove(i);
+    let mut two = pending.remove(j);
+    // A free end comes last, the common vertex in between.
+    if !at_last {
+        one.reverse();
+    }
+    if other_last {
+        two.reverse();
+    }
+    if one.free {
+        (one, two) = (two, one);
+        one.reverse();
+        two.reverse();
+    }
+    two.free |= one.free;
+    one.vertices.extend(&two.vertices[1..]);
+    one.arms.extend(two.arms);
+    one.free = two.free;
+    pending.push(one);
+    true
+}
+
+impl Division {
+    fn new(mesh: &Mesh, cell: usize, trace: &Trace) -> Self {
+        let (map, nodes) = (mesh.map(cell), mesh.cell(cell));
+        let mut border: Vec<FaceCorner> = Vec::new();
+        for i in 0..map.len() {
+            let j = (i + 1) % map.len();
+            border.push((map[i], Some([i, i])));
+            let key = [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])];
+            let mut on: Vec<Point> = trace.on_edges.get(&key).cloned().unwrap_or_default();
+            let away = |x: &Point| norm(&sub(x, &map[i]));
+            on.sort_by(|a, b| away(a).total_cmp(&away(b)));
+            border.extend(on.into_iter().map(|x| (x, Some([i, j]))));
+        }
+        Division {
+            regions: vec![Region {
+                polygon: border.iter().map(|c| c.0).collect(),
+                sides: Vec::new(),
+            }],
+            segments: Vec::new(),
+            hits: Vec::new(),
+            border,
+            size: map.diagonal(),
+        }
+    }
+
+    fn is_corner(&self, x: &Point) -> bool {
+        self.regions.iter().any(|r| r.polygon.contains(x))
+    }
+
+    /// Cuts along the chains that are ready; whether there were any.
+    fn insert(&mut self, pending: &mut Vec<Pending>) -> Result<bool, PartitionError> {
+        let mut progress = false;
+        for chain in std::mem::take(pending) {
+            // Where it touches what is there it falls into pieces.
+            let end = chain.vertices.len() - 1;
+            let inner = (1..end).filter(|&i| self.is_corner(&chain.vertices[i]));
+            let bounds: Vec<usize> = std::iter::once(0).chain(inner).chain([end]).collect();
+            for w in bounds.windows(2) {
+                let piece = chain.piece(w[0], w[1]);
+                if !piece.free && self.is_corner(piece.first()) && self.is_corner(piece.last()) {
+                    self.cut(&piece, piece.vertices.len())?;
+                    progress = true;
+                } else {
+                    pending.push(piece);
+                }
+            }
+        }
+        Ok(progress)
+    }
+
+    /// Cuts the polygon that a chain runs through; its segments from vertex `beyond` on are no faces.
+    fn cut(&mut self, chain: &Pending, beyond: usize) -> Result<(), PartitionError> {
+        let (first, last) = (chain.first(), chain.last());
+        let middle = add_scaled(first, 0.5, &sub(&chain.vertices[1], first));
+        let hosts: Vec<usize> = (0..self.regions.len())
+            .filter(|&r| {
+                let polygon = &self.regions[r].polygon;
+                polygon.contains(first) && polygon.contains(last)
+            })
+            .collect();
+        let inside = |r: &&usize| polygon::contains(&self.regions[**r].polygon, &middle);
+        let host = match hosts.as_slice() {
+            [only] => Some(*only),
+            several => several.iter().find(inside).copied(),
+        };
+        let host = host.ok_or(PartitionError::Muddle)?;
+        let [left, right] = polygon::split(&self.regions[host].polygon, &chain.vertices)
+            .ok_or(PartitionError::Muddle)?;
+        let small = -1e-13 * self.size * self.size;
+        if polygon::area(&left) < small || polygon::area(&right) < small {
+            return Err(PartitionError::Muddle);
+        }
+        let sides = |sign: Side| {
+            let mut sides = self.regions[host].sides.clone();
+            for &(arm, side) in &chain.arms {
+                if !sides.iter().any(|s| s.0 == arm) {
+                    sides.push((arm, sign * side));
+                }
+            }
+            sides
+        };
+        let [above, below] = [1.0, -1.0].map(sides);
+        self.regions[host] = Region {
+            polygon: left,
+            sides: above,
+        };
+        self.regions.push(Region {
+            polygon: right,
+            sides: below,
+        });
+        for (i, (w, &(arm, side))) in chain.vertices.windows(2).zip(&chain.arms).enumerate() {
+            let ends = if side > 0.0 { [w[0], w[1]] } else { [w[1], w[0]] };
+            self.segments.push(Segment {
+                arm,
+                ends,
+                extension: i + 1 >= beyond,
+            });
+        }
+        Ok(())
+    }
+
+    /// Cuts along a chain with a free end and straight on to the border of its polygon.
+    fn extend(&mut self, mut chain: Pending) -> Result<(), PartitionError> {
+        let tip = *chain.last();
+        let ahead = sub(&tip, &chain.vertices[chain.vertices.len() - 2]);
+        let ahead = ahead.map(|v| v / norm(&ahead));
+        let inside = |r: &&Region| {
+            r.polygon.contains(chain.first()) && polygon::contains(&r.polygon, &tip)
+        };
+        let host = self.regions.iter().find(inside).ok_or(PartitionError::Muddle)?;
+        // Where the ray tip + t ahead meets an edge p q: the nearest.
+        let hits = polygon::edges(&host.polygon).filter_map(|(p, q)| {
+            let [f, g] = [&p, &q].map(|x| cross(&ahead, &sub(x, &tip))[2]);
+            if f * g > 0.0 || f == g {
+                return None;
+            }
+            let share = f / (f - g);
+            let x = add_scaled(&p, share, &sub(&q, &p));
+            let t = dot(&sub(&x, &tip), &ahead);
+            (t > 1e-12 * self.size).then_some((t, share, x, [p, q]))
+        });
+        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, share, x, [p, q]) = nearest.ok_or(PartitionError::Muddle)?;
+        /// A hit this close to a corner, in parts of the edge, is the corner.
+        const AT_CORNER: f64 = 1e-9;
+        let hit = if share < AT_CORNER {
+            p
+        } else if share > 1.0 - AT_CORNER {
+            q
+        } else {
+            self.add_corner([p, q], x);
+            x
+        };
+        if hit == *chain.first() {
+            return Err(PartitionError::Muddle);
+        }
+        let beyond = chain.vertices.len();
+        if let Some(&(arm, side)) = chain.arms.last() {
+            chain.arms.push((arm, side));
+        }
+        chain.vertices.push(hit);
+        self.cut(&chain, beyond)
+    }
+
+    /// Makes a point on the edge p q a corner of the polygons on both sides of it.
+    fn add_corner(&mut self, [p, q]: [Point; 2], x: Point) {
+        for region in &mut self.regions {
+            let count = region.polygon.len();
+            let edge = (0..count).find(|&i| {
+                let (a, b) = (region.polygon[i], region.polygon[(i + 1) % count]);
+                (a, b) == (p, q) || (a, b) == (q, p)
+            });
+            if let Some(i) = edge {
+                region.polygon.insert(i + 1, x);
+            }
+        }
+        let parted = |ends: &[Point; 2]| *ends == [p, q] || *ends == [q, p];
+        if let Some(segment) = self.segments.iter_mut().find(|s| parted(&s.ends)) {
+            let last = segment.ends[1];
+            segment.ends[1] = x;
+            let rest = Segment {
+                ends: [x, last],
+                ..*segment
+            };
+            self.segments.push(rest);
+        }
+        let local = |x: &Point| self.border.iter().find(|c| c.0 == *x).and_then(|c| c.1);
+        if let (Some([a, b]), Some([c, d])) = (local(&p), local(&q)) {
+            // Both on one edge of the cell: the point too.
+            let edge = if a != b { [a, b] } else if c != d { [c, d] } else { [a, c] };
+            self.border.push((x, Some(edge)));
+            self.hits.push(x);
+        }
+    }
+
+    /// The parts and faces.
+    fn finish(self, map: &crate::mesh::cell::CellMap) -> Result<Partition, PartitionError> {
+        let local = |x: &Point| self.border.iter().find(|c| c.0 == *x).and_then(|c| c.1);
+        // A polygon lies to the left of its edges.
+        let left_of = |from: &Point, to: &Point| {
+            let runs = |r: &Region| polygon::edges(&r.polygon).any(|(p, q)| p == *from && q == *to);
+            self.regions.iter().position(runs)
+        };
+        let (mut faces, mut joined) = (Vec::new(), Vec::new());
+        for segment in &self.segments {
+            let [a, b] = &segment.ends;
+            let (one, two) = (left_of(a, b), left_of(b, a));
+            let (Some(one), Some(two)) = (one, two) else {
+                return Err(PartitionError::Muddle);
+            };
+            if segment.extension {
+                joined.push([one, two]);
+            } else {
+                faces.push(Face {
+                    crack: segment.arm,
+                    corners: vec![(*a, local(a)), (*b, local(b))],
+                    parts: [one, two],
+                });
+            }
+        }
+        let area: f64 = self.regions.iter().map(|r| polygon::area(&r.polygon)).sum();
+        let whole = polygon::area(map);
+        if (area - whole).abs() > 1e-11 * whole {
+            return Err(PartitionError::Muddle);
+        }
+        let part = |r: Region| Part {
+            sides: r.sides,
+            polygon: r.polygon,
+            tetrahedra: Vec::new(),
+        };
+        Ok(Partition {
+            parts: self.regions.into_iter().map(part).collect(),
+            faces,
+            joined,
+            hits: self.hits,
+            dropped: Vec::new(),
+        })
+    }
+}

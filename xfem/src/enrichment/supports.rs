@@ -1,0 +1,276 @@
+//! The connected pieces of the supports of nodes: which functions a cut body needs.
+//!
+//! The support of N_i less all crack faces falls into pieces. Every piece beyond that of the node itself gets a function of
+//! its own, N_i on the piece and 0 elsewhere. One crack gives the span of the shifted Heaviside function; crossings,
+//! junctions, kinks, several cracks in a cell and ends anywhere need no rule of their own, and the functions of a node are
+//! independent because pieces are disjoint (Hansbo & Hansbo, Comput. Meth. Appl. Mech. Engng 193 (2004) 3523; Song, Areias &
+//! Belytschko, Int. J. Numer. Meth. Engng 67 (2006) 868; Richardson, Hegemann, Sifakis, Hellrung & Teran, Int. J. Numer.
+//! Meth. Engng 88 (2011) 1042).
+//!
+//! Regions of neighbouring cells are joined over what the cracks leave of the facet between them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cut::crack::Crack;
+use crate::cut::partition::Partition;
+use crate::cut::trace::Trace;
+use crate::geometry::clip::{clip, snapped};
+use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, polygon, sub};
+use crate::mesh::Mesh;
+
+use super::basis::Region;
+
+/// A region of a cell.
+pub type Place = (usize, Region);
+
+/// The pieces of the supports of nodes beyond the node's own, by node: the regions of each.
+pub type Pieces = BTreeMap<u32, Vec<Vec<Place>>>;
+
+/// Nodes of a facet in rising order; the last repeated on an edge.
+type FacetKey = [u32; 4];
+
+/// Finds the pieces of the supports of all nodes of divided cells.
+pub fn support_pieces(
+    mesh: &Mesh,
+    cracks: &[Crack],
+    trace: &Trace,
+    partitions: &BTreeMap<usize, Partition>,
+) -> Pieces {
+    let mut touched = vec![false; mesh.nodes.len()];
+    for &cell in partitions.keys() {
+        mesh.cell(cell).iter().for_each(|&n| touched[n as usize] = true);
+    }
+    let mut cells_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    let mut facets: BTreeMap<FacetKey, Vec<usize>> = BTreeMap::new();
+    for cell in 0..mesh.cell_count() {
+        let nodes = mesh.cell(cell);
+        for &node in nodes.iter().filter(|&&n| touched[n as usize]) {
+            cells_of.entry(node).or_default().push(cell);
+        }
+        if nodes.iter().any(|&n| touched[n as usize]) {
+            for local in mesh.kind.facets() {
+                facets.entry(key(local.iter().map(|&i| nodes[i]))).or_default().push(cell);
+            }
+        }
+    }
+    let joiner = Joiner {
+        mesh,
+        cracks,
+        trace,
+        partitions,
+    };
+    let mut joins: BTreeMap<u32, Vec<[Place; 2]>> = BTreeMap::new();
+    for (facet, cells) in &facets {
+        let &[one, two] = cells.as_slice() else { continue };
+        let own = joiner.over(facet, [one, two]);
+        let nodes: BTreeSet<u32> = facet.iter().copied().collect();
+        for node in nodes.into_iter().filter(|&n| touched[n as usize]) {
+            joins.entry(node).or_default().extend(&own);
+        }
+    }
+    let mut found = Pieces::new();
+    for (&node, cells) in &cells_of {
+        let own = joins.get(&node).map_or(&[][..], Vec::as_slice);
+        let pieces = joiner.pieces(node, cells, own);
+        if !pieces.is_empty() {
+            found.insert(node, pieces);
+        }
+    }
+    found
+}
+
+fn key(nodes: impl Iterator<Item = u32>) -> FacetKey {
+    let mut nodes: Vec<u32> = nodes.collect();
+    nodes.sort_unstable();
+    [0, 1, 2, 3].map(|i| nodes[i.min(nodes.len() - 1)])
+}
+
+/// What tells which regions are joined.
+struct Joiner<'a> {
+    mesh: &'a Mesh,
+    cracks: &'a [Crack],
+    trace: &'a Trace,
+    partitions: &'a BTreeMap<usize, Partition>,
+}
+
+impl Joiner<'_> {
+    fn regions(&self, cell: usize) -> usize {
+        self.partitions.get(&cell).map_or(1, |p| p.parts.len())
+    }
+
+    /// Regions of two cells that are joined over the facet between them.
+    fn over(&self, facet: &FacetKey, cells: [usize; 2]) -> Vec<[Place; 2]> {
+        if cells.iter().all(|cell| !self.partitions.contains_key(cell)) {
+            return vec![cells.map(|cell| (cell, 0))];
+        }
+        if self.mesh.dim() == 2 {
+            self.over_edge([facet[0], facet[1]], cells)
+        } else {
+            self.over_face(facet, cells)
+        }
+    }
+
+    /// In 2D: over every part of the edge between two places on it.
+    fn over_edge(&self, edge: [u32; 2], cells: [usize; 2]) -> Vec<[Place; 2]> {
+        let [from, to] = edge.map(|n| self.mesh.nodes[n as usize]);
+        let mut places: Vec<Point> = self.trace.on_edges.get(&edge).cloned().unwrap_or_default();
+        let away = |x: &Point| norm(&sub(x, &from));
+        places.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        places.insert(0, from);
+        places.push(to);
+        let parts = places.windows(2);
+        let region = |cell: usize, p: &Point, q: &Point| match self.partitions.get(&cell) {
+            None => Some(0),
+            Some(partition) => beside(partition, p, q).or_else(|| beside(partition, q, p)),
+        };
+        parts
+            .filter_map(|w| {
+                let [one, two] = cells.map(|cell| region(cell, &w[0], &w[1]));
+                Some([(cells[0], one?), (cells[1], two?)])
+            })
+            .collect()
+    }
+
+    /// In 3D: where the polygons that the regions leave of the face overlap.
+    fn over_face(&self, facet: &FacetKey, cells: [usize; 2]) -> Vec<[Place; 2]> {
+        let nodes = self.mesh.cell(cells[0]);
+        let local = self.mesh.kind.facets().iter();
+        let local = local.into_iter().find(|l| key(l.iter().map(|&i| nodes[i])) == *facet);
+        let corners: Vec<u32> = local.into_iter().flat_map(|l| l.iter().map(|&i| nodes[i])).collect();
+        let face: Vec<Point> = corners.iter().map(|&n| self.mesh.nodes[n as usize]).collect();
+        let whole = area(&face);
+        let mut joins = Vec::new();
+        for one in 0..self.regions(cells[0]) {
+            let own = self.clipped(&corners, face.clone(), (cells[0], one));
+            for two in 0..self.regions(cells[1]) {
+                let both = self.clipped(&corners, own.clone(), (cells[1], two));
+                // Rounding leaves less.
+                if area(&both) > 1e-20 * whole {
+                    joins.push([(cells[0], one), (cells[1], two)]);
+                }
+            }
+        }
+        joins
+    }
+
+    /// The part of a polygon in a face that lies on the sides of a region.
+    fn clipped(&self, nodes: &[u32], mut polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
+        let Some(partition) = self.partitions.get(&cell) else {
+            return polygon;
+        };
+        for &(crack, side) in &partition.parts[region].sides {
+            let size = self.mesh.map(cell).diagonal();
+            let level = |x: &Point| {
+                // The nodes' own values, so that a node on the crack stays on it.
+                let node = nodes.iter().find(|&&n| self.mesh.nodes[n as usize] == *x);
+                let crack = &self.cracks[crack];
+                let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi[n as usize]);
+                snapped(value, 1e-14 * size)
+            };
+            let levels: Vec<f64> = polygon.iter().map(level).collect();
+            if !levels.iter().any(|v| v * side > 0.0) {
+                return Vec::new();
+            }
+            polygon = clip(&polygon, &levels, side);
+        }
+        polygon
+    }
+
+    /// The pieces of the support of a node beyond its own.
+    fn pieces(&self, node: u32, cells: &[usize], joins: &[[Place; 2]]) -> Vec<Vec<Place>> {
+        let places: Vec<Place> = cells
+            .iter()
+            .flat_map(|&cell| (0..self.regions(cell)).map(move |region| (cell, region)))
+            .collect();
+        let number = |place: &Place| places.binary_search(place).unwrap_or_default();
+        let mut parent: Vec<usize> = (0..places.len()).collect();
+        let inside = cells.iter().filter_map(|&c| Some((c, self.partitions.get(&c)?)));
+        let within = inside.flat_map(|(cell, partition)| {
+            let pairs = partition.joined.iter();
+            pairs.map(move |pair| pair.map(|region| (cell, region)))
+        });
+        for [one, two] in joins.iter().copied().chain(within) {
+            let (a, b) = (root(&mut parent, number(&one)), root(&mut parent, number(&two)));
+            parent[a.max(b)] = a.min(b);
+        }
+        let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
+        let own = roots[self.own(node, &places)];
+        let mut pieces: BTreeMap<usize, Vec<Place>> = BTreeMap::new();
+        for (place, root) in places.into_iter().zip(roots) {
+            if root != own {
+                pieces.entry(root).or_default().push(place);
+            }
+        }
+        pieces.into_values().collect()
+    }
+
+    /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of the first that runs there.
+    fn own(&self, node: u32, places: &[Place]) -> usize {
+        let x = &self.mesh.nodes[node as usize];
+        let at_node = |&(cell, region): &Place| match self.partitions.get(&cell) {
+            None => true,
+            Some(partition) => {
+                let part = &partition.parts[region];
+                part.polygon.contains(x) || part.tetrahedra.iter().any(|t| t.contains(x))
+            }
+        };
+        let crack = self.cracks.iter().find(|c| c.phi[node as usize] == 0.0);
+        let above = |&(cell, region): &Place| {
+            let middle = match self.partitions.get(&cell) {
+                None => self.mesh.centre(cell),
+                Some(partition) => partition.parts[region].middle(),
+            };
+            crack.is_none_or(|c| c.distance(&middle) > 0.0)
+        };
+        let mut best = 0;
+        let mut found = 0;
+        for (i, place) in places.iter().enumerate() {
+            let rank = match (at_node(place), found) {
+                (true, 0 | 1) if above(place) => 2,
+                (true, 0) => 1,
+                _ => 0,
+            };
+            if rank > found {
+                (best, found) = (i, rank);
+            }
+        }
+        best
+    }
+}
+
+/// The region of a divided cell that has an edge from p towards q, both on the border of the cell.
+fn beside(partition: &Partition, p: &Point, q: &Point) -> Option<Region> {
+    let runs = |(a, b): (Point, Point)| {
+        // A continuation may end between the two.
+        a == *p && (b == *q || partition.hits.contains(&b) && is_between(&b, p, q))
+    };
+    let mut parts = partition.parts.iter();
+    parts.position(|part| polygon::edges(&part.polygon).any(runs))
+}
+
+fn is_between(x: &Point, p: &Point, q: &Point) -> bool {
+    let (d, from) = (sub(q, p), sub(x, p));
+    let square = dot(&d, &d);
+    let along = dot(&from, &d);
+    along > 0.0 && along < square && norm(&cross(&d, &from)) <= 1e-9 * square
+}
+
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+/// Area of a polygon in space [m²].
+fn area(polygon: &[Point]) -> f64 {
+    if polygon.len() < 3 {
+        return 0.0;
+    }
+    let centre = mean(polygon);
+    let sum = polygon::edges(polygon).fold([0.0; 3], |sum, (p, q)| {
+        add_scaled(&sum, 0.5, &cross(&sub(&p, &centre), &sub(&q, &centre)))
+    });
+    norm(&sum)
+}

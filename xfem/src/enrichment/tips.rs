@@ -1,0 +1,461 @@
+//! Which tips and fronts carry branch functions, on which nodes, and how the cracks divide the cells.
+//!
+//! The first branch function jumps along the line behind its tip, as far as that goes. So only nodes carry it whose cells
+//! hold no part of that line but the crack itself: a bend, another crack, the other end are the end of a tip's room. A tip
+//! without that room for its own cells ends like one without branch functions, on the last cell edge it crosses; a short
+//! straight crack with none at either end takes functions of both ends at once.
+//!
+//! The radius is no larger than the room. A zone that no crack but its own and no border of the body enters is sought from
+//! the given radius downwards.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cut::crack::{Crack, End, Geometry, Tip};
+use crate::cut::flat;
+use crate::cut::partition::Partition;
+use crate::cut::placement::{self, front_frame};
+use crate::cut::trace::{Chain, Trace, TracedTip};
+use crate::geometry::polygon::segment_distance;
+use crate::geometry::tip_frame::{FrontShape, TipFrame};
+use crate::geometry::{add_scaled, norm, sub};
+use crate::mesh::Mesh;
+
+use super::basis::{Function, FunctionKind};
+use super::error::EnrichmentError;
+
+/// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
+const SHARE: f64 = 0.25;
+
+/// Nodes around a tip.
+struct Zone {
+    /// Those that carry its branch functions.
+    nodes: BTreeSet<u32>,
+    /// Those of the ramp; empty: there is none.
+    core: BTreeSet<u32>,
+}
+
+impl Zone {
+    /// Without a ramp.
+    fn plain(nodes: BTreeSet<u32>) -> Self {
+        Zone {
+            nodes,
+            core: BTreeSet::new(),
+        }
+    }
+}
+
+/// The cells that cracks divide and the tips that carry branch functions.
+#[derive(Debug, Default)]
+pub struct Tips {
+    /// Divided cells.
+    pub partitions: BTreeMap<usize, Partition>,
+    /// Cells that a crack divides up to its end and that are left whole, because the end carries no branch functions.
+    pub endings: BTreeMap<usize, Partition>,
+    /// Tips and fronts inside the body that carry branch functions.
+    pub frames: Vec<TipFrame>,
+    /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
+    pub cells: Vec<(usize, usize)>,
+    /// Nodes of the ramp of every tip's branch functions; empty: they have none.
+    pub cores: Vec<BTreeSet<u32>>,
+    /// Branch functions.
+    pub functions: BTreeSet<Function>,
+}
+
+impl Tips {
+    /// Divides the cells of a 2D body.
+    ///
+    /// # Errors
+    /// Cracks that leave a cell no clean parts.
+    pub fn flat(mesh: &Mesh, arms: &[Crack], trace: &Trace) -> Result<Self, EnrichmentError> {
+        let mut search = Search {
+            mesh,
+            arms,
+            trace,
+            kept: trace.tips.iter().map(|t| arms[t.arm].tip != Tip::None).collect(),
+            pairs: Vec::new(),
+            partitions: BTreeMap::new(),
+        };
+        // Every round takes at least one tip its functions.
+        while search.round()? {}
+        if search.add_pairs() {
+            search.divide()?;
+        }
+        let mut tips = Tips {
+            endings: search.endings(),
+            ..Tips::default()
+        };
+        for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
+            let zone = search.zone(tip, search.room(number));
+            tips.add(mesh, search.frame(tip), &tip.cells, zone);
+        }
+        for &arm in &search.pairs {
+            let cells: Vec<usize> = search.cells_of(arm);
+            let own = trace.tips.iter().filter(|t| t.arm == arm);
+            let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
+            let zone = Zone::plain(nodes_of(mesh, cells));
+            tips.add(mesh, pair_frame(&arms[arm], arm), &at_ends, zone);
+        }
+        tips.partitions = search.partitions;
+        tips.cells.sort_unstable();
+        Ok(tips)
+    }
+
+    /// Divides the cells of a solid.
+    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Self {
+        let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (index, crack) in arms.iter().enumerate() {
+            for cell in 0..mesh.cell_count() {
+                let list = match placement::along(mesh, crack, cell) {
+                    placement::Along::Through => &mut inside,
+                    placement::Along::Ends => &mut ending,
+                    placement::Along::Away => continue,
+                };
+                list.entry(cell).or_default().push(index);
+            }
+        }
+        let mut tips = Tips::default();
+        // All arms of an ellipse have one front.
+        let mut fronts: BTreeMap<usize, (usize, BTreeSet<usize>)> = BTreeMap::new();
+        for (&cell, own) in &ending {
+            for &index in own.iter().filter(|&&i| arms[i].tip != Tip::None) {
+                let front = fronts.entry(arms[index].number);
+                front.or_insert_with(|| (index, BTreeSet::new())).1.insert(cell);
+            }
+        }
+        for (&cell, own) in &ending {
+            let (with, without): (Vec<usize>, Vec<usize>) =
+                own.iter().partition(|&&i| arms[i].tip != Tip::None);
+            if !with.is_empty() {
+                inside.entry(cell).or_default().extend(with);
+            }
+            if !without.is_empty() {
+                let mut all = inside.get(&cell).cloned().unwrap_or_default();
+                all.extend(without);
+                all.sort_unstable();
+                tips.endings.insert(cell, Partition::solid(mesh, cell, arms, &all, &[]));
+            }
+        }
+        for (cell, mut own) in inside {
+            own.sort_unstable();
+            let ends = ending.get(&cell).map_or(&[][..], Vec::as_slice);
+            tips.partitions.insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
+        }
+        for (index, cells) in fronts.into_values() {
+            let Some(frame) = front_frame(index, &arms[index]) else {
+                continue;
+            };
+            let cells: Vec<usize> = cells.into_iter().collect();
+            let at_front = nodes_of(mesh, cells.iter().copied());
+            let zone = match arms[index].tip {
+                Tip::Radius(radius) => {
+                    let within = |node: &u32| frame.distance(&mesh.nodes[*node as usize]) <= radius;
+                    let own = (0..mesh.nodes.len() as u32).filter(within);
+                    let core = &own.collect() | &nodes_around(mesh, &at_front);
+                    Zone {
+                        nodes: nodes_around(mesh, &core),
+                        core,
+                    }
+                }
+                _ => Zone::plain(at_front),
+            };
+            tips.add(mesh, frame, &cells, zone);
+        }
+        tips.cells.sort_unstable();
+        tips
+    }
+
+    /// Adds the branch functions of a tip or front with the given cells around it.
+    fn add(&mut self, mesh: &Mesh, frame: TipFrame, cells: &[usize], zone: Zone) {
+        debug_assert!(zone.nodes.iter().all(|&n| (n as usize) < mesh.nodes.len()));
+        let tip = self.frames.len();
+        self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
+        let branch = |node: u32| {
+            (0..4).map(move |order| {
+                let kind = FunctionKind::Branch {
+                    tip: tip as u32,
+                    order,
+                };
+                Function { node, kind }
+            })
+        };
+        self.functions.extend(zone.nodes.into_iter().flat_map(branch));
+        self.cores.push(zone.core);
+        self.frames.push(frame);
+    }
+}
+
+/// The search for the tips of a 2D body that can carry branch functions.
+struct Search<'a> {
+    mesh: &'a Mesh,
+    arms: &'a [Crack],
+    trace: &'a Trace,
+    /// By tip: whether it does, so far.
+    kept: Vec<bool>,
+    /// Arms with functions of both ends.
+    pairs: Vec<usize>,
+    partitions: BTreeMap<usize, Partition>,
+}
+
+impl Search<'_> {
+    /// Divides the cells, and takes the functions from tips without room; whether there were any.
+    fn round(&mut self) -> Result<bool, EnrichmentError> {
+        self.divide()?;
+        let kept: Vec<bool> = (0..self.kept.len())
+            .map(|tip| self.kept[tip] && self.has_room(tip))
+            .collect();
+        let fewer = kept != self.kept;
+        self.kept = kept;
+        Ok(fewer)
+    }
+
+    /// Whether a chain divides its cell: one with a free end only where that carries functions.
+    fn divides(&self, chain: &Chain) -> bool {
+        (0..2).all(|end| !chain.tip[end] || self.keeps(chain.arm, end))
+    }
+
+    fn keeps(&self, arm: usize, end: usize) -> bool {
+        let mut tips = self.trace.tips.iter().zip(&self.kept);
+        self.pairs.contains(&arm) || tips.any(|(t, &kept)| kept && (t.arm, t.end) == (arm, end))
+    }
+
+    fn divide(&mut self) -> Result<(), EnrichmentError> {
+        self.partitions.clear();
+        for (&cell, chains) in &self.trace.chains {
+            let own: Vec<&Chain> = chains.iter().filter(|c| self.divides(c)).collect();
+            if own.is_empty() {
+                continue;
+            }
+            let partition = flat::divide(self.mesh, cell, self.arms, self.trace, &own);
+            let partition = partition.map_err(|reason| EnrichmentError::Partition {
+                crack: own.last().map_or(0, |chain| self.arms[chain.arm].number),
+                reason,
+                at: self.mesh.centre(cell),
+            })?;
+            if partition.parts.len() > 1 {
+                self.partitions.insert(cell, partition);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the cells left whole would look like with their cracks up to the ends.
+    fn endings(&self) -> BTreeMap<usize, Partition> {
+        let whole = self.trace.chains.iter().filter(|(cell, chains)| {
+            !self.partitions.contains_key(cell) && chains.iter().any(|c| c.tip != [false; 2])
+        });
+        whole
+            .filter_map(|(&cell, chains)| {
+                let own: Vec<&Chain> = chains.iter().collect();
+                let partition = flat::divide(self.mesh, cell, self.arms, self.trace, &own);
+                Some((cell, partition.ok()?))
+            })
+            .collect()
+    }
+
+    /// Cells that an arm runs through or ends in.
+    fn cells_of(&self, arm: usize) -> Vec<usize> {
+        let chains = self.trace.chains.iter();
+        let own = chains.filter(|(_, chains)| chains.iter().any(|c| c.arm == arm));
+        own.map(|(&cell, _)| cell).collect()
+    }
+
+    /// From where to where an arm parts the cells [m].
+    fn range(&self, arm: usize) -> [f64; 2] {
+        let mut range = self.arms[arm].range;
+        for (tip, _) in self.trace.tips.iter().zip(&self.kept).filter(|t| !t.1) {
+            if tip.arm == arm {
+                range[tip.end] = tip.entry;
+            }
+        }
+        for (cell, chains) in &self.trace.chains {
+            for chain in chains.iter().filter(|c| c.arm == arm && self.divides(c)) {
+                let partition = self.partitions.get(cell);
+                if partition.is_none_or(|p| p.dropped.contains(&arm)) {
+                    // At the end that it is nearer to.
+                    let [low, high] = chain.range;
+                    if low - range[0] < range[1] - high {
+                        range[0] = range[0].max(high);
+                    } else {
+                        range[1] = range[1].min(low);
+                    }
+                }
+            }
+        }
+        range
+    }
+
+    /// Length of the crack behind a tip that its branch functions know [m].
+    fn room(&self, number: usize) -> f64 {
+        let tip = &self.trace.tips[number];
+        let arm = &self.arms[tip.arm];
+        let from = arm.range[tip.end];
+        let other = (self.range(tip.arm)[1 - tip.end] - from).abs();
+        let Geometry::Curve(curve) = &arm.geometry else {
+            return other;
+        };
+        let kinks = curve.kinks().into_iter().filter(|k| *k > arm.range[0] && *k < arm.range[1]);
+        kinks.map(|k| (k - from).abs()).fold(other, f64::min)
+    }
+
+    fn frame(&self, tip: &TracedTip) -> TipFrame {
+        placement::tip_frame(tip.arm, &self.arms[tip.arm], tip.end, &tip.x)
+    }
+
+    /// Whether the cells of a tip can carry its functions.
+    fn has_room(&self, number: usize) -> bool {
+        let tip = &self.trace.tips[number];
+        let divided = |cell: &usize| self.partitions.get(cell);
+        // A tip inside a cell divides it; another crack there leaves the functions no meaning.
+        let parted = tip.cells.len() > 1
+            || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
+        let alone = tip.cells.iter().filter_map(divided).all(|p| self.is_own(p, tip.arm));
+        let nodes = nodes_of(self.mesh, tip.cells.iter().copied());
+        parted && alone && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
+    }
+
+    /// Whether only one arm lies in a divided cell.
+    fn is_own(&self, partition: &Partition, arm: usize) -> bool {
+        partition.faces.iter().all(|f| f.crack == arm)
+    }
+
+    /// Whether a cell of some nodes holds a part of the line behind a tip beyond its room.
+    fn is_blocked(&self, frame: &TipFrame, room: f64, nodes: &BTreeSet<u32>) -> bool {
+        cells_around(self.mesh, nodes).any(|cell| {
+            let map = self.mesh.map(cell);
+            let size = map.diagonal();
+            let at: Vec<[f64; 2]> = map
+                .iter()
+                .map(|x| frame.coordinates(x))
+                .map(|c| [c.psi, c.phi])
+                .collect();
+            let slack = 1e-9 * size;
+            let spread = |k: usize| {
+                let values = at.iter().map(|c| c[k]);
+                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                    (l.min(v), h.max(v))
+                });
+                high - low
+            };
+            // Where an arc's coordinate starts again.
+            if spread(0) > 4.0 * size {
+                return true;
+            }
+            let count = at.len();
+            (0..count).any(|i| {
+                let [[p, f], [q, g]] = [at[i], at[(i + 1) % count]];
+                let near = if f.abs() <= slack {
+                    Some(p)
+                } else if f * g < 0.0 {
+                    Some(p + f / (f - g) * (q - p))
+                } else {
+                    None
+                };
+                near.is_some_and(|psi| psi < -room - slack)
+            })
+        })
+    }
+
+    /// Straight arms with two ends inside the body, none of which has room: they take functions of both.
+    fn add_pairs(&mut self) -> bool {
+        for (index, arm) in self.arms.iter().enumerate() {
+            let own: Vec<usize> = (0..self.kept.len())
+                .filter(|&t| self.trace.tips[t].arm == index && !self.kept[t])
+                .collect();
+            let cells = self.cells_of(index);
+            let alone = cells.iter().all(|cell| {
+                let chains = &self.trace.chains[cell];
+                chains.iter().all(|c| c.arm == index || !self.divides(c))
+            });
+            if arm.tip != Tip::None
+                && arm.ends == [End::Free; 2]
+                && arm.path.len() == 2
+                && own.len() == 2
+                && alone
+                && !cells.is_empty()
+            {
+                self.pairs.push(index);
+            }
+        }
+        !self.pairs.is_empty()
+    }
+
+    /// The nodes around a tip: within the largest radius that leaves it alone.
+    fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
+        let mesh = self.mesh;
+        let frame = self.frame(tip);
+        let at_tip = nodes_of(mesh, tip.cells.iter().copied());
+        let mut radius = match self.arms[tip.arm].tip {
+            Tip::Radius(radius) => radius.min(room),
+            Tip::Auto => SHARE * room.min(self.clearance(tip)),
+            Tip::Branch | Tip::None => return Zone::plain(at_tip),
+        };
+        let smallest = nodes_around(mesh, &at_tip);
+        let border: BTreeSet<u32> = mesh
+            .sides
+            .keys()
+            .flat_map(|side| mesh.side_nodes(side))
+            .map(|n| n as u32)
+            .collect();
+        let size = mesh.map(tip.cells[0]).diagonal();
+        loop {
+            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
+            let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
+            let core = &inside | &smallest;
+            let nodes = nodes_around(mesh, &core);
+            let own = cells_around(mesh, &core).filter_map(|cell| self.partitions.get(&cell));
+            if nodes.is_disjoint(&border)
+                && own.into_iter().all(|p| self.is_own(p, tip.arm))
+                && !self.is_blocked(&frame, room, &nodes)
+            {
+                return Zone { nodes, core };
+            }
+            if radius < 0.5 * size {
+                return Zone::plain(at_tip);
+            }
+            radius *= 0.85;
+        }
+    }
+
+    /// Distance of a tip from other arms and from the border of the body [m].
+    fn clearance(&self, tip: &TracedTip) -> f64 {
+        let mesh = self.mesh;
+        let facets = mesh.sides.values().flatten().map(|&facet| {
+            let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
+            segment_distance(&tip.x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
+        });
+        let others = (0..self.arms.len()).filter(|&arm| arm != tip.arm);
+        let cracks = others.flat_map(|arm| {
+            let path = self.arms[arm].path.windows(2);
+            path.map(|w| segment_distance(&tip.x, &w[0].x, &w[1].x))
+        });
+        facets.chain(cracks).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Frame of the functions of both ends of a straight arm.
+fn pair_frame(arm: &Crack, index: usize) -> TipFrame {
+    let [p, q] = [arm.path[0].x, arm.path[arm.path.len() - 1].x];
+    let d = sub(&q, &p);
+    let middle = add_scaled(&p, 0.5, &d);
+    let mut frame = placement::tip_frame(index, arm, 1, &middle);
+    frame.shape = FrontShape::Pair {
+        half_length: 0.5 * norm(&d),
+    };
+    frame
+}
+
+/// Nodes of some cells.
+fn nodes_of(mesh: &Mesh, cells: impl IntoIterator<Item = usize>) -> BTreeSet<u32> {
+    cells.into_iter().flat_map(|cell| mesh.cell(cell)).copied().collect()
+}
+
+/// Cells with one of some nodes.
+fn cells_around(mesh: &Mesh, nodes: &BTreeSet<u32>) -> impl Iterator<Item = usize> {
+    (0..mesh.cell_count()).filter(|&cell| mesh.cell(cell).iter().any(|n| nodes.contains(n)))
+}
+
+/// Nodes of all cells with one of some nodes.
+fn nodes_around(mesh: &Mesh, nodes: &BTreeSet<u32>) -> BTreeSet<u32> {
+    nodes_of(mesh, cells_around(mesh, nodes))
+}
