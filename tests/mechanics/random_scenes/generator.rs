@@ -178,7 +178,7 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
     let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
     let kind = (number % kinds.len() as u64) as usize;
     let (category, by_grid, round) = kinds[kind];
-    let grid = grid(dim, s);
+    let grid = grid(dim, dim == 3 && round, s);
     let motion = if dim == 2 && !by_grid && s.chance(MOVED) {
         let steep = grid.size(0).max(grid.size(1)) / grid.least() > 1.5;
         if s.chance(0.5) {
@@ -191,7 +191,7 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
     } else {
         String::new()
     };
-    let hydrostatic = round || s.chance(0.25);
+    let hydrostatic = dim == 2 && round || s.chance(0.25);
     let (model, material, exact) = stressed(dim, hydrostatic, &grid, s);
     let mut text = format!("title = \"{category}\"\nmodel = \"{model}\"\ntolerance = 1e-12\n");
     text += &material;
@@ -259,8 +259,9 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
     }
 }
 
-/// Grid lines of a random box: of any size, far from the origin at times, graded or with slender cells at times.
-fn grid(dim: usize, s: &mut Stream) -> Grid {
+/// Grid lines of a random box: of any size, far from the origin at times, graded or with slender cells at times;
+/// even: about a cube, in cells of about one size.
+fn grid(dim: usize, even: bool, s: &mut Stream) -> Grid {
     let size = decades(s, -3.0, 3.0);
     let far = if s.chance(0.15) {
         decades(s, 0.0, 3.0)
@@ -268,9 +269,12 @@ fn grid(dim: usize, s: &mut Stream) -> Grid {
         f64::from(u8::from(s.chance(0.5)))
     };
     let most = if dim == 2 { 20 } else { 6 };
-    let cells: Vec<usize> = (0..dim).map(|_| s.whole(3, most)).collect();
+    let cells: Vec<usize> = (0..dim)
+        .map(|_| s.whole(if even { 4 } else { 3 }, most))
+        .collect();
     let mut sides: Vec<f64> = vec![size];
-    sides.extend((1..dim).map(|_| size * decades(s, -0.47, 0.47)));
+    let aspect = if even { 0.15 } else { 0.47 };
+    sides.extend((1..dim).map(|_| size * decades(s, -aspect, aspect)));
     if dim == 2 && s.chance(0.1) {
         // Cells of up to 50 : 1.
         let slender = decades(s, -1.7, 1.7);
@@ -281,7 +285,7 @@ fn grid(dim: usize, s: &mut Stream) -> Grid {
             sides[a] = sides[0] / cells[0] as f64 * cells[a] as f64;
         }
     }
-    let graded = s.chance(0.15);
+    let graded = s.chance(0.15) && !even;
     let mut lines = Vec::new();
     for a in 0..dim {
         let min = far * size * s.between(-1.0, 1.0);

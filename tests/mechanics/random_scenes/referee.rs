@@ -211,7 +211,9 @@ fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
             if w.0.is_nan() { w.0 } else { m.max(w.0) }
         },
     );
-    let wrong = found.into_iter().filter(|(_, w)| !(w.0 <= ROUNDING));
+    let wrong = found
+        .into_iter()
+        .filter(|(_, w)| w.0.is_nan() || w.0 > ROUNDING);
     let told = wrong.map(|(what, Worst(error, place))| format!("{what} {error:.1e} {place}"));
     (told.collect(), largest)
 }
