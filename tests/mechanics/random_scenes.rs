@@ -133,7 +133,7 @@ fn told(reports: &[Report], dim: usize, seed: u64) -> String {
         cells.extend(["right", "wrong"].map(|outcome| largest(name, outcome)));
         text += &row(name, &cells);
     }
-    for r in reports.iter().filter(|r| r.outcome != "right") {
+    for r in reports.iter().filter(|r| !r.reason.is_empty()) {
         let Report {
             number,
             category,

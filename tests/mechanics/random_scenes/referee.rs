@@ -132,7 +132,7 @@ fn judge_method(scene: &Scene, name: &str) -> (String, String, f64) {
     }
     let (faults, error) = compare(scene, &results);
     match faults.is_empty() {
-        true => ("right".into(), String::new(), error),
+        true => ("right".into(), uncovered(scene, &results), error),
         false => (
             "wrong".into(),
             format!("{name}: {}", faults.join("; ")),
@@ -203,7 +203,7 @@ fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
     if exact.dim == 3 {
         found.push(("traction in space", directions(scene, results)));
     } else {
-        found.push(("surface", surface(scene, &points)));
+        found.push(("surface", surface(scene, results)));
     }
     let largest = found.iter().fold(
         0.0,
@@ -352,23 +352,46 @@ fn directions(scene: &Scene, results: &Results) -> Worst {
     worst
 }
 
-/// By how much the points of a crack stand for more than its length in the body. Less is no fault by itself: a crack
-/// without tip functions ends at the last cell edge.
-fn surface(scene: &Scene, points: &[&PointState]) -> Worst {
-    let exact = &scene.exact;
+/// Measure that the points of a plane crack stand for, and its length in the body [m].
+fn lengths<'a>(
+    scene: &'a Scene,
+    results: &'a Results,
+) -> impl Iterator<Item = (usize, f64, f64)> + 'a {
+    let Exact { min, max, .. } = &scene.exact;
+    let flat = scene
+        .cracks
+        .iter()
+        .enumerate()
+        .filter_map(|(k, crack)| match crack {
+            Shape::Flat(flat) => Some((k + 1, flat)),
+            Shape::Solid(_) => None,
+        });
+    flat.map(move |(number, flat)| {
+        let points = results.points.iter().map(|row| &row.point);
+        let own = points.filter(|p| p.crack == number);
+        let total = own.map(|p| p.weight).sum();
+        (number, total, flat.length_in(min, max))
+    })
+}
+
+/// By how much the points of a crack stand for more than its length in the body, in cells. An end that is moved onto a
+/// crack beside it, and the small steps in which an arc is measured, are none of it.
+fn surface(scene: &Scene, results: &Results) -> Worst {
     let mut worst = Worst::default();
-    for (k, crack) in scene.cracks.iter().enumerate() {
-        let Shape::Flat(flat) = crack else { continue };
-        let own = points.iter().filter(|p| p.crack == k + 1);
-        let total: f64 = own.map(|p| p.weight).sum();
-        let length = flat.length_in(&exact.min, &exact.max);
-        // The length of an arc is counted in small steps.
-        let grain = match flat {
-            Flat::Arc { .. } => 1e-3 * length,
-            Flat::Chain(_) => 1e-9 * exact.cell,
-        };
-        let excess = (total - length - grain) / exact.cell;
-        worst.see(excess, || format!("crack {}: {total} of {length} m", k + 1));
+    for (number, total, length) in lengths(scene, results) {
+        let excess = (total - 1.001 * length) / scene.exact.cell - 0.01;
+        worst.see(excess, || format!("crack {number}: {total} of {length} m"));
     }
     worst
+}
+
+/// Cracks of which more is missing than the cells of their ends. No fault in uniform stress, which a crack that is not
+/// there solves as well; and where a support holds the normal jump there is no contact. To be looked at.
+fn uncovered(scene: &Scene, results: &Results) -> String {
+    let few =
+        |(_, total, length): &(usize, f64, f64)| total + 2.5 * scene.exact.cell < 0.95 * length;
+    let told =
+        |(number, total, length)| format!("crack {number} acts on {total:.2e} of {length:.2e} m");
+    let all: Vec<String> = lengths(scene, results).filter(few).map(told).collect();
+    all.join("; ")
 }
