@@ -18,6 +18,7 @@ mod nitsche;
 mod patch;
 mod penetration;
 mod published;
+mod random_scenes;
 mod robust;
 mod skips;
 mod spaces;

@@ -1,0 +1,412 @@
+//! Random bodies in uniform stress: box, mesh, material, supports and loads as the text of a case, and its closed form.
+//!
+//! ```text
+//!   σ = diag(σx, σy[, σz]), all < 0     ε_a = (σ_a − ν (Σσ − σ_a)) / E     u_a = ε_a (x_a − min_a)
+//!   W = ½ σ : ε V                       P = −w σ n on side 1, in space     all cracks stick, no jump
+//! ```
+//!
+//! Nothing here knows how a body is discretised: a scene is a text, and numbers that hold for every discretisation.
+
+use stickslip_xfem::mesh::stream::Stream;
+
+use super::flat::{self, Flat};
+use super::solid::{self, Flaw};
+
+/// Share of the scenes with a mesh whose inner points are moved, where the cracks are not placed by grid points.
+const MOVED: f64 = 0.2;
+
+/// A crack as a case states it.
+pub enum Shape {
+    Flat(Flat),
+    Solid(Flaw),
+}
+
+/// A random case with the answer to it.
+pub struct Scene {
+    /// Number in its series; with the seed it makes the scene again alone.
+    pub number: u64,
+    pub category: &'static str,
+    /// The case, as TOML.
+    pub text: String,
+    /// Methods that are asked.
+    pub methods: &'static [&'static str],
+    pub cracks: Vec<Shape>,
+    pub exact: Exact,
+}
+
+/// Uniform stress in a box.
+pub struct Exact {
+    pub dim: usize,
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+    /// Principal stresses along the axes [Pa]; that along z is 0 in 2D: it has no part in anything that is compared.
+    pub stress: [f64; 3],
+    pub strain: [f64; 3],
+    /// Diagonal of the largest cell [m].
+    pub cell: f64,
+}
+
+impl Exact {
+    /// Displacement at a place [m].
+    pub fn displacement(&self, x: &[f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|a| self.strain[a] * (x[a] - self.min[a]))
+    }
+
+    /// Largest displacement in the body [m].
+    pub fn largest(&self) -> f64 {
+        let corner = self.displacement(&self.max);
+        corner.iter().map(|u| u * u).sum::<f64>().sqrt()
+    }
+
+    /// Largest stress [Pa].
+    pub fn size(&self) -> f64 {
+        self.stress.iter().fold(0.0, |m: f64, s| m.max(s.abs()))
+    }
+
+    /// ½ σ : ε V [J, in 2D J/m].
+    pub fn energy(&self) -> f64 {
+        let density: f64 = (0..self.dim).map(|a| self.stress[a] * self.strain[a]).sum();
+        let volume: f64 = (0..self.dim).map(|a| self.max[a] - self.min[a]).product();
+        0.5 * density * volume
+    }
+
+    /// Traction −σ n that side 1 feels [Pa].
+    pub fn traction(&self, n: &[f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|a| -self.stress[a] * n[a])
+    }
+
+    /// |τ| / p on a plane: the friction it needs to stick.
+    pub fn steepness(&self, n: &[f64; 3]) -> f64 {
+        let t = self.traction(n);
+        let pressure: f64 = (0..3).map(|a| t[a] * n[a]).sum();
+        // Not as the root of a difference of squares, of which hydrostatic stress leaves rounding.
+        let shear = [0, 1, 2].map(|a| t[a] - pressure * n[a]);
+        shear.iter().map(|v| v * v).sum::<f64>().sqrt() / pressure
+    }
+}
+
+/// Grid lines of a box, as far as cracks are placed by them.
+pub struct Grid {
+    pub dim: usize,
+    pub lines: Vec<Vec<f64>>,
+}
+
+impl Grid {
+    pub fn min(&self, a: usize) -> f64 {
+        self.lines[a][0]
+    }
+
+    pub fn max(&self, a: usize) -> f64 {
+        self.lines[a][self.lines[a].len() - 1]
+    }
+
+    pub fn size(&self, a: usize) -> f64 {
+        self.max(a) - self.min(a)
+    }
+
+    /// Shortest interval along an axis [m].
+    fn step(&self, a: usize) -> f64 {
+        let steps = self.lines[a].windows(2).map(|w| w[1] - w[0]);
+        steps.fold(f64::MAX, f64::min)
+    }
+
+    /// Shortest cell edge [m].
+    pub fn h(&self) -> f64 {
+        (0..self.dim).map(|a| self.step(a)).fold(f64::MAX, f64::min)
+    }
+
+    /// Shortest side of the box [m].
+    pub fn least(&self) -> f64 {
+        (0..self.dim).map(|a| self.size(a)).fold(f64::MAX, f64::min)
+    }
+
+    /// Diagonal of the box [m].
+    pub fn diagonal(&self) -> f64 {
+        (0..self.dim)
+            .map(|a| self.size(a).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// The place at fractions of the box between two bounds.
+    pub fn place(&self, low: f64, high: f64, s: &mut Stream) -> Vec<f64> {
+        let at = |a| self.min(a) + s.between(low, high) * self.size(a);
+        (0..self.dim).map(at).collect()
+    }
+
+    /// Number of a grid line inside the body.
+    pub fn inner(&self, a: usize, s: &mut Stream) -> usize {
+        s.whole(1, self.lines[a].len() - 2)
+    }
+
+    /// Diagonal of the largest cell [m].
+    fn cell(&self) -> f64 {
+        let longest = |a: usize| {
+            let steps = self.lines[a].windows(2).map(|w| w[1] - w[0]);
+            steps.fold(0.0, f64::max)
+        };
+        (0..self.dim)
+            .map(|a| longest(a).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+}
+
+/// Log-uniform between two powers of ten.
+pub fn decades(s: &mut Stream, low: f64, high: f64) -> f64 {
+    10f64.powf(s.between(low, high))
+}
+
+/// 0 in one draw of seven, otherwise ± log-uniform.
+pub fn offset(s: &mut Stream, low: f64, high: f64) -> f64 {
+    let (none, size, negative) = (s.chance(1.0 / 7.0), decades(s, low, high), s.chance(0.5));
+    match (none, negative) {
+        (true, _) => 0.0,
+        (_, true) => -size,
+        _ => size,
+    }
+}
+
+/// Numbers as TOML: Rust's shortest form that is read back to the same bits.
+pub fn list(values: &[f64]) -> String {
+    format!("{values:?}")
+}
+
+/// The scene with a number among those of a seed.
+pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
+    let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);
+    let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
+    let kind = (number % kinds.len() as u64) as usize;
+    let (category, by_grid, round) = kinds[kind];
+    let grid = grid(dim, dim == 3 && round, s);
+    let motion = if dim == 2 && !by_grid && s.chance(MOVED) {
+        let steep = grid.size(0).max(grid.size(1)) / grid.least() > 1.5;
+        if s.chance(0.5) {
+            let (amplitude, seed) = (s.between(0.02, 0.25), s.whole(1, 1000));
+            format!("[mesh.distort]\namplitude = {amplitude:?}\nseed = {seed}\n")
+        } else {
+            let most = if steep { 8.0 } else { 30.0 };
+            format!("[mesh.twist]\nangle_deg = {:?}\n", s.between(-most, most))
+        }
+    } else {
+        String::new()
+    };
+    let hydrostatic = dim == 2 && round || s.chance(0.25);
+    let (model, material, exact) = stressed(dim, hydrostatic, &grid, s);
+    let mut text = format!("title = \"{category}\"\nmodel = \"{model}\"\ntolerance = 1e-12\n");
+    text += &material;
+    text += &mesh(&grid, s);
+    text += &motion;
+    let cracks: Vec<Shape> = if dim == 2 {
+        flat::cracks(category, &grid, s)
+            .into_iter()
+            .map(Shape::Flat)
+            .collect()
+    } else {
+        solid::cracks(category, &grid, s)
+            .into_iter()
+            .map(Shape::Solid)
+            .collect()
+    };
+    // Without friction a part that a crack cuts off, or a ring around a disc, would move freely.
+    let held = ["inner", "short", "disc", "ellipse"].contains(&category) && cracks.len() == 1;
+    for crack in &cracks {
+        let needed = match crack {
+            Shape::Flat(f) => f.normals().iter().map(|n| exact.steepness(n)).collect(),
+            Shape::Solid(f) => vec![exact.steepness(&f.normal())],
+        };
+        let needed = needed.into_iter().fold(0.0, f64::max);
+        let smooth = hydrostatic && held && s.chance(0.3);
+        let friction = if smooth { 0.0 } else { 2.0 * needed + 0.1 };
+        let (place, ends) = match crack {
+            Shape::Flat(f) => (f.text(), !f.is_closed()),
+            Shape::Solid(f) => (f.text(), f.has_front()),
+        };
+        text += &format!("[[crack]]\n{place}friction = {friction:?}\n");
+        if ends {
+            text += &match s.whole(0, 3) {
+                0 => String::new(),
+                1 => "tip = \"none\"\n".to_owned(),
+                2 => "tip = \"branch\"\n".to_owned(),
+                _ => {
+                    let radius = s.between(0.3, if dim == 2 { 6.0 } else { 2.0 }) * grid.h();
+                    format!("tip = {{ branch_radius_m = {radius:?} }}\n")
+                }
+            };
+        }
+        text += match s.whole(0, 5) {
+            0 => "contact = \"facet\"\n",
+            1 => "contact = \"p0\"\n",
+            2 => "contact = \"star\"\n",
+            _ => "",
+        };
+    }
+    text += &held_and_loaded(&exact, s.chance(0.5));
+    // The same number of draws whatever came before.
+    let mut last = Stream::numbered(seed ^ 0x5eed, number);
+    let methods: &[&str] = if last.chance(0.2) {
+        &["b-newton", "newton-ac"]
+    } else {
+        &["b-newton"]
+    };
+    Scene {
+        number,
+        category,
+        text,
+        methods,
+        cracks,
+        exact,
+    }
+}
+
+/// Grid lines of a random box: of any size, far from the origin at times, graded or with slender cells at times;
+/// even: about a cube, in cells of about one size.
+fn grid(dim: usize, even: bool, s: &mut Stream) -> Grid {
+    let size = decades(s, -3.0, 3.0);
+    let far = if s.chance(0.15) {
+        decades(s, 0.0, 3.0)
+    } else {
+        f64::from(u8::from(s.chance(0.5)))
+    };
+    let most = if dim == 2 { 20 } else { 6 };
+    let cells: Vec<usize> = (0..dim)
+        .map(|_| s.whole(if even { 4 } else { 3 }, most))
+        .collect();
+    let mut sides: Vec<f64> = vec![size];
+    let aspect = if even { 0.15 } else { 0.47 };
+    sides.extend((1..dim).map(|_| size * decades(s, -aspect, aspect)));
+    if dim == 2 && s.chance(0.1) {
+        // Cells of up to 50 : 1.
+        let slender = decades(s, -1.7, 1.7);
+        sides[1] = sides[0] / cells[0] as f64 * cells[1] as f64 * slender;
+    } else if s.chance(0.2) {
+        // Square cells.
+        for a in 1..dim {
+            sides[a] = sides[0] / cells[0] as f64 * cells[a] as f64;
+        }
+    }
+    let graded = s.chance(0.15) && !even;
+    let mut lines = Vec::new();
+    for a in 0..dim {
+        let min = far * size * s.between(-1.0, 1.0);
+        let ratio: f64 = if graded { s.between(0.77, 1.3) } else { 1.0 };
+        let n = cells[a];
+        let sum = |i: usize| (0..i).map(|k| ratio.powi(k as i32)).sum::<f64>();
+        let part = |i: usize| {
+            if graded {
+                sum(i) / sum(n)
+            } else {
+                i as f64 / n as f64
+            }
+        };
+        let max = min + sides[a];
+        let mut own: Vec<f64> = (0..=n).map(|i| min + (max - min) * part(i)).collect();
+        own[n] = max;
+        lines.push(own);
+    }
+    Grid { dim, lines }
+}
+
+/// `[mesh]`: as a box where the lines are even, half of the time.
+fn mesh(grid: &Grid, s: &mut Stream) -> String {
+    let even = (0..grid.dim).all(|a| {
+        let n = grid.lines[a].len() - 1;
+        let step = grid.size(a) / n as f64;
+        (0..n).all(|i| (grid.lines[a][i + 1] - grid.lines[a][i] - step).abs() < 1e-3 * step)
+    });
+    let as_box = s.chance(0.7);
+    if !even || !as_box {
+        let lines: Vec<String> = grid.lines.iter().map(|l| list(l)).collect();
+        return format!("[mesh]\nlines_m = [{}]\n", lines.join(", "));
+    }
+    let all = |f: &dyn Fn(usize) -> f64| list(&(0..grid.dim).map(f).collect::<Vec<_>>());
+    let cells: Vec<usize> = grid.lines.iter().map(|l| l.len() - 1).collect();
+    format!(
+        "[mesh.box]\nmin_m = {}\nmax_m = {}\ncells = {cells:?}\n",
+        all(&|a| grid.min(a)),
+        all(&|a| grid.max(a))
+    )
+}
+
+/// Model, `[material]` and the closed form.
+fn stressed(
+    dim: usize,
+    hydrostatic: bool,
+    grid: &Grid,
+    s: &mut Stream,
+) -> (&'static str, String, Exact) {
+    let young = decades(s, -3.0, 12.0);
+    let poisson = if s.chance(0.1) {
+        0.0
+    } else {
+        s.between(0.0, 0.49)
+    };
+    let plane_stress = s.chance(0.4);
+    let base = -young * decades(s, -6.0, -2.0);
+    let mut stress = [0.0; 3];
+    for value in &mut stress[..dim] {
+        *value = base
+            * if hydrostatic {
+                1.0
+            } else {
+                s.between(0.28, 1.0)
+            };
+    }
+    let mut across = stress;
+    if dim == 2 && !plane_stress {
+        across[2] = poisson * (stress[0] + stress[1]);
+    }
+    let total: f64 = across.iter().sum();
+    let mut strain = [0.0; 3];
+    for a in 0..dim {
+        strain[a] = (across[a] - poisson * (total - across[a])) / young;
+    }
+    let model = match (dim, plane_stress) {
+        (3, _) => "solid",
+        (_, true) => "plane-stress",
+        _ => "plane-strain",
+    };
+    let corner = |f: &dyn Fn(usize) -> f64| [0, 1, 2].map(|a| if a < dim { f(a) } else { 0.0 });
+    let exact = Exact {
+        dim,
+        min: corner(&|a| grid.min(a)),
+        max: corner(&|a| grid.max(a)),
+        stress,
+        strain,
+        cell: grid.cell(),
+    };
+    let material = format!("[material]\nyoung_pa = {young:?}\npoisson = {poisson:?}\n");
+    (model, material, exact)
+}
+
+/// Rollers on the lower sides; on the upper ones the pressure or the displacement of the closed form.
+fn held_and_loaded(exact: &Exact, moved: bool) -> String {
+    let sides: &[[&str; 2]] = if exact.dim == 2 {
+        &[["left", "right"], ["bottom", "top"]]
+    } else {
+        &[["left", "right"], ["front", "back"], ["bottom", "top"]]
+    };
+    let mut text = String::new();
+    for (a, [low, high]) in sides.iter().enumerate() {
+        let mut roller = |side: &str, value: f64| {
+            let entry = |b| {
+                if b == a {
+                    format!("{value:?}")
+                } else {
+                    "\"free\"".to_owned()
+                }
+            };
+            let entries: Vec<String> = (0..exact.dim).map(entry).collect();
+            let entries = entries.join(", ");
+            text += &format!("[[support]]\non = \"{side}\"\ndisplacement_m = [{entries}]\n");
+        };
+        roller(low, 0.0);
+        if moved {
+            roller(high, exact.displacement(&exact.max)[a]);
+        } else {
+            let pressure = -exact.stress[a];
+            text += &format!("[[load]]\non = \"{high}\"\npressure_pa = {pressure:?}\n");
+        }
+    }
+    text
+}

@@ -1,0 +1,397 @@
+//! The referee: hands the text of a scene to what `stickslip run` calls, and holds what comes back to the closed form.
+//!
+//! It reads what every user can read: verdict, `quantities.csv`, `points.csv` and the fields of the pictures.
+//!
+//! | outcome | |
+//! |---|---|
+//! | right | solved, and as the closed form says |
+//! | wrong | solved, and not as the closed form says |
+//! | suspect | the verdict itself doubts the answer |
+//! | failed | the method gave up, declined, or was caught by the judge |
+//! | refused | an error that names file, line and column |
+//! | broken | a panic, a crash, or an error without a place |
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
+
+use stickslip::case;
+use stickslip::model::quantities::PointState;
+use stickslip::run::choice::Choice;
+use stickslip::run::record::Results;
+use stickslip::run::registry::method;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+
+use super::flat::{Flat, distance};
+use super::generator::{Exact, Scene, Shape};
+
+/// Relative error that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Force that is rounding whatever the length it acts on: relative to that on a whole cell. Points that stand for less
+/// than 1e-3 of a cell are held to this.
+const FLOOR: f64 = 1e-12;
+
+/// Name of the file, as errors tell it.
+const FILE: &str = "scene.toml";
+
+pub const OUTCOMES: [&str; 7] = [
+    "right", "wrong", "suspect", "failed", "refused", "broken", "other",
+];
+
+/// What became of a scene.
+#[derive(Debug, Clone)]
+pub struct Report {
+    pub number: u64,
+    pub category: &'static str,
+    /// One of [`OUTCOMES`].
+    pub outcome: String,
+    /// In one line; empty for a right one without remarks.
+    pub reason: String,
+    pub seconds: f64,
+    /// Largest error of a solved scene, relative to what is compared; NaN for others.
+    pub error: f64,
+}
+
+/// Runs a scene and judges it; the worst of its methods counts.
+pub fn judge(scene: &Scene) -> Report {
+    let clock = Instant::now();
+    let mut worst: Option<(String, String, f64)> = None;
+    for name in scene.methods {
+        let found = judge_method(scene, name);
+        let rank = |o: &str| match o {
+            "right" => 0,
+            "refused" => 1,
+            "failed" => 2,
+            "suspect" => 3,
+            "other" => 4,
+            "broken" => 5,
+            _ => 6,
+        };
+        if worst.as_ref().is_none_or(|w| rank(&found.0) > rank(&w.0)) {
+            worst = Some(found);
+        }
+    }
+    let (outcome, reason, error) = worst.unwrap_or_default();
+    Report {
+        number: scene.number,
+        category: scene.category,
+        outcome,
+        reason,
+        seconds: clock.elapsed().as_secs_f64(),
+        error,
+    }
+}
+
+fn judge_method(scene: &Scene, name: &str) -> (String, String, f64) {
+    let of = |outcome: &str, reason: String| (outcome.to_owned(), one_line(&reason), f64::NAN);
+    let run = || -> Result<Results, String> {
+        let case = case::parse(FILE, scene.text.as_str()).map_err(|e| e.to_string())?;
+        let chosen = method(name).expect("registered");
+        let choice = Choice::new(chosen, &[]).map_err(|e| e.to_string())?;
+        let settings = Settings {
+            tier: None,
+            jobs: 1,
+            fields: Fields::All,
+        };
+        run_case(&case, &[choice], settings, &Quiet).map_err(|e| e.to_string())
+    };
+    let results = match catch_unwind(AssertUnwindSafe(run)) {
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            return of("broken", format!("panic: {}", text.unwrap_or("?")));
+        }
+        Ok(Err(error)) if has_place(&error) => return of("refused", error),
+        Ok(Err(error)) => return of("broken", format!("no place: {error}")),
+        Ok(Ok(results)) => results,
+    };
+    let Some(run) = results.runs.last() else {
+        return of("broken", "no run".into());
+    };
+    let verdict = run.verdict.to_string();
+    let starts = |heads: &[&str]| heads.iter().any(|head| verdict.starts_with(head));
+    let told = format!("{name}: {verdict}");
+    if verdict.contains("suspect") {
+        return of("suspect", told);
+    }
+    if starts(&[
+        "gave-up",
+        "false-claim",
+        "refused",
+        "timed-out",
+        "approximate",
+    ]) {
+        let map = run.natural_map;
+        return of("failed", format!("{told} (natural map {map:.0e})"));
+    }
+    if starts(&["crashed", "out-of-memory"]) {
+        return of("broken", told);
+    }
+    if verdict != "solved" {
+        return of("other", told);
+    }
+    let (faults, error) = compare(scene, &results);
+    match faults.is_empty() {
+        true => ("right".into(), uncovered(scene, &results), error),
+        false => (
+            "wrong".into(),
+            format!("{name}: {}", faults.join("; ")),
+            error,
+        ),
+    }
+}
+
+/// Whether an error says `file:line:column:`.
+fn has_place(error: &str) -> bool {
+    let mut parts = error.split(':').map(str::trim);
+    let number = |part: Option<&str>| part.is_some_and(|p| p.parse::<usize>().is_ok_and(|n| n > 0));
+    parts.next() == Some(FILE) && number(parts.next()) && number(parts.next())
+}
+
+fn one_line(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    line.chars().take(300).collect()
+}
+
+/// The largest of some errors, and where; a NaN is the largest.
+#[derive(Default)]
+struct Worst(f64, String);
+
+impl Worst {
+    fn see(&mut self, error: f64, place: impl FnOnce() -> String) {
+        if error > self.0 || error.is_nan() && !self.0.is_nan() {
+            *self = Worst(error, place());
+        }
+    }
+}
+
+/// What differs from the closed form, and the largest relative error.
+fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
+    let exact = &scene.exact;
+    let mut found: Vec<(&str, Worst)> = Vec::new();
+    let quantity = |name: &str| {
+        let mut rows = results.quantities.iter().map(|row| &row.quantity);
+        let row = rows.find(|q| q.name == name && q.at.is_empty());
+        row.map_or(f64::NAN, |q| q.value)
+    };
+    let mut energy = Worst::default();
+    let error = (quantity("strain_energy") / exact.energy() - 1.0).abs();
+    energy.see(error, String::new);
+    found.push(("energy", energy));
+    let mut overlap = Worst::default();
+    let error = quantity("max_penetration_sampled") / exact.largest();
+    overlap.see(error, String::new);
+    found.push(("penetration", overlap));
+    found.push(("displacement", displacement(exact, results)));
+    let points: Vec<&PointState> = results.points.iter().map(|row| &row.point).collect();
+    let mut traction = Worst::default();
+    for p in &points {
+        let error = match &scene.cracks[p.crack - 1] {
+            Shape::Flat(flat) => flat_error(exact, flat, p),
+            Shape::Solid(flaw) => solid_error(exact, &flaw.normal(), p),
+        };
+        traction.see(error, || {
+            format!(
+                "crack {} at {:?}, weight {:.1e}",
+                p.crack,
+                (p.x_m, p.y_m, p.z_m),
+                p.weight
+            )
+        });
+    }
+    found.push(("traction", traction));
+    if exact.dim == 3 {
+        found.push(("traction in space", directions(scene, results)));
+    } else {
+        found.push(("surface", surface(scene, results)));
+    }
+    let largest = found.iter().fold(
+        0.0,
+        |m: f64, (_, w)| {
+            if w.0.is_nan() { w.0 } else { m.max(w.0) }
+        },
+    );
+    let wrong = found
+        .into_iter()
+        .filter(|(_, w)| w.0.is_nan() || w.0 > ROUNDING);
+    let told = wrong.map(|(what, Worst(error, place))| format!("{what} {error:.1e} {place}"));
+    (told.collect(), largest)
+}
+
+/// Displacement of nodes and of both faces of every crack, relative to the largest.
+fn displacement(exact: &Exact, results: &Results) -> Worst {
+    let mut worst = Worst::default();
+    let step = results.fields.last().and_then(|run| run.steps.last());
+    let Some(step) = step else {
+        return Worst(f64::NAN, "no field".into());
+    };
+    let vectors = &step.body.point_vectors;
+    let Some((_, u)) = vectors.iter().find(|(name, _)| name == "displacement_m") else {
+        return Worst(f64::NAN, "no field".into());
+    };
+    for (x, u) in step.body.points.iter().zip(u) {
+        let right = exact.displacement(x);
+        for a in 0..exact.dim {
+            let error = (u[a] - right[a]).abs() / exact.largest();
+            worst.see(error, || format!("at {:?}", (x[0], x[1], x[2])));
+        }
+    }
+    worst
+}
+
+/// Error of a traction at a point, relative to the largest stress; a point that stands for next to nothing by its force.
+fn relative(exact: &Exact, error: f64, weight: f64) -> f64 {
+    let floor = FLOOR / ROUNDING * exact.cell.powi(exact.dim as i32 - 1);
+    error * weight / weight.max(floor) / exact.size()
+}
+
+/// Error of a contact point of a plane body.
+///
+/// On one segment the two components are known. Near a kink, and on an arc, a point may be the mean over several
+/// normals: then the length of its traction must lie between those of the means.
+fn flat_error(exact: &Exact, flat: &Flat, p: &PointState) -> f64 {
+    let found = [p.p_n / p.weight, p.p_a / p.weight];
+    let size = found[0].hypot(found[1]);
+    let off = |low: f64, high: f64| {
+        let beyond = (size - high).max(low - size);
+        if beyond.is_nan() {
+            beyond
+        } else {
+            beyond.max(0.0)
+        }
+    };
+    let error = match flat {
+        Flat::Arc { radius, .. } => {
+            let pressure = -exact.stress[0];
+            let half = (3.0 * p.weight.max(exact.cell) / radius).min(1.5);
+            let mean = off(half.cos() * pressure, pressure);
+            let plain = (found[0] - pressure).abs().max(found[1].abs());
+            // No shear, whatever the frame; a mean in a frame of its own has none either.
+            plain.min(mean.max(found[1].abs()))
+        }
+        Flat::Chain(points) => {
+            let normals = flat.normals();
+            let x = [p.x_m, p.y_m];
+            let reach = 4.0 * p.weight + 1e-6 * exact.cell;
+            let away = |k: usize| to_segment(&x, &points[k], &points[k + 1]);
+            let nearest = (0..normals.len()).map(away).fold(f64::MAX, f64::min);
+            let near: Vec<[f64; 3]> = (0..normals.len())
+                .filter(|&k| away(k) <= nearest + reach)
+                .map(|k| normals[k])
+                .collect();
+            if let [n] = near[..] {
+                let t = exact.traction(&n);
+                // The tangent is the normal turned by −90 degrees.
+                let right = [t[0] * n[0] + t[1] * n[1], t[0] * n[1] - t[1] * n[0]];
+                (found[0] - right[0]).abs().max((found[1] - right[1]).abs())
+            } else {
+                let (mut low, mut high) = (f64::MAX, 0.0f64);
+                for (i, m) in near.iter().enumerate() {
+                    for n in &near[i..] {
+                        for k in 0..=20 {
+                            let s = f64::from(k) / 20.0;
+                            let mean = [0, 1, 2].map(|a| (1.0 - s) * m[a] + s * n[a]);
+                            let t = exact.traction(&mean);
+                            let size = t[0].hypot(t[1]);
+                            (low, high) = (low.min(size), high.max(size));
+                        }
+                    }
+                }
+                // Three normals at once, and the grain of the samples.
+                off(if near.len() > 2 { 0.0 } else { 0.99 * low }, high)
+            }
+        }
+    };
+    relative(exact, error, p.weight)
+}
+
+fn to_segment(x: &[f64; 2], p: &[f64; 2], q: &[f64; 2]) -> f64 {
+    let d = [q[0] - p[0], q[1] - p[1]];
+    let t = ((x[0] - p[0]) * d[0] + (x[1] - p[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let t = t.clamp(0.0, 1.0);
+    distance(x, &[p[0] + t * d[0], p[1] + t * d[1]])
+}
+
+/// Error of a contact point in a solid: pressure and size of the shear; its axes are told in space only.
+fn solid_error(exact: &Exact, n: &[f64; 3], p: &PointState) -> f64 {
+    let t = exact.traction(n);
+    let pressure: f64 = (0..3).map(|a| t[a] * n[a]).sum();
+    let shear = exact.steepness(n) * pressure;
+    let found = [p.p_n, p.p_a, p.p_b].map(|v| v / p.weight);
+    let error = (found[0] - pressure).abs();
+    let error = error.max((found[1].hypot(found[2]) - shear).abs());
+    relative(exact, error, p.weight)
+}
+
+/// Tractions in space on the faces of flat cracks: at every corner that of one of the cracks. To 1e-6 of the stress, and
+/// passed on as a thousandth of it: slivers have been seen by their force already.
+fn directions(scene: &Scene, results: &Results) -> Worst {
+    let exact = &scene.exact;
+    let mut worst = Worst::default();
+    let step = results.fields.last().and_then(|run| run.steps.last());
+    let Some(step) = step else {
+        return Worst(f64::NAN, "no field".into());
+    };
+    let vectors = &step.crack.point_vectors;
+    let Some((_, found)) = vectors.iter().find(|v| v.0 == "contact_traction_pa") else {
+        return Worst(f64::NAN, "no field".into());
+    };
+    let normals = scene.cracks.iter().filter_map(|crack| match crack {
+        Shape::Solid(flaw) => Some(flaw.normal()),
+        Shape::Flat(_) => None,
+    });
+    let right: Vec<[f64; 3]> = normals.map(|n| exact.traction(&n)).collect();
+    for (x, t) in step.crack.points.iter().zip(found) {
+        let away = |r: &[f64; 3]| {
+            let square: f64 = (0..3).map(|a| (t[a] - r[a]).powi(2)).sum();
+            square.sqrt() / exact.size()
+        };
+        let error = right.iter().map(away).reduce(f64::min).unwrap_or(f64::NAN);
+        worst.see(1e-3 * error, || format!("at {:?}", (x[0], x[1], x[2])));
+    }
+    worst
+}
+
+/// Measure that the points of a plane crack stand for, and its length in the body [m].
+fn lengths<'a>(
+    scene: &'a Scene,
+    results: &'a Results,
+) -> impl Iterator<Item = (usize, f64, f64)> + 'a {
+    let Exact { min, max, .. } = &scene.exact;
+    let flat = scene
+        .cracks
+        .iter()
+        .enumerate()
+        .filter_map(|(k, crack)| match crack {
+            Shape::Flat(flat) => Some((k + 1, flat)),
+            Shape::Solid(_) => None,
+        });
+    flat.map(move |(number, flat)| {
+        let points = results.points.iter().map(|row| &row.point);
+        let own = points.filter(|p| p.crack == number);
+        let total = own.map(|p| p.weight).sum();
+        (number, total, flat.length_in(min, max))
+    })
+}
+
+/// By how much the points of a crack stand for more than its length in the body, in cells. An end that is moved onto a
+/// crack beside it, and the small steps in which an arc is measured, are none of it.
+fn surface(scene: &Scene, results: &Results) -> Worst {
+    let mut worst = Worst::default();
+    for (number, total, length) in lengths(scene, results) {
+        let excess = (total - 1.001 * length) / scene.exact.cell - 0.01;
+        worst.see(excess, || format!("crack {number}: {total} of {length} m"));
+    }
+    worst
+}
+
+/// Cracks of which more is missing than the cells of their ends. No fault in uniform stress, which a crack that is not
+/// there solves as well; and where a support holds the normal jump there is no contact. To be looked at.
+fn uncovered(scene: &Scene, results: &Results) -> String {
+    let few =
+        |(_, total, length): &(usize, f64, f64)| total + 2.5 * scene.exact.cell < 0.95 * length;
+    let told =
+        |(number, total, length)| format!("crack {number} acts on {total:.2e} of {length:.2e} m");
+    let all: Vec<String> = lengths(scene, results).filter(few).map(told).collect();
+    all.join("; ")
+}
