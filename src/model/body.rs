@@ -9,7 +9,7 @@ use stickslip_xfem::contact::facet_samples::facet_samples;
 use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
-use stickslip_xfem::contact::{self, conforming};
+use stickslip_xfem::contact::{self, conforming, rank};
 use stickslip_xfem::cut::arms::arms;
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::free_motions;
@@ -108,7 +108,7 @@ impl Body {
             let allowed = "a motion of the grid points that keeps all cells convex";
             case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
-        let (cracks, mut doubled) = place_cracks(case, &mut mesh)?;
+        let (cracks, doubled) = place_cracks(case, &mut mesh)?;
         let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
         let lame = Lame::new(case.material, case.model);
         let integrator = CellIntegrator {
@@ -124,25 +124,39 @@ impl Body {
         let dim = mesh.dim();
         let unknowns = 0..enrichment.functions.len() * dim;
         let (numbers, _) = numbered(unknowns.map(|i| !fixed.contains_key(&i)));
-        let mut surface = ContactSurface::default();
-        for number in 0..case.cracks.len() {
-            let held = |unknown: usize| numbers[unknown].is_none();
-            if let Some(own) = doubled.remove(&number) {
-                surface.append(own.retain(|point| point.acts(dim, held)));
-            }
-            // The arms of a crack one after the other.
-            let arms = (0..cracks.len()).filter(|&index| cracks[index].number == number);
-            for index in arms {
-                let space = case.cracks[number].contact;
-                surface.append(contact::surface(&integrator, index, space, held)?);
-            }
-        }
-        for number in 0..case.cracks.len() {
-            if !surface.points.iter().any(|p| p.crack == number) {
-                return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
-            }
-        }
-        let ContactSurface { points, surface } = surface;
+        let assembly = Assembly::new(dim, &enrichment);
+        let mut setup_s = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let mut matrices = CellMatrices::new(&integrator)?;
+        let stiffness = assembly.sum(|cell| matrices.of(cell));
+        let basis = SolverBasis::new(
+            &mesh,
+            &enrichment,
+            &assembly.users,
+            |cell| matrices.of(cell),
+            |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
+        );
+        let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(i / dim));
+        let (solver_numbers, free) = numbered(kept);
+        let transformed = if basis.is_identity() {
+            None
+        } else {
+            matrices.transform(&integrator, &basis);
+            Some(assembly.sum(|cell| matrices.of(cell)))
+        };
+        let in_basis = transformed.as_ref().unwrap_or(&stiffness);
+        let (col_ptr, row_idx, values) = in_basis.restrict(&solver_numbers);
+        let diagonal = in_basis.diagonal();
+        let assembly_s = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let scaled = |row: &[(usize, f64)]| -> Vec<(usize, f64)> {
+            let row = basis.row(dim, row).into_iter();
+            let free = row.filter(|(i, _)| solver_numbers[*i].is_some());
+            free.map(|(i, v)| (i, v / diagonal[i].sqrt())).collect()
+        };
+        let ContactSurface { points, surface } = faces(case, &integrator, doubled, &numbers, scaled)?;
         let samples = facet_samples(&integrator)?;
         let jump = jump_rows(dim, &points);
         let integrated: Vec<bool> = (case.cracks.iter().enumerate())
@@ -158,28 +172,6 @@ impl Body {
         };
         let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
             .map_err(|e| motion_error(case, &e))?;
-        let assembly = Assembly::new(dim, &enrichment);
-        let setup_s = clock.elapsed().as_secs_f64();
-
-        let clock = Instant::now();
-        let mut matrices = CellMatrices::new(&integrator)?;
-        let stiffness = assembly.sum(|cell| matrices.of(cell));
-        let basis = SolverBasis::new(
-            &mesh,
-            &enrichment,
-            &assembly.users,
-            |cell| matrices.of(cell),
-            |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
-        );
-        let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(i / dim));
-        let (solver_numbers, free) = numbered(kept);
-        let (col_ptr, row_idx, values) = if basis.is_identity() {
-            stiffness.restrict(&solver_numbers)
-        } else {
-            matrices.transform(&integrator, &basis);
-            let transformed = assembly.sum(|cell| matrices.of(cell));
-            transformed.restrict(&solver_numbers)
-        };
         let order = elimination_order(&mesh, &enrichment, &solver_numbers);
         let rows = |rows: &[Vec<(usize, f64)>]| {
             let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
@@ -190,7 +182,7 @@ impl Body {
             let kept = (0..mode.len()).filter(|&i| solver_numbers[i].is_some());
             *mode = kept.map(|i| mode[i]).collect();
         }
-        let assembly_s = clock.elapsed().as_secs_f64();
+        setup_s += clock.elapsed().as_secs_f64();
         let elastic = Elastic::new(ElasticParts {
             dim,
             stiffness: SymmetricMatrix::new(free, col_ptr, row_idx, values)?,
@@ -257,6 +249,55 @@ impl Body {
     pub fn region_nodes(&self, region: &crate::case::Region) -> Vec<usize> {
         region_nodes(&self.integrator(), region)
     }
+}
+
+/// Contact surfaces of all cracks, without points that no displacement can tell from others. `doubled`: those of cracks along
+/// cell facets; `scaled`: a row of the jump operator over the free unknowns of the solver, divided by the roots of their
+/// stiffness.
+fn faces(
+    case: &Case,
+    integrator: &CellIntegrator<'_>,
+    mut doubled: BTreeMap<usize, ContactSurface>,
+    numbers: &[Option<u32>],
+    scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)>,
+) -> Result<ContactSurface, BodyError> {
+    let (dim, cracks) = (integrator.mesh.dim(), integrator.cracks);
+    let held = |unknown: usize| numbers[unknown].is_none();
+    let mut surface = ContactSurface::default();
+    // Points of the arms whose space is integrated.
+    let mut arms: Vec<std::ops::Range<usize>> = Vec::new();
+    for (number, spec) in case.cracks.iter().enumerate() {
+        if let Some(own) = doubled.remove(&number) {
+            surface.append(own.retain(|point| point.acts(dim, held)));
+        }
+        // The arms of a crack one after the other.
+        let own = (0..cracks.len()).filter(|&index| cracks[index].number == number);
+        for index in own {
+            let start = surface.points.len();
+            surface.append(contact::surface(integrator, index, spec.contact, held)?);
+            if spec.contact.is_integrated() {
+                arms.push(start..surface.points.len());
+            }
+        }
+    }
+    loop {
+        let rows = |k: usize| {
+            let rows = jump_rows(dim, &surface.points[k..=k]);
+            rows.iter().map(|row| scaled(row)).collect()
+        };
+        let lost = rank::dependent(&arms, rows);
+        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost);
+        arms = fewer;
+        if merged == 0 {
+            break;
+        }
+    }
+    for number in 0..case.cracks.len() {
+        if !surface.points.iter().any(|p| p.crack == number) {
+            return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
+        }
+    }
+    Ok(surface)
 }
 
 /// Traction operator: by the stress at the points, or integrated where the jump is.

@@ -13,6 +13,7 @@ use stickslip_xfem::geometry::clip::fan;
 use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
 use stickslip_xfem::quadrature::{WeightedPoint, gauss_map, segment, triangle, triangle_collapsed};
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+use stickslip_xfem::stiffness::consistent::BRANCH_EDGE;
 
 use crate::case::{LoadKind, Region};
 use crate::model::boundary::region_nodes;
@@ -22,7 +23,6 @@ use crate::model::sides::Sides;
 /// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
 const SEGMENT_POINTS: usize = 3;
 const EXACT_POINTS: usize = 8;
-const BRANCH_POINTS: usize = 24;
 
 /// Points per direction of collapsed rules on the triangles of loaded 3D facets, for closed forms: degree 8.
 const EXACT_TRIANGLE: usize = 5;
@@ -219,12 +219,11 @@ fn initial_stress(
 ) -> Result<(), LoadError> {
     let dim = integrator.mesh.dim();
     for cell in 0..integrator.mesh.cell_count() {
-        let mut functions = integrator.functions(cell);
-        for p in integrator.points(cell)? {
-            functions.evaluate(&p.xi, &p.x, p.region);
-            for (&f, g) in functions.numbers.iter().zip(&functions.gradients) {
+        let functions = integrator.enrichment.cell(cell);
+        for p in integrator.evaluated(cell)? {
+            for (&f, g) in functions.iter().zip(&p.gradients) {
                 for a in 0..dim {
-                    force[f as usize * dim + a] -= p.weight * dot(&stress[a], g);
+                    force[f as usize * dim + a] -= p.at.weight * dot(&stress[a], g);
                 }
             }
         }
@@ -318,7 +317,7 @@ fn loaded_segment(
     region: CellRegion,
 ) -> Vec<(WeightedPoint, CellRegion)> {
     let n = if integrator.enrichment.has_branch(cell) {
-        BRANCH_POINTS
+        BRANCH_EDGE
     } else if rule == Rule::Exact {
         EXACT_POINTS
     } else {

@@ -93,10 +93,6 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
 /// The error of a body that can move, at the crack that cuts a piece off or at the supports.
 pub fn motion_error(case: &Case, error: &MotionError) -> CaseError {
     let (span, allowed) = match (error, case.supports.first()) {
-        (MotionError::Unsupported { .. }, _) if !case.cracks.is_empty() => (
-            &case.cracks[0].geometry_span,
-            "a support on every piece the cracks cut off",
-        ),
         (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
         (_, None) => (&case.mesh.span, "at least one [[support]]"),
     };

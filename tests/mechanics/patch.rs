@@ -168,7 +168,7 @@ fn the_jump_operator_sees_relative_motion_and_nothing_else() {
             let heaviside = |f: u32| {
                 matches!(
                     body.enrichment.functions[f as usize].kind,
-                    FunctionKind::Heaviside { .. }
+                    FunctionKind::Piece { .. }
                 )
             };
             let sum: f64 = point

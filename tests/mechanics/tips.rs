@@ -16,7 +16,7 @@ fn count(body: &Body, branch: bool) -> usize {
     functions
         .filter(|f| match f.kind {
             FunctionKind::Standard => false,
-            FunctionKind::Heaviside { .. } => !branch,
+            FunctionKind::Piece { .. } => !branch,
             FunctionKind::Branch { .. } => branch,
         })
         .count()

@@ -5,14 +5,15 @@
 
 pub mod conforming;
 pub mod edge_pairs;
-pub mod facet_rule;
 pub mod facet_samples;
 pub mod free_jumps;
 pub mod integrated;
 pub mod multipliers;
 pub mod pairs;
+pub mod rank;
 pub mod star_forest;
 pub mod surface_point;
+pub mod surface_rule;
 pub mod traction;
 
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};

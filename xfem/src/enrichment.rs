@@ -4,6 +4,7 @@ pub mod basis;
 pub mod cell_facets;
 pub mod cell_functions;
 pub mod error;
+pub mod facet_rule;
 pub mod facets;
 pub mod pieces;
 pub mod supports;
@@ -17,9 +18,9 @@ use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::trace::{Trace, TraceError};
 use crate::geometry::clip::Side;
-use crate::geometry::tip_frame::TipFrame;
+use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::mesh::Mesh;
-use crate::mesh::cell::MOST_NODES;
+use crate::mesh::cell::{CellMap, MOST_NODES};
 
 use self::basis::{Function, FunctionKind, Region};
 pub use self::error::EnrichmentError;
@@ -169,8 +170,9 @@ impl Enrichment {
                         // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
                             let crack = &cracks[self.tips[tip as usize].crack];
+                            let frame = &self.tips[tip as usize];
                             let elsewhere = match is_split(&crack.cell_phi(mesh, cell)) {
-                                true => 0.0,
+                                true => beside(frame, &mesh.map(cell)),
                                 false => whole_side(crack, nodes),
                             };
                             let of_crack = |s: &&(usize, Side)| cracks[s.0].number == crack.number;
@@ -307,6 +309,16 @@ impl Enrichment {
             }
         }
         users
+    }
+}
+
+/// Side of a tip's crack on which a cell lies that its chords leave whole although its arc enters it; 0 ahead of the tip,
+/// where the place tells.
+fn beside(frame: &TipFrame, map: &CellMap) -> Side {
+    let behind = map.iter().all(|x| frame.coordinates(x).psi < 0.0);
+    match frame.shape {
+        FrontShape::Arc { .. } if behind => 1.0f64.copysign(frame.coordinates(&map.centre()).phi),
+        _ => 0.0,
     }
 }
 

@@ -147,9 +147,10 @@ fn found(body: &Body, linear: bool) -> f64 {
     for (f, function) in enrichment.functions.iter().enumerate() {
         let x = &body.mesh.nodes[function.node as usize];
         let size = if linear { x[0] } else { 1.0 };
-        // ½ (1 + H) = Σ N_i ½ (1 + H_i) + Σ N_i ½ (H − H_i)
+        // 1 on side 1: N_i of the nodes there, and the pieces of the others that lie there
         let amount = match function.kind {
-            FunctionKind::Heaviside { .. } => 0.5,
+            FunctionKind::Piece { .. } if crack.distance(x) >= 0.0 => -1.0,
+            FunctionKind::Piece { .. } => 1.0,
             _ if crack.distance(x) >= 0.0 => 1.0,
             _ => 0.0,
         };

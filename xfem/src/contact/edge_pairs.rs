@@ -11,9 +11,9 @@ use crate::enrichment::facets::{Corner, CrackFacets};
 use crate::geometry::{norm, sub};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use super::facet_rule::surface_points;
 use super::multipliers::pair_space;
 use super::pairs::{AT_TIP, ContactPoint, ContactSurface, vertex_weights};
+use super::surface_rule::surface_points;
 
 /// Contact surface of the `index`-th crack. `held` tells the prescribed unknowns: a pair whose normal jump is prescribed
 /// has no contact left to enforce.

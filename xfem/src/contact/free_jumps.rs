@@ -117,7 +117,12 @@ impl<'a> FreeJumps<'a> {
         let area: f64 = vertex_weights(&self.facets.polygon(facet)).iter().sum();
         let sizes = nodes.iter().map(|&n| self.sizes[n as usize]);
         let size = sizes.fold(f64::INFINITY, f64::min);
-        area > SLIVER * size.powi(mesh.dim() as i32 - 1)
-            && nodes.iter().any(|&n| self.jump(n, (facet.cell, facet.regions)).is_some())
+        area > SLIVER * size.powi(mesh.dim() as i32 - 1) && self.jumps_on(facet)
+    }
+
+    /// Whether anything free jumps on a facet.
+    pub fn jumps_on(&self, facet: &Facet) -> bool {
+        let mut nodes = self.integrator.mesh.cell(facet.cell).iter();
+        nodes.any(|&n| self.jump(n, (facet.cell, facet.regions)).is_some())
     }
 }

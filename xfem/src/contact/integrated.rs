@@ -14,11 +14,11 @@ use crate::enrichment::facets::CrackFacets;
 use crate::geometry::{Point, add_scaled, cross, dot, unit};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use super::facet_rule::surface_points;
 use super::free_jumps::FreeJumps;
 use super::multipliers::Multipliers;
 use super::pairs::{ContactPoint, ContactSurface, CrackSurface, SurfaceCorner};
 use super::surface_point::SurfacePoint;
+use super::surface_rule::surface_points;
 
 /// Contact surface of the `index`-th crack in a multiplier space. `held` tells the prescribed unknowns.
 pub fn integrated(

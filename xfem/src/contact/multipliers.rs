@@ -42,7 +42,7 @@ pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
 pub fn facet_space(free: &FreeJumps<'_>) -> Multipliers {
     let crossings = free.crossings().into_iter();
     let (own, count) = numbered(crossings.map(|crossing| crossing.is_some()));
-    by_corner(&free.facets, own, count)
+    complete(free, by_corner(&free.facets, own, count))
 }
 
 /// One multiplier per star of crossings.
@@ -76,7 +76,7 @@ pub fn star_space(free: &FreeJumps<'_>) -> Multipliers {
         });
     }
     let count = stars.iter().flatten().max().map_or(0, |s| s + 1);
-    by_corner(&free.facets, own, count)
+    complete(free, by_corner(&free.facets, own, count))
 }
 
 /// One multiplier per facet that can carry one.
@@ -97,7 +97,20 @@ pub fn constant_space(free: &FreeJumps<'_>) -> Multipliers {
         .zip(own)
         .map(|(facet, share)| vec![share.unwrap_or_default(); facet.corners.len()])
         .collect();
-    Multipliers { count, shares }
+    complete(free, Multipliers { count, shares })
+}
+
+/// Gives a crack with jumps between its crossings, but none at them, a constant multiplier: next to a junction the nodes of
+/// one cell may jump over an arm that ends in the next.
+fn complete(free: &FreeJumps<'_>, mut multipliers: Multipliers) -> Multipliers {
+    let facets = &free.facets.facets;
+    if multipliers.count == 0 && facets.iter().any(|facet| free.jumps_on(facet)) {
+        multipliers.count = 1;
+        for shares in multipliers.shares.iter_mut().flatten() {
+            *shares = vec![(0, 1.0)];
+        }
+    }
+    multipliers
 }
 
 /// A multiplier of its own for everything that carries one, and their number.

@@ -378,6 +378,7 @@ impl Division {
             parts: self.regions.into_iter().map(part).collect(),
             faces,
             joined,
+            border: self.border,
             hits: self.hits,
             dropped: Vec::new(),
         })

@@ -4,6 +4,7 @@ use crate::cut::crack::Crack;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::geometry::clip::{Side, clip, snapped};
+use crate::geometry::polygon::{border_distance, contains, edges};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::Mesh;
 
@@ -27,7 +28,10 @@ pub fn pieces(
         return vec![(vertices, 0)];
     };
     if let &[i, j] = local {
-        return edge_pieces(cracks, partition, &vertices, [i, j]);
+        return match mesh.dim() {
+            2 => border_pieces(partition, &vertices, [i, j]),
+            _ => edge_pieces(cracks, partition, &vertices, [i, j]),
+        };
     }
     let phi = |crack: usize| {
         let of_cell = cracks[crack].cell_phi(mesh, cell);
@@ -59,7 +63,27 @@ pub fn pieces(
     found
 }
 
-/// An edge cut where the cracks cross it.
+/// An edge of a 2D cell, cut where chains end on it.
+fn border_pieces(partition: &Partition, ends: &[Point], nodes: [usize; 2]) -> Vec<Piece> {
+    let away = |x: &Point| norm(&sub(x, &ends[0]));
+    let on_edge = |on: &Option<[usize; 2]>| on.is_some_and(|on| on == nodes || on == [nodes[1], nodes[0]]);
+    let places = partition.border.iter().filter(|(_, on)| on_edge(on));
+    let mut points: Vec<Point> = places.map(|place| place.0).collect();
+    points.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    points.insert(0, ends[0]);
+    points.push(ends[1]);
+    let region = |w: &[Point]| {
+        let runs = |p: &Point, q: &Point| {
+            let mut parts = partition.parts.iter();
+            parts.position(|part| edges(&part.polygon).any(|(a, b)| a == *p && b == *q))
+        };
+        let found = runs(&w[0], &w[1]).or_else(|| runs(&w[1], &w[0]));
+        found.map(|region| (w.to_vec(), region))
+    };
+    points.windows(2).filter_map(region).collect()
+}
+
+/// An edge of a 3D cell cut where the cracks cross it.
 fn edge_pieces(
     cracks: &[Crack],
     partition: &Partition,
@@ -94,6 +118,17 @@ fn edge_pieces(
 
 /// The region that a point of a cell lies in, or most nearly.
 pub fn region_at(cracks: &[Crack], partition: &Partition, x: &Point) -> Region {
+    let flat = partition.parts.iter().enumerate().filter(|(_, part)| !part.polygon.is_empty());
+    let nearest = flat.min_by(|(_, a), (_, b)| {
+        let away = |part: &Part| match contains(&part.polygon, x) {
+            true => -border_distance(&part.polygon, x),
+            false => border_distance(&part.polygon, x),
+        };
+        away(a).total_cmp(&away(b))
+    });
+    if let Some((region, _)) = nearest {
+        return region;
+    }
     let depth = |part: &Part| {
         let inside = |&(crack, side): &(usize, Side)| side * cracks[crack].distance(x);
         part.sides.iter().map(inside).fold(f64::INFINITY, f64::min)

@@ -77,6 +77,14 @@ impl<'a> CellFunctions<'a> {
             .zip(steps.iter().copied())
     }
 
+    /// Whether each function lives in a region.
+    pub fn lives(&self, region: Region) -> Vec<bool> {
+        let kinds = self.functions.iter().map(|f| f.kind);
+        let steps = self.steps(region).map(|(_, step)| step);
+        let lives = |(kind, step)| !matches!(kind, FunctionKind::Piece { .. }) || step != 0.0;
+        kinds.zip(steps).map(lives).collect()
+    }
+
     /// Evaluates all functions at ξ (position x) in a region of the cell.
     pub fn evaluate(&mut self, xi: &Point, x: &Point, region: Region) {
         let n = self.map.kind.shape(xi);

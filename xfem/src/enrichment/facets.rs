@@ -82,7 +82,12 @@ impl CrackFacets {
         enrichment: &Enrichment,
     ) -> Self {
         let mut found = CrackFacets::default();
-        let mut by_edge: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+        // A bent crack may cross an edge twice; a plane does once, at a place that every cell rounds in its own way.
+        let place = |x: &Point| match mesh.dim() {
+            2 => x.map(f64::to_bits),
+            _ => [0; 3],
+        };
+        let mut by_edge: BTreeMap<([u32; 2], [u64; 3]), usize> = BTreeMap::new();
         for cell in cells {
             let Some(partition) = enrichment.partition(cell) else {
                 continue;
@@ -112,7 +117,7 @@ impl CrackFacets {
                     .map(|corner| {
                         let fresh = found.corners.len();
                         let known = match corner.nodes {
-                            Some(key) => *by_edge.entry(key).or_insert(fresh),
+                            Some(nodes) => *by_edge.entry((nodes, place(&corner.x))).or_insert(fresh),
                             None => inner
                                 .iter()
                                 .copied()

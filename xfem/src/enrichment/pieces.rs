@@ -21,12 +21,6 @@ pub struct FreeMotions {
 /// A body that can move without any contact resisting.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// A piece touches no support.
-    #[error("the piece of the body around {at:?} is cut off and touches no support")]
-    Unsupported {
-        /// Mean position of its nodes [m].
-        at: Point,
-    },
     /// A rigid motion opens no crack.
     #[error("the supports leave {count} rigid motion(s) that no contact can resist")]
     Rigid {
@@ -118,7 +112,7 @@ fn steps_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize>
 }
 
 impl Pieces {
-    /// Piece of a node on its own side.
+    /// Piece of a node on its own piece of its support.
     pub fn of_node(&self, node: usize) -> usize {
         self.copies[node][0].1
     }
@@ -173,26 +167,7 @@ pub fn free_motions(
 ) -> Result<FreeMotions, MotionError> {
     /// Eigenvalues of the normalised support matrix below this are zero: supports act on motions of order one.
     const ZERO: f64 = 1e-10;
-    let dim = mesh.dim();
     let pieces = pieces(mesh, enrichment);
-    let count = pieces.count;
-    let mut held = vec![false; count];
-    for node in 0..mesh.nodes.len() {
-        held[pieces.of_node(node)] |= (0..dim).any(|a| numbers[node * dim + a].is_none());
-    }
-    if let Some(loose) = held.iter().position(|h| !h) {
-        if count > 1 {
-            let own: Vec<&Point> = (0..mesh.nodes.len())
-                .filter(|&n| pieces.of_node(n) == loose)
-                .map(|n| &mesh.nodes[n])
-                .collect();
-            let at =
-                [0, 1, 2].map(|a| own.iter().map(|x| x[a]).sum::<f64>() / own.len().max(1) as f64);
-            return Err(MotionError::Unsupported { at });
-        }
-        let count = if dim == 2 { 3 } else { 6 };
-        return Err(MotionError::Rigid { count });
-    }
     let modes = piece_motions(mesh, enrichment, &pieces);
     // Support matrix S_kl = Σ over prescribed unknowns of mode_k mode_l: its kernel are the free motions.
     let m = modes.len();

@@ -15,7 +15,7 @@ use crate::cut::flat;
 use crate::cut::partition::Partition;
 use crate::cut::placement::{self, front_frame};
 use crate::cut::trace::{Chain, Trace, TracedTip};
-use crate::geometry::polygon::segment_distance;
+use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
 use crate::mesh::Mesh;
@@ -321,38 +321,12 @@ impl Search<'_> {
 
     /// Whether a cell of some nodes holds a part of the line behind a tip beyond its room.
     fn is_blocked(&self, frame: &TipFrame, room: f64, nodes: &BTreeSet<u32>) -> bool {
+        let (size, _) = self.mesh.extent();
+        let line = frame.behind(room, size, 0.1 * self.mesh.smallest_edge());
         cells_around(self.mesh, nodes).any(|cell| {
             let map = self.mesh.map(cell);
-            let size = map.diagonal();
-            let at: Vec<[f64; 2]> = map
-                .iter()
-                .map(|x| frame.coordinates(x))
-                .map(|c| [c.psi, c.phi])
-                .collect();
-            let slack = 1e-9 * size;
-            let spread = |k: usize| {
-                let values = at.iter().map(|c| c[k]);
-                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-                    (l.min(v), h.max(v))
-                });
-                high - low
-            };
-            // Where an arc's coordinate starts again.
-            if spread(0) > 4.0 * size {
-                return true;
-            }
-            let count = at.len();
-            (0..count).any(|i| {
-                let [[p, f], [q, g]] = [at[i], at[(i + 1) % count]];
-                let near = if f.abs() <= slack {
-                    Some(p)
-                } else if f * g < 0.0 {
-                    Some(p + f / (f - g) * (q - p))
-                } else {
-                    None
-                };
-                near.is_some_and(|psi| psi < -room - slack)
-            })
+            let slack = 1e-9 * map.diagonal();
+            line.iter().any(|[p, q]| polygon::meets(&map, p, q, slack))
         })
     }
 

@@ -48,6 +48,27 @@ pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     (0..count).map(move |i| (polygon[i], polygon[(i + 1) % count]))
 }
 
+/// Whether a segment p q comes closer than −`slack` to the inside of a convex counter-clockwise polygon [m]: by a negative
+/// slack it may touch.
+pub fn meets(polygon: &[Point], p: &Point, q: &Point, slack: f64) -> bool {
+    // The part of the segment inside all half planes (Cyrus and Beck 1978).
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for (a, b) in edges(polygon) {
+        let d = sub(&b, &a);
+        let length = norm(&d);
+        let [f, g] = [p, q].map(|x| cross(&d, &sub(x, &a))[2] / length - slack);
+        if f < 0.0 && g < 0.0 {
+            return false;
+        }
+        if f < 0.0 {
+            from = from.max(f / (f - g));
+        } else if g < 0.0 {
+            to = to.min(f / (f - g));
+        }
+    }
+    from < to
+}
+
 /// True inside (crossing number); on the outline either.
 pub fn contains(polygon: &[Point], x: &Point) -> bool {
     let mut inside = false;

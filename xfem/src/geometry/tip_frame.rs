@@ -118,6 +118,29 @@ impl TipFrame {
         }
     }
 
+    /// The line behind a 2D tip from a distance on, along which the first branch function jumps whether there is a crack or
+    /// not: segments up to `far`, no longer than `step` where it is bent [m].
+    pub fn behind(&self, room: f64, far: f64, step: f64) -> Vec<[Point; 2]> {
+        let straight = |s: f64| add_scaled(&self.position, -s, &self.ahead);
+        let FrontShape::Arc { curve, last } = &self.shape else {
+            return vec![[straight(room), straight(room + 4.0 * far)]];
+        };
+        let Curve::Arc { centre, radius, from, to } = curve else {
+            return Vec::new();
+        };
+        // Back along the circle, to where its coordinate starts again; and the ray from the centre through there.
+        let length = curve.length();
+        let end = 0.5 * length + std::f64::consts::PI * radius - room;
+        let at = |s: f64| curve.at(if *last { length - s } else { s }).0;
+        let count = ((end / step).ceil().max(1.0) as usize).min(4096);
+        let place = |k: usize| at(room + end * k as f64 / count as f64);
+        let mut line: Vec<[Point; 2]> = (0..count).map(|k| [place(k), place(k + 1)]).collect();
+        let middle = 0.5 * (from + to);
+        let opposite = [-middle.cos(), -middle.sin(), 0.0];
+        line.push([*centre, add_scaled(centre, 4.0 * far, &opposite)]);
+        line
+    }
+
     /// Tips of a 2D crack, where the branch functions are singular [m].
     pub fn tips(&self) -> Vec<Point> {
         match self.shape {

@@ -297,11 +297,15 @@ impl CellMap {
         const STEPS: usize = 30;
         /// In reference units, well above rounding and far below any quadrature error.
         const TOLERANCE: f64 = 1e-14;
+        // From the first corner: far from the origin the coordinates themselves hold too few digits of the difference.
+        let origin = self[0];
+        let x = sub(x, &origin);
+        let local = CellMap::new(self.kind, |i| sub(&self[i], &origin));
         let mut xi = [0.0; 3];
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
-            let residual = sub(x, &self.at(&xi));
-            let (inverse, det) = self.inverse_jacobian(&self.kind.reference_gradients(&xi));
+            let residual = sub(&x, &local.at(&xi));
+            let (inverse, det) = local.inverse_jacobian(&self.kind.reference_gradients(&xi));
             if det == 0.0 || !det.is_finite() {
                 return None;
             }

@@ -6,12 +6,13 @@
 //! radius d around the line) the rule gets the leading digits only: error about d^(2+α) in 3D, d^(1+α) for a triangle
 //! that ends at the line.
 
-use crate::geometry::clip::{halve_tetrahedron, halve_triangle};
+use crate::geometry::clip::{clip, halve_tetrahedron, halve_triangle};
 use crate::geometry::polygon::border_distance;
-use crate::geometry::{Point, add_scaled, diameter, mean, norm, sub};
+use crate::geometry::{Point, add_scaled, diameter, dot, mean, norm, sub};
 use crate::mesh::cell::CellMap;
 
-use super::{WeightedPoint, gauss_cell, tetrahedron, triangle_collapsed};
+use super::slice::slice_points;
+use super::{FanRule, WeightedPoint, gauss_cell, tetrahedron, triangle_collapsed};
 
 /// True if no point of the simplex is nearer to the singularity than the simplex is long.
 fn is_far(vertices: &[Point], distance: &impl Fn(&Point) -> f64) -> bool {
@@ -27,10 +28,13 @@ fn parts<S: Copy, const N: usize>(
     far: impl Fn(&S) -> bool,
     halve: fn(&S) -> [S; N],
 ) -> Vec<S> {
+    /// Most parts of one simplex: flat ones would be halved on and on.
+    const MOST: usize = 4096;
     let mut stack: Vec<(S, usize)> = simplices.iter().map(|s| (*s, 0)).collect();
     let mut parts = Vec::new();
     while let Some((simplex, level)) = stack.pop() {
-        if level == depth || far(&simplex) {
+        let full = parts.len() + stack.len() > MOST * simplices.len();
+        if level == depth || full || far(&simplex) {
             parts.push(simplex);
         } else {
             stack.extend(halve(&simplex).map(|part| (part, level + 1)));
@@ -137,20 +141,31 @@ pub fn graded_triangles(
         .collect()
 }
 
-/// Points of triangles near tips outside of them: halved until no tip is closer than the triangle's diameter, then n × n
-/// points on each part, which are exact to (3 + √8)^−2n for functions with singularities at that distance.
+/// Points of triangles near tips: n × n points where no tip is closer than the triangle's diameter, which are exact to
+/// (3 + √8)^−2n for functions with singularities at that distance; polar coordinates around the tip elsewhere, on what lies
+/// nearer to it than to another. So many at any distance and for any shape.
 pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<WeightedPoint> {
-    /// Halvings; a tip 1e-9 edges away needs 30.
-    const DEPTH: usize = 40;
-    let far = |t: &[Point; 3]| {
+    let mut points = Vec::new();
+    for t in triangles {
         let size = diameter(t);
-        !tips.iter().any(|tip| border_distance(t, tip) < size)
-    };
-    let parts = parts(triangles, DEPTH, far, halve_triangle);
-    parts
-        .iter()
-        .flat_map(|t| triangle_collapsed(t, n))
-        .collect()
+        let near: Vec<&Point> = tips.iter().filter(|tip| border_distance(t, tip) < size).collect();
+        if near.is_empty() {
+            points.extend(triangle_collapsed(t, n));
+        }
+        for tip in &near {
+            let mut own = t.to_vec();
+            for other in near.iter().filter(|other| *other != tip) {
+                let (middle, apart) = (mean([*tip, *other]), sub(tip, other));
+                let levels: Vec<f64> = own.iter().map(|x| dot(&apart, &sub(x, &middle))).collect();
+                own = clip(&own, &levels, 1.0);
+            }
+            if own.len() > 2 {
+                let rule = FanRule::fine(n < 8);
+                points.extend(slice_points(&own, &[0.0, 0.0, 1.0], Some(**tip), size, rule));
+            }
+        }
+    }
+    points
 }
 
 #[cfg(test)]

@@ -68,8 +68,8 @@ pub fn rational_points(map: &CellMap, t: &[Point; 3], points: &mut Vec<WeightedP
 fn quartered(map: &CellMap, t: &[Point; 3], depth: usize, points: &mut Vec<WeightedPoint>) {
     /// Above this four smaller triangles cost less.
     const AFFORDABLE: usize = 16;
-    /// Quarterings: a fold stays outside of convex cells, so few are ever needed.
-    const DEPTH: usize = 8;
+    /// Quarterings: what a fold next to the cell asks beyond them, the correction of the gradients gives.
+    const DEPTH: usize = 3;
     let quarters = halve_triangle(t);
     let [ab, bc, ca] = quarters[3];
     let lines = [

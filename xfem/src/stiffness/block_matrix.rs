@@ -68,6 +68,16 @@ impl BlockMatrix {
         &self.rows[self.col_ptr[column]..self.col_ptr[column + 1]]
     }
 
+    /// Diagonal entries over all unknowns.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let d = self.dim;
+        let of_column = |c: usize| {
+            let block = &self.values[self.col_ptr[c] * d * d..][..d * d];
+            (0..d).map(|a| block[a * d + a]).collect::<Vec<f64>>()
+        };
+        (0..self.functions()).flat_map(of_column).collect()
+    }
+
     /// Fills every column independently: `fill(column, rows, values)` gets zeroed blocks.
     ///
     /// Each entry is summed by one thread in the order of its cells, so the bits do not depend on the thread count.

@@ -7,9 +7,8 @@
 //!   K[(p,a),(q,b)] = Σ_r f_p^r f_q^r K^r[(i_p,a),(i_q,b)]
 //! ```
 //!
-//! On affine cells the largest region is K_e minus the others: half the work, and a sliver keeps its
-//! full relative accuracy (its entries may be 10⁻²⁴ of K_e and still count). Cells with branch functions are integrated
-//! function by function.
+//! The largest region is K_e minus the others: half the work, and a sliver keeps its full relative accuracy (its entries may
+//! be 10⁻²⁴ of K_e and still count). Distorted cells and those with branch functions are integrated function by function.
 
 use crate::cut::crack::Crack;
 use crate::cut::part::Part;
@@ -19,6 +18,7 @@ use crate::enrichment::basis::Region;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
+use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, polygon};
 use crate::material::Lame;
 use crate::mesh::Mesh;
@@ -98,7 +98,7 @@ impl<'a> CellIntegrator<'a> {
     pub fn stiffness(&self, cell: usize, plain: &CellMatrix) -> Result<CellMatrix, CellError> {
         if self.enrichment.is_plain(self.mesh, cell) {
             Ok(plain.clone())
-        } else if self.enrichment.has_branch(cell) {
+        } else if self.enrichment.has_branch(cell) || !self.mesh.map(cell).is_affine() {
             self.by_functions(cell)
         } else {
             self.by_regions(cell, plain)
@@ -129,7 +129,7 @@ impl<'a> CellIntegrator<'a> {
             gram.stiffness(self.lame)
         };
         let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
-        let exact = map.is_affine() && self.quadrature == Quadrature::SubCells;
+        let exact = self.quadrature == Quadrature::SubCells;
         let mut rest = plain.clone();
         for region in 0..regions {
             if exact && region == largest {
@@ -165,11 +165,9 @@ impl<'a> CellIntegrator<'a> {
 
     /// Direct integration of all functions.
     fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
-        let mut functions = self.functions(cell);
-        let mut gram = Gram::zero(functions.numbers.len(), self.mesh.dim());
-        for p in self.points(cell)? {
-            functions.evaluate(&p.xi, &p.x, p.region);
-            gram.add(p.weight, &functions.gradients);
+        let mut gram = Gram::zero(self.enrichment.cell(cell).len(), self.mesh.dim());
+        for p in self.evaluated(cell)? {
+            gram.add(p.at.weight, &p.gradients);
         }
         Ok(gram.stiffness(self.lame))
     }
@@ -206,12 +204,13 @@ impl<'a> CellIntegrator<'a> {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
         let tip = self.tip_in(cell);
-        let tips: Vec<Point> = self.enrichment.tips.iter().map(|t| t.position).collect();
+        let tips: Vec<Point> = self.enrichment.tips.iter().flat_map(TipFrame::tips).collect();
+        // A pair of tips has none of its own at its middle.
+        let tip = tip.map(|tip| self.enrichment.tips[tip].tips()).filter(|t| t.len() == 1);
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
-            let rule = match (branch, tip) {
-                (true, Some(tip)) => tip_points(polygon::edges(&part.polygon), &tips[tip], affine),
-                // A relative error of 2e-11.
+            let rule = match (branch, &tip) {
+                (true, Some(tip)) => tip_points(polygon::edges(&part.polygon), &tip[0], affine),
                 (true, None) => graded_points(&part.triangles(), &tips, 7),
                 (false, _) if affine => part.points(),
                 (false, _) => part.fine_points(map),
@@ -219,7 +218,7 @@ impl<'a> CellIntegrator<'a> {
             points.extend(rule.into_iter().map(|p| (p, region)));
         }
         // The sinh rule of a tip fan integrates constants to its own accuracy, not to rounding.
-        let tolerance = if tip.is_some() { 1e-6 } else { 1e-12 };
+        let tolerance = if branch { 1e-6 } else { 1e-11 };
         self.located(cell, points, tolerance)
     }
 

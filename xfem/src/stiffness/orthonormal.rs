@@ -31,7 +31,7 @@ use super::elasticity::CellMatrix;
 
 /// A function is dropped if the square of its part outside the span of the others is smaller than this part of its own
 /// square: K' carries the rounding of K divided by it.
-const DROPPED: f64 = 1e-10;
+const DROPPED: f64 = 1e-8;
 
 /// The functions of one node.
 #[derive(Debug, Clone)]

@@ -1,79 +1,45 @@
 //! Quadrature on the facets of a crack, with the linear functions of their corners.
 
-use std::collections::BTreeMap;
-
-use crate::cut::crack::Geometry;
-use crate::enrichment::facets::{CrackFacets, Facet, FrontCut};
+use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::ellipse::Ellipse;
+use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
+use crate::mesh::Mesh;
 use crate::quadrature::front::FrontPiece;
 use crate::quadrature::front_facet::front_facet_points;
 use crate::quadrature::graded::graded_triangles;
 use crate::quadrature::rational::rational_order;
 use crate::quadrature::{WeightedPoint, gauss, triangle, triangle_collapsed};
-use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use super::multipliers::Multipliers;
-use super::surface_point::SurfacePoint;
+use super::Enrichment;
+use super::facets::{CrackFacets, Facet, FrontCut};
 
 /// A quadrature point of a facet.
 #[derive(Debug, Clone)]
-struct FacetPoint {
+pub struct FacetPoint {
     /// Position [m].
-    x: Point,
+    pub x: Point,
     /// Length [m] or area [m²].
-    weight: f64,
+    pub weight: f64,
     /// Values of the corners' functions: linear along a segment; in a polygon linear on each triangle of its centroid and
     /// an edge, the centroid taking the mean. They sum to one.
-    hats: Vec<f64>,
+    pub hats: Vec<f64>,
 }
 
-/// Quadrature points of the facets that carry a multiplier.
-pub fn surface_points(
-    integrator: &CellIntegrator<'_>,
-    index: usize,
-    facets: &CrackFacets,
-    multipliers: &Multipliers,
-) -> Result<Vec<SurfacePoint>, CellError> {
-    let mut points = Vec::new();
-    for (facet, shares) in facets.facets.iter().zip(&multipliers.shares) {
-        if shares.iter().any(Vec::is_empty) {
-            continue;
-        }
-        for point in facet_points(integrator, index, facets, facet) {
-            let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
-            for (hat, own) in point.hats.iter().zip(shares) {
-                for &(k, share) in own {
-                    *sum.entry(k).or_default() += hat * share;
-                }
-            }
-            points.push(SurfacePoint {
-                weight: point.weight,
-                shares: sum.into_iter().filter(|(_, share)| *share != 0.0).collect(),
-                ..SurfacePoint::on_facet(integrator, index, facet, point.x)?
-            });
-        }
-    }
-    Ok(points)
-}
-
-/// Rule of one facet by what lives in its cell.
-fn facet_points(
-    integrator: &CellIntegrator<'_>,
-    index: usize,
+/// Rule of one facet of a crack by what lives in its cell.
+pub fn facet_points(
+    mesh: &Mesh,
+    crack: &Crack,
+    enrichment: &Enrichment,
     facets: &CrackFacets,
     facet: &Facet,
 ) -> Vec<FacetPoint> {
-    let CellIntegrator {
-        mesh, enrichment, ..
-    } = integrator;
     let map = mesh.map(facet.cell);
     let polygon = facets.polygon(facet);
     let affine = map.is_affine();
     let branch = enrichment.has_branch(facet.cell);
     if let &[p, q] = polygon.as_slice() {
-        let own = enrichment.tips.iter().filter(|tip| tip.crack == index);
-        let tips: Vec<Point> = own.map(|tip| tip.position).collect();
+        let tips: Vec<Point> = enrichment.tips.iter().flat_map(TipFrame::tips).collect();
         let integrand = match (branch, affine) {
             (true, _) => Integrand::Root(&tips),
             (false, true) => Integrand::Polynomial,
@@ -81,7 +47,7 @@ fn facet_points(
         };
         return segment_points(&[p, q], integrand);
     }
-    match (&integrator.cracks[index].geometry, branch, &facet.front) {
+    match (&crack.geometry, branch, &facet.front) {
         (Geometry::Ellipse(ellipse), true, Some(cut)) => front_facet(ellipse, cut, &polygon),
         (Geometry::Ellipse(ellipse), true, None) => {
             let distance = |x: &Point| ellipse.nearest(x).psi.abs();

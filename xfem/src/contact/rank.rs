@@ -1,0 +1,188 @@
+//! Contact points that the displacement cannot tell apart, and points merged into one.
+//!
+//! A force P on the points is felt through B, and the stiffness of what feels it is at most C times its diagonal D, C the
+//! number of functions that meet in a cell. So with
+//!
+//! ```text
+//!   S = B D⁻¹ Bᵀ,   Ŝ = diag(S)^−½ S diag(S)^−½           P·W P >= P·S P / C
+//! ```
+//!
+//! a point whose rows are nearly combinations of those before it (a small pivot of the Cholesky factor of Ŝ) has a force
+//! that no displacement determines: at tips and junctions, on slivers, beside supports, on cracks of few cells. It is merged
+//! with the nearest point of its arm: their multiplier functions add up, so constant tractions stay exact. One rule, from
+//! what the rows are, not from where they come from.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{Point, add_scaled, norm, sub};
+
+use super::pairs::{ContactPoint, ContactSurface};
+
+/// Pivots below this are zero: the square of what is new in a row of unit length.
+pub const DEPENDENT: f64 = 1e-3;
+
+/// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
+type Row = Vec<(usize, f64)>;
+
+/// Points whose forces no displacement determines beside those of the others; `rows(k)`: the rows (n, a[, b]) of a point.
+///
+/// Arms with few points come first and keep them.
+pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
+    let mut order: Vec<&std::ops::Range<usize>> = arms.iter().collect();
+    order.sort_by_key(|arm| arm.len());
+    let mut factor = Factor::default();
+    let mut found = Vec::new();
+    for point in order.into_iter().flat_map(|arm| arm.clone()) {
+        let own = rows(point);
+        let known = factor.len();
+        // All rows of a point, or none.
+        if !own.into_iter().all(|row| factor.push(row)) {
+            factor.truncate(known);
+            found.push(point);
+        }
+    }
+    found
+}
+
+/// The rows kept so far and the Cholesky factor of their Gram matrix, row by row from the first entry that may not vanish.
+#[derive(Default)]
+struct Factor {
+    rows: Vec<Row>,
+    /// First column and entries of every row of L, the pivot last.
+    lower: Vec<(usize, Vec<f64>)>,
+    /// Rows by unknown.
+    users: BTreeMap<usize, Vec<usize>>,
+}
+
+impl Factor {
+    fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn truncate(&mut self, count: usize) {
+        for i in (count..self.rows.len()).rev() {
+            for (unknown, _) in &self.rows[i] {
+                if let Some(users) = self.users.get_mut(unknown) {
+                    users.retain(|&user| user != i);
+                }
+            }
+        }
+        self.rows.truncate(count);
+        self.lower.truncate(count);
+    }
+
+    /// Adds a row if it is independent of those before it.
+    fn push(&mut self, mut row: Row) -> bool {
+        let length = row.iter().map(|(_, v)| v * v).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return false;
+        }
+        row.iter_mut().for_each(|entry| entry.1 /= length);
+        let i = self.rows.len();
+        let mut products: BTreeMap<usize, f64> = BTreeMap::new();
+        for &(unknown, value) in &row {
+            for &j in self.users.get(&unknown).into_iter().flatten() {
+                let other = self.rows[j].iter().find(|entry| entry.0 == unknown);
+                *products.entry(j).or_default() += value * other.map_or(0.0, |entry| entry.1);
+            }
+        }
+        let first = products.keys().next().copied().unwrap_or(i);
+        // L y = s, from the first product on.
+        let mut y: Vec<f64> = Vec::with_capacity(i - first + 1);
+        for j in first..i {
+            let (start, entries) = &self.lower[j];
+            let (pivot, known) = match entries.split_last() {
+                Some((pivot, known)) => (*pivot, known),
+                None => return false,
+            };
+            let from = (*start).max(first);
+            let dot: f64 = (from..j).map(|k| known[k - start] * y[k - first]).sum();
+            y.push((products.get(&j).copied().unwrap_or(0.0) - dot) / pivot);
+        }
+        let square = 1.0 - y.iter().map(|v| v * v).sum::<f64>();
+        if square < DEPENDENT {
+            return false;
+        }
+        y.push(square.sqrt());
+        for (unknown, _) in &row {
+            self.users.entry(*unknown).or_default().push(i);
+        }
+        self.lower.push((first, y));
+        self.rows.push(row);
+        true
+    }
+}
+
+/// Merges points into the nearest others of their arms; what has no other stays. The arms, and how many points went.
+pub fn merge(
+    surface: &mut ContactSurface,
+    arms: &[std::ops::Range<usize>],
+    lost: &[usize],
+) -> (Vec<std::ops::Range<usize>>, usize) {
+    let count = surface.points.len();
+    let mut target: Vec<usize> = (0..count).collect();
+    for arm in arms {
+        let away = |a: usize, b: usize| {
+            norm(&sub(&surface.points[a].x, &surface.points[b].x))
+        };
+        for k in arm.clone().filter(|k| lost.contains(k)) {
+            let others = arm.clone().filter(|m| !lost.contains(m));
+            let nearest = others.min_by(|&a, &b| away(k, a).total_cmp(&away(k, b)));
+            target[k] = nearest.unwrap_or(k);
+        }
+    }
+    let kept: Vec<usize> = (0..count).filter(|&k| target[k] == k).collect();
+    let mut number = vec![0; count];
+    for (new, &old) in kept.iter().enumerate() {
+        number[old] = new as u32;
+    }
+    let numbers: Vec<u32> = target.iter().map(|&t| number[t]).collect();
+    let points = kept.iter().map(|&old| {
+        let merged = (0..count).filter(|&k| k != old && target[k] == old);
+        merged.fold(surface.points[old].clone(), |sum, k| sum.with(&surface.points[k]))
+    });
+    surface.points = points.collect();
+    let renumber = |shares: &mut Vec<(u32, f64)>| {
+        let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
+        for &(k, share) in shares.iter() {
+            *sum.entry(numbers[k as usize]).or_default() += share;
+        }
+        *shares = sum.into_iter().collect();
+    };
+    let surface = &mut surface.surface;
+    surface.corners.iter_mut().for_each(|corner| renumber(&mut corner.shares));
+    surface.quadrature.iter_mut().for_each(|q| renumber(&mut q.shares));
+    let mut start = 0;
+    let arms = arms.iter().map(|arm| {
+        let own = arm.clone().filter(|&k| target[k] == k).count();
+        start += own;
+        start - own..start
+    });
+    (arms.collect(), count - kept.len())
+}
+
+impl ContactPoint {
+    /// A point whose multiplier function is the sum of two: weighted means of place and jump.
+    fn with(&self, other: &Self) -> Self {
+        let weight = self.weight + other.weight;
+        let [a, b] = [self.weight / weight, other.weight / weight];
+        let mean = |p: &Point, q: &Point| add_scaled(&p.map(|v| a * v), b, q);
+        let mut terms: BTreeMap<u32, [Point; 3]> = BTreeMap::new();
+        for (point, share) in [(self, a), (other, b)] {
+            for (f, rows) in &point.terms {
+                let sum = terms.entry(*f).or_default();
+                for (row, own) in sum.iter_mut().zip(rows) {
+                    *row = add_scaled(row, share, own);
+                }
+            }
+        }
+        ContactPoint {
+            x: mean(&self.x, &other.x),
+            s: a * self.s + b * other.s,
+            frame: self.frame,
+            weight,
+            terms: terms.into_iter().collect(),
+            ..self.clone()
+        }
+    }
+}
