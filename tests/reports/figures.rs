@@ -196,14 +196,14 @@ fn only_paths_that_run_back_are_loops() {
 #[test]
 fn sparse_data_and_hostile_names_are_drawn() {
     let mut results = Results::default();
-    for natural_map in [0.0, f64::NAN] {
+    for violation in [0.0, f64::NAN] {
         let mut key = key("a\u{E000}b", 0.1);
         key.case = "<script>&".into();
         let iteration = results.history.len();
         results.history.push(HistoryRow {
             key,
             iteration,
-            natural_map,
+            violation,
         });
     }
     let svg = one(&results, ".residual.svg");

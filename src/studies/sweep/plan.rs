@@ -11,7 +11,7 @@
 //! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
 //! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
 //! methods = ["hybrid", "penalty:normal=1e2,tangential=1e2"]      # all by default, with their default options
-//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the natural map; the default
+//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the violation; the default
 //! ```
 
 use std::path::Path;
