@@ -16,7 +16,7 @@ use crate::run::verdict::Verdict;
 use crate::studies::convergence::Value;
 
 /// Version of the record files and of the tables made from them.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// One cell, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
