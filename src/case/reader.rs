@@ -10,6 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Source, Span, clip};
+use super::label;
 
 /// A value of the document with its place.
 #[derive(Clone, Copy)]
@@ -121,11 +122,11 @@ impl<'a> Value<'a> {
             .ok_or_else(|| self.wrong_type("a string"))
     }
 
-    /// A non-empty string of one line: it ends up in tables.
-    pub(crate) fn line(&self) -> Result<String, CaseError> {
+    /// A text that names something: it ends up on terminals, in tables and in figures.
+    pub(crate) fn label(&self) -> Result<String, CaseError> {
         let text = self.string()?;
-        if text.trim().is_empty() || text.chars().any(char::is_control) {
-            return Err(self.refuse("non-empty text on one line", "not one line of text"));
+        if !label::is_label(text) {
+            return Err(self.refuse(label::ALLOWED, "no label"));
         }
         Ok(text.to_string())
     }

@@ -84,7 +84,7 @@ impl Plan {
         let keys = ["title", "repeats", "cells"];
         let folder = file.parent().unwrap_or(Path::new(""));
         let (title, repeats, blocks) = document(file, text, &keys, |root| {
-            let title = root.required("title")?.line()?;
+            let title = root.required("title")?.label()?;
             let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
             let blocks = root.tables("cells")?;
             if blocks.is_empty() {

@@ -58,6 +58,37 @@ fn unknown_keys_are_refused_with_the_allowed_ones() {
     assert_eq!(error.key(), "material.density");
 }
 
+/// Goal: what names something commands neither the terminal nor the spreadsheet that shows it.
+#[test]
+fn labels_that_are_commands_are_refused() {
+    for bad in [
+        "=1+1",
+        "+A1",
+        "-A1",
+        "@SUM(A1)",
+        " =1+1",
+        "a\\u001b[31m",
+        "a\\u202eb",
+        "a\\tb",
+    ] {
+        for (from, key) in [
+            ("title = \"Plate\"", "title"),
+            ("name = \"centre\"", "name"),
+        ] {
+            let to = format!("{key} = \"{bad}\"");
+            let mark = format!("\"{bad}\"");
+            assert_refused_at(
+                PLANE,
+                from,
+                &to,
+                &mark,
+                &mark,
+                "does not begin like a formula",
+            );
+        }
+    }
+}
+
 #[test]
 fn every_allowed_key_is_documented() {
     let document = include_str!("../../../docs/case-format.md");
