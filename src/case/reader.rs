@@ -12,6 +12,12 @@ use toml::de::{DeTable, DeValue};
 use super::error::{CaseError, Source, Span, clip};
 use super::label;
 
+/// Magnitudes of numbers other than 0: fourth powers of forces, (E L u)⁴ in a solid, are the highest products that methods
+/// form, and keep all their digits.
+const SMALLEST: f64 = 1e-25;
+const LARGEST: f64 = 1e25;
+const MAGNITUDES: &str = "0, or of magnitude 1e-25 to 1e25";
+
 /// A value of the document with its place.
 #[derive(Clone, Copy)]
 pub(crate) struct Value<'a> {
@@ -97,9 +103,27 @@ impl<'a> Value<'a> {
             Some(number) if !f64::is_finite(number) => {
                 Err(self.refuse(allowed, "not a finite number"))
             }
+            Some(number) if test(number) && !self.is_computable(number) => Err(self.refuse(
+                format_args!("{allowed}; {MAGNITUDES}"),
+                "too small or too large to compute with",
+            )),
             Some(number) if test(number) => Ok(number),
             _ => Err(self.refuse(allowed, "out of range")),
         }
+    }
+
+    /// Whether products of such numbers stay finite and do not vanish; what is written as another number than 0 must not
+    /// have become one.
+    fn is_computable(&self, number: f64) -> bool {
+        if number != 0.0 {
+            return (SMALLEST..=LARGEST).contains(&number.abs());
+        }
+        let written = match self.item.get_ref() {
+            DeValue::Float(float) => float.as_str(),
+            _ => "0",
+        };
+        let mantissa = written.split(['e', 'E']).next().unwrap_or(written);
+        !mantissa.contains(|c| ('1'..='9').contains(&c))
     }
 
     /// An integer in a range.
