@@ -52,7 +52,7 @@ pub struct SolveArgs {
     /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all by default
     #[arg(long, short)]
     method: Vec<String>,
-    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
     /// Folder for the results
@@ -68,7 +68,7 @@ pub struct JudgeArgs {
     /// Reactions as MatrixMarket vectors, components normal first, compression positive
     #[arg(required = true)]
     reactions: Vec<PathBuf>,
-    /// Accuracy asked for: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    /// Accuracy asked for: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
 }

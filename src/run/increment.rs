@@ -171,6 +171,8 @@ impl JudgedIncrement {
             adhesion: found(|f| f.adhesion),
             complementarity: found(|f| f.complementarity),
             cone: found(|f| f.cone),
+            reference_force: found(|f| f.reference_force),
+            reference_jump_m: found(|f| f.reference_jump),
             tangent_factorisations: counters.factorisations,
             global_factorisations: counters.global_factorisations,
             local_solves: counters.local_solves,

@@ -93,6 +93,10 @@ pub struct RunRow {
     pub complementarity: f64,
     /// Largest excess over the friction bound, relative to P_ref [-].
     pub cone: f64,
+    /// P_ref [N, in 2D N/m]; 0 where no point closes.
+    pub reference_force: f64,
+    /// u_ref [m]; likewise.
+    pub reference_jump_m: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
     pub tangent_factorisations: usize,
     /// Sparse factorisations of matrices over all unknowns in this increment, by monolithic variants.

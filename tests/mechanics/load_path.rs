@@ -65,7 +65,8 @@ fn mechanics_that_are_not_finite_are_no_answer() {
     let body = Body::new(&case, 1, Needs::default()).unwrap();
     let good = Snapshot::virgin(&body);
     assert_eq!(good.not_finite(), None);
-    let spoils: [(&str, fn(&mut Snapshot, f64)); 7] = [
+    type Spoil = fn(&mut Snapshot, f64);
+    let spoils: [(&str, Spoil); 7] = [
         ("displacements", |s, x| s.u[3] = x),
         ("jumps", |s, x| s.jump[1] = x),
         ("contact forces", |s, x| s.p[0] = x),

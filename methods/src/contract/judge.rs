@@ -9,7 +9,7 @@ use crate::contract::state::{Claim, ContactState};
 use crate::contract::system::Increment;
 use crate::error::{MethodError, check_finite, check_len};
 
-/// Residuals of one state, all dimensionless: they change neither with units nor with the tangent frames.
+/// Residuals of one state, dimensionless but for the reference sizes: they change neither with units nor with the tangent frames.
 ///
 /// Reference sizes: u_ref = max(|q|, |P|/ρ) and P_ref = ρ u_ref, with q the jump without contact forces, ρ =
 /// rows / trace(W), and Euclidean norms over all points.
@@ -40,6 +40,10 @@ pub struct Residuals {
     /// The natural map alone divides penetration and cone by √(1 + μ²): −ρ g ≤ |e_n| + μ |e_t|, and as much for
     /// |P_t| − μ P_n. On scales of their own no μ hides them.
     pub violation: f64,
+    /// P_ref \[N, in 2D N/m\]; 0 where nothing had to be compared.
+    pub reference_force: f64,
+    /// u_ref \[m\]; likewise.
+    pub reference_jump: f64,
 }
 
 /// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
@@ -117,6 +121,8 @@ pub fn residuals_of(
     result.complementarity = found.complementarity;
     result.cone = found.cone;
     result.violation = found.largest();
+    result.reference_force = p_ref;
+    result.reference_jump = u_ref;
     for point in 0..rows.points() {
         let (p, v) = (&p[rows.of(point)], &v[rows.of(point)]);
         let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
