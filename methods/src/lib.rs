@@ -56,7 +56,7 @@
 //!     let outcome = solver.solve(&increment, &mut Silent)?;
 //!     assert_eq!(outcome.status, Status::Converged);
 //!     assert!((outcome.state.p[1] + 2.0).abs() < 1e-8);
-//!     assert!(residuals(&increment, &outcome.state)?.natural_map <= increment.tolerance);
+//!     assert!(residuals(&increment, &outcome.state)?.violation <= increment.tolerance);
 //! }
 //! # Ok(())
 //! # }

@@ -126,11 +126,11 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
 fn exact_methods_can_be_driven_to_rounding() {
     let (s, load, _) = specimen();
     for (m, outcome) in claims(exact(), &s, &load, 1e-13) {
-        let found = judge(&s, &load, &outcome.state).natural_map;
+        let found = judge(&s, &load, &outcome.state).violation;
         assert!(found <= 1e-13, "{}: {found:e}", m.name);
         // Beyond rounding there is nothing to claim.
         let outcome = run(&m, &[], &s, &load, 1e-20);
-        let last = outcome.history.last().unwrap().natural_map;
+        let last = outcome.history.last().unwrap().violation;
         let honest = outcome.status != Status::Converged || last == 0.0;
         assert!(honest, "{}", m.name);
     }

@@ -64,7 +64,7 @@ fn points_without_friction_among_others_carry_no_tangential_force() {
         let p = &outcome.state.p;
         assert_eq!((p[3], p[7]), (0.0, 0.0), "{}", m.name);
         assert!(p[2] > 0.0 || p[6] > 0.0, "the case must close such a point");
-        let found = judge(&s, &load, &outcome.state).natural_map;
+        let found = judge(&s, &load, &outcome.state).violation;
         assert!(found <= 1e-9, "{}: {found:e}", m.name);
     }
 }
@@ -124,7 +124,7 @@ fn open_crack_is_one_linear_solve_and_is_never_condensed() {
         );
         assert_eq!(work, (0, 1, 0), "{}", m.name);
         assert!(difference(&state.u, &free) < 1e-12 && state.p.iter().all(|&p| p == 0.0));
-        assert_eq!(judge(&s, &load, &state).natural_map, 0.0);
+        assert_eq!(judge(&s, &load, &state).violation, 0.0);
         let ElasticCounters {
             factorisations,
             solves,
@@ -174,7 +174,7 @@ fn a_cycle_of_active_sets_without_friction_is_left() {
     let load = free_jump(&[0.05277372, 0.0, 1.55333021, 0.0, -1.76164288, 0.0]);
     for (m, outcome) in claims(general(), &s, &load, 1e-9) {
         if m.name == "pdas" {
-            let h: Vec<f64> = outcome.history.iter().map(|h| h.natural_map).collect();
+            let h: Vec<f64> = outcome.history.iter().map(|h| h.violation).collect();
             let again = |k: usize| (h[k] - h[k - 3]).abs() < 1e-9 && (h[k] - h[k - 1]).abs() > 0.1;
             assert!(h.len() > 12 && (4..12).all(again), "{h:?}");
         }

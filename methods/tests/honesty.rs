@@ -22,10 +22,10 @@ fn a_converged_claim_passes_the_judge_at_every_tier() {
                         assert!(!m.exact, "{at}");
                         continue;
                     }
-                    let holds = judged.natural_map <= tier.tolerance();
+                    let holds = judged.violation <= tier.tolerance();
                     assert!(holds || outcome.status != Status::Converged, "{at}");
-                    let last = outcome.history.last().unwrap().natural_map;
-                    let off = (last - judged.natural_map).abs();
+                    let last = outcome.history.last().unwrap().violation;
+                    let off = (last - judged.violation).abs();
                     assert!(off <= 1e-12 + 1e-6 * last, "{at}");
                 }
             }
@@ -37,8 +37,8 @@ fn a_converged_claim_passes_the_judge_at_every_tier() {
 fn limits_and_monitors_end_a_run_with_their_status() {
     struct StopAt(usize);
     impl Monitor for StopAt {
-        fn step(&mut self, iteration: usize, natural_map: f64) -> bool {
-            assert!(natural_map.is_finite());
+        fn step(&mut self, iteration: usize, violation: f64) -> bool {
+            assert!(violation.is_finite());
             iteration < self.0
         }
     }

@@ -20,8 +20,85 @@ fn forces_that_do_not_balance_a_floating_body_are_seen_though_w_does_not_see_the
     for (p, lift, right) in [(1.0, 0.0, true), (0.0, 100.0, false), (7.0, -6.0, false)] {
         let (u, p) = (vec![p - 1.0 + lift, 0.0], vec![p, 0.0]);
         let found = judge(&s, &load, &ContactState { u, p });
-        let holds = found.equilibrium <= 1e-12 && found.natural_map <= 1e-9;
+        let holds = found.equilibrium <= 1e-12 && found.violation <= 1e-9;
         assert_eq!(holds, right, "{found:?}");
+    }
+}
+
+/// W = I, q = (−1, 0.5). The natural map of faces that overlap without forces, and of friction without pressure, falls
+/// like 1/μ: it alone would let both pass.
+#[test]
+fn no_friction_coefficient_hides_an_overlap_or_a_force_outside_the_cone() {
+    let unit = sparse(&diagonal(&[1.0; 2]));
+    let body = Elastic::from_delassus(2, unit, vec![]).unwrap();
+    for mu in [0.0, 0.3, 2e3, 1e5, 1e10] {
+        let s = system(&body, mu);
+        let overlap = ContactState {
+            u: vec![-1.0, 0.5],
+            p: vec![0.0; 2],
+        };
+        let found = judge(&s, &force(&s, &[-1.0, 0.5]), &overlap);
+        // u_ref = |q|, without a tangential row |q_n|.
+        let u_ref = if mu == 0.0 { 1.0 } else { 1.25_f64.sqrt() };
+        assert_near(found.penetration, 1.0 / u_ref, 1e-15, mu);
+        assert_eq!(found.violation, found.penetration.max(found.natural_map));
+        assert!(mu < 1.0 || found.natural_map < 2.0 / mu, "{found:?}");
+
+        let outside = ContactState {
+            u: vec![0.0; 2],
+            p: vec![0.0, 1.0],
+        };
+        let found = judge(&s, &force(&s, &[0.0, -1.0]), &outside);
+        // Without friction nothing reads P_t, and P_ref is 0.
+        assert!(found.cone >= 1.0 && found.violation >= 1.0, "{found:?}");
+        assert!(mu < 1.0 || found.natural_map < 2.0 / mu, "{found:?}");
+    }
+}
+
+/// Above some μ a crack that is pressed everywhere sticks, and more friction changes nothing. Methods may give up then.
+#[test]
+fn whoever_claims_an_answer_for_huge_friction_has_that_of_large_friction() {
+    let mut rng = Random(31);
+    let (k, b) = random_body(&mut rng, 2, 6, 6, 0.3);
+    let body = elastic(2, &k, &b, vec![], false);
+    // Forces that press every point: f = −Bᵀ (1, 0.4).
+    let f: Vec<f64> = (0..k.len())
+        .map(|j| {
+            b.iter()
+                .zip([1.0, 0.4].repeat(6))
+                .map(|(row, p)| -row[j] * p)
+                .sum()
+        })
+        .collect();
+    let stick = system(&body, 10.0);
+    let reference = run(
+        method("hybrid").unwrap(),
+        &[],
+        &stick,
+        &force(&stick, &f),
+        1e-12,
+    );
+    assert_eq!(reference.status, Status::Converged);
+    assert!((0..6).all(|i| reference.state.p[2 * i] > 0.1));
+    // De Saxcé's term multiplies the rounding of d by μ: for 1e10 it alone exceeds tier high.
+    for (mu, least) in [(2e3, 8), (1e5, 5), (1e10, 0)] {
+        let s = system(&body, mu);
+        let load = force(&s, &f);
+        for tier in Tier::ALL {
+            let mut claims = 0;
+            for m in exact() {
+                let outcome = run(&m, &[], &s, &load, tier.tolerance());
+                if outcome.status != Status::Converged {
+                    continue;
+                }
+                claims += 1;
+                let off = difference(&outcome.state.p, &reference.state.p);
+                // The condition of W is below 1e3.
+                let at = format!("{} {mu:e} {tier}: {off:e}", m.name);
+                assert!(off <= 1e3 * tier.tolerance(), "{at}");
+            }
+            assert!(claims >= least, "{mu:e} {tier}: {claims}");
+        }
     }
 }
 
@@ -49,7 +126,7 @@ fn a_floating_body_let_go_ends_without_forces() {
             continue;
         }
         let found = residuals(&second, &after.state).unwrap();
-        let holds = found.natural_map <= 1e-9 && found.equilibrium <= 1e-12;
+        let holds = found.violation <= 1e-9 && found.equilibrium <= 1e-12;
         assert!(holds, "{}: {found:?}", m.name);
         let largest = |p: &[f64]| p.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let left = largest(&after.state.p) / largest(&before.state.p);

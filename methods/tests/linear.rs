@@ -178,9 +178,9 @@ fn solve_reaches_the_equilibrium_that_the_judge_demands() {
 /// What the judge finds of an answer to 1e-9.
 fn judged(m: &Method, s: &ContactSystem, load: &Load, outcome: &Outcome) -> f64 {
     let judged = judge(s, load, &outcome.state);
-    let holds = judged.natural_map <= 1e-9 && judged.equilibrium < 1e-12;
+    let holds = judged.violation <= 1e-9 && judged.equilibrium < 1e-12;
     assert!(holds, "{}: {judged:?}", m.name);
-    judged.natural_map
+    judged.violation
 }
 
 /// Methods see W, the judge sees the jump of u: their natural maps agree only if W is right.
@@ -194,7 +194,7 @@ fn condensed_answers_agree_with_the_uncondensed_body() {
         let s = system(&body, if frictionless { 0.0 } else { 0.3 });
         let load = force(&s, &f);
         for (m, outcome) in claims(exact(), &s, &load, 1e-9) {
-            let last = outcome.history.last().unwrap().natural_map;
+            let last = outcome.history.last().unwrap().violation;
             assert_near(judged(&m, &s, &load, &outcome), last, 1e-11, m.name);
             let closed = outcome.state.p.iter().any(|&p| p > 0.0);
             assert!(closed, "the case must close");
@@ -240,10 +240,10 @@ fn residuals_of_a_floating_body_do_not_depend_on_the_pins() {
         claims(exact(), &s, &load, 1e-10).for_each(drop);
         let judged = judge(&s, &load, &state);
         assert!(
-            judged.natural_map > 1e-4 && judged.equilibrium < 1e-12,
+            judged.violation > 1e-4 && judged.equilibrium < 1e-12,
             "{judged:?}"
         );
-        judged.natural_map
+        judged.violation
     });
     assert_near(found[0] / found[1], 1.0, 1e-9, found);
 }

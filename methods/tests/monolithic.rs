@@ -36,7 +36,7 @@ fn every_monolithic_variant_has_the_same_iterates() {
                 let (load, given) = (force(&s, &f), [("monolithic", monolithic)]);
                 let outcome = solved(m, &given, &s, &load, 100.0 * rounding);
                 let judged = judge(&s, &load, &outcome.state);
-                assert!(judged.natural_map.is_finite());
+                assert!(judged.violation.is_finite());
                 outcome
             });
             let at = format!("{} dim {} mu {mu}", m.name, body.dim());
@@ -47,8 +47,8 @@ fn every_monolithic_variant_has_the_same_iterates() {
             assert_eq!(whole.history.len(), condensed.history.len(), "{at}");
             for (a, b) in whole.history.iter().zip(&condensed.history) {
                 // Rounding of an iterate far from converged is relative to its own residual.
-                let rounding = 1e-9 * b.natural_map + rounding;
-                assert_near(a.natural_map, b.natural_map, rounding, &at);
+                let rounding = 1e-9 * b.violation + rounding;
+                assert_near(a.violation, b.violation, rounding, &at);
                 assert_eq!(a.changes, b.changes, "{at}");
             }
             assert!(
@@ -79,7 +79,7 @@ fn rigid_motions_of_a_delassus_body_balance_the_load() {
             assert_near(*p, exact, 1e-9, m.name);
         }
         assert!(
-            judge(&s, &load, &outcome.state).natural_map <= 1e-11,
+            judge(&s, &load, &outcome.state).violation <= 1e-11,
             "{}",
             m.name
         );

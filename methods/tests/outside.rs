@@ -55,8 +55,8 @@ impl CondensedMethod for Uzawa {
         let mut x = problem.start();
         loop {
             let v = problem.jump(&x.p, &x.beta);
-            let natural_map = problem.natural_map(&x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), 0, self.limits, monitor)? {
+            let violation = problem.violation(&x.p, &v);
+            match problem.check(violation, (&x.p, &x.beta), 0, self.limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => continue,
                 Check::End(status) => return Ok(End { status, at: x }),
@@ -102,7 +102,7 @@ fn a_simple_method_solves_what_is_easy_and_fails_fairly_elsewhere() {
             assert_eq!(body.counters().condensations, 0);
             if converged(&UZAWA, &outcome) {
                 assert!(
-                    judged.natural_map <= 1e-8,
+                    judged.violation <= 1e-8,
                     "a claim holds: mu {mu} {judged:?}"
                 );
                 solved += 1;

@@ -41,7 +41,7 @@ fn study(m: &Method, body: &Arc<Elastic>, w: &Rows, mu: f64, q: &[f64]) -> (Uniq
                     .all(|(k, p)| (k - p).abs() < 1e-7 * size)
             };
             assert!(known.iter().any(off), "{at} is none of {known:?}");
-            assert!(residuals(&i, state).unwrap().natural_map <= 1e-9, "{at}");
+            assert!(residuals(&i, state).unwrap().violation <= 1e-9, "{at}");
         }
     }
     (verdict, known.len())
@@ -218,7 +218,7 @@ fn a_path_through_a_fold_jumps_but_every_claim_holds() {
             if outcome.status != Status::Converged {
                 break;
             }
-            let found = residuals(&i, &outcome.state).unwrap().natural_map;
+            let found = residuals(&i, &outcome.state).unwrap().violation;
             assert!(found <= 1e-9, "{}: {found:e}", m.name);
             // The jump of one increment's slip: q less the start's tangential jump.
             let start = i.start_jump();

@@ -109,14 +109,14 @@ fn unpolished_fixed_points_end_at_their_floor_and_say_so() {
             let m = method(name).unwrap();
             let raw = run(m, &[("polish", 0.0)], &s, &problem.load, 1e-13);
             assert_eq!(raw.status, Status::Stalled, "{name} dim {dim}");
-            let floor = judge(&s, &problem.load, &raw.state).natural_map;
+            let floor = judge(&s, &problem.load, &raw.state).violation;
             assert!(
                 (1e-13..1e-6).contains(&floor),
                 "{name} dim {dim}: {floor:e}"
             );
 
             let polished = solved(m, &[], &s, &problem.load, 1e-13).history;
-            let newton = polished.iter().filter(|i| i.natural_map <= 1e-6);
+            let newton = polished.iter().filter(|i| i.violation <= 1e-6);
             assert!(newton.count() <= 4, "{name} dim {dim}: {polished:?}");
         }
     }

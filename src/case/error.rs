@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::label::{is_visible, visible};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -98,7 +99,7 @@ impl CaseError {
 impl fmt::Display for CaseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let c = &*self.0;
-        write!(f, "{}:", c.file.display())?;
+        write!(f, "{}:", visible(&c.file.to_string_lossy()))?;
         if c.line > 0 {
             write!(f, "{}:{}:", c.line, c.column)?;
         }
@@ -188,7 +189,7 @@ fn clip_to(text: &str, width: usize) -> String {
             out.push('…');
             break;
         }
-        if c.is_control() {
+        if !is_visible(c) {
             out.extend(c.escape_default())
         } else {
             out.push(c)
@@ -230,7 +231,7 @@ fn excerpt(line: &str, column: usize, length: usize) -> (String, String) {
 fn printable(c: char) -> char {
     match c {
         '\t' => ' ',
-        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c if !is_visible(c) => char::REPLACEMENT_CHARACTER,
         c => c,
     }
 }

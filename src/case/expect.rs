@@ -108,7 +108,7 @@ impl Runs {
     pub(super) fn probe(&mut self, value: Value<'_>, dim: usize) -> Result<ProbeSpec, CaseError> {
         let table = value.table(&["name", "point_m"])?;
         let given = table.required("name")?;
-        let name = given.line()?;
+        let name = given.label()?;
         if self.places.contains(&name) {
             let allowed = format!("a name other than {}", self.places.join(", "));
             return Err(given.refuse(allowed, "name already taken"));
@@ -154,7 +154,7 @@ impl Runs {
         let kinds: Vec<_> = ExpectKind::ALL.iter().map(|k| (k.name(), *k)).collect();
         Ok(Expect {
             span: table.span(),
-            quantity: table.required("quantity")?.line()?,
+            quantity: table.required("quantity")?.label()?,
             at: table.optional("at", |v| self.place(v))?.unwrap_or_default(),
             component: table
                 .optional("component", component)?
@@ -166,15 +166,15 @@ impl Runs {
             refine: table.optional("refine", |v| {
                 Self::of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine)
             })?,
-            method: table.optional("method", |v| v.line())?,
+            method: table.optional("method", |v| v.label())?,
             increment: table.optional("increment", |v| v.integer(1..=self.increments))?,
             value: number,
-            unit: table.required("unit")?.line()?,
+            unit: table.required("unit")?.label()?,
             tolerance,
             kind: table.required("kind")?.one_of(&kinds)?,
-            source: table.required("source")?.line()?,
+            source: table.required("source")?.label()?,
             assumptions: (table.optional("assumptions", |v| {
-                v.list()?.iter().map(Value::line).collect()
+                v.list()?.iter().map(Value::label).collect()
             })?)
             .unwrap_or_default(),
             missed: (table

@@ -15,6 +15,7 @@ use super::crack::{CrackSpec, crack};
 use super::error::{CaseError, Source, Span};
 use super::exact::{ExactSpec, exact};
 use super::expect::{Expect, ProbeSpec, Runs};
+use super::label::visible;
 use super::load::{LoadSpec, Scene, SupportSpec, load, support};
 use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
@@ -201,7 +202,7 @@ pub fn parse_with(
     let document = document(&file, &text, &KEYS, |root| read_document(root, solutions))?;
     let name = file
         .file_stem()
-        .map(|s| s.to_string_lossy().into_owned())
+        .map(|s| visible(&s.to_string_lossy()))
         .unwrap_or_default();
     Ok(Case {
         name,
@@ -228,7 +229,7 @@ pub(crate) fn document<T>(
 
 /// Everything the document says; name, file and source are filled in by the caller.
 fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result<Case, CaseError> {
-    let title = root.required("title")?.line()?;
+    let title = root.required("title")?.label()?;
     let model = root.required("model")?.one_of(&[
         ("plane-strain", Model::PlaneStrain),
         ("plane-stress", Model::PlaneStress),

@@ -10,6 +10,13 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Source, Span, clip};
+use super::label;
+
+/// Magnitudes of numbers other than 0: fourth powers of forces, (E L u)⁴ in a solid, are the highest products that methods
+/// form, and keep all their digits.
+const SMALLEST: f64 = 1e-25;
+const LARGEST: f64 = 1e25;
+const MAGNITUDES: &str = "0, or of magnitude 1e-25 to 1e25";
 
 /// A value of the document with its place.
 #[derive(Clone, Copy)]
@@ -96,9 +103,27 @@ impl<'a> Value<'a> {
             Some(number) if !f64::is_finite(number) => {
                 Err(self.refuse(allowed, "not a finite number"))
             }
+            Some(number) if test(number) && !self.is_computable(number) => Err(self.refuse(
+                format_args!("{allowed}; {MAGNITUDES}"),
+                "too small or too large to compute with",
+            )),
             Some(number) if test(number) => Ok(number),
             _ => Err(self.refuse(allowed, "out of range")),
         }
+    }
+
+    /// Whether products of such numbers stay finite and do not vanish; what is written as another number than 0 must not
+    /// have become one.
+    fn is_computable(&self, number: f64) -> bool {
+        if number != 0.0 {
+            return (SMALLEST..=LARGEST).contains(&number.abs());
+        }
+        let written = match self.item.get_ref() {
+            DeValue::Float(float) => float.as_str(),
+            _ => "0",
+        };
+        let mantissa = written.split(['e', 'E']).next().unwrap_or(written);
+        !mantissa.contains(|c| ('1'..='9').contains(&c))
     }
 
     /// An integer in a range.
@@ -121,11 +146,11 @@ impl<'a> Value<'a> {
             .ok_or_else(|| self.wrong_type("a string"))
     }
 
-    /// A non-empty string of one line: it ends up in tables.
-    pub(crate) fn line(&self) -> Result<String, CaseError> {
+    /// A text that names something: it ends up on terminals, in tables and in figures.
+    pub(crate) fn label(&self) -> Result<String, CaseError> {
         let text = self.string()?;
-        if text.trim().is_empty() || text.chars().any(char::is_control) {
-            return Err(self.refuse("non-empty text on one line", "not one line of text"));
+        if !label::is_label(text) {
+            return Err(self.refuse(label::ALLOWED, "no label"));
         }
         Ok(text.to_string())
     }

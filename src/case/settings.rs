@@ -88,7 +88,7 @@ pub(super) fn path(root: &Table<'_>) -> Result<PathSpec, CaseError> {
 /// `[[method]]`; names and ranges of options are the registry's affair.
 pub(super) fn method(value: Value<'_>) -> Result<MethodSpec, CaseError> {
     let table = value.any_table()?;
-    let name = table.required("name")?.line()?;
+    let name = table.required("name")?.label()?;
     let mut spec = MethodSpec {
         span: table.span(),
         name,

@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Method with options, NAME or NAME:key=value,key=value; may be repeated
     #[arg(long, short)]
     method: Vec<String>,
-    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9); the case's own by default
+    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9); the case's own by default
     #[arg(long)]
     tier: Option<Tier>,
     /// Methods whose fields are written for pictures: none, first (the first exact method) or all

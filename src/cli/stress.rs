@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all methods by default
     #[arg(long, short)]
     method: Vec<String>,
-    /// Accuracy: low, mid or high (natural map at most 1e-3, 1e-6, 1e-9)
+    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
     /// Folder for the results

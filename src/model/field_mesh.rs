@@ -190,15 +190,24 @@ impl<'a> Vertices<'a> {
         crack.jumps_at(x, self.quantum) && !crack.parents.iter().any(beyond)
     }
 
-    /// Faces of a part of a cut cell at a point.
+    /// Faces of a part of a cut cell at a point; also those of cracks that cut no more of the cell than this point, as where
+    /// cracks cross at a node: the cells around it must name the same faces.
     fn cut_faces(&self, part: &Part, x: &Point) -> Faces {
-        let on = |&&(crack, _): &&(usize, Side)| {
+        let cracks = 0..self.body.cracks.len();
+        let on = |&crack: &usize| {
             self.body.cracks[crack].distance(x).abs() <= self.quantum && self.jumps(crack, x)
         };
-        part.sides
-            .iter()
+        let side = |crack: usize| match part.sides.iter().find(|own| own.0 == crack) {
+            Some(&(_, side)) => side,
+            None if part.polygon.is_empty() => {
+                let corners: Vec<Point> = part.tetrahedra.iter().flatten().copied().collect();
+                self.body.cracks[crack].distance(&mean(&corners))
+            }
+            None => self.body.cracks[crack].distance(&mean(&part.polygon)),
+        };
+        cracks
             .filter(on)
-            .map(|&(crack, side)| (crack, side > 0.0))
+            .map(|crack| (crack, side(crack) > 0.0))
             .collect()
     }
 

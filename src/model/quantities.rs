@@ -154,6 +154,25 @@ impl Snapshot {
     }
 }
 
+impl Snapshot {
+    /// What of it is no finite number, if anything: then there is no answer, whatever the residuals say.
+    pub fn not_finite(&self) -> Option<&'static str> {
+        let parts: [(&str, &[f64]); 5] = [
+            ("displacements", &self.u),
+            ("jumps", &self.jump),
+            ("contact forces", &self.p),
+            ("nodal forces", &self.force),
+            (
+                "energies",
+                &[self.strain_energy, self.dissipation, self.energy_identity],
+            ),
+        ];
+        let broken = |values: &[f64]| !values.iter().all(|x| x.is_finite());
+        let found = parts.iter().find(|(_, values)| broken(values));
+        found.map(|(name, _)| *name)
+    }
+}
+
 /// Components in space.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 /// Components at a crack: normal and tangential.

@@ -82,7 +82,7 @@ impl<'a> Solver<'a> {
         timed(self.system, || self.method.solve(increment, &mut Silent))
     }
 
-    /// Solves an increment and judges the outcome against the natural map accepted.
+    /// Solves an increment and judges the outcome against the violation accepted.
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
         let (solved, solve_s) = self.solve(increment);
         let judged = solved.and_then(|outcome| {
@@ -151,6 +151,7 @@ impl JudgedIncrement {
             tier: accuracy.to_string(),
             verdict: self.verdict.clone(),
             natural_map: found(|f| f.natural_map),
+            violation: found(|f| f.violation),
             iterations: counters.iterations,
             factorisations: self.work.map_or(0, |work| work.factorisations),
             solves: counters.solves,
@@ -166,6 +167,12 @@ impl JudgedIncrement {
             equilibrium: found(|f| f.equilibrium),
             claimed_equilibrium: found(|f| f.claimed_equilibrium),
             claimed: found(|f| f.claimed),
+            penetration: found(|f| f.penetration),
+            adhesion: found(|f| f.adhesion),
+            complementarity: found(|f| f.complementarity),
+            cone: found(|f| f.cone),
+            reference_force: found(|f| f.reference_force),
+            reference_jump_m: found(|f| f.reference_jump),
             tangent_factorisations: counters.factorisations,
             global_factorisations: counters.global_factorisations,
             local_solves: counters.local_solves,
@@ -186,7 +193,7 @@ impl JudgedIncrement {
         let row = |iteration: usize| HistoryRow {
             key: key.clone(),
             iteration,
-            natural_map: history[iteration].natural_map,
+            violation: history[iteration].violation,
         };
         recorded_iterations(last).into_iter().map(row).collect()
     }

@@ -153,7 +153,7 @@ impl LoadPathRun<'_> {
                 index: increment - 1,
                 tolerance: accuracy.asked,
             };
-            let solved = solver.judge(&problem, accuracy.accepted);
+            let mut solved = solver.judge(&problem, accuracy.accepted);
             end.now = solved.honest().map(|judged| {
                 Snapshot::new(
                     loading,
@@ -164,6 +164,10 @@ impl LoadPathRun<'_> {
                     &before,
                 )
             });
+            if let Some(what) = end.now.as_ref().and_then(Snapshot::not_finite) {
+                solved.verdict = Verdict::Crashed(format!("{what} of the answer are not finite"));
+                end.now = None;
+            }
             each(&end.key, &solved, end.now.as_ref());
             end.verdict = solved.verdict;
             match solved.judged.filter(|_| end.now.is_some()) {

@@ -12,7 +12,7 @@ use crate::model::quantities::{PointState, Quantity};
 use crate::run::verdict::Verdict;
 
 /// Version of the CSV schema, written in every `runs.csv` row.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// What identifies a run; first columns of every table.
 #[derive(Debug, Clone, PartialEq, PartialOrd, Serialize)]
@@ -53,6 +53,8 @@ pub struct RunRow {
     pub verdict: Verdict,
     /// Natural-map residual found by the judge [-].
     pub natural_map: f64,
+    /// Largest violation of the contact laws found by the judge, of which the natural map is one; verdicts refer to it [-].
+    pub violation: f64,
     /// Iterations of the method.
     pub iterations: usize,
     /// Factorisations of K for this mesh up to this row (shared by all methods, friction values and increments).
@@ -83,6 +85,18 @@ pub struct RunRow {
     pub claimed_equilibrium: f64,
     /// Residual of the laws the method claims to have solved, found by the judge [-].
     pub claimed: f64,
+    /// Deepest overlap of the faces at a contact point, relative to u_ref, found by the judge like the next three [-].
+    pub penetration: f64,
+    /// Largest tension at a contact point, relative to P_ref [-].
+    pub adhesion: f64,
+    /// Largest product of gap and pressure, relative to u_ref P_ref [-].
+    pub complementarity: f64,
+    /// Largest excess over the friction bound, relative to P_ref [-].
+    pub cone: f64,
+    /// P_ref [N, in 2D N/m]; 0 where no point closes.
+    pub reference_force: f64,
+    /// u_ref [m]; likewise.
+    pub reference_jump_m: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
     pub tangent_factorisations: usize,
     /// Sparse factorisations of matrices over all unknowns in this increment, by monolithic variants.
@@ -145,8 +159,8 @@ pub struct HistoryRow {
     pub key: RunKey,
     /// Iteration, from 0 (the start).
     pub iteration: usize,
-    /// Natural-map residual of the iterate [-].
-    pub natural_map: f64,
+    /// Largest violation of the contact laws by the iterate [-].
+    pub violation: f64,
 }
 
 /// One row of `points.csv`: one contact point of one increment.

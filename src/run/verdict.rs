@@ -12,10 +12,10 @@ use stickslip_methods::{Claim, MethodError, Outcome, Residuals, Status, Tier};
 
 use crate::case::Case;
 
-/// Largest backward error of equilibrium after a direct solve; above it the natural map does not measure contact alone.
+/// Largest backward error of equilibrium after a direct solve; above it a violation does not measure contact alone.
 pub const EQUILIBRIUM: f64 = 1e-12;
 
-/// Accuracy of a run, as bounds on the natural map.
+/// Accuracy of a run, as bounds on [`Residuals::violation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// Asked of the method.
@@ -141,15 +141,15 @@ pub const GIVE_UPS: &[Status] = match Status::ALL {
 pub const NOT_RUN: &str = "not run";
 
 impl Verdict {
-    /// Judges an outcome against the natural map accepted.
+    /// Judges an outcome against the violation accepted.
     pub fn of(outcome: &Outcome, found: &Residuals, accepted: f64) -> Self {
         // NaN passes no comparison.
         let as_claimed = found.claimed_equilibrium <= EQUILIBRIUM && found.claimed <= accepted;
-        let solved = found.equilibrium <= EQUILIBRIUM && found.natural_map <= accepted;
+        let solved = found.equilibrium <= EQUILIBRIUM && found.violation <= accepted;
         // Own laws may leave a residual in equilibrium too; it counts like that of the contact laws.
         let holds = |tier: &Tier| {
             let tolerance = tier.tolerance();
-            found.equilibrium <= tolerance && found.natural_map <= tolerance
+            found.equilibrium <= tolerance && found.violation <= tolerance
         };
         match (outcome.status, outcome.claim) {
             (Status::Converged, _) if as_claimed && solved => Verdict::Solved,
@@ -293,17 +293,13 @@ mod tests {
         }
     }
 
-    fn found(natural_map: f64, equilibrium: f64) -> Residuals {
+    fn found(violation: f64, equilibrium: f64) -> Residuals {
         Residuals {
             equilibrium,
             claimed_equilibrium: equilibrium,
-            claimed: natural_map,
-            penetration: 0.0,
-            adhesion: 0.0,
-            complementarity: 0.0,
-            cone: 0.0,
-            slip_direction: 0.0,
-            natural_map,
+            claimed: violation,
+            violation,
+            ..Default::default()
         }
     }
 
@@ -324,6 +320,13 @@ mod tests {
             assert_eq!(verdict, Verdict::FalseClaim);
             assert!(!verdict.is_honest() && verdict.is_failure());
         }
+        // A small natural map excuses nothing.
+        let overlap = Residuals {
+            natural_map: 1e-10,
+            ..found(1e-6, 1e-14)
+        };
+        let verdict = Verdict::of(&converged, &overlap, 1e-9);
+        assert_eq!(verdict, Verdict::FalseClaim);
         let stalled = outcome(Status::Stalled, Claim::Exact);
         assert_eq!(
             Verdict::of(&stalled, &found(1e-15, 0.0), 1e-3),

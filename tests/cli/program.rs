@@ -44,6 +44,31 @@ fn a_reader_that_leaves_early_is_no_error() {
     assert_eq!(found, (Some(0), String::new()));
 }
 
+/// Goal: a file name reaches terminals, tables and figures, but commands none of them.
+#[test]
+#[cfg(unix)]
+fn names_of_files_command_neither_terminal_nor_spreadsheet() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["=1+1", "a\u{1b}[31mb"] {
+        std::fs::write(dir.path().join(format!("{name}.toml")), small(0.0)).unwrap();
+        let file = format!("{name}.toml");
+        let (shown, complaints) = ends_with(0, &["run", &file, "--method", METHOD], dir.path());
+        assert!(!(shown + &complaints).contains('\u{1b}'));
+        let missing = format!("{name}.missing.toml");
+        let (_, complaints) = ends_with(2, &["run", &missing], dir.path());
+        assert!(!complaints.contains('\u{1b}'), "{complaints}");
+        for (file, bytes) in files(&dir.path().join("results")) {
+            let text = String::from_utf8_lossy(&bytes);
+            assert!(
+                !file.contains('\u{1b}') && !text.contains('\u{1b}'),
+                "{file}"
+            );
+            let cell = |line: &str| line.starts_with("=1+1") || line.contains(",=1+1");
+            assert!(!file.ends_with(".csv") || !text.lines().any(cell), "{file}");
+        }
+    }
+}
+
 /// `stickslip run … 2>&- | head`: what nobody can read must not change the exit code.
 #[test]
 fn an_error_that_nobody_reads_keeps_its_exit_code() {

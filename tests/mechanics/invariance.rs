@@ -120,6 +120,9 @@ fn a_turned_mirrored_shifted_and_rescaled_body_gives_the_same_numbers() {
         turned(plain, 1e3, [0.0, 0.0], 1.0),
         turned(plain, 1e-3, [0.0, 0.0], 1.0),
         turned(plain, 1.0, [0.0, 0.0], 1e10),
+        // The smallest and largest displacements and loads a case may name.
+        turned(plain, 1e-21, [0.0, 0.0], 1e-21),
+        turned(plain, 5e24, [0.0, 0.0], 1e25),
         turned(plain, 1.0, [17.3, -5.1], 1.0),
         turned(three, 1e3, [-4e3, 9e2], 2.1e11),
         turned([(0, -1.0), (1, 1.0)], 1.0, [0.0, 0.0], 1.0),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::common::*;
 use stickslip::case::{Case, shipped};
 use stickslip::model::body::{Body, Needs};
+use stickslip::model::quantities::Snapshot;
 use stickslip::run::record::Results;
 use stickslip::run::registry::methods;
 use stickslip::run::verdict::Verdict;
@@ -54,6 +55,32 @@ impl Path {
         let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
         assert_eq!(outcome.status, Status::Converged);
         outcome
+    }
+}
+
+/// Goal: no part of an answer is infinite or undefined unseen.
+#[test]
+fn mechanics_that_are_not_finite_are_no_answer() {
+    let case = shipped::find("plate_mesh1").unwrap().unwrap();
+    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let good = Snapshot::virgin(&body);
+    assert_eq!(good.not_finite(), None);
+    type Spoil = fn(&mut Snapshot, f64);
+    let spoils: [(&str, Spoil); 7] = [
+        ("displacements", |s, x| s.u[3] = x),
+        ("jumps", |s, x| s.jump[1] = x),
+        ("contact forces", |s, x| s.p[0] = x),
+        ("nodal forces", |s, x| s.force[5] = x),
+        ("energies", |s, x| s.strain_energy = x),
+        ("energies", |s, x| s.dissipation = x),
+        ("energies", |s, x| s.energy_identity = x),
+    ];
+    for (what, spoil) in spoils {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut bad = good.clone();
+            spoil(&mut bad, value);
+            assert_eq!(bad.not_finite(), Some(what));
+        }
     }
 }
 

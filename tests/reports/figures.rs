@@ -132,7 +132,7 @@ fn all_methods_are_told_or_counted() {
         named >= 6 && svg.contains(&format!(">{others} other methods<")),
         "{named}"
     );
-    assert!(svg.contains("natural-map residual [-]") && svg.contains("iteration [-]"));
+    assert!(svg.contains("violation of the contact laws [-]") && svg.contains("iteration [-]"));
     for (index, method) in methods().iter().enumerate() {
         let look = |label: &str| plot::looks(&[label], &[label]).remove(0).1;
         assert_eq!(look(method.name).filled, method.exact, "{}", method.name);
@@ -178,6 +178,24 @@ fn methods_that_agree_share_a_band_and_others_stand_out() {
     );
 }
 
+/// Goal: forces of open points that the tolerance leaves, a billionth of the reference force, have no axis of their own.
+#[test]
+fn what_the_tolerance_leaves_of_forces_is_drawn_as_zero() {
+    let axis = |factor: f64| {
+        let mut results = comparison_of_methods();
+        for row in &mut results.points {
+            // P_ref is 1e8 N/m, the tier high: 0.1 N/m.
+            row.point.p_n = factor * row.point.weight;
+            (row.point.p_a, row.point.status) = (0.0, "open".into());
+        }
+        results.exact.clear();
+        let svg = one(&results, ".profile.svg");
+        svg.contains("[mPa]")
+    };
+    // A weight of 1.2 m.
+    assert!(!axis(0.05) && axis(0.2));
+}
+
 #[test]
 fn only_paths_that_run_back_are_loops() {
     assert!(one(&load_path(), ".loop.svg").contains("mean slip [mm]"));
@@ -196,14 +214,14 @@ fn only_paths_that_run_back_are_loops() {
 #[test]
 fn sparse_data_and_hostile_names_are_drawn() {
     let mut results = Results::default();
-    for natural_map in [0.0, f64::NAN] {
+    for violation in [0.0, f64::NAN] {
         let mut key = key("a\u{E000}b", 0.1);
         key.case = "<script>&".into();
         let iteration = results.history.len();
         results.history.push(HistoryRow {
             key,
             iteration,
-            natural_map,
+            violation,
         });
     }
     let svg = one(&results, ".residual.svg");

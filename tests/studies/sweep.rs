@@ -7,7 +7,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::sweep::record::Record;
+use stickslip::studies::sweep::record::{Record, SCHEMA};
+use stickslip::studies::sweep::store::sealed;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
 
@@ -195,7 +196,7 @@ fn two_shards_merged_equal_one_run() {
     let name = name.unwrap().unwrap().path();
     let solved = fs::read_to_string(&name).unwrap();
     let worse = solved.replace("\"verdict\": \"solved\"", "\"verdict\": \"false-claim\"");
-    fs::write(&name, worse).unwrap();
+    fs::write(&name, sealed(&worse)).unwrap();
     let output = compare();
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{text}");
@@ -214,7 +215,7 @@ fn two_shards_merged_equal_one_run() {
         let path = entry.unwrap().path();
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.contains(from));
-        fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        fs::write(&path, sealed(&text.replacen(from, to, 1))).unwrap();
         (path, text)
     };
     let (path, text) = change("\"machine\": \"", "\"machine\": \"another ");
@@ -235,7 +236,7 @@ fn two_shards_merged_equal_one_run() {
     assert!(error.contains("other numbers"), "{error}");
     fs::write(path, text).unwrap();
 
-    let (path, text) = change("\"schema\": 1", "\"schema\": 7");
+    let (path, text) = change(&format!("\"schema\": {SCHEMA}"), "\"schema\": 7");
     let output = merge(&["one", "two"], &["--force"]);
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
@@ -259,7 +260,7 @@ fn records_of_another_program_are_not_taken_for_ones_own() {
     let text = fs::read_to_string(&path).unwrap();
     fs::write(
         &path,
-        text.replacen("\"rustc\": \"", "\"rustc\": \"old ", 1),
+        sealed(&text.replacen("\"rustc\": \"", "\"rustc\": \"old ", 1)),
     )
     .unwrap();
     let error = refused(study(&file, &out, &[]));
@@ -282,6 +283,55 @@ fn records_of_another_program_are_not_taken_for_ones_own() {
     let other = sweep(folder.path(), &METHODS[..1], 3);
     let error = refused(study(&other, &out, &[]));
     assert!(error.contains("another sweep"), "{error}");
+}
+
+/// Goal: what a disk or a hand has changed is refused with file and line, whatever it is, and removing the file helps.
+#[test]
+fn no_changed_digit_of_a_record_is_believed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS[..1], 1);
+    let out = folder.path().join("out");
+    assert_eq!(code(study(&file, &out, &[])), 0);
+    let expected = found(&out);
+    let cell = out.join("cells").join(expected.keys().next().unwrap());
+    for path in [cell.clone(), out.join("sweep.json")] {
+        let text = fs::read_to_string(&path).unwrap();
+        let digits: Vec<usize> = (text.char_indices())
+            .filter(|(_, c)| c.is_ascii_digit())
+            .map(|(at, _)| at)
+            .collect();
+        assert!(digits.len() > 20);
+        // Some from everywhere: a start of the program each.
+        for &at in digits.iter().step_by(digits.len() / 12) {
+            let mut changed = text.clone().into_bytes();
+            changed[at] = if changed[at] == b'9' {
+                b'8'
+            } else {
+                changed[at] + 1
+            };
+            fs::write(&path, changed).unwrap();
+            let error = refused(study(&file, &out, &[]));
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let line = text[..at].lines().count();
+            assert!(error.contains(name), "{error}");
+            assert!(
+                error.contains("line 2") || error.contains("schema"),
+                "{line}: {error}"
+            );
+        }
+        fs::write(&path, text).unwrap();
+        assert_eq!(code(study(&file, &out, &[])), 0);
+    }
+    let text = fs::read_to_string(&cell).unwrap();
+    let without: String = (text.split_inclusive('\n'))
+        .filter(|line| !line.contains("\"digest\": \"") || line.starts_with("    "))
+        .collect();
+    assert_ne!(without, text);
+    fs::write(&cell, without).unwrap();
+    assert!(refused(study(&file, &out, &[])).contains("line 2"));
+    fs::remove_file(&cell).unwrap();
+    assert_eq!(code(study(&file, &out, &[])), 0);
+    assert_eq!(found(&out), expected);
 }
 
 #[test]

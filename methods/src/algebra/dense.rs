@@ -81,6 +81,11 @@ pub(crate) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
+/// The larger of two numbers; NaN if one is, which `max` would drop.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
 /// x / reference with 0/0 = 0.
 pub(crate) fn ratio(x: f64, reference: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x / reference }

@@ -39,13 +39,13 @@ impl Pair {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Status>, MethodError> {
         loop {
-            let mut natural_map = problem.natural_map(&self.p, &self.v);
-            if natural_map <= problem.stop {
+            let mut violation = problem.violation(&self.p, &self.v);
+            if violation <= problem.stop {
                 self.v = problem.jump(&self.p, &self.beta);
-                natural_map = problem.natural_map(&self.p, &self.v);
+                violation = problem.violation(&self.p, &self.v);
             }
             let at = (&self.p[..], &self.beta[..]);
-            match problem.check(natural_map, at, changes, limits, monitor)? {
+            match problem.check(violation, at, changes, limits, monitor)? {
                 Check::GoOn => return Ok(None),
                 Check::End(status) => return Ok(Some(status)),
                 Check::Corrected => self.v = problem.jump(&self.p, &self.beta),

@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use crate::algebra::dense::{dot, norm, ratio};
+use crate::algebra::dense::{dot, norm};
 use crate::algebra::rows::RowSet;
 use crate::condensed::forces::{End, Forces};
-use crate::contract::judge::{free_jump, natural_map_norm, reference_force, slip_from};
+use crate::contract::judge::{Violations, free_jump, reference_force, slip_from};
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use crate::contract::system::Increment;
@@ -31,7 +31,7 @@ const STAGNATION: usize = 15;
 /// Corrections of q per increment; each gains the digits that W has right.
 const MAX_CORRECTIONS: usize = 3;
 
-/// A natural map counts as progress below this fraction of the best before.
+/// A violation counts as progress below this fraction of the best before.
 const IMPROVEMENT: f64 = 0.99;
 
 /// When to give up.
@@ -84,7 +84,7 @@ pub struct ContactProblem<'a> {
     pub q: Vec<f64>,
     /// c in Qᵀ P = c.
     pub balance: Vec<f64>,
-    /// Natural map at which methods stop.
+    /// Violation at which methods stop.
     pub stop: f64,
     /// Work done so far.
     pub counters: Counters,
@@ -95,10 +95,10 @@ pub struct ContactProblem<'a> {
     /// What `Converged` stands for.
     pub(crate) claim: Claim,
     pub(crate) history: Vec<Iteration>,
-    /// |q| of the natural map's denominator.
+    /// |q| in P_ref.
     free_jump: f64,
     rescues: usize,
-    /// Smallest natural map so far and its iteration.
+    /// Smallest violation so far and its iteration.
     best: (f64, usize),
     corrections: usize,
     /// The iterate confirmed last, with its displacements.
@@ -131,7 +131,7 @@ impl<'a> ContactProblem<'a> {
                 claim: Claim::Exact,
                 state: ContactState { u, p },
                 history: vec![Iteration {
-                    natural_map: 0.0,
+                    violation: 0.0,
                     changes: 0,
                 }],
                 counters,
@@ -274,7 +274,7 @@ impl<'a> ContactProblem<'a> {
         self.rescues <= MAX_RESCUES
     }
 
-    /// Whether the natural map has not fallen for some iterations.
+    /// Whether the violation has not fallen for some iterations.
     pub fn stagnates(&self) -> bool {
         self.idle() >= STAGNATION
     }
@@ -284,7 +284,7 @@ impl<'a> ContactProblem<'a> {
         self.best = (f64::INFINITY, self.counters.iterations);
     }
 
-    /// Iterations since the natural map last fell.
+    /// Iterations since the violation last fell.
     pub fn idle(&self) -> usize {
         self.counters.iterations - self.best.1
     }
@@ -317,45 +317,43 @@ impl<'a> ContactProblem<'a> {
         self.free_jump.max(least) / (self.rows.points() as f64).sqrt()
     }
 
-    /// P_ref, the force the natural map is relative to.
+    /// P_ref, the force that violations are relative to.
     pub fn reference_force(&self, p: &[f64]) -> f64 {
         reference_force(self.operator.rho, p, self.free_jump)
     }
 
-    /// The natural map, as the judge computes it.
-    pub fn natural_map(&mut self, p: &[f64], v: &[f64]) -> f64 {
+    /// η, the largest violation of the contact laws, as the judge computes it; see
+    /// [`Residuals::violation`](crate::Residuals::violation).
+    pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        let e = natural_map_norm(friction, self.rows, self.operator.rho, p, v);
-        ratio(e, self.reference_force(p))
+        let (rho, p_ref) = (self.operator.rho, self.reference_force(p));
+        Violations::of(friction, self.rows, rho, p_ref, p, v).largest()
     }
 
     /// Adds an entry to the history.
-    pub(crate) fn note(&mut self, natural_map: f64, changes: usize) {
-        self.history.push(Iteration {
-            natural_map,
-            changes,
-        });
+    pub(crate) fn note(&mut self, violation: f64, changes: usize) {
+        self.history.push(Iteration { violation, changes });
     }
 
     /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
     pub(crate) fn ends(
         &mut self,
-        natural_map: f64,
+        violation: f64,
         changes: usize,
         limits: Limits,
         monitor: &mut dyn Monitor,
     ) -> Option<Status> {
-        if natural_map < IMPROVEMENT * self.best.0 {
-            self.best = (natural_map, self.counters.iterations);
+        if violation < IMPROVEMENT * self.best.0 {
+            self.best = (violation, self.counters.iterations);
         }
-        self.note(natural_map, changes);
+        self.note(violation, changes);
         let iteration = self.counters.iterations;
-        if natural_map <= self.stop {
+        if violation <= self.stop {
             Some(Status::Converged)
-        } else if !natural_map.is_finite() {
+        } else if !violation.is_finite() {
             Some(Status::Diverged)
-        } else if !monitor.step(iteration, natural_map) {
+        } else if !monitor.step(iteration, violation) {
             Some(Status::Stopped)
         } else if iteration >= limits.iterations {
             Some(Status::MaxIterations)
@@ -367,20 +365,20 @@ impl<'a> ContactProblem<'a> {
         }
     }
 
-    /// Notes an iterate (P, β) of this natural map and says what becomes of it. One that has converged is checked against K
+    /// Notes an iterate (P, β) of this violation and says what becomes of it. One that has converged is checked against K
     /// itself, as the judge will.
     ///
     /// # Errors
     /// Those of a solve with K.
     pub fn check(
         &mut self,
-        natural_map: f64,
+        violation: f64,
         (p, beta): (&[f64], &[f64]),
         changes: usize,
         limits: Limits,
         monitor: &mut dyn Monitor,
     ) -> Result<Check, MethodError> {
-        match self.ends(natural_map, changes, limits, monitor) {
+        match self.ends(violation, changes, limits, monitor) {
             None => Ok(Check::GoOn),
             Some(status) => self.confirm(status, p, beta),
         }
@@ -403,8 +401,8 @@ impl<'a> ContactProblem<'a> {
             return Ok(Check::End(Status::Diverged));
         };
         let found = self.slip_of(&state.u);
-        let natural_map = self.natural_map(&self.rows.restrict(&state.p), &found);
-        if natural_map <= self.increment.tolerance {
+        let violation = self.violation(&self.rows.restrict(&state.p), &found);
+        if violation <= self.increment.tolerance {
             self.confirmed = Some(state);
             return Ok(Check::End(status));
         }

@@ -91,14 +91,14 @@ impl Saddle {
         loop {
             let mut p = x.p.clone();
             problem.rebalance(&mut p);
-            let mut natural_map = problem.natural_map(&p, &x.v);
-            if natural_map <= problem.stop {
+            let mut violation = problem.violation(&p, &x.v);
+            if violation <= problem.stop {
                 self.refresh(problem, x);
                 let (p, beta) = self.balanced(problem, x);
                 let v = problem.jump(&p, &beta);
-                natural_map = problem.natural_map(&p, &v);
+                violation = problem.violation(&p, &v);
             }
-            let Some(status) = problem.ends(natural_map, changes, limits, monitor) else {
+            let Some(status) = problem.ends(violation, changes, limits, monitor) else {
                 return Ok(None);
             };
             let (p, beta) = self.balanced(problem, x);

@@ -103,7 +103,7 @@ pub fn from_all_starts(
             return Err(MethodError::StartIsHistory);
         }
         if outcome.status == Status::Converged {
-            let found = residuals(&posed, &outcome.state)?.natural_map;
+            let found = residuals(&posed, &outcome.state)?.violation;
             // A NaN is no solution.
             broken |= found.is_nan() || found > increment.tolerance;
         } else {

@@ -99,11 +99,11 @@ impl CondensedMethod for FixedPoint {
         let mut restarted = false;
         loop {
             let v = problem.jump(&x.p, &x.beta);
-            let natural_map = problem.natural_map(&x.p, &v);
-            if self.settings.polish && at_floor(problem, natural_map) {
+            let violation = problem.violation(&x.p, &v);
+            if self.settings.polish && at_floor(problem, violation) {
                 return self.polished(problem, x, monitor);
             }
-            if stuck(problem, natural_map) && !restarted {
+            if stuck(problem, violation) && !restarted {
                 restarted = true;
                 problem.begin_phase();
                 anderson = Anderson::new(self.settings.anderson);
@@ -114,7 +114,7 @@ impl CondensedMethod for FixedPoint {
                 }
             }
             let changes = branches.changes(problem, &x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), changes, limits, monitor)? {
+            match problem.check(violation, (&x.p, &x.beta), changes, limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => {
                     // The program holds q.
@@ -124,7 +124,7 @@ impl CondensedMethod for FixedPoint {
                 Check::End(status) => return Ok(End { status, at: x }),
             }
             let a = anderson.next(self.parameters(problem, &x.p, &v));
-            let solution = program.solve(&a, accuracy.next(natural_map))?;
+            let solution = program.solve(&a, accuracy.next(violation))?;
             problem.counters.factorisations += solution.factorisations;
             let Some((p, beta)) = solution.forces else {
                 let status = problem.singular();
@@ -137,20 +137,20 @@ impl CondensedMethod for FixedPoint {
 }
 
 /// Whether Newton's method should take over: not before the fixed point has done its work, and not if that is enough.
-fn at_floor(problem: &ContactProblem<'_>, natural_map: f64) -> bool {
-    let at_floor = problem.stagnates() && natural_map <= CYCLING;
-    natural_map > problem.stop && (natural_map <= POLISH || at_floor)
+fn at_floor(problem: &ContactProblem<'_>, violation: f64) -> bool {
+    let at_floor = problem.stagnates() && violation <= CYCLING;
+    violation > problem.stop && (violation <= POLISH || at_floor)
 }
 
 /// Whether the fixed point cycles or runs away, as where a wedge locks: μ P_n then grows faster than the bound it came from.
-fn stuck(problem: &ContactProblem<'_>, natural_map: f64) -> bool {
-    problem.stagnates() && natural_map > CYCLING
+fn stuck(problem: &ContactProblem<'_>, violation: f64) -> bool {
+    problem.stagnates() && violation > CYCLING
 }
 
 /// How accurately the next program is solved: far from the fixed point its last digits would be thrown away.
 struct Accuracy {
     tolerance: f64,
-    natural_map: f64,
+    violation: f64,
 }
 
 impl Accuracy {
@@ -159,19 +159,19 @@ impl Accuracy {
         let frictionless = problem.len() == problem.rows.points();
         Self {
             tolerance: if frictionless { TIGHTEST } else { LOOSE },
-            natural_map: f64::INFINITY,
+            violation: f64::INFINITY,
         }
     }
 
-    fn next(&mut self, natural_map: f64) -> f64 {
-        let slow = natural_map > 0.5 * self.natural_map;
+    fn next(&mut self, violation: f64) -> f64 {
+        let slow = violation > 0.5 * self.violation;
         let wanted = if slow {
             TIGHTEN * self.tolerance
         } else {
-            LOOSE * natural_map
+            LOOSE * violation
         };
         self.tolerance = wanted.clamp(TIGHTEST, self.tolerance);
-        self.natural_map = natural_map;
+        self.violation = violation;
         self.tolerance
     }
 }

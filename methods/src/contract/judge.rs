@@ -1,6 +1,6 @@
 //! The judge: how well a state fulfils equilibrium and contact law, whatever method produced it.
 
-use crate::algebra::dense::{norm, ratio};
+use crate::algebra::dense::{larger, norm, ratio};
 use crate::algebra::rows::RowSet;
 use crate::contract::barrier_law::BarrierLaw;
 use crate::contract::law::{natural_map_squared, return_map, tangential_norm};
@@ -9,7 +9,7 @@ use crate::contract::state::{Claim, ContactState};
 use crate::contract::system::Increment;
 use crate::error::{MethodError, check_finite, check_len};
 
-/// Residuals of one state, all dimensionless: they change neither with units nor with the tangent frames.
+/// Residuals of one state, dimensionless but for the reference sizes: they change neither with units nor with the tangent frames.
 ///
 /// Reference sizes: u_ref = max(|q|, |P|/ρ) and P_ref = ρ u_ref, with q the jump without contact forces, ρ =
 /// rows / trace(W), and Euclidean norms over all points.
@@ -20,7 +20,7 @@ pub struct Residuals {
     pub equilibrium: f64,
     /// The same under the claim: Nitsche's laws have a consistency term, which counts as a force.
     pub claimed_equilibrium: f64,
-    /// Residual of the laws that the claim names, relative to P_ref. Under [`Claim::Exact`] the natural map.
+    /// Residual of the laws that the claim names, relative to P_ref. Under [`Claim::Exact`] the violation.
     pub claimed: f64,
     /// max −g / u_ref over the points.
     pub penetration: f64,
@@ -33,8 +33,17 @@ pub struct Residuals {
     /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
     pub slip_direction: f64,
     /// |e| / P_ref with e = P − proj(P − ρ ṽ) the natural map with De Saxcé's correction: zero if and only if all
-    /// contact laws hold. Tiers and verdicts refer to it.
+    /// contact laws hold.
     pub natural_map: f64,
+    /// η: the largest of natural map, penetration, adhesion, complementarity and cone. Tiers and verdicts refer to it.
+    ///
+    /// The natural map alone divides penetration and cone by √(1 + μ²): −ρ g ≤ |e_n| + μ |e_t|, and as much for
+    /// |P_t| − μ P_n. On scales of their own no μ hides them.
+    pub violation: f64,
+    /// P_ref \[N, in 2D N/m\]; 0 where nothing had to be compared.
+    pub reference_force: f64,
+    /// u_ref \[m\]; likewise.
+    pub reference_jump: f64,
 }
 
 /// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
@@ -93,39 +102,36 @@ pub fn residuals_of(
     let p_ref = reference_force(rho, &p, free);
     let u_ref = p_ref / rho;
 
-    for point in 0..rows.points() {
-        let (p, v, mu) = (
-            &p[rows.of(point)],
-            &v[rows.of(point)],
-            system.friction()[point],
-        );
-        let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
-        let raise = |entry: &mut f64, value: f64| *entry = entry.max(value);
-        raise(&mut result.penetration, ratio(-v[0], u_ref));
-        raise(&mut result.adhesion, ratio(-p[0], p_ref));
-        raise(
-            &mut result.complementarity,
-            ratio((v[0] * p[0]).abs(), u_ref * p_ref),
-        );
-        raise(
-            &mut result.slip_direction,
-            ratio(
-                (mu * p[0] * tangential_norm(v) + power).abs(),
-                u_ref * p_ref,
-            ),
-        );
-        // All components, also those without a row: forces the law forbids must not hide.
-        let force = &s.p[dim * point..dim * (point + 1)];
-        raise(
-            &mut result.cone,
-            ratio(tangential_norm(force) - mu * force[0].max(0.0), p_ref),
-        );
-    }
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
-    let e = natural_map_norm(system.friction(), rows, rho, &p, &v).hypot(forbidden.max(0.0).sqrt());
-    result.natural_map = ratio(e, p_ref);
+    let found = Violations::of(system.friction(), rows, rho, p_ref, &p, &v);
+    let natural_map = found
+        .natural_map
+        .hypot(ratio(forbidden.max(0.0).sqrt(), p_ref));
+    // All components, also those without a row: forces the law forbids must not hide.
+    let excess = |i: usize| excess(system.friction()[i], &s.p[dim * i..dim * (i + 1)]);
+    let cone = ratio((0..rows.points()).map(excess).fold(0.0, larger), p_ref);
+    let found = Violations {
+        natural_map,
+        cone,
+        ..found
+    };
+    result.natural_map = found.natural_map;
+    result.penetration = found.penetration;
+    result.adhesion = found.adhesion;
+    result.complementarity = found.complementarity;
+    result.cone = found.cone;
+    result.violation = found.largest();
+    result.reference_force = p_ref;
+    result.reference_jump = u_ref;
+    for point in 0..rows.points() {
+        let (p, v) = (&p[rows.of(point)], &v[rows.of(point)]);
+        let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
+        let lost = system.friction()[point] * p[0] * tangential_norm(v);
+        let direction = ratio((lost + power).abs(), u_ref * p_ref);
+        result.slip_direction = larger(result.slip_direction, direction);
+    }
     result.claimed = match claim {
-        Claim::Exact => result.natural_map,
+        Claim::Exact => result.violation,
         Claim::Penalised { normal, tangential } => {
             // Springs in series with the body: the contact laws hold with v + (P − A)/k for v.
             let mut stretched = v;
@@ -136,8 +142,7 @@ pub fn residuals_of(
                     (p[k] - i.start.p[row]) / tangential
                 };
             }
-            let e = natural_map_norm(system.friction(), rows, rho, &p, &stretched);
-            ratio(e, p_ref)
+            Violations::of(system.friction(), rows, rho, p_ref, &p, &stretched).largest()
         }
         Claim::Barrier {
             gap,
@@ -234,18 +239,60 @@ pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) 
         .collect()
 }
 
-/// |e| over all points.
-pub(crate) fn natural_map_norm(
-    friction: &[f64],
-    rows: &RowSet,
-    rho: f64,
-    p: &[f64],
-    v: &[f64],
-) -> f64 {
-    (0..rows.points())
-        .map(|i| natural_map_squared(friction[i], rho, &p[rows.of(i)], &v[rows.of(i)]))
-        .sum::<f64>()
-        .sqrt()
+/// What of the contact laws a pair of forces and jumps breaks, each relative to its own scale; see [`Residuals`].
+pub(crate) struct Violations {
+    natural_map: f64,
+    penetration: f64,
+    adhesion: f64,
+    complementarity: f64,
+    cone: f64,
+}
+
+impl Violations {
+    /// Of P and v = (g, d) by row, with u_ref = P_ref/ρ.
+    pub(crate) fn of(
+        friction: &[f64],
+        rows: &RowSet,
+        rho: f64,
+        p_ref: f64,
+        p: &[f64],
+        v: &[f64],
+    ) -> Self {
+        let (mut square, mut overlap, mut tension, mut product, mut outside) =
+            (0.0, 0.0, 0.0, 0.0, 0.0);
+        for (own, &mu) in rows.iter().zip(friction) {
+            let (p, v) = (&p[own.clone()], &v[own]);
+            square += natural_map_squared(mu, rho, p, v);
+            overlap = larger(overlap, -v[0]);
+            tension = larger(tension, -p[0]);
+            product = larger(product, (v[0] * p[0]).abs());
+            outside = larger(outside, excess(mu, p));
+        }
+        let u_ref = p_ref / rho;
+        Self {
+            natural_map: ratio(square.sqrt(), p_ref),
+            penetration: ratio(overlap, u_ref),
+            adhesion: ratio(tension, p_ref),
+            complementarity: ratio(product, u_ref * p_ref),
+            cone: ratio(outside, p_ref),
+        }
+    }
+
+    /// The largest; NaN if one is.
+    pub(crate) fn largest(&self) -> f64 {
+        let own_scales = [
+            self.penetration,
+            self.adhesion,
+            self.complementarity,
+            self.cone,
+        ];
+        own_scales.into_iter().fold(self.natural_map, larger)
+    }
+}
+
+/// |P_t| − μ max(P_n, 0) at one point.
+fn excess(mu: f64, p: &[f64]) -> f64 {
+    tangential_norm(p) - mu * p[0].max(0.0)
 }
 
 /// |q| without what rigid motions and pins contribute: |(I − Q Qᵀ)(q + W Q c)|, where Q c are the contact forces of

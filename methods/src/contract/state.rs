@@ -74,7 +74,7 @@ impl std::fmt::Display for Status {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Claim {
-    /// The contact laws themselves: the natural map is at or below the tolerance asked for.
+    /// The contact laws themselves: their violation is at or below the tolerance asked for.
     Exact,
     /// Penalised laws, whose distance from the contact laws is a modelling error: the natural map is reported, not
     /// promised. P_n = k_n max(−g, 0), and |P_t| <= μ P_n with the elastic slip P_t/k_t.
@@ -133,8 +133,9 @@ impl Claim {
 /// One entry of the iteration history; the first describes the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
-    /// Natural map of the contact laws [-]; of an approximate method it ends at the modelling error.
-    pub natural_map: f64,
+    /// Largest violation of the contact laws \[-\], see [`Residuals::violation`](crate::Residuals::violation); of an
+    /// approximate method it ends at the modelling error.
+    pub violation: f64,
     /// Points that changed between open, stick and slip since the entry before.
     pub changes: usize,
 }
@@ -172,7 +173,7 @@ pub struct Outcome {
 /// Watches a running method and may stop it, e.g. at a time limit.
 pub trait Monitor {
     /// Called once per iteration; `false` ends the method with [`Status::Stopped`].
-    fn step(&mut self, iteration: usize, natural_map: f64) -> bool;
+    fn step(&mut self, iteration: usize, violation: f64) -> bool;
 }
 
 /// A monitor that never stops anything.
@@ -180,7 +181,7 @@ pub trait Monitor {
 pub struct Silent;
 
 impl Monitor for Silent {
-    fn step(&mut self, _iteration: usize, _natural_map: f64) -> bool {
+    fn step(&mut self, _iteration: usize, _violation: f64) -> bool {
         true
     }
 }

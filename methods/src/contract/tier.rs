@@ -1,9 +1,9 @@
-//! Accuracy tiers: the values of the natural map a run may be asked for.
+//! Accuracy tiers: the bounds on the violation of the contact laws a run may be asked for.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Accuracy a run is asked for, as a bound on the natural map.
+/// Accuracy a run is asked for, as a bound on [`Residuals::violation`](crate::Residuals::violation).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Tier {
     /// 1e-3.
@@ -18,7 +18,7 @@ impl Tier {
     /// All tiers, coarsest first.
     pub const ALL: [Tier; 3] = [Tier::Low, Tier::Mid, Tier::High];
 
-    /// Largest natural map that passes.
+    /// Largest violation that passes.
     pub fn tolerance(self) -> f64 {
         match self {
             Tier::Low => 1e-3,

@@ -168,7 +168,7 @@ impl Rounds {
         }
         self.best = self.forces(problem);
         let v = problem.jump(&self.best.p, &self.best.beta);
-        self.reached.0 = problem.natural_map(&self.best.p, &v);
+        self.reached.0 = problem.violation(&self.best.p, &v);
         Ok(None)
     }
 

@@ -95,14 +95,14 @@ impl CondensedMethod for InteriorPoint {
         let status = loop {
             let v = problem.jump(&P, &beta);
             let changes = branches.changes(problem, &P, &v);
-            let natural_map = problem.natural_map(&P, &v);
-            match problem.check(natural_map, (&P, &beta), changes, limits, monitor)? {
+            let violation = problem.violation(&P, &v);
+            match problem.check(violation, (&P, &beta), changes, limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => continue,
                 Check::End(status) => break status,
             }
             let x = path.take().unwrap_or_else(|| {
-                depth = next_depth(depth, &P, natural_map);
+                depth = next_depth(depth, &P, violation);
                 Iterate::inside(problem, &P, &beta, depth)
             });
             problem.counters.factorisations += 1;
@@ -110,7 +110,7 @@ impl CondensedMethod for InteriorPoint {
             else {
                 break problem.singular();
             };
-            let t = x.step_length(problem, &step, self.fraction.max(1.0 - natural_map));
+            let t = x.step_length(problem, &step, self.fraction.max(1.0 - violation));
             let x = x.moved(t, &step);
             P.clone_from(&x.P);
             problem.rebalance(&mut P);
@@ -124,9 +124,9 @@ impl CondensedMethod for InteriorPoint {
 
 /// How deep inside the cones the path begins: as far as the start is wrong, and twice as deep after every jam. The
 /// natural map of a start without forces says nothing.
-fn next_depth(before: f64, P: &[f64], natural_map: f64) -> f64 {
+fn next_depth(before: f64, P: &[f64], violation: f64) -> f64 {
     match before {
-        0.0 if P.iter().any(|&p| p != 0.0) => natural_map.clamp(SHALLOWEST, 1.0),
+        0.0 if P.iter().any(|&p| p != 0.0) => violation.clamp(SHALLOWEST, 1.0),
         0.0 => 1.0,
         _ => 2.0 * before.max(0.5),
     }

@@ -112,8 +112,8 @@ impl<S: Scheme> Newton<S> {
             let v = problem.jump(&x.p, &x.beta);
             let pieces = self.pieces(problem, &r, &x.p, &v);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
-            let natural_map = problem.natural_map(&x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), changes, self.limits, monitor)? {
+            let violation = problem.violation(&x.p, &v);
+            match problem.check(violation, (&x.p, &x.beta), changes, self.limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => continue,
                 Check::End(status) => return Ok(End { status, at: x }),

@@ -326,7 +326,7 @@ impl Point {
     }
 }
 
-/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`]. What is noted is the natural map
+/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`]. What is noted is the violation
 /// of the contact laws, as for every method: it ends at the modelling error, not at zero.
 ///
 /// `jump(problem, iterate)` is v, without what lies in series.
@@ -336,9 +336,9 @@ pub(crate) fn recorded<'m>(
 ) -> impl FnMut(&mut ContactProblem<'_>, &Point, usize) -> bool + 'm {
     move |problem, at, changes| {
         let v = jump(problem, at);
-        let natural_map = problem.natural_map(&at.p, &v);
+        let violation = problem.violation(&at.p, &v);
         problem.counters.iterations = problem.history.len();
-        problem.note(natural_map, changes);
-        monitor.step(problem.counters.iterations, natural_map)
+        problem.note(violation, changes);
+        monitor.step(problem.counters.iterations, violation)
     }
 }

@@ -257,13 +257,13 @@ impl Barrier {
         monitor: &mut dyn Monitor,
     ) -> Option<Status> {
         let v = problem.jump(&at.P, beta);
-        let natural_map = problem.natural_map(&at.P, &v);
-        problem.note(natural_map, changes);
+        let violation = problem.violation(&at.P, &v);
+        problem.note(violation, changes);
         let iteration = problem.counters.iterations;
         if !residual.is_finite() {
             return Some(Status::Diverged);
         }
-        let go_on = monitor.step(iteration, natural_map);
+        let go_on = monitor.step(iteration, violation);
         if solved {
             Some(Status::Converged)
         } else if !go_on {

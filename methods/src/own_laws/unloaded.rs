@@ -16,9 +16,9 @@ pub(crate) fn unloaded(problem: &mut ContactProblem<'_>) -> Result<End, MethodEr
     let P = vec![0.0; problem.len()];
     let beta = lifted(problem, problem.start_amplitudes(&P));
     let v = problem.jump(&P, &beta);
-    let natural_map = problem.natural_map(&P, &v);
-    problem.note(natural_map, 0);
-    let status = if natural_map <= problem.stop {
+    let violation = problem.violation(&P, &v);
+    problem.note(violation, 0);
+    let status = if violation <= problem.stop {
         Status::Converged
     } else {
         Status::Stalled

@@ -100,8 +100,8 @@ impl CondensedMethod for AugmentedLagrangian {
 
         let status = loop {
             let v = problem.jump(&x.p, &x.beta);
-            let natural_map = problem.natural_map(&x.p, &v);
-            match problem.check(natural_map, (&x.p, &x.beta), changes, outer, monitor)? {
+            let violation = problem.violation(&x.p, &v);
+            match problem.check(violation, (&x.p, &x.beta), changes, outer, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => continue,
                 Check::End(status) => break status,

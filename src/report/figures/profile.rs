@@ -8,8 +8,9 @@ use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
 use crate::report::{Bundle, ReportError};
-use crate::run::record::{ExactRow, PointRow, Results, RunKey};
+use crate::run::record::{ExactRow, PointRow, Results, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
+use stickslip_methods::Tier;
 
 /// What it is.
 pub static KIND: Kind = Kind {
@@ -21,7 +22,7 @@ pub static KIND: Kind = Kind {
             with all friction coefficients by the first exact method.",
 };
 
-/// Jumps below this fraction of the crack's length are what the tolerance of a method leaves.
+/// Jumps below this fraction of the crack's length are round-off.
 const ROUND_OFF: f64 = 1e-10;
 /// Difference that can be seen, as a fraction of the largest value.
 const VISIBLE: f64 = 0.01;
@@ -76,7 +77,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
                 rows.sort_by(|a, b| a.point.s_m.total_cmp(&b.point.s_m));
             }
             own.retain(|(_, rows)| !rows.is_empty());
-            let figure = Profile::new(&own, &results.exact, crack).by_method();
+            let figure = Profile::new(&own, results, crack).by_method();
             KIND.add(bundle, &format!("{name}.crack-{crack}"), figure.svg()?)?;
             for (key, rows) in own {
                 let body = file_name(&[&key.case, &key.mesh, &key.space]);
@@ -89,7 +90,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
     for ((body, crack, _, method), mut runs) in sweeps {
         if runs.len() > 1 && done.insert((body.clone(), crack)) {
             runs.sort_by(|a, b| a.0.friction.total_cmp(&b.0.friction));
-            let figure = Profile::new(&runs, &results.exact, crack).by_friction();
+            let figure = Profile::new(&runs, results, crack).by_friction();
             let name = format!("{body}.{}.crack-{crack}", file_name(&[method]));
             KIND.add(bundle, &name, figure.svg()?)?;
         }
@@ -103,14 +104,24 @@ struct Profile<'a> {
     /// Closed forms by friction coefficient.
     exact: BTreeMap<u64, Vec<&'a ExactRow>>,
     crack: usize,
-    /// What the tolerance of a method leaves of a jump [m].
+    /// Round-off of a jump [m].
     round_off: f64,
+    /// What the tolerance leaves of contact forces [N/m] and of jumps [m], by run.
+    left: Vec<[f64; 2]>,
+}
+
+/// Tolerance × reference sizes of a run; nothing if they are not known.
+fn left_by_tolerance(row: &RunRow) -> [f64; 2] {
+    let tier: Option<Tier> = row.tier.parse().ok();
+    let tolerance = tier.map(Tier::tolerance).or_else(|| row.tier.parse().ok());
+    let left = [row.reference_force, row.reference_jump_m];
+    left.map(|size| (tolerance.unwrap_or(0.0) * size).max(0.0))
 }
 
 impl<'a> Profile<'a> {
-    fn new(runs: &'a [Run<'a, PointRow>], exact: &'a [ExactRow], crack: usize) -> Self {
+    fn new(runs: &'a [Run<'a, PointRow>], results: &'a Results, crack: usize) -> Self {
         let mut curves: BTreeMap<u64, Vec<&ExactRow>> = BTreeMap::new();
-        for row in exact.iter().filter(|row| row.crack == crack) {
+        for row in results.exact.iter().filter(|row| row.crack == crack) {
             let of = (&row.case, row.friction, row.increment);
             let own = |(key, _): &Run<'_, _>| of == (&key.case, key.friction, key.increment);
             if runs.iter().any(own) {
@@ -127,7 +138,27 @@ impl<'a> Profile<'a> {
             exact: curves,
             crack,
             round_off: ROUND_OFF * length,
+            left: (runs.iter())
+                .map(|(key, _)| {
+                    let mut rows = results.runs.iter();
+                    let own = rows.find(|row| row.key == **key);
+                    own.map_or([0.0; 2], left_by_tolerance)
+                })
+                .collect(),
         }
+    }
+
+    /// Whether a quantity is nowhere more than round-off and what the tolerance leaves: its size says nothing.
+    fn is_noise(&self, quantity: usize) -> bool {
+        let jump = quantity >= 2;
+        let mut exact = self.exact.values().flatten();
+        let small = |row: &PointRow, [force, gap]: [f64; 2]| match jump {
+            true => found(row, quantity).abs() <= gap.max(self.round_off),
+            false => found(row, quantity).abs() * row.point.weight <= force,
+        };
+        let mut runs = self.runs.iter().zip(&self.left);
+        exact.all(|row| closed(row, quantity).abs() <= if jump { self.round_off } else { 0.0 })
+            && runs.all(|((_, rows), left)| rows.iter().all(|row| small(row, *left)))
     }
 
     fn has(&self, status: &str) -> bool {
@@ -147,7 +178,11 @@ impl<'a> Profile<'a> {
     /// All methods on one problem; differences are compared with the largest traction and the largest jump.
     fn by_method(&self) -> Figure {
         let largest = [0, 1, 2, 3].map(|quantity| self.largest(quantity));
-        let traction = largest[0].max(largest[1]).max(f64::MIN_POSITIVE);
+        // Noise is not compared with itself.
+        let traction = match self.is_noise(0) && self.is_noise(1) {
+            true => f64::INFINITY,
+            false => largest[0].max(largest[1]).max(f64::MIN_POSITIVE),
+        };
         let jump = largest[2]
             .max(largest[3])
             .max(self.round_off.max(f64::MIN_POSITIVE));
@@ -211,8 +246,8 @@ impl<'a> Profile<'a> {
 
     fn panel(&self, quantity: usize, curves: &[(usize, String, Style)]) -> Panel {
         let (largest, unit) = (self.largest(quantity), UNITS[quantity]);
-        // Jumps of sticking points are round-off: they are drawn as zero, not on an axis of attometres.
-        let (factor, unit) = match unit == "m" && largest < self.round_off {
+        // Jumps of sticking points and forces of open ones are drawn as zero, not on an axis of attometres or millipascals.
+        let (factor, unit) = match self.is_noise(quantity) {
             true => (0.0, unit.to_owned()),
             false => prefixed(largest, unit),
         };

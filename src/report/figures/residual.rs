@@ -1,4 +1,4 @@
-//! Natural-map residual against iteration: all methods on one problem.
+//! Violation of the contact laws against iteration: all methods on one problem.
 
 use super::kind::Kind;
 use super::runs::{Run, by_problem, counted, distinct, problem};
@@ -12,7 +12,7 @@ use stickslip_methods::Tier;
 pub static KIND: Kind = Kind {
     file: "*.residual.svg",
     question: "How does every method converge on this problem?",
-    shows: "Natural-map residual of the recorded iterates of the last increment, a curve per method; the \
+    shows: "Largest violation of the contact laws by the recorded iterates of the last increment, a curve per method; the \
             dashed line is the tolerance that was asked for.",
 };
 
@@ -55,13 +55,13 @@ fn figure(runs: &[Run<'_, HistoryRow>], found: &[&RunRow]) -> Figure {
         let tried = counted(found.len(), "method");
         caption += &format!("; {} of {tried} solve the contact laws", solved.len());
     }
-    let y = Axis::log("natural-map residual [-]");
+    let y = Axis::log("violation of the contact laws [-]");
     let mut panel = Panel::new(Axis::counts("iteration [-]"), y, 62.0);
     let methods: Vec<&str> = runs.iter().map(|(key, _)| key.method.as_str()).collect();
     let extremes: Vec<&str> = ends.iter().map(|end| end.0).collect();
     for ((_, rows), (label, style)) in runs.iter().zip(looks(&methods, &extremes)) {
-        let known = rows.iter().filter(|row| row.natural_map.is_finite());
-        let point = |row: &&HistoryRow| [row.iteration as f64, row.natural_map.max(SHOWN)];
+        let known = rows.iter().filter(|row| row.violation.is_finite());
+        let point = |row: &&HistoryRow| [row.iteration as f64, row.violation.max(SHOWN)];
         let mut points: Vec<[f64; 2]> = known.map(point).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         panel.series.push(Series::new(label, style, points));

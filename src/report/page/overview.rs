@@ -46,8 +46,8 @@ pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, 
     Ok(Some(Section {
         id: "glance",
         title: "At a glance",
-        lead: "Accuracy is one number for every method, the natural map: the residual of all contact laws, recomputed by one \
-               judge from what the method returned. Tiers: low 10⁻³, mid 10⁻⁶, high 10⁻⁹. Times stand beside honest verdicts only.",
+        lead: "Accuracy is one number for every method, the largest violation of the contact laws: natural map, overlap, tension, \
+               gap times pressure and excess over the friction bound, recomputed by one judge from what the method returned. Tiers: low 10⁻³, mid 10⁻⁶, high 10⁻⁹. Times stand beside honest verdicts only.",
         blocks,
     }))
 }

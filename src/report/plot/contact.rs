@@ -26,8 +26,10 @@ const APART_MM: f64 = 3.4;
 const ARROW_MM: f64 = 5.0;
 /// Arrows shorter than this fraction of the longest are left out.
 const SHORTEST: f64 = 0.05;
-/// Jumps below this fraction of the crack's size are what the tolerance of a method leaves.
+/// Jumps below this fraction of the crack's size, and tangential tractions below the other of the largest traction, are what
+/// the tolerance of a method leaves.
 const ROUND_OFF: f64 = 1e-10;
+const NO_TRACTION: f64 = 1e-9;
 const LEGEND_MM: f64 = 5.0;
 
 /// Open, stick and slip on the crack of a solid with arrows for its tangential jump, or for the tangential contact traction
@@ -138,7 +140,10 @@ impl<'a> Face<'a> {
                 "Pa",
             )
         };
-        let largest = longest(&arrows);
+        let tractions = longest(point_vector(crack, "contact_traction_pa")?);
+        let open = status.iter().all(|value| *value == 0.0);
+        let noise = unit == "Pa" && (open || longest(&arrows) <= NO_TRACTION * tractions);
+        let largest = if noise { 0.0 } else { longest(&arrows) };
         let (factor, unit) = prefixed(largest, unit);
         let label = format!(
             "{what}, longest {} {unit}",

@@ -4,7 +4,7 @@ use super::axis::{Axis, prefixed, range};
 use super::bands::{self, Levels, Triangle};
 use super::canvas::*;
 use super::figure::{draw_labels, room_for_labels};
-use super::mesh::{Box2, DISPLACEMENT, deformed, fail, outline, point_vector, stroke};
+use super::mesh::{Box2, DISPLACEMENT, conforming, deformed, fail, outline, point_vector, stroke};
 use super::panel::{Place, draw_panel};
 use super::series::Panel;
 use super::style::{BLACK, MIDDLE};
@@ -140,8 +140,8 @@ fn contours(
     let (moved, factor) = deformed(picture)?;
     let places = [&picture.points, &moved];
     let places = places.map(|points| points.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>());
-    let faces = faces(picture, &places[1])?;
-    let outline = outline(picture, &faces);
+    let faces = conforming(picture, &faces(picture, &places[1])?);
+    let outline = outline(&faces).into_iter().collect();
     let Some(shown) = Box2::around(places.iter().flatten().copied()) else {
         return fail(DISPLACEMENT, "no finite values");
     };

@@ -6,6 +6,7 @@
 use super::axis::{nice_step, range};
 use super::bands::chains;
 use super::canvas::{Canvas, Pixel};
+use super::solid::dot;
 use super::style::Rgb;
 use crate::model::field_mesh::FieldMesh;
 use crate::report::ReportError;
@@ -60,38 +61,170 @@ pub fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 2]> {
     (0..face.len()).map(|i| [face[i], face[(i + 1) % face.len()]])
 }
 
-/// Edges of exactly one of the faces, without those where one long edge meets two short ones: beside the tip of a crack,
-/// which ends inside a cell.
-pub fn outline(picture: &FieldMesh, faces: &[Vec<usize>]) -> Vec<[usize; 2]> {
+/// Edges of exactly one of the faces.
+pub fn outline(faces: &[Vec<usize>]) -> BTreeSet<[usize; 2]> {
     let mut count: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-    for [a, b] in faces.iter().flat_map(|face| sides(face)) {
-        *count.entry([a.min(b), a.max(b)]).or_default() += 1;
+    for edge in faces.iter().flat_map(|face| sides(face)).map(undirected) {
+        *count.entry(edge).or_default() += 1;
     }
-    let single: BTreeSet<[usize; 2]> = count
-        .into_iter()
-        .filter(|(_, n)| *n == 1)
-        .map(|(e, _)| e)
-        .collect();
-    let mut at: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-    for [a, b] in &single {
-        at.entry(*a).or_default().insert(*b);
-        at.entry(*b).or_default().insert(*a);
-    }
-    let length = |p: usize, q: usize| {
-        let d = (0..3).map(|c| (picture.points[p][c] - picture.points[q][c]).powi(2));
-        d.sum::<f64>().sqrt()
-    };
-    let mut kept = single.clone();
-    for [a, b] in &single {
-        let between =
-            |c: &&usize| length(*a, **c) + length(**c, *b) <= length(*a, *b) * (1.0 + 1e-7);
-        if let Some(c) = at[a].intersection(&at[b]).find(between) {
-            for [p, q] in [[*a, *b], [*a, *c], [*b, *c]] {
-                kept.remove(&[p.min(q), p.max(q)]);
+    let single = count.into_iter().filter(|(_, n)| *n == 1);
+    single.map(|(edge, _)| edge).collect()
+}
+
+fn undirected([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The faces with every point between the ends of a side that splits the other side of the same line: beside the tip of a
+/// crack, where its continuation parts a cell, and where cracks cross. Otherwise a side inside the body would count as its
+/// boundary, and the faces would gape where such a point moves off the line.
+pub fn conforming(picture: &FieldMesh, faces: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let single = Single::new(picture, &outline(faces));
+    // From its smaller to its larger point.
+    let mut between: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+    for [one, other] in single.seams() {
+        for (row, across) in [(&one, &other), (&other, &one)] {
+            for ends in row.windows(2).map(|e| [e[0], e[1]]) {
+                let inner = across.iter().filter(|p| single.parts(ends, **p));
+                let mut inner: Vec<usize> = inner.copied().collect();
+                if ends[0] > ends[1] {
+                    inner.reverse();
+                }
+                between.insert(undirected(ends), inner);
             }
         }
     }
-    kept.into_iter().collect()
+    let split = |[a, b]: [usize; 2]| {
+        let mut inner = between
+            .get(&undirected([a, b]))
+            .cloned()
+            .unwrap_or_default();
+        if a > b {
+            inner.reverse();
+        }
+        std::iter::once(a).chain(inner)
+    };
+    let whole = |face: &Vec<usize>| sides(face).flat_map(split).collect();
+    faces.iter().map(whole).collect()
+}
+
+/// Cosine of the largest angle between edges on one line, and relative distance of places that are the same, less than 1.
+const STRAIGHT: f64 = 1.0 - 1e-12;
+const SAME: f64 = 1e-6;
+
+/// Of some points those that share a place and a displacement, by each of them.
+fn twins(picture: &FieldMesh, points: impl Iterator<Item = usize>) -> BTreeMap<usize, Vec<usize>> {
+    let named = |name: &str| picture.point_vectors.iter().find(|(n, _)| n == name);
+    let u = named(DISPLACEMENT).map_or(&[][..], |(_, values)| values);
+    let size = |values: &[[f64; 3]]| {
+        let sizes = values.iter().flatten().map(|c| c.abs());
+        sizes.filter(|c| c.is_finite()).fold(0.0, f64::max)
+    };
+    let (length, largest) = (size(&picture.points), size(u));
+    let near = |a: &[f64; 3], b: &[f64; 3], size: f64| {
+        (0..3).all(|c| (a[c] - b[c]).abs() <= SAME * SAME * size)
+    };
+    let mut sorted: Vec<usize> = points.collect();
+    let place = |p: &usize| picture.points[*p];
+    sorted.sort_by(|p, q| place(p)[0].total_cmp(&place(q)[0]));
+    let mut twins: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (i, p) in sorted.iter().enumerate() {
+        let close = |q: &&usize| place(q)[0] - place(p)[0] <= SAME * SAME * length;
+        for q in sorted[i + 1..].iter().take_while(close) {
+            let together = u.get(*p).zip(u.get(*q));
+            let together = together.is_some_and(|(a, b)| near(a, b, largest));
+            if together && near(&place(p), &place(q), length) {
+                twins.entry(*p).or_default().push(*q);
+                twins.entry(*q).or_default().push(*p);
+            }
+        }
+    }
+    twins
+}
+
+/// Edges of one face each.
+struct Single<'a> {
+    points: &'a [[f64; 3]],
+    at: BTreeMap<usize, BTreeSet<usize>>,
+    /// Points on the same place that move together, by each of them: both faces at the end of a crack.
+    twins: BTreeMap<usize, Vec<usize>>,
+}
+
+impl<'a> Single<'a> {
+    fn new(picture: &'a FieldMesh, edges: &BTreeSet<[usize; 2]>) -> Self {
+        let mut at: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for [a, b] in edges {
+            at.entry(*a).or_default().insert(*b);
+            at.entry(*b).or_default().insert(*a);
+        }
+        let points = &picture.points;
+        let twins = twins(picture, at.keys().copied());
+        Self { points, at, twins }
+    }
+
+    /// Pairs of rows of edges that run along one line from one point to another: the two sides of one piece.
+    ///
+    /// The faces of a crack share their ends too, but are split at the same places, by points of their own.
+    fn seams(&self) -> Vec<[Vec<usize>; 2]> {
+        let mut seams = Vec::new();
+        for (&start, ends) in &self.at {
+            let ends: Vec<usize> = ends.iter().copied().collect();
+            for (i, &one) in ends.iter().enumerate() {
+                for &other in &ends[i + 1..] {
+                    seams.extend(self.seam(start, [one, other]));
+                }
+            }
+        }
+        seams
+    }
+
+    /// The two rows from a point along one line, if they meet again.
+    fn seam(&self, start: usize, first: [usize; 2]) -> Option<[Vec<usize>; 2]> {
+        let (_, direction) = self.step(start, first[0]);
+        let mut rows = first.map(|end| vec![start, end]);
+        loop {
+            let far = [0, 1].map(|row: usize| {
+                let end = *rows[row].last().unwrap_or(&start);
+                let (length, along) = self.step(start, end);
+                (end, length, dot(along, direction) >= STRAIGHT)
+            });
+            if !far.iter().all(|(_, _, straight)| *straight) {
+                return None;
+            }
+            let [(one, near, _), (other, distant, _)] = far;
+            if one == other {
+                return Some(rows);
+            }
+            if (near - distant).abs() <= SAME * near.min(distant) {
+                return None;
+            }
+            // The row that is behind goes on.
+            let (row, end) = if near < distant { (0, one) } else { (1, other) };
+            let ahead = |next: &&usize| dot(self.step(end, **next).1, direction) >= STRAIGHT;
+            let next = |end: &usize| self.at.get(end)?.iter().find(ahead);
+            let twins = self.twins.get(&end).into_iter().flatten();
+            let (twin, next) = std::iter::once(&end)
+                .chain(twins)
+                .find_map(|twin| Some((*twin, *next(twin)?)))?;
+            if twin != end {
+                rows[row].push(twin);
+            }
+            rows[row].push(next);
+        }
+    }
+
+    /// Whether a point of the same line lies between the ends of an edge.
+    fn parts(&self, [a, b]: [usize; 2], point: usize) -> bool {
+        let (length, _) = self.step(a, b);
+        point != a && point != b && self.step(a, point).0 < length && self.step(b, point).0 < length
+    }
+
+    /// Length and direction from a point to another.
+    fn step(&self, from: usize, to: usize) -> (f64, [f64; 3]) {
+        let d: [f64; 3] = std::array::from_fn(|c| self.points[to][c] - self.points[from][c]);
+        let length = dot(d, d).sqrt();
+        (length, d.map(|c| c / length))
+    }
 }
 
 /// Lines along edges, joined where they meet.
@@ -136,5 +269,72 @@ impl Box2 {
 
     pub fn height(&self) -> f64 {
         self.high[1] - self.low[1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square [0, 2]² in two rows of faces that meet at y = 1; `lower` and `upper`: x and displacement of the points
+    /// between the ends of that line, on either side of it. Returns the edges of the outline inside the square.
+    fn inner(lower: &[(f64, f64)], upper: &[(f64, f64)]) -> Vec<[usize; 2]> {
+        let corners = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [2.0, 2.0],
+            [0.0, 2.0],
+            [0.0, 1.0],
+        ];
+        let mut picture = FieldMesh {
+            dim: 2,
+            points: corners.map(|[x, y]| [x, y, 0.0]).into(),
+            point_vectors: vec![(DISPLACEMENT.into(), vec![[1.0, 0.0, 0.0]; 6])],
+            ..FieldMesh::default()
+        };
+        let mut row = |points: &[(f64, f64)]| -> Vec<usize> {
+            let first = picture.points.len();
+            for &(x, u) in points {
+                picture.points.push([x, 1.0, 0.0]);
+                picture.point_vectors[0].1.push([u, 0.0, 0.0]);
+            }
+            (first..picture.points.len()).collect()
+        };
+        let (below, above) = (row(lower), row(upper));
+        let lower = [0, 1, 2]
+            .into_iter()
+            .chain(below.into_iter().rev())
+            .chain([5]);
+        let upper = [3, 4, 5].into_iter().chain(above).chain([2]);
+        let faces = conforming(&picture, &[lower.collect(), upper.collect()]);
+        let on_line = |edge: &[usize; 2]| {
+            let [a, b] = edge.map(|p| picture.points[p]);
+            a[1] == 1.0 && b[1] == 1.0 && a != b
+        };
+        outline(&faces).into_iter().filter(on_line).collect()
+    }
+
+    #[test]
+    fn an_edge_inside_a_piece_is_no_boundary_however_its_sides_are_split() {
+        let none: [[usize; 2]; 0] = [];
+        assert_eq!(inner(&[], &[]), none);
+        assert_eq!(inner(&[(0.5, 1.0)], &[]), none);
+        assert_eq!(inner(&[(0.5, 1.0)], &[(0.7, 1.0), (1.6, 0.9)]), none);
+        assert_eq!(inner(&[], &[(0.3, 1.0), (0.5, 0.8), (1.9, 1.0)]), none);
+        // The end of a crack in the upper face: two points of one place that move together.
+        assert_eq!(inner(&[], &[(0.5, 0.8), (0.5, 0.8)]), none);
+    }
+
+    #[test]
+    fn the_faces_of_a_crack_are_boundary_also_where_it_sticks() {
+        // Split at the same places by points of their own: both faces, from end to end.
+        assert_eq!(inner(&[(0.5, 1.0)], &[(0.5, 1.0)]).len(), 4);
+        assert_eq!(
+            inner(&[(0.5, 1.0), (1.5, 1.0)], &[(0.5, 0.7), (1.5, 1.3)]).len(),
+            6
+        );
+        // Two points of one place that part are the mouth of a crack.
+        assert_eq!(inner(&[], &[(0.5, 0.8), (0.5, 0.6)]).len(), 3);
     }
 }

@@ -137,6 +137,7 @@ fn approximate(cell: &mut Record, map: f64) {
     };
     for increment in &mut cell.found.increments {
         increment.natural_map = Some(map);
+        increment.violation = Some(map);
         increment.verdict = verdict.parse().unwrap();
     }
     cell.found.verdict = verdict.parse().unwrap();

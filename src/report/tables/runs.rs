@@ -61,7 +61,14 @@ impl Row for RunRow {
             "solve_s" "s" .time().digits(3) = r.solve_s, "solution of this increment";
             "equilibrium" "–" .residual() = r.equilibrium, "backward error of equilibrium, found by the judge";
             "claimed_equilibrium" "–" .residual() = r.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
-            "claimed" "–" .residual() = r.claimed, "residual of the laws the method claims to have solved, found by the judge; `natural_map` where it claims the contact laws";
+            "claimed" "–" .residual() = r.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";
+            "violation" "–" .residual() = r.violation, "largest of `natural_map` and the next four columns: what tiers and verdicts refer to";
+            "penetration" "–" .residual() = r.penetration, "deepest overlap of the faces at a contact point relative to u_ref, found by the judge; no friction coefficient enters its scale";
+            "adhesion" "–" .residual() = r.adhesion, "largest tension at a contact point relative to P_ref, found by the judge";
+            "complementarity" "–" .residual() = r.complementarity, "largest product of gap and pressure at a contact point relative to u_ref P_ref, found by the judge";
+            "cone" "–" .residual() = r.cone, "largest excess over the friction bound at a contact point relative to P_ref, found by the judge";
+            "reference_force" "N or N/m" = r.reference_force, "P_ref: the larger of all contact forces and of those that would close the jump without contact; 0 where no point closes";
+            "reference_jump_m" "m" = r.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
             "tangent_factorisations" "–" .named("dense factorisations") = r.tangent_factorisations, TANGENTS;
             "global_factorisations" "–" = r.global_factorisations, GLOBALS;
             "local_solves" "–" = r.local_solves, LOCALS;
@@ -94,7 +101,7 @@ impl Row for QuantityRow {
 
 impl Row for HistoryRow {
     const NAME: &'static str = "history";
-    const TITLE: &'static str = "Natural map of the iterates";
+    const TITLE: &'static str = "Violation of the contact laws by the iterates";
     const QUESTION: &'static str = "How does a method converge?";
     const NOTES: &'static str = "All iterations up to 100, then about 50 per decade, always the last. The numbers of the iterations recorded depend on the number of the last one only.";
     const READABLE: bool = false;
@@ -102,7 +109,7 @@ impl Row for HistoryRow {
     fn columns() -> Vec<Column<Self>> {
         keyed(columns! { r: Self,
             "iteration" "" .key() = r.iteration, "iteration, 0 is the start";
-            "natural_map" "–" .residual().power(2) = r.natural_map, "natural map of the iterate; of an approximate method too, where it ends at the modelling error";
+            "violation" "–" .residual().power(2) = r.violation, "largest of natural map, penetration, adhesion, complementarity and cone of the iterate, as in `runs.csv`; of an approximate method too, where it ends at the modelling error";
         })
     }
 }

@@ -27,7 +27,7 @@ fn of_cell<R: OfCell>(own: Vec<Column<R>>) -> Vec<Column<R>> {
         "space" "" .shown() = size(r.record()).map_or(r.record().cell.space.as_deref().unwrap_or("own"), |size| &size.space), SPACE;
         "friction" "–" .named("μ") = r.record().cell.mu(), FRICTION;
         "method" "" .shown() = r.record().found.method.clone(), METHOD;
-        "tolerance" "–" .shown() = r.record().cell.tolerance, "natural map asked of the method and accepted by the judge";
+        "tolerance" "–" .shown() = r.record().cell.tolerance, "violation of the contact laws asked of the method and accepted by the judge";
     };
     columns.extend(own);
     columns

@@ -7,6 +7,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
 };
 
+use crate::case::label::visible;
 use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market};
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
@@ -219,7 +220,7 @@ fn name(path: &Path) -> String {
     let stem = [".hdf5", ".h5"]
         .iter()
         .find_map(|end| name.strip_suffix(end));
-    stem.unwrap_or(&name).to_owned()
+    visible(stem.unwrap_or(&name))
 }
 
 fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeError> {

@@ -25,7 +25,7 @@ use super::record::{Record, Spent};
 use super::statistics::Timing;
 use crate::run::verdict::Verdict;
 
-/// Times of a cell, if they may be shown: beside an honest verdict on every increment, and a natural map that agrees with it.
+/// Times of a cell, if they may be shown: beside an honest verdict on every increment, and a violation that agrees with it.
 pub fn published_times(record: &Record) -> Option<&Spent> {
     record.spent.as_ref().filter(|_| is_honest(record))
 }
@@ -37,8 +37,8 @@ pub fn is_honest(record: &Record) -> bool {
     let mut all = verdicts.chain([&found.verdict]);
     // NaN passes no comparison.
     let agrees = |verdict: &Verdict| match verdict {
-        Verdict::Solved => found.natural_map() <= record.cell.tolerance,
-        other => other.is_honest() && found.natural_map().is_finite(),
+        Verdict::Solved => found.violation() <= record.cell.tolerance,
+        other => other.is_honest() && found.violation().is_finite(),
     };
     !found.increments.is_empty() && all.all(agrees)
 }
@@ -54,7 +54,7 @@ pub fn is_correct(record: &Record, tier: Tier) -> bool {
     let found = &record.found;
     is_honest(record)
         && found.increments.iter().all(|i| i.verdict.holds_to(tier))
-        && found.natural_map() <= tier.tolerance()
+        && found.violation() <= tier.tolerance()
 }
 
 /// Time of the method alone, preparation and all increments: what methods differ in, K being factored and condensed for all
@@ -190,8 +190,8 @@ mod tests {
         let good = || timed(record("plate", "latin", 1e-6), 1.0);
         let spoilt: [fn(&mut Record); 4] = [
             |r| r.found.increments[0].verdict = Verdict::FalseClaim,
-            |r| r.found.increments[0].natural_map = Some(1e-3),
-            |r| r.found.increments[0].natural_map = None,
+            |r| r.found.increments[0].violation = Some(1e-3),
+            |r| r.found.increments[0].violation = None,
             |r| r.found.increments.clear(),
         ];
         assert!(published_times(&good()).is_some());
@@ -222,7 +222,7 @@ mod tests {
         for (verdict, map) in [("approximate: mid", 1e-7), ("approximate: low", 1e-8)] {
             path.found.increments[0].verdict = "approximate: mid".parse().unwrap();
             path.found.increments[1].verdict = verdict.parse().unwrap();
-            path.found.increments[1].natural_map = Some(map);
+            path.found.increments[1].violation = Some(map);
             path.found.verdict = verdict.parse().unwrap();
             assert_eq!(is_correct(&path, Tier::Mid), verdict.ends_with("mid"));
             assert!(is_correct(&path, Tier::Low) && !is_correct(&path, Tier::High));

@@ -185,6 +185,7 @@ fn found_of(
     IncrementFound {
         verdict: row.verdict.clone(),
         natural_map: Some(row.natural_map).filter(|map| map.is_finite()),
+        violation: Some(row.violation).filter(|found| found.is_finite()),
         iterations: row.iterations,
         solves: row.solves,
         tangent_factorisations: row.tangent_factorisations,

@@ -11,7 +11,7 @@
 //! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
 //! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
 //! methods = ["hybrid", "penalty:normal=1e2,tangential=1e2"]      # all by default, with their default options
-//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the natural map; the default
+//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the violation; the default
 //! ```
 
 use std::path::Path;
@@ -84,7 +84,7 @@ impl Plan {
         let keys = ["title", "repeats", "cells"];
         let folder = file.parent().unwrap_or(Path::new(""));
         let (title, repeats, blocks) = document(file, text, &keys, |root| {
-            let title = root.required("title")?.line()?;
+            let title = root.required("title")?.label()?;
             let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
             let blocks = root.tables("cells")?;
             if blocks.is_empty() {

@@ -9,14 +9,14 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
-use super::statistics::Timing;
+use super::statistics::{Timing, larger};
 use crate::model::errors::Deviation;
 use crate::run::provenance::Provenance;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::Value;
 
 /// Version of the record files and of the tables made from them.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// One cell, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -161,6 +161,8 @@ pub struct IncrementFound {
     pub verdict: Verdict,
     /// Natural map found by the judge [-].
     pub natural_map: Option<f64>,
+    /// Largest violation of the contact laws, of which the natural map is one [-].
+    pub violation: Option<f64>,
     /// Iterations of the method.
     pub iterations: usize,
     /// Solves with the factor of K.
@@ -237,11 +239,17 @@ impl Found {
 
     /// Largest natural map over the increments; NaN where one has none.
     pub fn natural_map(&self) -> f64 {
-        let maps = self.increments.iter().map(|i| i.natural_map);
-        maps.fold(0.0, |worst: f64, map| match map {
-            Some(map) if !worst.is_nan() => worst.max(map),
-            _ => f64::NAN,
-        })
+        self.worst(|i| i.natural_map)
+    }
+
+    /// Largest violation over the increments; NaN where one has none.
+    pub fn violation(&self) -> f64 {
+        self.worst(|i| i.violation)
+    }
+
+    fn worst(&self, of: fn(&IncrementFound) -> Option<f64>) -> f64 {
+        let found = self.increments.iter().map(|i| of(i).unwrap_or(f64::NAN));
+        found.fold(0.0, larger)
     }
 
     /// A counter summed over the increments.

@@ -4,6 +4,7 @@
 //!   DIR/sweep.json          what is to be measured: title, repeats, ids of all cells in order
 //!   DIR/cells/<id>.json     one record; written under another name and renamed, so that it is whole or absent
 //! ```
+//! The second line of both is a digest of all other lines: what a disk or a hand has changed is refused, not believed.
 //! Several processes may fill one folder, as long as they measure different cells.
 
 use std::fs;
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::cell::digest;
 use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
 use crate::files::bundle::{FolderError, unique};
@@ -52,6 +54,19 @@ pub enum StoreError {
         path: PathBuf,
         /// What is wrong, with line and column.
         source: serde_json::Error,
+    },
+    /// A file whose text is not the one that was written.
+    #[error(
+        "`{}`, line {SEAL}: `{expected}` where the other lines ask for `{found}`: the file was changed after it was written; remove it",
+        path.display()
+    )]
+    Changed {
+        /// Which file.
+        path: PathBuf,
+        /// The line.
+        expected: String,
+        /// What it should be.
+        found: String,
     },
     /// A file under the name of another cell.
     #[error("`{}` holds the record of another cell, `{found}`", path.display())]
@@ -292,7 +307,45 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError
             found: schema,
         });
     }
+    let (seal, others) = unseal(&text);
+    let found = seal_of(&others);
+    if seal != found {
+        return Err(StoreError::Changed {
+            path: path.to_path_buf(),
+            expected: seal.trim().to_owned(),
+            found: found.trim().to_owned(),
+        });
+    }
     serde_json::from_str(&text).map_err(|e| broken(path, e))
+}
+
+/// The line of the seal, from 1.
+const SEAL: usize = 2;
+
+/// JSON of an object, one entry per line, with the seal under which it is read back; one that it has is replaced.
+pub fn sealed(json: &str) -> String {
+    let (_, others) = unseal(json);
+    let first = others.find('\n').map_or(others.len(), |end| end + 1);
+    let (open, rest) = others.split_at(first);
+    format!("{open}{}{rest}", seal_of(&others))
+}
+
+/// The line that names the digest of all others.
+fn seal_of(others: &str) -> String {
+    format!("{SEAL_KEY}\"{}\",\n", digest(others))
+}
+
+/// How that line begins.
+const SEAL_KEY: &str = "  \"digest\": ";
+
+/// The seal, if there is one, and all other lines.
+fn unseal(text: &str) -> (&str, String) {
+    let mut lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let seal = match lines.get(SEAL - 1) {
+        Some(line) if line.starts_with(SEAL_KEY) => lines.remove(SEAL - 1),
+        _ => "",
+    };
+    (seal, lines.concat())
 }
 
 fn broken(path: &Path, source: serde_json::Error) -> StoreError {
@@ -304,13 +357,14 @@ fn broken(path: &Path, source: serde_json::Error) -> StoreError {
 
 /// Writes a file under another name and renames it.
 fn write_whole<T: Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
-    let mut json = serde_json::to_vec_pretty(value).map_err(|e| broken(path, e))?;
-    json.push(b'\n');
+    let mut json = serde_json::to_string_pretty(value).map_err(|e| broken(path, e))?;
+    json.push('\n');
+    let json = sealed(&json);
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
     let written = fs::File::create_new(&partial)
         .and_then(|mut file| {
-            file.write_all(&json)?;
+            file.write_all(json.as_bytes())?;
             // A full disk may tell only now; the rename must not come before the contents.
             file.sync_all()
         })

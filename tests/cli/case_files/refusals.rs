@@ -58,6 +58,67 @@ fn unknown_keys_are_refused_with_the_allowed_ones() {
     assert_eq!(error.key(), "material.density");
 }
 
+/// Goal: no product of the numbers of a case vanishes or overflows; `1e-400` is not taken for 0.
+#[test]
+fn numbers_whose_products_vanish_or_overflow_are_refused() {
+    for bad in [
+        "1e-300", "9.9e-26", "2e25", "1e-320", "1e-400", "0.5e-999", "1e300",
+    ] {
+        let negative = format!("-{bad}");
+        for (from, to, mark) in [
+            ("young_pa = 1e10", format!("young_pa = {bad}"), bad),
+            ("pressure_pa = 1e5", format!("pressure_pa = {bad}"), bad),
+            (
+                "[\"free\", -0.1]",
+                format!("[\"free\", -{bad}]"),
+                &*negative,
+            ),
+            ("[[-4, -4], [4, 4]]", format!("[[-4, {bad}], [4, 4]]"), bad),
+        ] {
+            let allowed = if mark == "1e-400" || !to.starts_with("young") {
+                ""
+            } else {
+                "young_pa > 0"
+            };
+            assert_refused_at(PLANE, from, &to, mark, mark, allowed);
+        }
+    }
+    for good in ["1e-25", "1e25", "0e-400", "0.0"] {
+        accepted(&PLANE.replace("pressure_pa = 1e5", &format!("pressure_pa = {good}")));
+    }
+}
+
+/// Goal: what names something commands neither the terminal nor the spreadsheet that shows it.
+#[test]
+fn labels_that_are_commands_are_refused() {
+    for bad in [
+        "=1+1",
+        "+A1",
+        "-A1",
+        "@SUM(A1)",
+        " =1+1",
+        "a\\u001b[31m",
+        "a\\u202eb",
+        "a\\tb",
+    ] {
+        for (from, key) in [
+            ("title = \"Plate\"", "title"),
+            ("name = \"centre\"", "name"),
+        ] {
+            let to = format!("{key} = \"{bad}\"");
+            let mark = format!("\"{bad}\"");
+            assert_refused_at(
+                PLANE,
+                from,
+                &to,
+                &mark,
+                &mark,
+                "does not begin like a formula",
+            );
+        }
+    }
+}
+
 #[test]
 fn every_allowed_key_is_documented() {
     let document = include_str!("../../../docs/case-format.md");

@@ -158,7 +158,7 @@ mod tests {
         let mut records = Vec::new();
         for tier in Tier::ALL {
             let mut record = record("plate", "penalty", tier.tolerance());
-            record.found.increments[0].natural_map = Some(1e-5);
+            record.found.increments[0].violation = Some(1e-5);
             let verdict = if tier == Tier::Low {
                 "solved"
             } else {

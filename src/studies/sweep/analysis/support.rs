@@ -69,6 +69,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
             increments: vec![IncrementFound {
                 verdict: Verdict::Solved,
                 natural_map: Some(0.5 * tolerance),
+                violation: Some(0.5 * tolerance),
                 iterations: 10,
                 solves: 1,
                 tangent_factorisations: 3,
