@@ -129,13 +129,14 @@ pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliEr
                 Loading::new(&body, &case, friction).map_err(RunError::from)?;
             }
             say(format_args!(
-                "{}: {}, {} cells, {} unknowns, {} contact points ({})",
+                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}",
                 file.display(),
                 body.label,
                 body.mesh.cell_count(),
                 body.elastic.unknowns(),
                 body.points.len(),
-                body.space
+                body.space,
+                body.checks.uniform
             ));
         }
     }

@@ -26,6 +26,7 @@ use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 use crate::case::{Case, CaseError, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
+use crate::model::mesh_checks::{MeshChecks, mesh_checks};
 pub use crate::model::refusals::BodyError;
 use crate::model::refusals::{check_probes, check_supports, crack_error, motion_error};
 
@@ -73,6 +74,8 @@ pub struct Body {
     pub traction_rows: Vec<Vec<(usize, f64)>>,
     /// Loads whose nodal forces only change in size.
     pub loads: Vec<FixedLoad>,
+    /// What the tests on the mesh found.
+    pub checks: MeshChecks,
 }
 
 /// Where the system of a run comes from: times shared by all runs on it.
@@ -195,7 +198,7 @@ impl Body {
         })?;
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks);
-        Ok(Body {
+        let mut body = Body {
             quadrature: case.quadrature,
             lame,
             points,
@@ -220,7 +223,10 @@ impl Body {
             mesh,
             cracks,
             enrichment,
-        })
+            checks: MeshChecks::default(),
+        };
+        body.checks = mesh_checks(&body);
+        Ok(body)
     }
 
     /// Integrator over the cells.

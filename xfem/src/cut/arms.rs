@@ -81,7 +81,8 @@ impl Places {
             for end in ends.into_iter().flatten().filter(|_| !is_closed(ending)) {
                 let near = other.path.windows(2).map(|w| {
                     let foot = segment_foot(&end.x, &w[0].x, &w[1].x);
-                    (norm(&sub(&end.x, &foot)), w[0].s + distance(&w[0].x, &foot), foot)
+                    let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
+                    (distance(&end.x, &foot), w[0].s + share * (w[1].s - w[0].s), foot)
                 });
                 let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
                 if let Some((_, s, foot)) = nearest.filter(|n| n.0 <= self.slack) {
@@ -184,14 +185,14 @@ fn crossings(one: &Crack, two: &Crack, beyond: f64) -> Vec<[PathVertex; 2]> {
                 && within(along[1], other, reach(two, j, other))
             {
                 // On the second, between its ends.
-                let t = along[1].clamp(0.0, other);
-                let x = add_scaled(&q[0].x, t / other, &e);
+                let share = along[1].clamp(0.0, other) / other;
+                let x = add_scaled(&q[0].x, share, &e);
+                // A chord is shorter than its arc.
+                let s = |w: &[PathVertex], share: f64| w[0].s + share * (w[1].s - w[0].s);
+                let own = along[0].clamp(0.0, length) / length;
                 found.push([
-                    PathVertex {
-                        s: p[0].s + along[0].clamp(0.0, length),
-                        x,
-                    },
-                    PathVertex { s: q[0].s + t, x },
+                    PathVertex { s: s(p, own), x },
+                    PathVertex { s: s(q, share), x },
                 ]);
             }
         }

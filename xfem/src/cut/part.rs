@@ -44,6 +44,12 @@ impl Part {
         polygon::triangles(&self.polygon)
     }
 
+    /// Area [m²] or volume [m³].
+    pub fn measure(&self) -> f64 {
+        let solid: f64 = self.tetrahedra.iter().map(tetrahedron_volume).sum();
+        solid + polygon::area(&self.polygon).max(0.0)
+    }
+
     /// A point well inside: the centroid of the largest simplex.
     pub fn middle(&self) -> Point {
         let flat = self.triangles().into_iter().map(|t| {

@@ -261,6 +261,9 @@ impl Trace {
                 free[0] && from.s == first.s && from.vertex.nodes.is_none(),
                 free[1] && to.s == last.s && to.vertex.nodes.is_none(),
             ];
+            if from.vertex == to.vertex {
+                continue;
+            }
             let Some(cell) = host(near, index, arm, [&from, &to])? else {
                 continue;
             };
@@ -327,7 +330,9 @@ impl Trace {
                 let (t, slack) = (along(x), near.edge_tolerance(nodes));
                 if t >= -slack && t <= length + slack {
                     let vertex = trace.vertex(near, nodes, x);
-                    stops.push(Stop { s: a.s + t, vertex });
+                    // A chord is shorter than its arc.
+                    let s = a.s + t / length * (b.s - a.s);
+                    stops.push(Stop { s, vertex });
                 }
             };
             let [low, high] = [0, 1].map(|k| {
