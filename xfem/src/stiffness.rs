@@ -4,6 +4,7 @@ pub mod assembly;
 pub mod block_matrix;
 pub mod cell_matrices;
 pub mod cell_matrix;
+pub mod dilatation;
 pub mod elasticity;
 pub mod near_front;
 pub mod orthonormal;

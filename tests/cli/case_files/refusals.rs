@@ -38,7 +38,7 @@ fn assert_refused_at(text: &str, from: &str, to: &str, mark: &str, value: &str, 
 fn unknown_keys_are_refused_with_the_allowed_ones() {
     #[rustfmt::skip]
     assert_refused(PLANE, &[
-        ("young_pa = 1e10", "yuong_pa = 1e10", "yuong_pa", "young_pa, poisson"),
+        ("young_pa = 1e10", "yuong_pa = 1e10", "yuong_pa", "young_pa, poisson, dilatation"),
         ("title = \"Plate\"", "titel = \"Plate\"", "titel", "title, model, quadrature"),
         ("half_length_m = 5.5", "half_length = 5.5", "half_length", "half_length_m"),
         ("contact = \"edge", "contakt = \"edge", "contakt", "contact"),
@@ -158,6 +158,33 @@ fn numbers_out_of_range_are_refused_with_the_range() {
         ("refine = [1, 3]", "refine = [1, 500]", "500", "at most 20000000 cells"),
         ("refine = [1, 3]", "refine = []", "[]", "at least one value"),
     ]);
+}
+
+#[test]
+fn dilatations_are_refused_where_they_make_no_sense() {
+    let with = |value: &str| {
+        PLANE.replace(
+            "poisson = 0.3",
+            &format!("poisson = 0.3\ndilatation = {value}"),
+        )
+    };
+    for (text, allowed) in [
+        (with("\"half\""), "mean, full"),
+        (with("1"), "a string"),
+        (
+            with("\"mean\"").replace("plane-strain", "plane-stress"),
+            "full",
+        ),
+    ] {
+        let error = refused(&text);
+        assert_eq!(
+            (error.key(), error.allowed()),
+            ("material.dilatation", allowed),
+            "{error}"
+        );
+        let at = text.find("dilatation = ").unwrap() + "dilatation = ".len();
+        assert_eq!((error.line(), error.column()), place(&text, at), "{error}");
+    }
 }
 
 #[test]

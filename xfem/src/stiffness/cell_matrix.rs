@@ -8,7 +8,8 @@
 //! ```
 //!
 //! On affine cells the largest region is K_e minus the others: half the work, and a sliver keeps its
-//! full relative accuracy (its entries may be 10⁻²⁴ of K_e and still count). Cells with branch functions are integrated
+//! full relative accuracy (its entries may be 10⁻²⁴ of K_e and still count). The mean dilatation of the whole is no sum of
+//! those of the regions: there all of them are integrated. Cells with branch functions are integrated
 //! function by function.
 
 use crate::cut::crack::Crack;
@@ -20,7 +21,7 @@ use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
 use crate::geometry::{Point, polygon};
-use crate::material::Lame;
+use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 use crate::quadrature::graded::graded_points;
@@ -129,7 +130,8 @@ impl<'a> CellIntegrator<'a> {
             gram.stiffness(self.lame)
         };
         let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
-        let exact = map.is_affine() && self.quadrature == Quadrature::SubCells;
+        let sums = regions == 1 || self.lame.dilatation == Dilatation::Full;
+        let exact = map.is_affine() && self.quadrature == Quadrature::SubCells && sums;
         let mut rest = plain.clone();
         for region in 0..regions {
             if exact && region == largest {
@@ -163,15 +165,23 @@ impl<'a> CellIntegrator<'a> {
         Ok(k)
     }
 
-    /// Direct integration of all functions.
+    /// Direct integration of all functions, over every region where each has its own mean dilatation.
     fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
         let mut functions = self.functions(cell);
-        let mut gram = Gram::zero(functions.numbers.len(), self.mesh.dim());
+        let dim = self.mesh.dim();
+        let apart = match self.lame.dilatation {
+            Dilatation::Full => 1,
+            Dilatation::Mean => self.enrichment.regions(cell),
+        };
+        let mut grams = vec![Gram::zero(functions.numbers.len(), dim); apart];
         for p in self.points(cell)? {
             functions.evaluate(&p.xi, &p.x, p.region);
-            gram.add(p.weight, &functions.gradients);
+            grams[p.region.min(apart - 1)].add(p.weight, &functions.gradients);
         }
-        Ok(gram.stiffness(self.lame))
+        let mut parts = grams.into_iter().map(|gram| gram.stiffness(self.lame));
+        let mut k = parts.next().unwrap_or(CellMatrix::zero(0));
+        parts.for_each(|part| k.add_all(&part));
+        Ok(k)
     }
 
     /// Quadrature points of a cell for its functions; the weights sum to its measure.

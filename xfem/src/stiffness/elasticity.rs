@@ -7,6 +7,8 @@
 //!   K[(k,a),(l,b)] = λ G[(k,a),(l,b)] + μ G[(k,b),(l,a)] + μ δ_ab Σ_c G[(k,c),(l,c)]
 //! ```
 //!
+//! With the mean dilatation ∫ ∂_a φ_k ∫ ∂_b φ_l / V takes the place of G behind λ, see [`dilatation`](super::dilatation).
+//!
 //! So quadrature accumulates rank-one updates w g gᵀ, and the material enters once per cell. Standard, Heaviside and
 //! branch functions are all scalar functions here.
 
@@ -14,7 +16,7 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::geometry::Point;
-use crate::material::Lame;
+use crate::material::{Dilatation, Lame};
 use crate::mesh::cell::CellMap;
 use crate::quadrature::gauss_cell;
 
@@ -31,6 +33,10 @@ pub struct Gram {
     gathered: Vec<f64>,
     /// The same times their weights.
     weighted: Vec<f64>,
+    /// ∫ g of what is in `values`.
+    integral: Vec<f64>,
+    /// Sum of the weights.
+    measure: f64,
 }
 
 impl Gram {
@@ -46,11 +52,14 @@ impl Gram {
             values: vec![0.0; size * size],
             gathered: Vec::new(),
             weighted: Vec::new(),
+            integral: vec![0.0; size],
+            measure: 0.0,
         }
     }
 
     /// G += w g gᵀ; `g`: the gradients of all functions.
     pub fn add(&mut self, weight: f64, g: &[Point]) {
+        self.measure += weight;
         for gradient in g.iter().map(|g| &g[..self.dim]) {
             self.gathered.extend_from_slice(gradient);
             self.weighted.extend(gradient.iter().map(|v| weight * v));
@@ -78,6 +87,12 @@ impl Gram {
             1.0,
             Par::Seq,
         );
+        for column in self.weighted.chunks_exact(self.size) {
+            self.integral
+                .iter_mut()
+                .zip(column)
+                .for_each(|(s, g)| *s += g);
+        }
         self.gathered.clear();
         self.weighted.clear();
     }
@@ -85,6 +100,15 @@ impl Gram {
     fn at(&self, i: usize, j: usize) -> f64 {
         let (i, j) = if i >= j { (i, j) } else { (j, i) };
         self.values[j * self.size + i]
+    }
+
+    /// ∫ g_i ∫ g_j / V, the product of the means; nothing over nothing.
+    fn mean(&self, i: usize, j: usize) -> f64 {
+        if self.measure > 0.0 {
+            self.integral[i] * self.integral[j] / self.measure
+        } else {
+            0.0
+        }
     }
 
     /// Stiffness matrix of the functions, symmetric, full storage row by row, N/m.
@@ -98,7 +122,10 @@ impl Gram {
                 let laplace: f64 = (0..dim).map(|c| self.at(i * dim + c, j * dim + c)).sum();
                 for a in 0..dim {
                     for b in 0..dim {
-                        let direct = self.at(i * dim + a, j * dim + b);
+                        let direct = match lame.dilatation {
+                            Dilatation::Full => self.at(i * dim + a, j * dim + b),
+                            Dilatation::Mean => self.mean(i * dim + a, j * dim + b),
+                        };
                         let swapped = self.at(i * dim + b, j * dim + a);
                         let same = if a == b { mu * laplace } else { 0.0 };
                         let value = lambda * direct + mu * swapped + same;
@@ -146,6 +173,12 @@ impl CellMatrix {
     /// Adds to entry (i, j).
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         self.values[i * self.size + j] += value;
+    }
+
+    /// Adds another matrix, entry by entry.
+    pub fn add_all(&mut self, other: &CellMatrix) {
+        let own = self.values.iter_mut().zip(&other.values);
+        own.for_each(|(a, b)| *a += b);
     }
 
     /// a − b, entry by entry.
