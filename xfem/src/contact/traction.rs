@@ -23,7 +23,7 @@ use crate::enrichment::basis::Region;
 use crate::geometry::{Point, dot};
 use crate::quadrature;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
-use crate::stiffness::dilatation::MeanGradients;
+use crate::stiffness::dilatation::ProjectedDilatation;
 
 use super::pairs::ContactPoint;
 use super::surface_point::SurfacePoint;
@@ -63,15 +63,15 @@ pub fn integrated_rows(
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
     let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
-    let mut means: BTreeMap<usize, MeanGradients> = BTreeMap::new();
+    let mut dilatation: BTreeMap<usize, ProjectedDilatation<'_>> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
         let [m1, m2] = *measures
             .entry((q.cell, q.regions))
             .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
-        let means = match means.entry(q.cell) {
+        let dilatation = match dilatation.entry(q.cell) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(place) => place.insert(MeanGradients::new(integrator, q.cell)?),
+            Entry::Vacant(place) => place.insert(ProjectedDilatation::new(integrator, q.cell)?),
         };
         for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
             let part = Part {
@@ -84,7 +84,7 @@ pub fn integrated_rows(
                 let own = &mut rows[k as usize * dim..(k as usize + 1) * dim];
                 add_stress(
                     integrator,
-                    means,
+                    dilatation,
                     &part,
                     &q.x,
                     &q.frame,
@@ -167,10 +167,10 @@ fn point_rows(
     let mut rows = vec![BTreeMap::<usize, f64>::new(); integrator.mesh.dim()];
     for part in parts.iter().filter(|p| p.measure > 0.0) {
         let factor = -point.weight * part.measure / total;
-        let means = MeanGradients::new(integrator, part.cell)?;
+        let dilatation = ProjectedDilatation::new(integrator, part.cell)?;
         add_stress(
             integrator,
-            &means,
+            &dilatation,
             part,
             &point.x,
             &point.frame,
@@ -187,10 +187,10 @@ fn point_rows(
 /// rows += factor · F σ n of a part at x.
 ///
 /// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
-/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e); behind λ the mean of ∂_a φ where the dilatation is one.
+/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e); behind λ what the dilatation takes for ∂_a φ.
 fn add_stress(
     integrator: &CellIntegrator<'_>,
-    means: &MeanGradients,
+    dilatation: &ProjectedDilatation<'_>,
     part: &Part,
     x: &Point,
     frame: &[Point; 3],
@@ -202,8 +202,8 @@ fn add_stress(
     let n = &frame[0];
     let mut functions = integrator.functions(part.cell);
     functions.evaluate(&part.xi, x, part.region);
-    let dilating = means.of(part.region, &functions.gradients);
-    let gradients = functions.gradients.iter().zip(dilating);
+    let dilating = dilatation.gradients(part.region, x, &functions.gradients);
+    let gradients = functions.gradients.iter().zip(dilating.iter());
     for (&f, (g, mean)) in functions.numbers.iter().zip(gradients) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let (normal, tangential) = (dot(g, n), dot(g, e));

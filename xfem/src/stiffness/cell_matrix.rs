@@ -27,6 +27,7 @@ use crate::mesh::cell::CellMap;
 use crate::quadrature::graded::graded_points;
 use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
 
+use super::dilatation::ProjectedDilatation;
 use super::elasticity::{CellMatrix, Gram};
 use super::near_front::{Effort, NearFront};
 
@@ -165,23 +166,21 @@ impl<'a> CellIntegrator<'a> {
         Ok(k)
     }
 
-    /// Direct integration of all functions, over every region where each has its own mean dilatation.
+    /// Direct integration of all functions.
     fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
         let mut functions = self.functions(cell);
-        let dim = self.mesh.dim();
-        let apart = match self.lame.dilatation {
-            Dilatation::Full => 1,
-            Dilatation::Mean => self.enrichment.regions(cell),
-        };
-        let mut grams = vec![Gram::zero(functions.numbers.len(), dim); apart];
+        let mut gram = Gram::zero(functions.numbers.len(), self.mesh.dim());
         for p in self.points(cell)? {
             functions.evaluate(&p.xi, &p.x, p.region);
-            grams[p.region.min(apart - 1)].add(p.weight, &functions.gradients);
+            gram.add(p.weight, &functions.gradients);
         }
-        let mut parts = grams.into_iter().map(|gram| gram.stiffness(self.lame));
-        let mut k = parts.next().unwrap_or(CellMatrix::zero(0));
-        parts.for_each(|part| k.add_all(&part));
-        Ok(k)
+        match self.lame.dilatation {
+            Dilatation::Full => Ok(gram.stiffness(self.lame)),
+            Dilatation::Mean => {
+                let projected = ProjectedDilatation::new(self, cell)?;
+                Ok(gram.projected_stiffness(self.lame, &projected.integrals()))
+            }
+        }
     }
 
     /// Quadrature points of a cell for its functions; the weights sum to its measure.

@@ -112,7 +112,24 @@ impl Gram {
     }
 
     /// Stiffness matrix of the functions, symmetric, full storage row by row, N/m.
-    pub fn stiffness(mut self, lame: Lame) -> CellMatrix {
+    pub fn stiffness(self, lame: Lame) -> CellMatrix {
+        match lame.dilatation {
+            Dilatation::Full => self.stiffness_over(lame, Self::at),
+            Dilatation::Mean => self.stiffness_over(lame, Self::mean),
+        }
+    }
+
+    /// The same with Σ_m s_mi s_mj behind λ; `modes`: the s_m, by function and component.
+    pub fn projected_stiffness(self, lame: Lame, modes: &[Vec<f64>]) -> CellMatrix {
+        self.stiffness_over(lame, |_, i, j| modes.iter().map(|s| s[i] * s[j]).sum())
+    }
+
+    /// The same with `dilatation` behind λ.
+    fn stiffness_over(
+        mut self,
+        lame: Lame,
+        dilatation: impl Fn(&Self, usize, usize) -> f64,
+    ) -> CellMatrix {
         self.gather();
         let Lame { lambda, mu, .. } = lame;
         let dim = self.dim;
@@ -122,10 +139,7 @@ impl Gram {
                 let laplace: f64 = (0..dim).map(|c| self.at(i * dim + c, j * dim + c)).sum();
                 for a in 0..dim {
                     for b in 0..dim {
-                        let direct = match lame.dilatation {
-                            Dilatation::Full => self.at(i * dim + a, j * dim + b),
-                            Dilatation::Mean => self.mean(i * dim + a, j * dim + b),
-                        };
+                        let direct = dilatation(&self, i * dim + a, j * dim + b);
                         let swapped = self.at(i * dim + b, j * dim + a);
                         let same = if a == b { mu * laplace } else { 0.0 };
                         let value = lambda * direct + mu * swapped + same;
@@ -173,12 +187,6 @@ impl CellMatrix {
     /// Adds to entry (i, j).
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         self.values[i * self.size + j] += value;
-    }
-
-    /// Adds another matrix, entry by entry.
-    pub fn add_all(&mut self, other: &CellMatrix) {
-        let own = self.values.iter_mut().zip(&other.values);
-        own.for_each(|(a, b)| *a += b);
     }
 
     /// a − b, entry by entry.
