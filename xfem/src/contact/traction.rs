@@ -63,14 +63,14 @@ pub fn integrated_rows(
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
     let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
-    let mut dilatation: BTreeMap<usize, ProjectedDilatation<'_>> = BTreeMap::new();
+    let mut known: BTreeMap<usize, ProjectedDilatation<'_>> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
         let [m1, m2] = *measures
             .entry((q.cell, q.regions))
             .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
-        let dilatation = match dilatation.entry(q.cell) {
-            Entry::Occupied(known) => known.into_mut(),
+        let dilatation = match known.entry(q.cell) {
+            Entry::Occupied(own) => own.into_mut(),
             Entry::Vacant(place) => place.insert(ProjectedDilatation::new(integrator, q.cell)?),
         };
         for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
@@ -204,11 +204,11 @@ fn add_stress(
     functions.evaluate(&part.xi, x, part.region);
     let dilating = dilatation.gradients(part.region, x, &functions.gradients);
     let gradients = functions.gradients.iter().zip(dilating.iter());
-    for (&f, (g, mean)) in functions.numbers.iter().zip(gradients) {
+    for (&f, (g, d)) in functions.numbers.iter().zip(gradients) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let (normal, tangential) = (dot(g, n), dot(g, e));
             for a in 0..dim {
-                let value = lambda * dot(e, n) * mean[a] + mu * (e[a] * normal + n[a] * tangential);
+                let value = lambda * dot(e, n) * d[a] + mu * (e[a] * normal + n[a] * tangential);
                 if value != 0.0 {
                     *row.entry(f as usize * dim + a).or_default() += factor * value;
                 }
