@@ -86,7 +86,7 @@ fn every_allowed_key_is_documented() {
             count += 1;
         }
     }
-    assert_eq!(count, 16 + 2 + 3 + 3 + 8 + 4 + 9 + 2 + 2 + 2 + 15);
+    assert_eq!(count, 16 + 3 + 3 + 3 + 8 + 4 + 9 + 2 + 2 + 2 + 15);
 }
 
 #[test]
