@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_methods::Tier;
 use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
-use stickslip_xfem::material::{Material, Model};
+use stickslip_xfem::material::{Dilatation, Lame, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
 use toml::de::DeTable;
 
@@ -36,6 +36,8 @@ pub struct Case {
     pub model: Model,
     /// Isotropic linear elasticity.
     pub material: Material,
+    /// The dilatation that the file forces.
+    pub dilatation: Option<Dilatation>,
     /// Structured mesh.
     pub mesh: MeshSpec,
     /// Cracks, in file order.
@@ -65,6 +67,15 @@ pub struct Case {
 }
 
 impl Case {
+    /// Lamé constants of material and model, with the dilatation that the file forces.
+    pub fn lame(&self) -> Lame {
+        let lame = Lame::new(self.material, self.model);
+        Lame {
+            dilatation: self.dilatation.unwrap_or(lame.dilatation),
+            ..lame
+        }
+    }
+
     /// The source text at a span, for error messages.
     pub fn text(&self, span: &Span) -> &str {
         self.source.get(span.clone()).unwrap_or_default()
@@ -247,7 +258,7 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
     })?;
     let quadrature = settings::quadrature(root)?;
-    let material = settings::material(root)?;
+    let (material, dilatation) = settings::material(root, model)?;
     let mesh = mesh(root, dim)?;
     let sweep = sweep(root, &mesh)?;
     let path = settings::path(root)?;
@@ -268,6 +279,7 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         title,
         model,
         material,
+        dilatation,
         mesh,
         cracks,
         supports: each(root, "support", |v| support(v, &scene))?,

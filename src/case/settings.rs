@@ -1,6 +1,6 @@
 //! What a case says in a few words each: quadrature, material, load path, methods.
 
-use stickslip_xfem::material::Material;
+use stickslip_xfem::material::{Dilatation, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
 
 use super::error::{CaseError, Span};
@@ -58,14 +58,26 @@ pub(super) fn quadrature(root: &Table<'_>) -> Result<Quadrature, CaseError> {
 }
 
 /// `[material]`.
-pub(super) fn material(root: &Table<'_>) -> Result<Material, CaseError> {
-    let table = root.required("material")?.table(&["young_pa", "poisson"])?;
-    Ok(Material {
+pub(super) fn material(
+    root: &Table<'_>,
+    model: Model,
+) -> Result<(Material, Option<Dilatation>), CaseError> {
+    let table = root
+        .required("material")?
+        .table(&["young_pa", "poisson", "dilatation"])?;
+    let material = Material {
         young: table.positive("young_pa")?,
         poisson: table
             .required("poisson")?
             .number_if("0 <= poisson < 0.5", |nu| (0.0..0.5).contains(&nu))?,
-    })
+    };
+    let dilatation = table.optional("dilatation", |value| match value.string()? {
+        "full" => Ok(Dilatation::Full),
+        "mean" if model != Model::PlaneStress => Ok(Dilatation::Mean),
+        "mean" => Err(value.refuse("full", "plane stress is free to change its thickness")),
+        _ => Err(value.refuse("mean, full", "unknown dilatation")),
+    })?;
+    Ok((material, dilatation))
 }
 
 /// `[path]`.

@@ -14,7 +14,7 @@ use stickslip_xfem::cut::arms::arms;
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
-use stickslip_xfem::material::Lame;
+use stickslip_xfem::material::{Dilatation, Lame};
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
 use stickslip_xfem::stiffness::assembly::{Assembly, elimination_order};
@@ -113,7 +113,7 @@ impl Body {
         })?;
         let (cracks, doubled) = place_cracks(case, &mut mesh)?;
         let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
-        let lame = Lame::new(case.material, case.model);
+        let lame = case.lame();
         let integrator = CellIntegrator {
             mesh: &mesh,
             cracks: &cracks,
@@ -197,7 +197,7 @@ impl Body {
             traction: needs.traction.then(|| rows(&traction)).transpose()?,
         })?;
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
-        let space = space_name(case, &cracks);
+        let space = space_name(case, &cracks, lame.dilatation);
         let mut body = Body {
             quadrature: case.quadrature,
             lame,
@@ -319,7 +319,7 @@ fn traction(
         .iter()
         .filter(|q| integrated[q.crack])
         .cloned();
-    let mut rows = integrated_rows(integrator, points.len(), &inside.collect::<Vec<_>>());
+    let mut rows = integrated_rows(integrator, points.len(), &inside.collect::<Vec<_>>())?;
     let at_places = points
         .iter()
         .enumerate()
@@ -335,8 +335,8 @@ fn traction(
     Ok(rows)
 }
 
-/// Contact spaces of the cracks, each named once, with a mark for inexact quadrature.
-fn space_name(case: &Case, cracks: &[Crack]) -> String {
+/// Contact spaces of the cracks, each named once, with marks for inexact quadrature and for the mean dilatation.
+fn space_name(case: &Case, cracks: &[Crack], dilatation: Dilatation) -> String {
     let mut names: Vec<&str> = Vec::new();
     for (number, spec) in case.cracks.iter().enumerate() {
         let through = cracks.iter().any(|c| c.number == number);
@@ -349,10 +349,14 @@ fn space_name(case: &Case, cracks: &[Crack]) -> String {
             names.push(name);
         }
     }
-    match case.quadrature {
-        Quadrature::Gauss(n) if !cracks.is_empty() => format!("{}/gauss-{n}", names.join("+")),
-        _ => names.join("+"),
+    let mut name = names.join("+");
+    if let (Quadrature::Gauss(n), false) = (case.quadrature, cracks.is_empty()) {
+        name += &format!("/gauss-{n}");
     }
+    if dilatation == Dilatation::Mean {
+        name += "/mean-dilatation";
+    }
+    name
 }
 
 /// Cracks through cells, and the surfaces of the others by crack number.

@@ -21,7 +21,7 @@ pub struct RunKey {
     pub case: String,
     /// Mesh label, e.g. `22x22`.
     pub mesh: String,
-    /// Contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `node-pairs`.
+    /// Contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `star/mean-dilatation`, `node-pairs`.
     pub space: String,
     /// Method label: registry name, with non-default options in brackets.
     pub method: String,

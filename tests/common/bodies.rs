@@ -11,8 +11,15 @@ use super::{clamped, crack, parse, plane, solid};
 ///   straight across   oblique   through nodes   two cracks   one tip   two tips   3D planes
 /// ```
 pub fn bodies(needs: Needs) -> Vec<(&'static str, Body)> {
-    let body =
-        |text: &str| Body::new(&parse(text), 1, needs).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    bodies_like(needs, str::to_owned)
+}
+
+/// The same with case files changed: another material, other meshes.
+pub fn bodies_like(needs: Needs, change: impl Fn(&str) -> String) -> Vec<(&'static str, Body)> {
+    let body = |text: &str| {
+        let text = change(text);
+        Body::new(&parse(&text), 1, needs).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    };
     let flat = |cracks: String| {
         let rest = cracks + &clamped(2);
         body(&plane([0.0, 0.0], [3.0, 3.0], [6, 6], &rest))

@@ -250,6 +250,12 @@ pub fn moved(text: &str) -> String {
     text.replace("mesh = { ", motion)
 }
 
+/// The same case of another Poisson's ratio.
+pub fn of_ratio(text: &str, poisson: f64) -> String {
+    assert_eq!(text.matches("poisson = 0.3").count(), 1);
+    text.replace("poisson = 0.3", &format!("poisson = {poisson}"))
+}
+
 /// A straight crack in 2D, with edge pairs.
 pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
     format!(

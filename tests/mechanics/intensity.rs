@@ -26,7 +26,7 @@ fn of_exact(
     loaded: bool,
 ) -> [f64; 2] {
     let h = 1e-6;
-    let gradients = |cell: usize, points: &[ComparisonPoint]| -> Vec<[Point; 3]> {
+    let gradients = |cell: usize, points: &[ComparisonPoint]| {
         assert!(cell < body.mesh.cell_count());
         let gradient = |at: &ComparisonPoint| {
             let (p, side) = (&at.point, at.side.unwrap_or(1.0));
@@ -44,7 +44,7 @@ fn of_exact(
             }
             g
         };
-        points.iter().map(gradient).collect()
+        Ok(points.iter().map(gradient).collect())
     };
     let surface = surface(body, 2 * rule);
     let faces: Vec<(&SurfacePoint, Point)> = surface
@@ -126,8 +126,8 @@ fn a_smooth_field_with_body_force_has_no_intensity() {
             (p, [0, 1, 2].map(|a| -dot(&sigma[a], &p.frame[0])))
         })
         .collect();
-    let gradients = |_: usize, points: &[ComparisonPoint]| -> Vec<[Point; 3]> {
-        points.iter().map(|p| gradient(&p.point.x)).collect()
+    let gradients = |_: usize, points: &[ComparisonPoint]| {
+        Ok(points.iter().map(|p| gradient(&p.point.x)).collect())
     };
     for (at, tip) in tip_fronts(&body) {
         let of = |faces: &[(&SurfacePoint, Point)], force: Point| {
@@ -183,7 +183,7 @@ fn a_domain_that_does_not_stand_alone_is_refused() {
     let h = 2.0 / 21.0;
     let fronts = fronts(&body);
     let fields = Fields {
-        gradients: &|_, points| vec![[[0.0; 3]; 3]; points.len()],
+        gradients: &|_, points| Ok(vec![[[0.0; 3]; 3]; points.len()]),
         faces: &[],
         body_force: &|_, _| [0.0; 3],
     };

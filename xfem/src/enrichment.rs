@@ -17,6 +17,7 @@ use crate::cut::is_split;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::trace::{Trace, TraceError};
+use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::mesh::Mesh;
@@ -42,6 +43,8 @@ pub struct Enrichment {
     cores: Vec<BTreeSet<u32>>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
+    /// 2D: where arms cross mesh edges (lower node first) [m].
+    on_edges: BTreeMap<[u32; 2], Vec<Point>>,
     /// Cells with the end of a crack that are left whole, divided up to it.
     endings: BTreeMap<usize, Partition>,
     cell_ptr: Vec<usize>,
@@ -126,6 +129,7 @@ impl Enrichment {
             cores: tips.cores,
             partitions: tips.partitions,
             endings: tips.endings,
+            on_edges: trace.on_edges,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
             step_ptr: vec![0],
@@ -207,6 +211,11 @@ impl Enrichment {
     /// Division of a cell; `None` if no crack cuts it.
     pub fn partition(&self, cell: usize) -> Option<&Partition> {
         self.partitions.get(&cell)
+    }
+
+    /// Where arms cross a mesh edge (2D) [m].
+    pub fn places_on(&self, [i, j]: [u32; 2]) -> &[Point] {
+        self.on_edges.get(&[i.min(j), i.max(j)]).map_or(&[], Vec::as_slice)
     }
 
     /// Divided cells in order.

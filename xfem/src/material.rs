@@ -36,6 +36,30 @@ impl Material {
     }
 }
 
+/// The dilatation tr ε in the stiffness and in every stress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dilatation {
+    /// That of the gradient, point by point.
+    Full,
+    /// Its mean over a cell, or over every region of a cut one: see [`stiffness::dilatation`](crate::stiffness::dilatation).
+    Mean,
+}
+
+impl Dilatation {
+    /// Poisson's ratio above which the mean is taken: full dilatation lacks 0.5 % of the energy of pure bending on 11 × 11 cells
+    /// at ν = 0.3, 0.9 % at 0.4, 1.9 % at 0.45, 9 % at 0.49.
+    pub const MEAN_ABOVE: f64 = 0.4;
+
+    /// What a material asks for. Plane stress is free to change its thickness and never locks.
+    pub fn of(material: Material, model: Model) -> Self {
+        if model != Model::PlaneStress && material.poisson > Self::MEAN_ABOVE {
+            Dilatation::Mean
+        } else {
+            Dilatation::Full
+        }
+    }
+}
+
 /// Lamé constants of the model [Pa].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lame {
@@ -45,10 +69,12 @@ pub struct Lame {
     pub mu: f64,
     /// σ_zz = λ_z (ε_xx + ε_yy): λ in plane strain, 0 in plane stress, unused in 3D.
     pub lambda_z: f64,
+    /// The dilatation that λ multiplies in the discretisation.
+    pub dilatation: Dilatation,
 }
 
 impl Lame {
-    /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)).
+    /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)); the dilatation as [`Dilatation::of`] has it.
     pub fn new(material: Material, model: Model) -> Self {
         let Material { young, poisson } = material;
         let mu = young / (2.0 * (1.0 + poisson));
@@ -61,10 +87,12 @@ impl Lame {
             lambda,
             mu,
             lambda_z,
+            dilatation: Dilatation::of(material, model),
         }
     }
 
-    /// Von Mises stress [Pa] from the displacement gradient h[a][b] = ∂u_a/∂x_b.
+    /// Von Mises stress [Pa] from the displacement gradient h[a][b] = ∂u_a/∂x_b. Whichever dilatation λ multiplies: the
+    /// pressure cancels.
     pub fn von_mises(&self, h: &[Point; 3], dim: usize) -> f64 {
         let mut s = stress(*self, dim, h);
         if dim == 2 {

@@ -5,6 +5,7 @@ pub mod block_matrix;
 pub mod cell_matrices;
 pub mod cell_matrix;
 pub mod consistent;
+pub mod dilatation;
 pub mod elasticity;
 pub mod near_front;
 pub mod orthonormal;

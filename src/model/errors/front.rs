@@ -12,6 +12,7 @@ use stickslip_xfem::geometry::{Point, add_scaled, norm, sub};
 use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
 use stickslip_xfem::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use stickslip_xfem::stiffness::cell_matrix::CellError;
+use stickslip_xfem::stiffness::dilatation::ProjectedDilatation;
 
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
@@ -139,11 +140,13 @@ pub fn tip_intensities(
         .collect();
     let gradients = |cell: usize, points: &[ComparisonPoint]| {
         let mut functions = integrator.functions(cell);
+        let dilatation = ProjectedDilatation::new(&integrator, cell)?;
         let at = |p: &ComparisonPoint| {
             let p = &p.point;
-            functions.field(&p.xi, &p.x, p.region, &now.u).1
+            let h = functions.field(&p.xi, &p.x, p.region, &now.u).1;
+            dilatation.assumed(p.region, &p.x, functions.numbers, &now.u, h)
         };
-        points.iter().map(at).collect::<Vec<_>>()
+        Ok(points.iter().map(at).collect::<Vec<_>>())
     };
     let fronts = fronts(body);
     let fields = Fields {

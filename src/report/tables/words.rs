@@ -2,7 +2,8 @@
 
 pub const CASE: &str = "name of the case: its file without `.toml`";
 pub const MESH: &str = "mesh label, e.g. `22x22`";
-pub const SPACE: &str = "contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`";
+pub const SPACE: &str =
+    "contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `star/mean-dilatation`";
 pub const METHOD: &str = "method, options other than the default in brackets";
 pub const FRICTION: &str = "friction coefficient (of the first crack where cracks differ)";
 pub const INCREMENT: &str = "number of the increment, from 1";

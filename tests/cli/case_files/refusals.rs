@@ -38,7 +38,7 @@ fn assert_refused_at(text: &str, from: &str, to: &str, mark: &str, value: &str, 
 fn unknown_keys_are_refused_with_the_allowed_ones() {
     #[rustfmt::skip]
     assert_refused(PLANE, &[
-        ("young_pa = 1e10", "yuong_pa = 1e10", "yuong_pa", "young_pa, poisson"),
+        ("young_pa = 1e10", "yuong_pa = 1e10", "yuong_pa", "young_pa, poisson, dilatation"),
         ("title = \"Plate\"", "titel = \"Plate\"", "titel", "title, model, quadrature"),
         ("half_length_m = 5.5", "half_length = 5.5", "half_length", "half_length_m"),
         ("contact = \"edge", "contakt = \"edge", "contakt", "contact"),
@@ -147,7 +147,7 @@ fn every_allowed_key_is_documented() {
             count += 1;
         }
     }
-    assert_eq!(count, 16 + 2 + 3 + 3 + 8 + 4 + 9 + 2 + 2 + 2 + 15);
+    assert_eq!(count, 16 + 3 + 3 + 3 + 8 + 4 + 9 + 2 + 2 + 2 + 15);
 }
 
 #[test]
@@ -219,6 +219,33 @@ fn numbers_out_of_range_are_refused_with_the_range() {
         ("refine = [1, 3]", "refine = [1, 500]", "500", "at most 20000000 cells"),
         ("refine = [1, 3]", "refine = []", "[]", "at least one value"),
     ]);
+}
+
+#[test]
+fn dilatations_are_refused_where_they_make_no_sense() {
+    let with = |value: &str| {
+        PLANE.replace(
+            "poisson = 0.3",
+            &format!("poisson = 0.3\ndilatation = {value}"),
+        )
+    };
+    for (text, allowed) in [
+        (with("\"half\""), "mean, full"),
+        (with("1"), "a string"),
+        (
+            with("\"mean\"").replace("plane-strain", "plane-stress"),
+            "full",
+        ),
+    ] {
+        let error = refused(&text);
+        assert_eq!(
+            (error.key(), error.allowed()),
+            ("material.dilatation", allowed),
+            "{error}"
+        );
+        let at = text.find("dilatation = ").unwrap() + "dilatation = ".len();
+        assert_eq!((error.line(), error.column()), place(&text, at), "{error}");
+    }
 }
 
 #[test]

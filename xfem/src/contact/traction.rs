@@ -12,7 +12,8 @@
 //! 225-228 (2012) 44. A sliver has a large stress for a small energy; with its volume as weight it cannot spoil the trace
 //! inequality |{σ} n|² w <= C u·K u on which Nitsche's method rests. The same rule averages the cells along the crack.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 use rayon::prelude::*;
 
@@ -22,6 +23,7 @@ use crate::enrichment::basis::Region;
 use crate::geometry::{Point, dot};
 use crate::quadrature;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
+use crate::stiffness::dilatation::ProjectedDilatation;
 
 use super::pairs::ContactPoint;
 use super::surface_point::SurfacePoint;
@@ -58,14 +60,19 @@ pub fn integrated_rows(
     integrator: &CellIntegrator<'_>,
     count: usize,
     quadrature: &[SurfacePoint],
-) -> Vec<Vec<(usize, f64)>> {
+) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
     let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
+    let mut known: BTreeMap<usize, ProjectedDilatation<'_>> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
         let [m1, m2] = *measures
             .entry((q.cell, q.regions))
             .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
+        let dilatation = match known.entry(q.cell) {
+            Entry::Occupied(own) => own.into_mut(),
+            Entry::Vacant(place) => place.insert(ProjectedDilatation::new(integrator, q.cell)?),
+        };
         for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
             let part = Part {
                 cell: q.cell,
@@ -77,6 +84,7 @@ pub fn integrated_rows(
                 let own = &mut rows[k as usize * dim..(k as usize + 1) * dim];
                 add_stress(
                     integrator,
+                    dilatation,
                     &part,
                     &q.x,
                     &q.frame,
@@ -86,9 +94,10 @@ pub fn integrated_rows(
             }
         }
     }
-    rows.into_iter()
+    Ok(rows
+        .into_iter()
         .map(|row| row.into_iter().collect())
-        .collect()
+        .collect())
 }
 
 /// The parts at a point. All of them touch the nodes of the functions that jump there.
@@ -158,7 +167,16 @@ fn point_rows(
     let mut rows = vec![BTreeMap::<usize, f64>::new(); integrator.mesh.dim()];
     for part in parts.iter().filter(|p| p.measure > 0.0) {
         let factor = -point.weight * part.measure / total;
-        add_stress(integrator, part, &point.x, &point.frame, factor, &mut rows);
+        let dilatation = ProjectedDilatation::new(integrator, part.cell)?;
+        add_stress(
+            integrator,
+            &dilatation,
+            part,
+            &point.x,
+            &point.frame,
+            factor,
+            &mut rows,
+        );
     }
     Ok(rows
         .into_iter()
@@ -169,9 +187,10 @@ fn point_rows(
 /// rows += factor · F σ n of a part at x.
 ///
 /// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
-/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e).
+/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e); behind λ what the dilatation takes for ∂_a φ.
 fn add_stress(
     integrator: &CellIntegrator<'_>,
+    dilatation: &ProjectedDilatation<'_>,
     part: &Part,
     x: &Point,
     frame: &[Point; 3],
@@ -183,11 +202,13 @@ fn add_stress(
     let n = &frame[0];
     let mut functions = integrator.functions(part.cell);
     functions.evaluate(&part.xi, x, part.region);
-    for (&f, g) in functions.numbers.iter().zip(&functions.gradients) {
+    let dilating = dilatation.gradients(part.region, x, &functions.gradients);
+    let gradients = functions.gradients.iter().zip(dilating.iter());
+    for (&f, (g, d)) in functions.numbers.iter().zip(gradients) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let (normal, tangential) = (dot(g, n), dot(g, e));
             for a in 0..dim {
-                let value = lambda * dot(e, n) * g[a] + mu * (e[a] * normal + n[a] * tangential);
+                let value = lambda * dot(e, n) * d[a] + mu * (e[a] * normal + n[a] * tangential);
                 if value != 0.0 {
                     *row.entry(f as usize * dim + a).or_default() += factor * value;
                 }

@@ -103,7 +103,7 @@ pub fn divide(
 ) -> Result<Partition, PartitionError> {
     let mut division = Division::new(mesh, cell, trace);
     let mut pending: Vec<Pending> = chains.iter().map(|chain| Pending::new(chain)).collect();
-    while division.insert(&mut pending)? || join(arms, &mut pending) {}
+    while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
     let mut dropped = Vec::new();
     for chain in pending {
         if chain.free && division.is_corner(chain.first()) {
@@ -115,53 +115,6 @@ pub fn divide(
     let mut partition = division.finish(&mesh.map(cell))?;
     partition.dropped = dropped;
     Ok(partition)
-}
-
-/// Joins two chains that wait for each other, those of one crack first.
-fn join(arms: &[Crack], pending: &mut Vec<Pending>) -> bool {
-    // The ends that wait: place, crack.
-    let ends = |chain: &Pending| {
-        let number = |arm: &(usize, Side)| arms[arm.0].number;
-        let first = (*chain.first(), chain.arms.first().map(number), false);
-        let last = (*chain.last(), chain.arms.last().map(number), true);
-        if chain.free { vec![first] } else { vec![first, last] }
-    };
-    let mut best: Option<(bool, [(usize, bool); 2])> = None;
-    for (i, one) in pending.iter().enumerate() {
-        for (j, two) in pending.iter().enumerate().take(i) {
-            for a in ends(one) {
-                for b in ends(two).into_iter().filter(|b| b.0 == a.0) {
-                    let same = a.1 == b.1;
-                    if best.is_none_or(|(known, _)| same && !known) {
-                        best = Some((same, [(i, a.2), (j, b.2)]));
-                    }
-                }
-            }
-        }
-    }
-    let Some((_, [(i, at_last), (j, other_last)])) = best else {
-        return false;
-    };
-    let mut one = pending.remove(i);
-    let mut two = pending.remove(j);
-    // A free end comes last, the common vertex in between.
-    if !at_last {
-        one.reverse();
-    }
-    if other_last {
-        two.reverse();
-    }
-    if one.free {
-        (one, two) = (two, one);
-        one.reverse();
-        two.reverse();
-    }
-    two.free |= one.free;
-    one.vertices.extend(&two.vertices[1..]);
-    one.arms.extend(two.arms);
-    one.free = two.free;
-    pending.push(one);
-    true
 }
 
 impl Division {
@@ -191,6 +144,53 @@ impl Division {
 
     fn is_corner(&self, x: &Point) -> bool {
         self.regions.iter().any(|r| r.polygon.contains(x))
+    }
+
+    /// Joins two chains that wait for each other inside the cell, those of one crack first.
+    fn join(&self, arms: &[Crack], pending: &mut Vec<Pending>) -> bool {
+        // The ends that wait: place, crack.
+        let ends = |chain: &Pending| {
+            let number = |arm: &(usize, Side)| arms[arm.0].number;
+            let first = (*chain.first(), chain.arms.first().map(number), false);
+            let last = (*chain.last(), chain.arms.last().map(number), true);
+            if chain.free { vec![first] } else { vec![first, last] }
+        };
+        let mut best: Option<(bool, [(usize, bool); 2])> = None;
+        for (i, one) in pending.iter().enumerate() {
+            for (j, two) in pending.iter().enumerate().take(i) {
+                for a in ends(one) {
+                    for b in ends(two).into_iter().filter(|b| b.0 == a.0 && !self.is_corner(&b.0)) {
+                        let same = a.1 == b.1;
+                        if best.is_none_or(|(known, _)| same && !known) {
+                            best = Some((same, [(i, a.2), (j, b.2)]));
+                        }
+                    }
+                }
+            }
+        }
+        let Some((_, [(i, at_last), (j, other_last)])) = best else {
+            return false;
+        };
+        let mut one = pending.remove(i);
+        let mut two = pending.remove(j);
+        // A free end comes last, the common vertex in between.
+        if !at_last {
+            one.reverse();
+        }
+        if other_last {
+            two.reverse();
+        }
+        if one.free {
+            (one, two) = (two, one);
+            one.reverse();
+            two.reverse();
+        }
+        two.free |= one.free;
+        one.vertices.extend(&two.vertices[1..]);
+        one.arms.extend(two.arms);
+        one.free = two.free;
+        pending.push(one);
+        true
     }
 
     /// Cuts along the chains that are ready; whether there were any.
@@ -347,7 +347,7 @@ impl Division {
             let runs = |r: &Region| polygon::edges(&r.polygon).any(|(p, q)| p == *from && q == *to);
             self.regions.iter().position(runs)
         };
-        let (mut faces, mut joined) = (Vec::new(), Vec::new());
+        let (mut faces, mut joined, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
         for segment in &self.segments {
             let [a, b] = &segment.ends;
             let (one, two) = (left_of(a, b), left_of(b, a));
@@ -356,6 +356,7 @@ impl Division {
             };
             if segment.extension {
                 joined.push([one, two]);
+                beyond.push(segment.ends);
             } else {
                 faces.push(Face {
                     crack: segment.arm,
@@ -378,6 +379,7 @@ impl Division {
             parts: self.regions.into_iter().map(part).collect(),
             faces,
             joined,
+            beyond,
             border: self.border,
             hits: self.hits,
             dropped: Vec::new(),

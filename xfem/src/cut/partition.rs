@@ -26,6 +26,8 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// Pairs of parts that are one: between them lies a crack's continuation beyond its end.
     pub joined: Vec<[usize; 2]>,
+    /// 2D: the segment between each of these pairs, the first part to its left [m].
+    pub beyond: Vec<[Point; 2]>,
     /// 2D: places on the border of the cell, its corners among them, with the local nodes they lie between.
     pub border: Vec<FaceCorner>,
     /// Where such a continuation meets the border of the cell [m].

@@ -77,12 +77,10 @@ impl<'a> CellFunctions<'a> {
             .zip(steps.iter().copied())
     }
 
-    /// Whether each function lives in a region.
-    pub fn lives(&self, region: Region) -> Vec<bool> {
+    /// Whether each function is a branch function.
+    pub fn are_branches(&self) -> Vec<bool> {
         let kinds = self.functions.iter().map(|f| f.kind);
-        let steps = self.steps(region).map(|(_, step)| step);
-        let lives = |(kind, step)| !matches!(kind, FunctionKind::Piece { .. }) || step != 0.0;
-        kinds.zip(steps).map(lives).collect()
+        kinds.map(|kind| matches!(kind, FunctionKind::Branch { .. })).collect()
     }
 
     /// Evaluates all functions at ξ (position x) in a region of the cell.

@@ -171,7 +171,12 @@ impl TipFrame {
             psi_gradient,
             phi_gradient,
         } = self.coordinates(x);
-        match side {
+        let on_crack = match self.shape {
+            FrontShape::Pair { half_length } => psi.abs() <= half_length,
+            _ => psi <= 0.0,
+        };
+        // Ahead of the tip the place tells.
+        match side.filter(|_| on_crack) {
             Some(side) if side > 0.0 => phi = phi.max(0.0).abs(),
             Some(_) => phi = -((-phi).max(0.0).abs()),
             None => {}

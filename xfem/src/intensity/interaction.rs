@@ -30,8 +30,9 @@ use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::williams::{Mode, Williams, plane_modulus};
 
-/// Displacement gradients ∂u_a/∂x_b at points of a cell.
-pub type Gradients<'a> = dyn Fn(usize, &[ComparisonPoint]) -> Vec<[Point; 3]> + Sync + 'a;
+/// Displacement gradients ∂u_a/∂x_b at points of a cell; Hooke's law makes the stress of them.
+pub type Gradients<'a> =
+    dyn Fn(usize, &[ComparisonPoint]) -> Result<Vec<[Point; 3]>, CellError> + Sync + 'a;
 
 /// What the integral is taken of.
 pub struct Fields<'a> {
@@ -87,7 +88,7 @@ pub fn interaction(
         let ring = count(cell) < mesh.kind.nodes();
         let points = comparison_points(integrator, cell, domain.fronts, domain.rule)?;
         let gradients = if ring {
-            (fields.gradients)(cell, &points)
+            (fields.gradients)(cell, &points)?
         } else {
             vec![[[0.0; 3]; 3]; points.len()] // ∇q = 0
         };

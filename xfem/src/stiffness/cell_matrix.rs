@@ -8,7 +8,8 @@
 //! ```
 //!
 //! The largest region is K_e minus the others: half the work, and a sliver keeps its full relative accuracy (its entries may
-//! be 10⁻²⁴ of K_e and still count). Distorted cells and those with branch functions are integrated function by function.
+//! be 10⁻²⁴ of K_e and still count). The mean dilatation of the whole is no sum of those of the regions: there all of them are
+//! integrated. Distorted cells and those with branch functions are integrated function by function.
 
 use crate::cut::crack::Crack;
 use crate::cut::part::Part;
@@ -20,12 +21,13 @@ use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, polygon};
-use crate::material::Lame;
+use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 use crate::quadrature::graded::graded_points;
 use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
 
+use super::dilatation::ProjectedDilatation;
 use super::elasticity::{CellMatrix, Gram};
 use super::near_front::{Effort, NearFront};
 
@@ -129,7 +131,8 @@ impl<'a> CellIntegrator<'a> {
             gram.stiffness(self.lame)
         };
         let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
-        let exact = self.quadrature == Quadrature::SubCells;
+        let sums = regions == 1 || self.lame.dilatation == Dilatation::Full;
+        let exact = self.quadrature == Quadrature::SubCells && sums;
         let mut rest = plain.clone();
         for region in 0..regions {
             if exact && region == largest {
@@ -169,7 +172,13 @@ impl<'a> CellIntegrator<'a> {
         for p in self.evaluated(cell)? {
             gram.add(p.at.weight, &p.gradients);
         }
-        Ok(gram.stiffness(self.lame))
+        match self.lame.dilatation {
+            Dilatation::Full => Ok(gram.stiffness(self.lame)),
+            Dilatation::Mean => {
+                let projected = ProjectedDilatation::new(self, cell)?;
+                Ok(gram.projected_stiffness(self.lame, &projected.integrals()))
+            }
+        }
     }
 
     /// Quadrature points of a cell for its functions; the weights sum to its measure.

@@ -3,7 +3,7 @@
 //! ```text
 //!   Σ_q w_q ∇φ_f  =  b_f  =  ∮_cell φ_f n ds − ∫_Γ [[φ_f]] n dΓ        for every function f of the cell
 //!
-//!   ∇φ_f ← ∇φ_f + (b_f − Σ_q w_q ∇φ_f) / V_f     on the part of the cell, of measure V_f, where f lives
+//!   ∇φ_f ← ∇φ_f + (b_f − Σ_q w_q ∇φ_f) / V         V: measure of the cell; of shape functions region by region
 //! ```
 //!
 //! Border integrals cancel between neighbours, for both take the same points; those over the crack are the rows of the jump
@@ -13,12 +13,15 @@
 
 use std::collections::BTreeSet;
 
+use crate::cut::partition::Partition;
 use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::fan;
+use crate::geometry::curve::turned;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::quadrature::rational::rational_order;
 use crate::quadrature::{WeightedPoint, segment, triangle, triangle_collapsed};
 
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
@@ -56,8 +59,11 @@ impl CellIntegrator<'_> {
             })
             .collect();
         if self.is_corrected(cell, &functions) {
-            let flux = self.flux(cell, &mut functions)?;
-            correct(&functions, &flux, &mut points);
+            self.correct_shapes(cell, &mut functions, &mut points)?;
+            if self.enrichment.has_branch(cell) {
+                let flux = self.flux(cell, &mut functions)?;
+                correct_branches(&functions, &flux, &mut points);
+            }
         }
         Ok(points)
     }
@@ -70,11 +76,101 @@ impl CellIntegrator<'_> {
             && (self.enrichment.has_branch(cell) || !functions.map.is_affine())
     }
 
+    /// Gives the shape functions their moments over every region: standard and piece functions follow.
+    fn correct_shapes(
+        &self,
+        cell: usize,
+        functions: &mut CellFunctions<'_>,
+        points: &mut [EvaluatedPoint],
+    ) -> Result<(), CellError> {
+        let map = functions.map;
+        let whole = Partition::whole(&map);
+        let partition = self.enrichment.partition(cell).unwrap_or(&whole);
+        let count = map.len();
+        let mut moments = vec![vec![[0.0; 3]; count]; partition.parts.len()];
+        if map.is_affine() {
+            // Polynomials: exact.
+            for (part, sums) in partition.parts.iter().zip(&mut moments) {
+                for p in part.points() {
+                    let xi = map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+                    for (sum, g) in sums.iter_mut().zip(map.gradients(&xi).0.iter()) {
+                        *sum = add_scaled(sum, p.weight, g);
+                    }
+                }
+            }
+        } else {
+            let mut add = |p: &WeightedPoint, region: usize, sign: f64, normal: &Point| {
+                let xi = map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+                let shapes = map.kind.shape(&xi);
+                for (sum, value) in moments[region].iter_mut().zip(shapes.iter()) {
+                    *sum = add_scaled(sum, sign * p.weight * value, normal);
+                }
+                Ok::<(), CellError>(())
+            };
+            for local in map.kind.facets() {
+                let normal = outward(&map, local);
+                for (p, region) in self.border_points(cell, local) {
+                    add(&p, region, 1.0, &normal)?;
+                }
+            }
+            self.facet_points(cell, |p, regions, normal| {
+                add(p, regions[0], -1.0, normal)?;
+                add(p, regions[1], 1.0, normal)
+            })?;
+            for ([a, b], [one, two]) in partition.beyond.iter().zip(&partition.joined) {
+                let normal = turned(&unit(&sub(b, a)));
+                for p in segment(a, b, rational_order(&map, [a, b])) {
+                    add(&p, *one, -1.0, &normal)?;
+                    add(&p, *two, 1.0, &normal)?;
+                }
+            }
+        }
+        let mut measure = vec![0.0; moments.len()];
+        for p in points.iter() {
+            measure[p.at.region] += p.at.weight;
+            let g = map.gradients(&p.at.xi).0;
+            for (sum, g) in moments[p.at.region].iter_mut().zip(g.iter()) {
+                *sum = add_scaled(sum, -p.at.weight, g);
+            }
+        }
+        let kinds: Vec<bool> = functions.are_branches();
+        for p in points.iter_mut().filter(|p| measure[p.at.region] > 0.0) {
+            let steps: Vec<(usize, f64)> = functions.steps(p.at.region).collect();
+            for ((g, (local, step)), branch) in p.gradients.iter_mut().zip(steps).zip(&kinds) {
+                if !branch {
+                    let missing = &moments[p.at.region][local];
+                    *g = add_scaled(g, step / measure[p.at.region], missing);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Visits the points of the facets in a cell that jumps are integrated with: point, regions on side 1 and 2, normal.
+    fn facet_points(
+        &self,
+        cell: usize,
+        mut visit: impl FnMut(&WeightedPoint, [usize; 2], &Point) -> Result<(), CellError>,
+    ) -> Result<(), CellError> {
+        let faces = self.enrichment.partition(cell).map_or(&[][..], |p| p.faces.as_slice());
+        let cracks: BTreeSet<usize> = faces.iter().map(|face| face.crack).collect();
+        for index in cracks {
+            let crack = &self.cracks[index];
+            let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
+            for facet in &facets.facets {
+                for p in facet_points(self.mesh, crack, self.enrichment, &facets, facet) {
+                    let point = WeightedPoint::new(p.x, p.weight);
+                    visit(&point, facet.regions, &facet.frame[0])?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// b_f of all functions of a cell.
     fn flux(&self, cell: usize, functions: &mut CellFunctions<'_>) -> Result<Vec<Point>, CellError> {
         let mesh = self.mesh;
         let mut flux = vec![[0.0; 3]; functions.numbers.len()];
-        let lost = |x: &Point| CellError::new(*x, "a point of a cell has no reference position");
         for local in mesh.kind.facets() {
             let normal = outward(&functions.map, local);
             for (p, region) in self.border_points(cell, local) {
@@ -85,23 +181,16 @@ impl CellIntegrator<'_> {
                 }
             }
         }
-        let faces = self.enrichment.partition(cell).map_or(&[][..], |p| p.faces.as_slice());
-        let cracks: BTreeSet<usize> = faces.iter().map(|face| face.crack).collect();
-        for index in cracks {
-            let crack = &self.cracks[index];
-            let facets = CrackFacets::of_cell(mesh, cell, index, crack, self.enrichment);
-            for facet in &facets.facets {
-                for p in facet_points(mesh, crack, self.enrichment, &facets, facet) {
-                    let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
-                    for (region, sign) in facet.regions.into_iter().zip([-1.0, 1.0]) {
-                        functions.evaluate(&xi, &p.x, region);
-                        for (sum, value) in flux.iter_mut().zip(&functions.values) {
-                            *sum = add_scaled(sum, sign * p.weight * value, &facet.frame[0]);
-                        }
-                    }
+        self.facet_points(cell, |p, regions, normal| {
+            let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+            for (region, sign) in regions.into_iter().zip([-1.0, 1.0]) {
+                functions.evaluate(&xi, &p.x, region);
+                for (sum, value) in flux.iter_mut().zip(&functions.values) {
+                    *sum = add_scaled(sum, sign * p.weight * value, normal);
                 }
             }
-        }
+            Ok(())
+        })?;
         Ok(flux)
     }
 
@@ -121,22 +210,19 @@ impl CellIntegrator<'_> {
         let pieces = pieces(mesh, self.cracks, self.enrichment, cell, &order);
         let mut points = Vec::new();
         if mesh.dim() == 2 {
-            // A continuation that ends on the edge is none of the neighbour's concern.
-            let partition = self.enrichment.partition(cell);
-            let is_hit = |x: &Point| partition.is_some_and(|p| p.hits.contains(x));
-            let n = if branch { BRANCH_EDGE } else { 2 };
-            let mut rest = pieces.as_slice();
-            while let Some((piece, _)) = rest.first() {
-                let from = piece[0];
-                let parts = 1 + rest.iter().take_while(|(piece, _)| is_hit(&piece[1])).count();
-                let (own, others) = rest.split_at(parts.min(rest.len()));
-                let to = own[own.len() - 1].0[1];
-                for p in segment(&from, &to, n) {
-                    let away = norm(&sub(&p.x, &from));
-                    let region = own.iter().find(|(piece, _)| away <= norm(&sub(&piece[1], &from)));
-                    points.push((p, region.unwrap_or(&own[own.len() - 1]).1));
+            // From place to place of the cracks, whether they divide this cell or its neighbour; a continuation that ends on
+            // the edge is none of the neighbour's concern.
+            let [from, to] = [order[0], order[1]].map(|i| mesh.nodes[nodes[i] as usize]);
+            let away = |x: &Point| norm(&sub(x, &from));
+            let mut places = self.enrichment.places_on([nodes[order[0]], nodes[order[1]]]).to_vec();
+            places.extend([from, to]);
+            places.sort_by(|a, b| away(a).total_cmp(&away(b)));
+            for w in places.windows(2) {
+                for p in segment(&w[0], &w[1], if branch { BRANCH_EDGE } else { 2 }) {
+                    let at = away(&p.x);
+                    let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
+                    points.push((p, own.or(pieces.last()).map_or(0, |own| own.1)));
                 }
-                rest = others;
             }
             return points;
         }
@@ -166,22 +252,21 @@ fn outward(map: &crate::mesh::cell::CellMap, local: &[usize]) -> Point {
     normal.map(|v| sign * v)
 }
 
-/// Adds what the gradients lack, evenly over the regions where each function lives.
-fn correct(functions: &CellFunctions<'_>, flux: &[Point], points: &mut [EvaluatedPoint]) {
-    let lives: Vec<Vec<bool>> = (0..=points.iter().map(|p| p.at.region).max().unwrap_or(0))
-        .map(|region| functions.lives(region))
-        .collect();
-    for (f, flux) in flux.iter().enumerate() {
-        let own = |p: &&mut EvaluatedPoint| lives[p.at.region][f];
-        let (mut missing, mut measure) = (*flux, 0.0);
-        for p in points.iter_mut().filter(own) {
+fn lost(x: &Point) -> CellError {
+    CellError::new(*x, "a point of a cell has no reference position")
+}
+
+/// Adds what the gradients of branch functions lack, evenly over the cell.
+fn correct_branches(functions: &CellFunctions<'_>, flux: &[Point], points: &mut [EvaluatedPoint]) {
+    let kinds = functions.are_branches();
+    let measure: f64 = points.iter().map(|p| p.at.weight).sum();
+    for (f, flux) in flux.iter().enumerate().filter(|(f, _)| kinds[*f]) {
+        let mut missing = *flux;
+        for p in points.iter() {
             missing = add_scaled(&missing, -p.at.weight, &p.gradients[f]);
-            measure += p.at.weight;
         }
-        if measure > 0.0 {
-            for p in points.iter_mut().filter(own) {
-                p.gradients[f] = add_scaled(&p.gradients[f], 1.0 / measure, &missing);
-            }
+        for p in points.iter_mut() {
+            p.gradients[f] = add_scaled(&p.gradients[f], 1.0 / measure, &missing);
         }
     }
 }

@@ -7,6 +7,8 @@
 //!   K[(k,a),(l,b)] = λ G[(k,a),(l,b)] + μ G[(k,b),(l,a)] + μ δ_ab Σ_c G[(k,c),(l,c)]
 //! ```
 //!
+//! With the mean dilatation ∫ ∂_a φ_k ∫ ∂_b φ_l / V takes the place of G behind λ, see [`dilatation`](super::dilatation).
+//!
 //! So quadrature accumulates rank-one updates w g gᵀ, and the material enters once per cell. Standard, Heaviside and
 //! branch functions are all scalar functions here.
 
@@ -14,7 +16,7 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::geometry::Point;
-use crate::material::Lame;
+use crate::material::{Dilatation, Lame};
 use crate::mesh::cell::CellMap;
 use crate::quadrature::gauss_cell;
 
@@ -31,6 +33,10 @@ pub struct Gram {
     gathered: Vec<f64>,
     /// The same times their weights.
     weighted: Vec<f64>,
+    /// ∫ g of what is in `values`.
+    integral: Vec<f64>,
+    /// Sum of the weights.
+    measure: f64,
 }
 
 impl Gram {
@@ -46,11 +52,14 @@ impl Gram {
             values: vec![0.0; size * size],
             gathered: Vec::new(),
             weighted: Vec::new(),
+            integral: vec![0.0; size],
+            measure: 0.0,
         }
     }
 
     /// G += w g gᵀ; `g`: the gradients of all functions.
     pub fn add(&mut self, weight: f64, g: &[Point]) {
+        self.measure += weight;
         for gradient in g.iter().map(|g| &g[..self.dim]) {
             self.gathered.extend_from_slice(gradient);
             self.weighted.extend(gradient.iter().map(|v| weight * v));
@@ -78,6 +87,12 @@ impl Gram {
             1.0,
             Par::Seq,
         );
+        for column in self.weighted.chunks_exact(self.size) {
+            self.integral
+                .iter_mut()
+                .zip(column)
+                .for_each(|(s, g)| *s += g);
+        }
         self.gathered.clear();
         self.weighted.clear();
     }
@@ -87,8 +102,34 @@ impl Gram {
         self.values[j * self.size + i]
     }
 
+    /// ∫ g_i ∫ g_j / V, the product of the means; nothing over nothing.
+    fn mean(&self, i: usize, j: usize) -> f64 {
+        if self.measure > 0.0 {
+            self.integral[i] * self.integral[j] / self.measure
+        } else {
+            0.0
+        }
+    }
+
     /// Stiffness matrix of the functions, symmetric, full storage row by row, N/m.
-    pub fn stiffness(mut self, lame: Lame) -> CellMatrix {
+    pub fn stiffness(self, lame: Lame) -> CellMatrix {
+        match lame.dilatation {
+            Dilatation::Full => self.stiffness_over(lame, Self::at),
+            Dilatation::Mean => self.stiffness_over(lame, Self::mean),
+        }
+    }
+
+    /// The same with Σ_m s_mi s_mj behind λ; `modes`: the s_m, by function and component.
+    pub fn projected_stiffness(self, lame: Lame, modes: &[Vec<f64>]) -> CellMatrix {
+        self.stiffness_over(lame, |_, i, j| modes.iter().map(|s| s[i] * s[j]).sum())
+    }
+
+    /// The same with `dilatation` behind λ.
+    fn stiffness_over(
+        mut self,
+        lame: Lame,
+        dilatation: impl Fn(&Self, usize, usize) -> f64,
+    ) -> CellMatrix {
         self.gather();
         let Lame { lambda, mu, .. } = lame;
         let dim = self.dim;
@@ -98,7 +139,7 @@ impl Gram {
                 let laplace: f64 = (0..dim).map(|c| self.at(i * dim + c, j * dim + c)).sum();
                 for a in 0..dim {
                     for b in 0..dim {
-                        let direct = self.at(i * dim + a, j * dim + b);
+                        let direct = dilatation(&self, i * dim + a, j * dim + b);
                         let swapped = self.at(i * dim + b, j * dim + a);
                         let same = if a == b { mu * laplace } else { 0.0 };
                         let value = lambda * direct + mu * swapped + same;
