@@ -109,7 +109,8 @@ impl CellIntegrator<'_> {
             };
             for local in map.kind.facets() {
                 let normal = outward(&map, local);
-                for (p, region) in self.border_points(cell, local) {
+                // Linear along an edge.
+                for (p, region) in self.border_points(cell, local, false) {
                     add(&p, region, 1.0, &normal)?;
                 }
             }
@@ -173,7 +174,7 @@ impl CellIntegrator<'_> {
         let mut flux = vec![[0.0; 3]; functions.numbers.len()];
         for local in mesh.kind.facets() {
             let normal = outward(&functions.map, local);
-            for (p, region) in self.border_points(cell, local) {
+            for (p, region) in self.border_points(cell, local, true) {
                 let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
                 functions.evaluate(&xi, &p.x, region);
                 for (sum, value) in flux.iter_mut().zip(&functions.values) {
@@ -194,11 +195,16 @@ impl CellIntegrator<'_> {
         Ok(flux)
     }
 
-    /// Points on an edge (2D) or face of a cell with their regions: the same from both cells beside it.
-    fn border_points(&self, cell: usize, local: &[usize]) -> Vec<(WeightedPoint, usize)> {
+    /// Points on an edge (2D) or face of a cell with their regions, for shape functions or for branch functions: those the same
+    /// from both cells beside it.
+    fn border_points(
+        &self,
+        cell: usize,
+        local: &[usize],
+        branch: bool,
+    ) -> Vec<(WeightedPoint, usize)> {
         let mesh = self.mesh;
         let nodes = mesh.cell(cell);
-        let branch = self.enrichment.has_branch(cell);
         // From the lowest node towards its lower neighbour.
         let count = local.len();
         let first = (0..count).min_by_key(|&i| nodes[local[i]]).unwrap_or(0);
@@ -209,6 +215,13 @@ impl CellIntegrator<'_> {
             .collect();
         let pieces = pieces(mesh, self.cracks, self.enrichment, cell, &order);
         let mut points = Vec::new();
+        if mesh.dim() == 2 && !branch {
+            for (piece, region) in pieces {
+                let rule = segment(&piece[0], &piece[1], 2);
+                points.extend(rule.into_iter().map(|p| (p, region)));
+            }
+            return points;
+        }
         if mesh.dim() == 2 {
             // From place to place of the cracks, whether they divide this cell or its neighbour; a continuation that ends on
             // the edge is none of the neighbour's concern.
@@ -218,7 +231,7 @@ impl CellIntegrator<'_> {
             places.extend([from, to]);
             places.sort_by(|a, b| away(a).total_cmp(&away(b)));
             for w in places.windows(2) {
-                for p in segment(&w[0], &w[1], if branch { BRANCH_EDGE } else { 2 }) {
+                for p in segment(&w[0], &w[1], BRANCH_EDGE) {
                     let at = away(&p.x);
                     let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
                     points.push((p, own.or(pieces.last()).map_or(0, |own| own.1)));
