@@ -13,7 +13,7 @@ use stickslip_xfem::geometry::clip::fan;
 use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
 use stickslip_xfem::quadrature::{WeightedPoint, gauss_map, segment, triangle, triangle_collapsed};
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use stickslip_xfem::stiffness::consistent::BRANCH_EDGE;
+use stickslip_xfem::stiffness::consistent::{BRANCH_EDGE, outward};
 
 use crate::case::{LoadKind, Region};
 use crate::model::boundary::region_nodes;
@@ -268,6 +268,18 @@ fn facet_force(
     density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
 ) -> Result<(), LoadError> {
     for (cell, local) in loaded_parts(integrator, region, false)? {
+        if integrator.enrichment.has_branch(cell) && rule == Rule::Fixed {
+            // The points with which the gradients of branch functions are in balance.
+            let normal = outward(&integrator.mesh.map(cell), &local);
+            let mut functions = integrator.functions(cell);
+            let (dim, numbers) = (integrator.mesh.dim(), functions.numbers);
+            integrator.visit_border(cell, &local, &mut functions, |f, p, region, value| {
+                let t = density(cell, &p.x, region, &normal);
+                let own = &mut force[numbers[f] as usize * dim..][..dim];
+                own.iter_mut().zip(t).for_each(|(f, t)| *f += p.weight * value * t);
+            })?;
+            continue;
+        }
         for (part, region) in divided(integrator, cell, &local) {
             let mut add = |normal: Point, points: Vec<(WeightedPoint, CellRegion)>| {
                 let density = |cell, x: &Point, region| density(cell, x, region, &normal);

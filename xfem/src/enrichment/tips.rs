@@ -44,6 +44,9 @@ impl Zone {
     }
 }
 
+/// An arm shorter than this, in diagonals of the cell of its tip, is none: its functions drown in the rounding of the others.
+const SHORTEST: f64 = 0.01;
+
 /// The cells that cracks divide and the tips that carry branch functions.
 #[derive(Debug, Default)]
 pub struct Tips {
@@ -311,6 +314,8 @@ impl Search<'_> {
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
         let alone = tip.cells.iter().filter_map(divided).all(|p| self.is_own(p, tip.arm));
         let nodes = nodes_of(self.mesh, tip.cells.iter().copied());
+        let size = self.mesh.map(tip.cells[0]).diagonal();
+        let parted = parted && self.room(number) > SHORTEST * size;
         parted && alone && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
     }
 

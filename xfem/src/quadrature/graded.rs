@@ -29,7 +29,7 @@ fn parts<S: Copy, const N: usize>(
     halve: fn(&S) -> [S; N],
 ) -> Vec<S> {
     /// Most parts of one simplex: flat ones would be halved on and on.
-    const MOST: usize = 4096;
+    const MOST: usize = 256;
     let mut stack: Vec<(S, usize)> = simplices.iter().map(|s| (*s, 0)).collect();
     let mut parts = Vec::new();
     while let Some((simplex, level)) = stack.pop() {

@@ -15,10 +15,11 @@ use std::collections::BTreeSet;
 
 use crate::cut::partition::Partition;
 use crate::enrichment::cell_facets::pieces;
+use crate::enrichment::basis::{FunctionKind, Region};
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
-use crate::geometry::clip::fan;
+use crate::geometry::clip::{clip, fan};
 use crate::geometry::curve::turned;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::quadrature::rational::rational_order;
@@ -110,7 +111,7 @@ impl CellIntegrator<'_> {
             for local in map.kind.facets() {
                 let normal = outward(&map, local);
                 // Linear along an edge.
-                for (p, region) in self.border_points(cell, local, false) {
+                for (p, region) in self.border_points(cell, local, None) {
                     add(&p, region, 1.0, &normal)?;
                 }
             }
@@ -174,13 +175,9 @@ impl CellIntegrator<'_> {
         let mut flux = vec![[0.0; 3]; functions.numbers.len()];
         for local in mesh.kind.facets() {
             let normal = outward(&functions.map, local);
-            for (p, region) in self.border_points(cell, local, true) {
-                let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
-                functions.evaluate(&xi, &p.x, region);
-                for (sum, value) in flux.iter_mut().zip(&functions.values) {
-                    *sum = add_scaled(sum, p.weight * value, &normal);
-                }
-            }
+            self.visit_border(cell, local, functions, |f, p, _, value| {
+                flux[f] = add_scaled(&flux[f], p.weight * value, &normal);
+            })?;
         }
         self.facet_points(cell, |p, regions, normal| {
             let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
@@ -195,14 +192,48 @@ impl CellIntegrator<'_> {
         Ok(flux)
     }
 
-    /// Points on an edge (2D) or face of a cell with their regions, for shape functions or for branch functions: those the same
-    /// from both cells beside it.
+    /// Visits the functions of a cell at the points of one of its edges (2D) or faces that they are integrated with: number in
+    /// the cell, point, region, value.
+    ///
+    /// # Errors
+    /// A point without a reference position.
+    pub fn visit_border(
+        &self,
+        cell: usize,
+        local: &[usize],
+        functions: &mut CellFunctions<'_>,
+        mut visit: impl FnMut(usize, &WeightedPoint, Region, f64),
+    ) -> Result<(), CellError> {
+        let kinds = functions.numbers.iter().map(|&f| self.enrichment.functions[f as usize].kind);
+        let tips: Vec<Option<u32>> = kinds
+            .map(|kind| match kind {
+                FunctionKind::Branch { tip, .. } => Some(tip),
+                _ => None,
+            })
+            .collect();
+        let own: BTreeSet<Option<u32>> = tips.iter().copied().chain([None]).collect();
+        for tip in own {
+            for (p, region) in self.border_points(cell, local, tip) {
+                let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+                functions.evaluate(&xi, &p.x, region);
+                for (f, value) in functions.values.iter().enumerate() {
+                    if tips[f] == tip {
+                        visit(f, &p, region, *value);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Points on an edge (2D) or face of a cell with their regions, for shape functions or for the branch functions of a tip:
+    /// those the same from both cells beside it.
     fn border_points(
         &self,
         cell: usize,
         local: &[usize],
-        branch: bool,
-    ) -> Vec<(WeightedPoint, usize)> {
+        tip: Option<u32>,
+    ) -> Vec<(WeightedPoint, Region)> {
         let mesh = self.mesh;
         let nodes = mesh.cell(cell);
         // From the lowest node towards its lower neighbour.
@@ -213,47 +244,73 @@ impl CellIntegrator<'_> {
         let order: Vec<usize> = (0..count)
             .map(|k| if forward { at(first + k) } else { at(first + count - k) })
             .collect();
-        let pieces = pieces(mesh, self.cracks, self.enrichment, cell, &order);
-        let mut points = Vec::new();
-        if mesh.dim() == 2 && !branch {
-            for (piece, region) in pieces {
-                let rule = segment(&piece[0], &piece[1], 2);
-                points.extend(rule.into_iter().map(|p| (p, region)));
-            }
-            return points;
-        }
-        if mesh.dim() == 2 {
-            // From place to place of the cracks, whether they divide this cell or its neighbour; a continuation that ends on
-            // the edge is none of the neighbour's concern.
-            let [from, to] = [order[0], order[1]].map(|i| mesh.nodes[nodes[i] as usize]);
-            let away = |x: &Point| norm(&sub(x, &from));
-            let mut places = self.enrichment.places_on([nodes[order[0]], nodes[order[1]]]).to_vec();
-            places.extend([from, to]);
-            places.sort_by(|a, b| away(a).total_cmp(&away(b)));
-            for w in places.windows(2) {
-                for p in segment(&w[0], &w[1], BRANCH_EDGE) {
-                    let at = away(&p.x);
-                    let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
-                    points.push((p, own.or(pieces.last()).map_or(0, |own| own.1)));
-                }
-            }
-            return points;
-        }
-        for (polygon, region) in pieces {
-            for t in fan(&polygon) {
-                let rule = match branch {
-                    true => triangle_collapsed(&t, BRANCH_FACE),
-                    false => triangle(&t),
+        match (tip, mesh.dim()) {
+            (None, dim) => {
+                let pieces = pieces(mesh, self.cracks, self.enrichment, cell, &order).into_iter();
+                let rule = |piece: &[Point]| match dim {
+                    2 => segment(&piece[0], &piece[1], 2),
+                    _ => fan(piece).iter().flat_map(triangle).collect(),
                 };
-                points.extend(rule.into_iter().map(|p| (p, region)));
+                let points = pieces.map(|(piece, region)| (rule(&piece), region));
+                let points = points.flat_map(|(own, r)| own.into_iter().map(move |p| (p, r)));
+                points.collect()
+            }
+            (Some(_), 2) => self.branch_edge(cell, &order),
+            (Some(tip), _) => self.branch_face(cell, &order, tip as usize),
+        }
+    }
+
+    /// On an edge: from place to place of the cracks, whether they divide this cell or its neighbour. A continuation that ends
+    /// on the edge is none of the neighbour's concern.
+    fn branch_edge(&self, cell: usize, order: &[usize]) -> Vec<(WeightedPoint, Region)> {
+        let mesh = self.mesh;
+        let ends = [order[0], order[1]].map(|i| mesh.cell(cell)[i]);
+        let [from, to] = ends.map(|n| mesh.nodes[n as usize]);
+        let pieces = pieces(mesh, self.cracks, self.enrichment, cell, order);
+        let away = |x: &Point| norm(&sub(x, &from));
+        let mut places = self.enrichment.places_on(ends).to_vec();
+        places.extend([from, to]);
+        places.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        let mut points = Vec::new();
+        for w in places.windows(2) {
+            for p in segment(&w[0], &w[1], BRANCH_EDGE) {
+                let at = away(&p.x);
+                let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
+                points.push((p, own.or(pieces.last()).map_or(0, |own| own.1)));
+            }
+        }
+        points
+    }
+
+    /// On a face: on both sides of the plane of the tip's crack, whether it divides this cell or its neighbour.
+    fn branch_face(&self, cell: usize, order: &[usize], tip: usize) -> Vec<(WeightedPoint, Region)> {
+        let map = self.mesh.map(cell);
+        let crack = &self.cracks[self.enrichment.tips[tip].crack];
+        let phi = crack.cell_phi(self.mesh, cell);
+        let levels: Vec<f64> = order.iter().map(|&i| phi[i]).collect();
+        let face: Vec<Point> = order.iter().map(|&i| map[i]).collect();
+        let mut points = Vec::new();
+        for side in [1.0, -1.0] {
+            if !levels.iter().any(|f| f * side > 0.0) {
+                continue;
+            }
+            // On either side of other cracks the functions are the same.
+            let of_crack = |s: &(usize, f64)| self.cracks[s.0].number == crack.number && s.1 == side;
+            let region = self.enrichment.partition(cell).and_then(|partition| {
+                let mut parts = partition.parts.iter();
+                parts.position(|part| part.sides.iter().any(of_crack))
+            });
+            for t in fan(&clip(&face, &levels, side)) {
+                let rule = triangle_collapsed(&t, BRANCH_FACE).into_iter();
+                points.extend(rule.map(|p| (p, region.unwrap_or(0))));
             }
         }
         points
     }
 }
 
-/// Outward unit normal of a facet of a cell.
-fn outward(map: &crate::mesh::cell::CellMap, local: &[usize]) -> Point {
+/// Outward unit normal of a facet of a cell, given by its local nodes.
+pub fn outward(map: &crate::mesh::cell::CellMap, local: &[usize]) -> Point {
     if let &[i, j] = local {
         let d = unit(&sub(&map[j], &map[i]));
         return [d[1], -d[0], 0.0];
