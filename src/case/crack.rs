@@ -111,7 +111,10 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
             ("branch", Tip::Branch),
         ])?
     } else {
-        return Err(value.refuse("none, auto, branch or { branch_radius_m = R }", "wrong type"));
+        return Err(value.refuse(
+            "none, auto, branch or { branch_radius_m = R }",
+            "wrong type",
+        ));
     };
     if endless && tip != Tip::None {
         return Err(value.refuse(

@@ -76,6 +76,8 @@ pub struct Body {
     pub loads: Vec<FixedLoad>,
     /// What the tests on the mesh found.
     pub checks: MeshChecks,
+    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked.
+    pub suspect: Option<String>,
 }
 
 /// Where the system of a run comes from: times shared by all runs on it.
@@ -159,7 +161,8 @@ impl Body {
             let free = row.filter(|(i, _)| solver_numbers[*i].is_some());
             free.map(|(i, v)| (i, v / diagonal[i].sqrt())).collect()
         };
-        let ContactSurface { points, surface } = faces(case, &integrator, doubled, &numbers, scaled)?;
+        let ContactSurface { points, surface } =
+            faces(case, &integrator, doubled, &numbers, scaled)?;
         let samples = facet_samples(&integrator)?;
         let jump = jump_rows(dim, &points);
         let integrated: Vec<bool> = (case.cracks.iter().enumerate())
@@ -224,8 +227,12 @@ impl Body {
             cracks,
             enrichment,
             checks: MeshChecks::default(),
+            suspect: None,
         };
         body.checks = mesh_checks(&body);
+        if body.quadrature == Quadrature::SubCells {
+            body.suspect = body.checks.reason();
+        }
         Ok(body)
     }
 

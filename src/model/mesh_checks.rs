@@ -30,6 +30,19 @@ pub struct MeshChecks {
     pub at: Point,
 }
 
+impl MeshChecks {
+    /// What is wrong with the mesh, if anything is.
+    pub fn reason(&self) -> Option<String> {
+        // NaN passes no comparison.
+        let exact = self.uniform <= UNIFORM;
+        (!exact).then(|| {
+            let [x, y, z] = self.at;
+            let off = self.uniform;
+            format!("uniform stress is off by {off:.1e} near ({x:.6}, {y:.6}, {z:.6})")
+        })
+    }
+}
+
 /// Tests a body.
 pub fn mesh_checks(body: &Body) -> MeshChecks {
     let (mesh, dim, lame) = (&body.mesh, body.mesh.dim(), body.lame);
@@ -62,7 +75,11 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
             let of = |c: usize| {
                 let i = f * dim + c;
                 let missing = force[i] + dot(&sigma[c], &jumps[f]);
-                if scale(i) > 0.0 { (missing / scale(i)).abs() } else { 0.0 }
+                if scale(i) > 0.0 {
+                    (missing / scale(i)).abs()
+                } else {
+                    0.0
+                }
             };
             (0..dim).map(of).fold(0.0, f64::max)
         };
@@ -70,7 +87,10 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
         let worst = functions
             .filter(|f| !outside[*f])
             .map(|f| (residual(f), f))
-            .reduce(|| (0.0, 0), |x, y| if y.0 > x.0 || x.0.is_nan() { y } else { x });
+            .reduce(
+                || (0.0, 0),
+                |x, y| if y.0 > x.0 || x.0.is_nan() { y } else { x },
+            );
         if worst.0 > found.uniform || worst.0.is_nan() {
             found.uniform = worst.0;
             found.at = mesh.nodes[body.enrichment.functions[worst.1].node as usize];

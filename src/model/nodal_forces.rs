@@ -276,7 +276,9 @@ fn facet_force(
             integrator.visit_border(cell, &local, &mut functions, |f, p, region, value| {
                 let t = density(cell, &p.x, region, &normal);
                 let own = &mut force[numbers[f] as usize * dim..][..dim];
-                own.iter_mut().zip(t).for_each(|(f, t)| *f += p.weight * value * t);
+                own.iter_mut()
+                    .zip(t)
+                    .for_each(|(f, t)| *f += p.weight * value * t);
             })?;
             continue;
         }

@@ -280,7 +280,7 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
 
 /// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
 /// linear between its points, which then hold its extremes.
-fn sampled_penetration(case: &Case, body: &Body, now: &Snapshot) -> Vec<f64> {
+pub fn sampled_penetration(case: &Case, body: &Body, now: &Snapshot) -> Vec<f64> {
     let (dim, integrator) = (body.mesh.dim(), body.integrator());
     let deepest = |crack: usize| {
         if body.cracks.iter().any(|c| c.number == crack) {

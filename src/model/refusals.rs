@@ -72,7 +72,9 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
         EnrichmentError::Overlap(overlap) => (overlap.cracks[1], "cracks that cross or lie apart"),
-        EnrichmentError::Lost { crack, .. } => (*crack, "a mesh that the crack crosses from cell to cell"),
+        EnrichmentError::Lost { crack, .. } => {
+            (*crack, "a mesh that the crack crosses from cell to cell")
+        }
         EnrichmentError::Partition { crack, .. } => {
             (*crack, "a finer mesh, or cracks farther apart")
         }

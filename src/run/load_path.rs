@@ -5,7 +5,7 @@ use stickslip_methods::{ContactState, ContactSystem, Increment};
 use crate::case::Case;
 use crate::model::body::{Body, BodyError};
 use crate::model::loading::Loading;
-use crate::model::quantities::Snapshot;
+use crate::model::quantities::{Snapshot, sampled_penetration};
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::record::{RunKey, RunRow};
@@ -100,9 +100,17 @@ impl LoadPathRun<'_> {
     }
 
     /// Row of `runs.csv`.
-    pub fn row(&self, key: &RunKey, increment: &JudgedIncrement) -> RunRow {
-        let setup = self.loading.body().setup;
-        increment.run_row(key, self.system, setup, self.accuracy)
+    pub fn row(&self, key: &RunKey, increment: &JudgedIncrement, now: Option<&Snapshot>) -> RunRow {
+        let body = self.loading.body();
+        let row = increment.run_row(key, self.system, body.setup, self.accuracy);
+        RunRow {
+            uniform_stress: body.checks.uniform,
+            overlap_m: now.map_or(f64::NAN, |now| {
+                let deepest = sampled_penetration(self.case, body, now);
+                deepest.into_iter().fold(0.0, f64::max)
+            }),
+            ..row
+        }
     }
 
     /// Follows the path, up to the first increment without an honest verdict: what came after would start from a state
@@ -167,6 +175,12 @@ impl LoadPathRun<'_> {
             if let Some(what) = end.now.as_ref().and_then(Snapshot::not_finite) {
                 solved.verdict = Verdict::Crashed(format!("{what} of the answer are not finite"));
                 end.now = None;
+            }
+            // The mechanics stay visible: what is suspect can be looked at.
+            if solved.verdict.is_honest()
+                && let Some(reason) = &body.suspect
+            {
+                solved.verdict = Verdict::Suspect(reason.clone());
             }
             each(&end.key, &solved, end.now.as_ref());
             end.verdict = solved.verdict;

@@ -97,6 +97,10 @@ pub struct RunRow {
     pub reference_force: f64,
     /// u_ref [m]; likewise.
     pub reference_jump_m: f64,
+    /// Residual of uniform stress states on the mesh, found by its judge [-].
+    pub uniform_stress: f64,
+    /// Deepest overlap of the faces anywhere, sampled much closer than the contact points [m].
+    pub overlap_m: f64,
     /// Dense factorisations of condensed matrices in this increment: the work inside iterations and outer loops.
     pub tangent_factorisations: usize,
     /// Sparse factorisations of matrices over all unknowns in this increment, by monolithic variants.

@@ -183,7 +183,7 @@ fn run_path(path: &LoadPathRun<'_>, refine: usize, fields: bool) -> Results {
     let (case, body) = (path.case, path.loading.body());
     let (mut results, mut steps) = (Results::default(), Vec::new());
     let end = path.follow(&mut |key, increment, now| {
-        results.runs.push(path.row(key, increment));
+        results.runs.push(path.row(key, increment, now));
         results.history.extend(increment.history_rows(key));
         let Some(now) = now else { return };
         results.add_found(key, quantities(case, body, now), point_states(body, now));

@@ -1,4 +1,4 @@
-//! Verdict = claim × check. Methods claim, [`residuals`](stickslip_methods::residuals) checks, nobody else judges.
+//! Verdict = claim × check of the algebra × check of the mesh. Methods claim, [`residuals`](stickslip_methods::residuals) checks, nobody else judges.
 
 mod text;
 
@@ -70,6 +70,9 @@ pub enum Verdict {
     FalseClaim,
     /// Ended without a claim, with one of [`GIVE_UPS`].
     GaveUp(Status),
+    /// Solved what the mesh holds of the case, as the judge of the algebra agrees; the judge of the mesh says what is wrong
+    /// with that.
+    Suspect(String),
     /// Declined the system, with the reason.
     Refused(String),
     /// Failed with an error.
@@ -125,6 +128,7 @@ verdict_kinds! {
     Approximate = "approximate": Honest Claims,
     FalseClaim = "false-claim": Claims Failure Wrong,
     GaveUp = "gave-up": Failure,
+    Suspect = "suspect mesh": Failure Wrong,
     Refused = "refused": ,
     Crashed = "crashed": Failure Wrong,
     TimedOut = "timed-out": Failure Limit,
@@ -174,6 +178,7 @@ impl Verdict {
             Verdict::Approximate(_) => VerdictKind::Approximate,
             Verdict::FalseClaim => VerdictKind::FalseClaim,
             Verdict::GaveUp(_) => VerdictKind::GaveUp,
+            Verdict::Suspect(_) => VerdictKind::Suspect,
             Verdict::Refused(_) => VerdictKind::Refused,
             Verdict::Crashed(_) => VerdictKind::Crashed,
             Verdict::TimedOut => VerdictKind::TimedOut,
@@ -191,8 +196,9 @@ impl Verdict {
             Verdict::TimedOut => (4, None),
             Verdict::OutOfMemory => (5, None),
             Verdict::Crashed(_) => (6, None),
+            Verdict::Suspect(_) => (7, None),
             // The only one that deceives.
-            Verdict::FalseClaim => (7, None),
+            Verdict::FalseClaim => (8, None),
         };
         (place, Reverse(held))
     }
@@ -262,6 +268,7 @@ mod tests {
             "timed-out",
             "out-of-memory",
             "crashed: why",
+            "suspect mesh: why",
             "false-claim",
         ]
         .map(|text| text.parse::<Verdict>().unwrap().rank());

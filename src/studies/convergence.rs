@@ -174,7 +174,7 @@ fn run_one(
     let posed = Posed::new(body, case, per_crack)?;
     let path = posed.run(choice, Accuracy::of(case, case.tier));
     let mut rows = Vec::new();
-    let end = path.follow(&mut |key, increment, _| rows.push(path.row(key, increment)));
+    let end = path.follow(&mut |key, increment, now| rows.push(path.row(key, increment, now)));
     let key = end.key;
     let measured = match &end.now {
         None => Measured::Nothing,

@@ -35,6 +35,7 @@ fn of_kind(kind: VerdictKind) -> Verdict {
         VerdictKind::FalseClaim => Verdict::FalseClaim,
         VerdictKind::GaveUp => Verdict::GaveUp(Status::SingularTangent),
         VerdictKind::Refused => Verdict::Refused("no: \"friction\", or none".into()),
+        VerdictKind::Suspect => Verdict::Suspect("uniform stress is off by 1e-2".into()),
         VerdictKind::Crashed => Verdict::Crashed("out of memory, it says: 1, 2".into()),
         VerdictKind::TimedOut => Verdict::TimedOut,
         VerdictKind::OutOfMemory => Verdict::OutOfMemory,

@@ -79,14 +79,22 @@ impl Enrichment {
             _ => Tips::solid(mesh, cracks),
         };
         for crack in cracks {
-            let own = |p: &Partition| p.faces.iter().any(|f| cracks[f.crack].number == crack.number);
+            let own = |p: &Partition| {
+                p.faces
+                    .iter()
+                    .any(|f| cracks[f.crack].number == crack.number)
+            };
             let mut divided = tips.partitions.values().chain(tips.endings.values());
             if !divided.any(own) {
                 let traced = trace.chains.values().flatten();
                 let mut traced = traced.filter(|c| cracks[c.arm].number == crack.number);
                 return Err(match traced.next() {
-                    Some(_) => EnrichmentError::TooShort { crack: crack.number },
-                    None => EnrichmentError::Outside { crack: crack.number },
+                    Some(_) => EnrichmentError::TooShort {
+                        crack: crack.number,
+                    },
+                    None => EnrichmentError::Outside {
+                        crack: crack.number,
+                    },
                 });
             }
         }
@@ -181,7 +189,8 @@ impl Enrichment {
                             };
                             let of_crack = |s: &&(usize, Side)| cracks[s.0].number == crack.number;
                             let side = |part: &Option<&Part>| {
-                                part.and_then(|p| p.sides.iter().find(of_crack)).map(|s| s.1)
+                                part.and_then(|p| p.sides.iter().find(of_crack))
+                                    .map(|s| s.1)
                             };
                             let sides = parts.iter().map(side);
                             sides.map(|side| side.unwrap_or(elsewhere)).collect()
@@ -215,7 +224,9 @@ impl Enrichment {
 
     /// Where arms cross a mesh edge (2D) [m].
     pub fn places_on(&self, [i, j]: [u32; 2]) -> &[Point] {
-        self.on_edges.get(&[i.min(j), i.max(j)]).map_or(&[], Vec::as_slice)
+        self.on_edges
+            .get(&[i.min(j), i.max(j)])
+            .map_or(&[], Vec::as_slice)
     }
 
     /// Divided cells in order.

@@ -153,7 +153,11 @@ impl Mesh {
     pub fn rounding(&self) -> f64 {
         /// Units in the last place: of a grid line, of a point of a crack, of their difference.
         const UNITS: f64 = 8.0;
-        let largest = self.nodes.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = self
+            .nodes
+            .iter()
+            .flatten()
+            .fold(0.0, |m: f64, x| m.max(x.abs()));
         UNITS * f64::EPSILON * largest
     }
 

@@ -81,7 +81,6 @@ fn the_rule_fills_the_body_and_resolves_both_tips() {
         let integrator = body.integrator();
         let crack = &body.cracks[0];
         let fronts = placement::fronts(&body.mesh, 0, crack);
-        let fronts: Vec<TipFrame> = fronts.into_iter().map(|(tip, _)| tip).collect();
         let ends: Vec<Point> = fronts.iter().map(|f| f.position).collect();
         for (n, tolerance) in [(4, 1e-6), (8, 1e-9)] {
             let (mut area, mut found) = (0.0, [0.0; 2]);

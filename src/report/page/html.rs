@@ -267,7 +267,15 @@ fn verdict_class(text: &str) -> &'static str {
         (Ok(VerdictKind::Solved), _) | (_, MET | "pass" | "stable") => "v good",
         (Ok(VerdictKind::Approximate), _) | (_, MISSED_AS_DOCUMENTED) => "v fair",
         (Ok(VerdictKind::Refused), _) | (_, NOT_RUN | "") => "v none",
-        (Ok(VerdictKind::FalseClaim | VerdictKind::GaveUp | VerdictKind::Crashed), _)
+        (
+            Ok(
+                VerdictKind::FalseClaim
+                | VerdictKind::GaveUp
+                | VerdictKind::Suspect
+                | VerdictKind::Crashed,
+            ),
+            _,
+        )
         | (Ok(VerdictKind::TimedOut | VerdictKind::OutOfMemory), _) => "v bad",
         // `missed`, `fail`, `not stable`; `met against the documentation` says that the documentation is wrong.
         (Err(_), _) => "v bad",

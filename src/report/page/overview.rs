@@ -17,6 +17,7 @@ fn meaning(kind: VerdictKind) -> &'static str {
         VerdictKind::FalseClaim => "claims the contact laws, and the judge disagrees",
         VerdictKind::GaveUp => "ended without a claim, with the reason",
         VerdictKind::Refused => "cannot treat this problem, with the reason",
+        VerdictKind::Suspect => "right on a wrong mesh",
         VerdictKind::Crashed => "failed with an error",
         VerdictKind::TimedOut => "stopped at a time limit",
         VerdictKind::OutOfMemory => "was denied memory",

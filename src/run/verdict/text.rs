@@ -12,7 +12,9 @@ impl fmt::Display for Verdict {
             Verdict::Approximate(Some(tier)) => write!(f, "{name}: {tier}"),
             Verdict::Approximate(None) => write!(f, "{name}: none"),
             Verdict::GaveUp(status) => write!(f, "{name}: {status}"),
-            Verdict::Refused(text) | Verdict::Crashed(text) => write!(f, "{name}: {text}"),
+            Verdict::Suspect(text) | Verdict::Refused(text) | Verdict::Crashed(text) => {
+                write!(f, "{name}: {text}")
+            }
             Verdict::Solved | Verdict::FalseClaim | Verdict::TimedOut | Verdict::OutOfMemory => {
                 f.write_str(name)
             }
@@ -46,6 +48,7 @@ impl FromStr for Verdict {
                 let status = GIVE_UPS.iter().find(|s| Some(s.as_str()) == details);
                 status.copied().map(Verdict::GaveUp)
             }
+            VerdictKind::Suspect => Some(Verdict::Suspect(details?.to_owned())),
             VerdictKind::Refused => Some(Verdict::Refused(details?.to_owned())),
             VerdictKind::Crashed => Some(Verdict::Crashed(details?.to_owned())),
             VerdictKind::TimedOut => bare(Verdict::TimedOut),
@@ -97,6 +100,7 @@ mod tests {
                 .map(|status| Verdict::GaveUp(*status))
                 .collect(),
             VerdictKind::Refused => reasons.map(Verdict::Refused).into(),
+            VerdictKind::Suspect => reasons.map(Verdict::Suspect).into(),
             VerdictKind::Crashed => reasons.map(Verdict::Crashed).into(),
             VerdictKind::TimedOut => vec![Verdict::TimedOut],
             VerdictKind::OutOfMemory => vec![Verdict::OutOfMemory],

@@ -112,7 +112,10 @@ impl RobustnessRow {
                     count(&mut gave_up_by, GIVE_UPS, status);
                 }
                 Verdict::FalseClaim => false_claims += 1,
-                Verdict::Crashed(_) | Verdict::TimedOut | Verdict::OutOfMemory => crashed += 1,
+                Verdict::Suspect(_)
+                | Verdict::Crashed(_)
+                | Verdict::TimedOut
+                | Verdict::OutOfMemory => crashed += 1,
                 Verdict::Refused(_) => refused += 1,
             }
         }

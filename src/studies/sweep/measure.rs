@@ -153,7 +153,7 @@ fn first_pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
     let (mut states, mut snapshots) = (Vec::new(), Vec::new());
     let mut status: Option<Vec<PointStatus>> = None;
     let end = path.follow(&mut |key, increment, now| {
-        let row = path.row(key, increment);
+        let row = path.row(key, increment, now);
         increments.push(found_of(&row, increment, status.as_deref()));
         rows.push(row);
         if let (Some(judged), Some(now)) = (&increment.judged, now) {

@@ -97,6 +97,8 @@ fn add_run(results: &mut Results, key: RunKey) {
         adhesion: 0.0,
         complementarity: 0.1 * residual(iterations),
         cone: 0.0,
+        uniform_stress: 2e-15,
+        overlap_m: 1.5e-7,
         reference_force: 1e8,
         reference_jump_m: 0.1,
         tangent_factorisations: 3,

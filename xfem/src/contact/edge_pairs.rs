@@ -113,7 +113,10 @@ fn jump_terms(
                     // ρ on the edge, or at the node
                     let ends: Vec<u32> = shares.iter().map(|share| share.0).collect();
                     let mask = enrichment.ramp(tip as usize, &ends);
-                    let inside = shares.iter().enumerate().filter(|(k, _)| mask & (1 << k) != 0);
+                    let inside = shares
+                        .iter()
+                        .enumerate()
+                        .filter(|(k, _)| mask & (1 << k) != 0);
                     let rho: f64 = inside.map(|(_, (_, share))| share).sum();
                     (one - two) * share * rho
                 }

@@ -47,7 +47,9 @@ impl<'a> FreeJumps<'a> {
             facets: CrackFacets::new(mesh, index, &integrator.cracks[index], enrichment),
             integrator,
             index,
-            free: functions.map(|f| (0..dim).all(|a| !held(f * dim + a))).collect(),
+            free: functions
+                .map(|f| (0..dim).all(|a| !held(f * dim + a)))
+                .collect(),
             sizes: mesh.node_sizes(),
         }
     }

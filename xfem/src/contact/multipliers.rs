@@ -100,17 +100,32 @@ pub fn constant_space(free: &FreeJumps<'_>) -> Multipliers {
     complete(free, Multipliers { count, shares })
 }
 
-/// Gives a crack with jumps between its crossings, but none at them, a constant multiplier: next to a junction the nodes of
-/// one cell may jump over an arm that ends in the next.
+/// Gives facets with jumps that no multiplier reaches a constant one, common to those that share corners: next to a junction
+/// the nodes of one cell may jump over an arm that ends in the next.
 fn complete(free: &FreeJumps<'_>, mut multipliers: Multipliers) -> Multipliers {
     let facets = &free.facets.facets;
-    if multipliers.count == 0 && facets.iter().any(|facet| free.jumps_on(facet)) {
-        multipliers.count = 1;
-        for shares in multipliers.shares.iter_mut().flatten() {
-            *shares = vec![(0, 1.0)];
+    let bare = |shares: &[Shares]| shares.iter().any(Vec::is_empty);
+    let mut of_corner: BTreeMap<usize, u32> = BTreeMap::new();
+    loop {
+        let mut grown = false;
+        for (facet, shares) in facets.iter().zip(&mut multipliers.shares) {
+            let known = facet.corners.iter().find_map(|c| of_corner.get(c)).copied();
+            if let Some(k) = known.filter(|_| bare(shares)) {
+                shares.iter_mut().for_each(|own| *own = vec![(k, 1.0)]);
+                of_corner.extend(facet.corners.iter().map(|&c| (c, k)));
+                grown = true;
+            }
         }
+        if grown {
+            continue;
+        }
+        let mut rest = facets.iter().zip(&multipliers.shares);
+        let Some((facet, _)) = rest.find(|(f, shares)| bare(shares) && free.jumps_on(f)) else {
+            return multipliers;
+        };
+        of_corner.extend(facet.corners.iter().map(|&c| (c, multipliers.count as u32)));
+        multipliers.count += 1;
     }
-    multipliers
 }
 
 /// A multiplier of its own for everything that carries one, and their number.

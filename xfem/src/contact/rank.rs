@@ -19,7 +19,7 @@ use crate::geometry::{Point, add_scaled, norm, sub};
 use super::pairs::{ContactPoint, ContactSurface};
 
 /// Pivots below this are zero: the square of what is new in a row of unit length.
-pub const DEPENDENT: f64 = 1e-3;
+pub const DEPENDENT: f64 = 1e-2;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
@@ -122,9 +122,7 @@ pub fn merge(
     let count = surface.points.len();
     let mut target: Vec<usize> = (0..count).collect();
     for arm in arms {
-        let away = |a: usize, b: usize| {
-            norm(&sub(&surface.points[a].x, &surface.points[b].x))
-        };
+        let away = |a: usize, b: usize| norm(&sub(&surface.points[a].x, &surface.points[b].x));
         for k in arm.clone().filter(|k| lost.contains(k)) {
             let others = arm.clone().filter(|m| !lost.contains(m));
             let nearest = others.min_by(|&a, &b| away(k, a).total_cmp(&away(k, b)));
@@ -139,7 +137,9 @@ pub fn merge(
     let numbers: Vec<u32> = target.iter().map(|&t| number[t]).collect();
     let points = kept.iter().map(|&old| {
         let merged = (0..count).filter(|&k| k != old && target[k] == old);
-        merged.fold(surface.points[old].clone(), |sum, k| sum.with(&surface.points[k]))
+        merged.fold(surface.points[old].clone(), |sum, k| {
+            sum.with(&surface.points[k])
+        })
     });
     surface.points = points.collect();
     let renumber = |shares: &mut Vec<(u32, f64)>| {
@@ -150,8 +150,14 @@ pub fn merge(
         *shares = sum.into_iter().collect();
     };
     let surface = &mut surface.surface;
-    surface.corners.iter_mut().for_each(|corner| renumber(&mut corner.shares));
-    surface.quadrature.iter_mut().for_each(|q| renumber(&mut q.shares));
+    surface
+        .corners
+        .iter_mut()
+        .for_each(|corner| renumber(&mut corner.shares));
+    surface
+        .quadrature
+        .iter_mut()
+        .for_each(|q| renumber(&mut q.shares));
     let mut start = 0;
     let arms = arms.iter().map(|arm| {
         let own = arm.clone().filter(|&k| target[k] == k).count();

@@ -38,4 +38,3 @@ pub fn surface_points(
     }
     Ok(points)
 }
-

@@ -82,7 +82,11 @@ impl Places {
                 let near = other.path.windows(2).map(|w| {
                     let foot = segment_foot(&end.x, &w[0].x, &w[1].x);
                     let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
-                    (distance(&end.x, &foot), w[0].s + share * (w[1].s - w[0].s), foot)
+                    (
+                        distance(&end.x, &foot),
+                        w[0].s + share * (w[1].s - w[0].s),
+                        foot,
+                    )
                 });
                 let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
                 if let Some((_, s, foot)) = nearest.filter(|n| n.0 <= self.slack) {
@@ -164,13 +168,23 @@ fn crossings(one: &Crack, two: &Crack, beyond: f64) -> Vec<[PathVertex; 2]> {
     /// What two neighbouring segments may leave open between them, in their length.
     const GAP: f64 = 1e-12;
     let reach = |crack: &Crack, i: usize, length: f64| {
-        let at_end = |end: bool| if end && !is_closed(crack) { beyond } else { GAP * length };
+        let at_end = |end: bool| {
+            if end && !is_closed(crack) {
+                beyond
+            } else {
+                GAP * length
+            }
+        };
         [at_end(i == 0), at_end(i + 2 == crack.path.len())]
     };
     let mut found = Vec::new();
     for (i, p) in one.path.windows(2).enumerate() {
         for (j, q) in two.path.windows(2).enumerate() {
-            let (d, e, from) = (sub(&p[1].x, &p[0].x), sub(&q[1].x, &q[0].x), sub(&q[0].x, &p[0].x));
+            let (d, e, from) = (
+                sub(&p[1].x, &p[0].x),
+                sub(&q[1].x, &q[0].x),
+                sub(&q[0].x, &p[0].x),
+            );
             let (length, other) = (norm(&d), norm(&e));
             let turn = cross(&d, &e)[2];
             if turn.abs() <= PARALLEL * length * other {
@@ -180,7 +194,8 @@ fn crossings(one: &Crack, two: &Crack, beyond: f64) -> Vec<[PathVertex; 2]> {
                 cross(&from, &e)[2] / turn * length,
                 cross(&from, &d)[2] / turn * other,
             ];
-            let within = |t: f64, length: f64, [low, high]: [f64; 2]| t >= -low && t <= length + high;
+            let within =
+                |t: f64, length: f64, [low, high]: [f64; 2]| t >= -low && t <= length + high;
             if within(along[0], length, reach(one, i, length))
                 && within(along[1], other, reach(two, j, other))
             {

@@ -279,7 +279,10 @@ fn path(curve: &Curve, cell: f64) -> Vec<PathVertex> {
             let count = (4.0 * length / cell).ceil().clamp(CHORDS[0], CHORDS[1]);
             let mut vertices: Vec<PathVertex> = (0..=count as usize)
                 .map(|k| length * k as f64 / count)
-                .map(|s| PathVertex { s, x: curve.at(s).0 })
+                .map(|s| PathVertex {
+                    s,
+                    x: curve.at(s).0,
+                })
                 .collect();
             if curve.is_closed()
                 && let Some(last) = vertices.len().checked_sub(1)

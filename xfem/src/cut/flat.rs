@@ -153,13 +153,20 @@ impl Division {
             let number = |arm: &(usize, Side)| arms[arm.0].number;
             let first = (*chain.first(), chain.arms.first().map(number), false);
             let last = (*chain.last(), chain.arms.last().map(number), true);
-            if chain.free { vec![first] } else { vec![first, last] }
+            if chain.free {
+                vec![first]
+            } else {
+                vec![first, last]
+            }
         };
         let mut best: Option<(bool, [(usize, bool); 2])> = None;
         for (i, one) in pending.iter().enumerate() {
             for (j, two) in pending.iter().enumerate().take(i) {
                 for a in ends(one) {
-                    for b in ends(two).into_iter().filter(|b| b.0 == a.0 && !self.is_corner(&b.0)) {
+                    for b in ends(two)
+                        .into_iter()
+                        .filter(|b| b.0 == a.0 && !self.is_corner(&b.0))
+                    {
                         let same = a.1 == b.1;
                         if best.is_none_or(|(known, _)| same && !known) {
                             best = Some((same, [(i, a.2), (j, b.2)]));
@@ -255,7 +262,11 @@ impl Division {
             sides: below,
         });
         for (i, (w, &(arm, side))) in chain.vertices.windows(2).zip(&chain.arms).enumerate() {
-            let ends = if side > 0.0 { [w[0], w[1]] } else { [w[1], w[0]] };
+            let ends = if side > 0.0 {
+                [w[0], w[1]]
+            } else {
+                [w[1], w[0]]
+            };
             self.segments.push(Segment {
                 arm,
                 ends,
@@ -270,10 +281,13 @@ impl Division {
         let tip = *chain.last();
         let ahead = sub(&tip, &chain.vertices[chain.vertices.len() - 2]);
         let ahead = ahead.map(|v| v / norm(&ahead));
-        let inside = |r: &&Region| {
-            r.polygon.contains(chain.first()) && polygon::contains(&r.polygon, &tip)
-        };
-        let host = self.regions.iter().find(inside).ok_or(PartitionError::Muddle)?;
+        let inside =
+            |r: &&Region| r.polygon.contains(chain.first()) && polygon::contains(&r.polygon, &tip);
+        let host = self
+            .regions
+            .iter()
+            .find(inside)
+            .ok_or(PartitionError::Muddle)?;
         // Where the ray tip + t ahead meets an edge p q: the nearest.
         let hits = polygon::edges(&host.polygon).filter_map(|(p, q)| {
             let [f, g] = [&p, &q].map(|x| cross(&ahead, &sub(x, &tip))[2]);
@@ -333,7 +347,13 @@ impl Division {
         let local = |x: &Point| self.border.iter().find(|c| c.0 == *x).and_then(|c| c.1);
         if let (Some([a, b]), Some([c, d])) = (local(&p), local(&q)) {
             // Both on one edge of the cell: the point too.
-            let edge = if a != b { [a, b] } else if c != d { [c, d] } else { [a, c] };
+            let edge = if a != b {
+                [a, b]
+            } else if c != d {
+                [c, d]
+            } else {
+                [a, c]
+            };
             self.border.push((x, Some(edge)));
             self.hits.push(x);
         }

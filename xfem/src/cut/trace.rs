@@ -208,7 +208,10 @@ impl Trace {
         if nodes[0] == nodes[1] {
             self.on_nodes.insert(nodes[0]);
             let x = *near.at(nodes[0]);
-            return ChainVertex { x, nodes: Some(nodes) };
+            return ChainVertex {
+                x,
+                nodes: Some(nodes),
+            };
         }
         let known = self.on_edges.entry(nodes).or_default();
         let same = |p: &&Point| norm(&sub(p, x)) <= 4.0 * near.edge_tolerance(nodes);
@@ -216,7 +219,10 @@ impl Trace {
             known.push(*x);
             *x
         });
-        ChainVertex { x, nodes: Some(nodes) }
+        ChainVertex {
+            x,
+            nodes: Some(nodes),
+        }
     }
 
     /// Adds the chains of one arm.
@@ -234,8 +240,14 @@ impl Trace {
                 let size = |stop: &Stop| stop.vertex.nodes.map_or(0.0, |[i, _]| near.sizes[&i]);
                 free[k] = nearest.is_none_or(|stop| at(&stop) > TIP_ON_EDGE * size(&stop));
                 if free[k] {
-                    let vertex = ChainVertex { x: vertex.x, nodes: None };
-                    stops.push(Stop { s: [first, last][k].s, vertex });
+                    let vertex = ChainVertex {
+                        x: vertex.x,
+                        nodes: None,
+                    };
+                    stops.push(Stop {
+                        s: [first, last][k].s,
+                        vertex,
+                    });
                 } else if let Some(stop) = nearest {
                     self.add_tip(near, [index, k], &stop, stop.s);
                 }
@@ -246,13 +258,18 @@ impl Trace {
                 // One place on this edge or node, however flat the arm crosses it.
                 stops.retain(|stop| {
                     let same = stop.vertex.nodes.is_some_and(|own| {
-                        own == nodes || own.iter().all(|n| nodes.contains(n)) || nodes.iter().all(|n| own.contains(n))
+                        own == nodes
+                            || own.iter().all(|n| nodes.contains(n))
+                            || nodes.iter().all(|n| own.contains(n))
                     });
                     at(stop) > 8.0 * near.edge_tolerance(nodes)
                         && !(same && at(stop) <= 1e-6 * near.sizes[&nodes[0]])
                 });
             }
-            stops.push(Stop { s: vertex.s, vertex: end });
+            stops.push(Stop {
+                s: vertex.s,
+                vertex: end,
+            });
         }
         stops.sort_by(|a, b| a.s.total_cmp(&b.s));
         for pair in stops.windows(2) {
@@ -274,7 +291,10 @@ impl Trace {
                 let small = 1e-9 * (to.s - from.s);
                 v.s > from.s + small && v.s < to.s - small
             });
-            let inner = inner.map(|v| ChainVertex { x: v.x, nodes: None });
+            let inner = inner.map(|v| ChainVertex {
+                x: v.x,
+                nodes: None,
+            });
             let vertices = std::iter::once(from.vertex).chain(inner).chain([to.vertex]);
             let chain = Chain {
                 arm: index,
@@ -301,7 +321,9 @@ impl Trace {
 
     /// A tip on an edge or a node inside the body.
     fn add_tip(&mut self, near: &Near<'_>, [arm, end]: [usize; 2], stop: &Stop, entry: f64) {
-        let Some(nodes) = stop.vertex.nodes else { return };
+        let Some(nodes) = stop.vertex.nodes else {
+            return;
+        };
         let cells = near.cells(nodes);
         if !is_on_border(near, nodes) {
             self.tips.push(TracedTip {
@@ -342,9 +364,8 @@ impl Trace {
             for &[i, j] in &near.edges {
                 let (p, q) = (near.at(i), near.at(j));
                 let slack = near.edge_tolerance([i, j]);
-                let apart = |c: usize| {
-                    p[c].max(q[c]) < low[c] - slack || p[c].min(q[c]) > high[c] + slack
-                };
+                let apart =
+                    |c: usize| p[c].max(q[c]) < low[c] - slack || p[c].min(q[c]) > high[c] + slack;
                 if apart(0) || apart(1) {
                     continue;
                 }
@@ -402,7 +423,9 @@ fn host(
             both.collect()
         }
     };
-    let deep = candidates.into_iter().map(|cell| (near.depth(cell, &middle), cell));
+    let deep = candidates
+        .into_iter()
+        .map(|cell| (near.depth(cell, &middle), cell));
     let best = deep.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let length = stops[1].s - stops[0].s;
     match best {
@@ -432,7 +455,10 @@ fn host(
 /// Point of a path at an abscissa.
 fn at(path: &[PathVertex], s: f64) -> Point {
     let last = path.len().saturating_sub(2);
-    let i = path.partition_point(|v| v.s <= s).saturating_sub(1).min(last);
+    let i = path
+        .partition_point(|v| v.s <= s)
+        .saturating_sub(1)
+        .min(last);
     let (a, b) = (&path[i], &path[i + 1]);
     add_scaled(&a.x, (s - a.s) / (b.s - a.s), &sub(&b.x, &a.x))
 }

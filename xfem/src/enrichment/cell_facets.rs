@@ -66,7 +66,8 @@ pub fn pieces(
 /// An edge of a 2D cell, cut where chains end on it.
 fn border_pieces(partition: &Partition, ends: &[Point], nodes: [usize; 2]) -> Vec<Piece> {
     let away = |x: &Point| norm(&sub(x, &ends[0]));
-    let on_edge = |on: &Option<[usize; 2]>| on.is_some_and(|on| on == nodes || on == [nodes[1], nodes[0]]);
+    let on_edge =
+        |on: &Option<[usize; 2]>| on.is_some_and(|on| on == nodes || on == [nodes[1], nodes[0]]);
     let places = partition.border.iter().filter(|(_, on)| on_edge(on));
     let mut points: Vec<Point> = places.map(|place| place.0).collect();
     points.sort_by(|a, b| away(a).total_cmp(&away(b)));
@@ -118,7 +119,11 @@ fn edge_pieces(
 
 /// The region that a point of a cell lies in, or most nearly.
 pub fn region_at(cracks: &[Crack], partition: &Partition, x: &Point) -> Region {
-    let flat = partition.parts.iter().enumerate().filter(|(_, part)| !part.polygon.is_empty());
+    let flat = partition
+        .parts
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| !part.polygon.is_empty());
     let nearest = flat.min_by(|(_, a), (_, b)| {
         let away = |part: &Part| match contains(&part.polygon, x) {
             true => -border_distance(&part.polygon, x),

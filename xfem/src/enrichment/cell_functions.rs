@@ -80,7 +80,9 @@ impl<'a> CellFunctions<'a> {
     /// Whether each function is a branch function.
     pub fn are_branches(&self) -> Vec<bool> {
         let kinds = self.functions.iter().map(|f| f.kind);
-        kinds.map(|kind| matches!(kind, FunctionKind::Branch { .. })).collect()
+        kinds
+            .map(|kind| matches!(kind, FunctionKind::Branch { .. }))
+            .collect()
     }
 
     /// Evaluates all functions at ξ (position x) in a region of the cell.

@@ -117,7 +117,9 @@ impl CrackFacets {
                     .map(|corner| {
                         let fresh = found.corners.len();
                         let known = match corner.nodes {
-                            Some(nodes) => *by_edge.entry((nodes, place(&corner.x))).or_insert(fresh),
+                            Some(nodes) => {
+                                *by_edge.entry((nodes, place(&corner.x))).or_insert(fresh)
+                            }
                             None => inner
                                 .iter()
                                 .copied()

@@ -38,7 +38,9 @@ pub fn support_pieces(
 ) -> Pieces {
     let mut touched = vec![false; mesh.nodes.len()];
     for &cell in partitions.keys() {
-        mesh.cell(cell).iter().for_each(|&n| touched[n as usize] = true);
+        mesh.cell(cell)
+            .iter()
+            .for_each(|&n| touched[n as usize] = true);
     }
     let mut cells_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     let mut facets: BTreeMap<FacetKey, Vec<usize>> = BTreeMap::new();
@@ -49,7 +51,10 @@ pub fn support_pieces(
         }
         if nodes.iter().any(|&n| touched[n as usize]) {
             for local in mesh.kind.facets() {
-                facets.entry(key(local.iter().map(|&i| nodes[i]))).or_default().push(cell);
+                facets
+                    .entry(key(local.iter().map(|&i| nodes[i])))
+                    .or_default()
+                    .push(cell);
             }
         }
     }
@@ -61,7 +66,9 @@ pub fn support_pieces(
     };
     let mut joins: BTreeMap<u32, Vec<[Place; 2]>> = BTreeMap::new();
     for (facet, cells) in &facets {
-        let &[one, two] = cells.as_slice() else { continue };
+        let &[one, two] = cells.as_slice() else {
+            continue;
+        };
         let own = joiner.over(facet, [one, two]);
         let nodes: BTreeSet<u32> = facet.iter().copied().collect();
         for node in nodes.into_iter().filter(|&n| touched[n as usize]) {
@@ -135,9 +142,17 @@ impl Joiner<'_> {
     fn over_face(&self, facet: &FacetKey, cells: [usize; 2]) -> Vec<[Place; 2]> {
         let nodes = self.mesh.cell(cells[0]);
         let local = self.mesh.kind.facets().iter();
-        let local = local.into_iter().find(|l| key(l.iter().map(|&i| nodes[i])) == *facet);
-        let corners: Vec<u32> = local.into_iter().flat_map(|l| l.iter().map(|&i| nodes[i])).collect();
-        let face: Vec<Point> = corners.iter().map(|&n| self.mesh.nodes[n as usize]).collect();
+        let local = local
+            .into_iter()
+            .find(|l| key(l.iter().map(|&i| nodes[i])) == *facet);
+        let corners: Vec<u32> = local
+            .into_iter()
+            .flat_map(|l| l.iter().map(|&i| nodes[i]))
+            .collect();
+        let face: Vec<Point> = corners
+            .iter()
+            .map(|&n| self.mesh.nodes[n as usize])
+            .collect();
         let whole = area(&face);
         let mut joins = Vec::new();
         for one in 0..self.regions(cells[0]) {
@@ -184,13 +199,18 @@ impl Joiner<'_> {
             .collect();
         let number = |place: &Place| places.binary_search(place).unwrap_or_default();
         let mut parent: Vec<usize> = (0..places.len()).collect();
-        let inside = cells.iter().filter_map(|&c| Some((c, self.partitions.get(&c)?)));
+        let inside = cells
+            .iter()
+            .filter_map(|&c| Some((c, self.partitions.get(&c)?)));
         let within = inside.flat_map(|(cell, partition)| {
             let pairs = partition.joined.iter();
             pairs.map(move |pair| pair.map(|region| (cell, region)))
         });
         for [one, two] in joins.iter().copied().chain(within) {
-            let (a, b) = (root(&mut parent, number(&one)), root(&mut parent, number(&two)));
+            let (a, b) = (
+                root(&mut parent, number(&one)),
+                root(&mut parent, number(&two)),
+            );
             parent[a.max(b)] = a.min(b);
         }
         let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();

@@ -74,7 +74,11 @@ impl Tips {
             mesh,
             arms,
             trace,
-            kept: trace.tips.iter().map(|t| arms[t.arm].tip != Tip::None).collect(),
+            kept: trace
+                .tips
+                .iter()
+                .map(|t| arms[t.arm].tip != Tip::None)
+                .collect(),
             pairs: Vec::new(),
             partitions: BTreeMap::new(),
         };
@@ -123,7 +127,10 @@ impl Tips {
         for (&cell, own) in &ending {
             for &index in own.iter().filter(|&&i| arms[i].tip != Tip::None) {
                 let front = fronts.entry(arms[index].number);
-                front.or_insert_with(|| (index, BTreeSet::new())).1.insert(cell);
+                front
+                    .or_insert_with(|| (index, BTreeSet::new()))
+                    .1
+                    .insert(cell);
             }
         }
         for (&cell, own) in &ending {
@@ -136,13 +143,15 @@ impl Tips {
                 let mut all = inside.get(&cell).cloned().unwrap_or_default();
                 all.extend(without);
                 all.sort_unstable();
-                tips.endings.insert(cell, Partition::solid(mesh, cell, arms, &all, &[]));
+                tips.endings
+                    .insert(cell, Partition::solid(mesh, cell, arms, &all, &[]));
             }
         }
         for (cell, mut own) in inside {
             own.sort_unstable();
             let ends = ending.get(&cell).map_or(&[][..], Vec::as_slice);
-            tips.partitions.insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
+            tips.partitions
+                .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
@@ -182,7 +191,8 @@ impl Tips {
                 Function { node, kind }
             })
         };
-        self.functions.extend(zone.nodes.into_iter().flat_map(branch));
+        self.functions
+            .extend(zone.nodes.into_iter().flat_map(branch));
         self.cores.push(zone.core);
         self.frames.push(frame);
     }
@@ -297,7 +307,10 @@ impl Search<'_> {
         let Geometry::Curve(curve) = &arm.geometry else {
             return other;
         };
-        let kinks = curve.kinks().into_iter().filter(|k| *k > arm.range[0] && *k < arm.range[1]);
+        let kinks = curve
+            .kinks()
+            .into_iter()
+            .filter(|k| *k > arm.range[0] && *k < arm.range[1]);
         kinks.map(|k| (k - from).abs()).fold(other, f64::min)
     }
 
@@ -312,7 +325,11 @@ impl Search<'_> {
         // A tip inside a cell divides it; another crack there leaves the functions no meaning.
         let parted = tip.cells.len() > 1
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
-        let alone = tip.cells.iter().filter_map(divided).all(|p| self.is_own(p, tip.arm));
+        let alone = tip
+            .cells
+            .iter()
+            .filter_map(divided)
+            .all(|p| self.is_own(p, tip.arm));
         let nodes = nodes_of(self.mesh, tip.cells.iter().copied());
         let size = self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.room(number) > SHORTEST * size;
@@ -426,7 +443,11 @@ fn pair_frame(arm: &Crack, index: usize) -> TipFrame {
 
 /// Nodes of some cells.
 fn nodes_of(mesh: &Mesh, cells: impl IntoIterator<Item = usize>) -> BTreeSet<u32> {
-    cells.into_iter().flat_map(|cell| mesh.cell(cell)).copied().collect()
+    cells
+        .into_iter()
+        .flat_map(|cell| mesh.cell(cell))
+        .copied()
+        .collect()
 }
 
 /// Cells with one of some nodes.

@@ -125,7 +125,13 @@ impl TipFrame {
         let FrontShape::Arc { curve, last } = &self.shape else {
             return vec![[straight(room), straight(room + 4.0 * far)]];
         };
-        let Curve::Arc { centre, radius, from, to } = curve else {
+        let Curve::Arc {
+            centre,
+            radius,
+            from,
+            to,
+        } = curve
+        else {
             return Vec::new();
         };
         // Back along the circle, to where its coordinate starts again; and the ray from the centre through there.
@@ -183,9 +189,8 @@ impl TipFrame {
         }
         if let FrontShape::Pair { half_length } = self.shape {
             let (values, slopes) = pair_functions(half_length, psi, phi);
-            let gradients = slopes.map(|[g1, g2]| {
-                [0, 1, 2].map(|a| g1 * psi_gradient[a] + g2 * phi_gradient[a])
-            });
+            let gradients = slopes
+                .map(|[g1, g2]| [0, 1, 2].map(|a| g1 * psi_gradient[a] + g2 * phi_gradient[a]));
             return (values, gradients);
         }
         let r = psi.hypot(phi);

@@ -148,7 +148,10 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<
     let mut points = Vec::new();
     for t in triangles {
         let size = diameter(t);
-        let near: Vec<&Point> = tips.iter().filter(|tip| border_distance(t, tip) < size).collect();
+        let near: Vec<&Point> = tips
+            .iter()
+            .filter(|tip| border_distance(t, tip) < size)
+            .collect();
         if near.is_empty() {
             points.extend(triangle_collapsed(t, n));
         }
@@ -161,7 +164,13 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<
             }
             if own.len() > 2 {
                 let rule = FanRule::fine(n < 8);
-                points.extend(slice_points(&own, &[0.0, 0.0, 1.0], Some(**tip), size, rule));
+                points.extend(slice_points(
+                    &own,
+                    &[0.0, 0.0, 1.0],
+                    Some(**tip),
+                    size,
+                    rule,
+                ));
             }
         }
     }

@@ -213,9 +213,16 @@ impl<'a> CellIntegrator<'a> {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
         let tip = self.tip_in(cell);
-        let tips: Vec<Point> = self.enrichment.tips.iter().flat_map(TipFrame::tips).collect();
+        let tips: Vec<Point> = self
+            .enrichment
+            .tips
+            .iter()
+            .flat_map(TipFrame::tips)
+            .collect();
         // A pair of tips has none of its own at its middle.
-        let tip = tip.map(|tip| self.enrichment.tips[tip].tips()).filter(|t| t.len() == 1);
+        let tip = tip
+            .map(|tip| self.enrichment.tips[tip].tips())
+            .filter(|t| t.len() == 1);
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, &tip) {

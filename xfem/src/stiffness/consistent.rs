@@ -14,8 +14,8 @@
 use std::collections::BTreeSet;
 
 use crate::cut::partition::Partition;
-use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::basis::{FunctionKind, Region};
+use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
@@ -154,7 +154,10 @@ impl CellIntegrator<'_> {
         cell: usize,
         mut visit: impl FnMut(&WeightedPoint, [usize; 2], &Point) -> Result<(), CellError>,
     ) -> Result<(), CellError> {
-        let faces = self.enrichment.partition(cell).map_or(&[][..], |p| p.faces.as_slice());
+        let faces = self
+            .enrichment
+            .partition(cell)
+            .map_or(&[][..], |p| p.faces.as_slice());
         let cracks: BTreeSet<usize> = faces.iter().map(|face| face.crack).collect();
         for index in cracks {
             let crack = &self.cracks[index];
@@ -170,7 +173,11 @@ impl CellIntegrator<'_> {
     }
 
     /// b_f of all functions of a cell.
-    fn flux(&self, cell: usize, functions: &mut CellFunctions<'_>) -> Result<Vec<Point>, CellError> {
+    fn flux(
+        &self,
+        cell: usize,
+        functions: &mut CellFunctions<'_>,
+    ) -> Result<Vec<Point>, CellError> {
         let mesh = self.mesh;
         let mut flux = vec![[0.0; 3]; functions.numbers.len()];
         for local in mesh.kind.facets() {
@@ -204,7 +211,10 @@ impl CellIntegrator<'_> {
         functions: &mut CellFunctions<'_>,
         mut visit: impl FnMut(usize, &WeightedPoint, Region, f64),
     ) -> Result<(), CellError> {
-        let kinds = functions.numbers.iter().map(|&f| self.enrichment.functions[f as usize].kind);
+        let kinds = functions
+            .numbers
+            .iter()
+            .map(|&f| self.enrichment.functions[f as usize].kind);
         let tips: Vec<Option<u32>> = kinds
             .map(|kind| match kind {
                 FunctionKind::Branch { tip, .. } => Some(tip),
@@ -242,7 +252,13 @@ impl CellIntegrator<'_> {
         let at = |i: usize| local[i % count];
         let forward = nodes[at(first + 1)] < nodes[at(first + count - 1)] || count == 2;
         let order: Vec<usize> = (0..count)
-            .map(|k| if forward { at(first + k) } else { at(first + count - k) })
+            .map(|k| {
+                if forward {
+                    at(first + k)
+                } else {
+                    at(first + count - k)
+                }
+            })
             .collect();
         match (tip, mesh.dim()) {
             (None, dim) => {
@@ -283,7 +299,12 @@ impl CellIntegrator<'_> {
     }
 
     /// On a face: on both sides of the plane of the tip's crack, whether it divides this cell or its neighbour.
-    fn branch_face(&self, cell: usize, order: &[usize], tip: usize) -> Vec<(WeightedPoint, Region)> {
+    fn branch_face(
+        &self,
+        cell: usize,
+        order: &[usize],
+        tip: usize,
+    ) -> Vec<(WeightedPoint, Region)> {
         let map = self.mesh.map(cell);
         let crack = &self.cracks[self.enrichment.tips[tip].crack];
         let phi = crack.cell_phi(self.mesh, cell);
@@ -295,7 +316,8 @@ impl CellIntegrator<'_> {
                 continue;
             }
             // On either side of other cracks the functions are the same.
-            let of_crack = |s: &(usize, f64)| self.cracks[s.0].number == crack.number && s.1 == side;
+            let of_crack =
+                |s: &(usize, f64)| self.cracks[s.0].number == crack.number && s.1 == side;
             let region = self.enrichment.partition(cell).and_then(|partition| {
                 let mut parts = partition.parts.iter();
                 parts.position(|part| part.sides.iter().any(of_crack))
