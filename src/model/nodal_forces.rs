@@ -13,7 +13,7 @@ use stickslip_xfem::geometry::clip::fan;
 use stickslip_xfem::geometry::{Point, cross, dot, norm, sub};
 use stickslip_xfem::quadrature::{WeightedPoint, gauss_map, segment, triangle, triangle_collapsed};
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use stickslip_xfem::stiffness::consistent::{BRANCH_EDGE, outward};
+use stickslip_xfem::stiffness::consistent::outward;
 
 use crate::case::{LoadKind, Region};
 use crate::model::boundary::region_nodes;
@@ -23,6 +23,7 @@ use crate::model::sides::Sides;
 /// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
 const SEGMENT_POINTS: usize = 3;
 const EXACT_POINTS: usize = 8;
+const BRANCH_POINTS: usize = 24;
 
 /// Points per direction of collapsed rules on the triangles of loaded 3D facets, for closed forms: degree 8.
 const EXACT_TRIANGLE: usize = 5;
@@ -331,7 +332,7 @@ fn loaded_segment(
     region: CellRegion,
 ) -> Vec<(WeightedPoint, CellRegion)> {
     let n = if integrator.enrichment.has_branch(cell) {
-        BRANCH_EDGE
+        BRANCH_POINTS
     } else if rule == Rule::Exact {
         EXACT_POINTS
     } else {

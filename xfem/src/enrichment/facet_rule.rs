@@ -273,7 +273,7 @@ mod tests {
             let points = polygon_points(polygon, true);
             let sums = points.iter().map(|p| p.hats.iter().sum::<f64>());
             assert!(sums.into_iter().all(|sum| (sum - 1.0).abs() < 1e-13));
-            let area: f64 = super::super::pairs::vertex_weights(polygon).iter().sum();
+            let area: f64 = crate::contact::pairs::vertex_weights(polygon).iter().sum();
             assert!((sum(&points, |_| 1.0) - area).abs() < 1e-14);
             let fine = polygon_points(polygon, false);
             let linear = |p: &FacetPoint| p.hats[1] * (1.0 + p.x[0]);

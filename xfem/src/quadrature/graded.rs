@@ -7,12 +7,12 @@
 //! that ends at the line.
 
 use crate::geometry::clip::{clip, halve_tetrahedron, halve_triangle};
-use crate::geometry::polygon::border_distance;
+use crate::geometry::polygon::{border_distance, segment_distance};
 use crate::geometry::{Point, add_scaled, diameter, dot, mean, norm, sub};
 use crate::mesh::cell::CellMap;
 
 use super::slice::slice_points;
-use super::{FanRule, WeightedPoint, gauss_cell, tetrahedron, triangle_collapsed};
+use super::{FanRule, WeightedPoint, gauss_cell, segment, tetrahedron, triangle_collapsed};
 
 /// True if no point of the simplex is nearer to the singularity than the simplex is long.
 fn is_far(vertices: &[Point], distance: &impl Fn(&Point) -> f64) -> bool {
@@ -29,7 +29,7 @@ fn parts<S: Copy, const N: usize>(
     halve: fn(&S) -> [S; N],
 ) -> Vec<S> {
     /// Most parts of one simplex: flat ones would be halved on and on.
-    const MOST: usize = 256;
+    const MOST: usize = 65_536;
     let mut stack: Vec<(S, usize)> = simplices.iter().map(|s| (*s, 0)).collect();
     let mut parts = Vec::new();
     while let Some((simplex, level)) = stack.pop() {
@@ -139,6 +139,27 @@ pub fn graded_triangles(
         .iter()
         .flat_map(|t| triangle_collapsed(t, n))
         .collect()
+}
+
+/// Points of a segment near tips: n on every part no longer than twice its distance from the nearest; `depth`: most halvings.
+pub fn graded_segment(
+    p: &Point,
+    q: &Point,
+    tips: &[Point],
+    n: usize,
+    depth: usize,
+) -> Vec<WeightedPoint> {
+    let far = |[p, q]: &[Point; 2]| {
+        let length = norm(&sub(q, p));
+        let nearest = tips.iter().map(|tip| segment_distance(tip, p, q));
+        nearest.fold(f64::INFINITY, f64::min) >= 0.5 * length
+    };
+    let halve = |[p, q]: &[Point; 2]| {
+        let middle = mean([p, q]);
+        [[*p, middle], [middle, *q]]
+    };
+    let parts = parts(&[[*p, *q]], depth, far, halve);
+    parts.iter().flat_map(|[p, q]| segment(p, q, n)).collect()
 }
 
 /// Points of triangles near tips: n × n points where no tip is closer than the triangle's diameter, which are exact to

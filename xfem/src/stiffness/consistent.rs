@@ -21,9 +21,11 @@ use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::{clip, fan};
 use crate::geometry::curve::turned;
+use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::quadrature::graded::{graded_segment, graded_triangles};
 use crate::quadrature::rational::rational_order;
-use crate::quadrature::{WeightedPoint, segment, triangle, triangle_collapsed};
+use crate::quadrature::{WeightedPoint, segment, triangle};
 
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 
@@ -35,11 +37,15 @@ pub struct EvaluatedPoint {
     pub gradients: Vec<Point>,
 }
 
-/// Points on an edge of a cell with branch functions; the same as loads on it take.
-pub const BRANCH_EDGE: usize = 24;
+/// Points on a part of an edge no longer than twice its distance from a tip, and halvings down to that: an error of 1e-9 at
+/// any distance.
+const BRANCH_EDGE: usize = 10;
+const EDGE_DEPTH: usize = 40;
 
-/// Points per direction on the triangles of a face of a cell with branch functions.
-const BRANCH_FACE: usize = 6;
+/// Points per direction on a part of a face no longer than its distance from the front, and halvings: an error of 1e-5 of a
+/// face that the front enters.
+const BRANCH_FACE: usize = 5;
+const FACE_DEPTH: usize = 6;
 
 impl CellIntegrator<'_> {
     /// Points of a cell with the gradients of its functions, which satisfy the divergence theorem.
@@ -284,12 +290,18 @@ impl CellIntegrator<'_> {
         let [from, to] = ends.map(|n| mesh.nodes[n as usize]);
         let pieces = pieces(mesh, self.cracks, self.enrichment, cell, order);
         let away = |x: &Point| norm(&sub(x, &from));
+        let tips: Vec<Point> = self
+            .enrichment
+            .tips
+            .iter()
+            .flat_map(TipFrame::tips)
+            .collect();
         let mut places = self.enrichment.places_on(ends).to_vec();
         places.extend([from, to]);
         places.sort_by(|a, b| away(a).total_cmp(&away(b)));
         let mut points = Vec::new();
         for w in places.windows(2) {
-            for p in segment(&w[0], &w[1], BRANCH_EDGE) {
+            for p in graded_segment(&w[0], &w[1], &tips, BRANCH_EDGE, EDGE_DEPTH) {
                 let at = away(&p.x);
                 let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
                 points.push((p, own.or(pieces.last()).map_or(0, |own| own.1)));
@@ -323,7 +335,8 @@ impl CellIntegrator<'_> {
                 parts.position(|part| part.sides.iter().any(of_crack))
             });
             for t in fan(&clip(&face, &levels, side)) {
-                let rule = triangle_collapsed(&t, BRANCH_FACE).into_iter();
+                let distance = |x: &Point| self.enrichment.tips[tip].distance(x);
+                let rule = graded_triangles(&[t], distance, BRANCH_FACE, FACE_DEPTH).into_iter();
                 points.extend(rule.map(|p| (p, region.unwrap_or(0))));
             }
         }
