@@ -140,7 +140,7 @@ impl Body {
             &enrichment,
             &assembly.users,
             |cell| matrices.of(cell),
-            |f| (0..dim).any(|a| numbers[f * dim + a].is_none()),
+            |f, a| numbers[f * dim + a].is_none(),
         );
         let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(i / dim));
         let (solver_numbers, free) = numbered(kept);

@@ -3,7 +3,7 @@
 //! ```text
 //!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
 //!   f = f_ext − K u_prescribed   at the free unknowns,      offset = B u_prescribed
-//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = u⁻(x_j) − u(x_j, s_j)
+//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ (u⁻(x_j) − u(x_j, s_j))
 //!   u⁻(x) = 2 u(x', −s) − u(2 x' − x, −s)   u of the other side, continued to x: x' foot of x on the crack
 //! ```
 //!
@@ -15,7 +15,7 @@
 
 use rayon::prelude::*;
 use stickslip_methods::Load;
-use stickslip_xfem::enrichment::basis::FunctionKind;
+use stickslip_xfem::enrichment::basis::{FunctionKind, STEP};
 use stickslip_xfem::exact::{Field, Setting};
 use stickslip_xfem::geometry::{add_scaled, sub};
 
@@ -230,7 +230,7 @@ fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usi
                 field.displacement(&foot, -side),
                 field.displacement(&mirrored, -side),
             );
-            [0, 1, 2].map(|a| 2.0 * near[a] - far[a] - own[a])
+            [0, 1, 2].map(|a| (2.0 * near[a] - far[a] - own[a]) / STEP)
         } else {
             [0.0; 3]
         };

@@ -225,16 +225,19 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
     let mut points = Vec::new();
     for (cell, partition) in body.enrichment.cut_cells() {
         let crack = &body.cracks[partition.faces[0].crack];
-        let length = crack.range[1];
         let vertices = &partition.faces[0].corners;
-        let mut ends: Vec<f64> = vertices.iter().map(|v| crack.abscissa(&v.0)).collect();
-        ends.sort_by(f64::total_cmp);
+        // A face ends inside a cell where the crack does.
+        let mut ends: Vec<(f64, bool)> = vertices
+            .iter()
+            .map(|v| (crack.abscissa(&v.0), v.1.is_none()))
+            .collect();
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         let pairs: Vec<(u32, f64)> = (body.points.iter().enumerate())
             .filter(|(_, p)| vertices.iter().any(|v| norm(&sub(&v.0, &p.x)) < 1e-9))
             .map(|(i, p)| (i as u32, p.s))
             .collect();
-        let (from, to) = (ends[0].max(0.0), ends[1].min(length));
-        let at_tip = [ends[0] < 0.0, ends[1] > length];
+        let (from, to) = (ends[0].0, ends[1].0);
+        let at_tip = [ends[0].1, ends[1].1];
         for (s, w) in gauss(n) {
             let t = 0.5 * (1.0 + s);
             // s = ρ² from a tip: the jump and the auxiliary fields go with √s.

@@ -142,7 +142,7 @@ fn opened(jump: [f64; 2]) -> (Body, Snapshot, Vec<SurfacePoint>) {
         for a in 0..2 {
             now.u[2 * f + a] = match function.kind {
                 FunctionKind::Standard => 0.5 * (1.0 + side) * jump[a],
-                FunctionKind::Piece { .. } => -side * jump[a],
+                FunctionKind::Piece { .. } => -0.5 * side * jump[a],
                 FunctionKind::Branch { .. } => 0.0,
             };
         }
@@ -230,7 +230,7 @@ fn the_direction_of_slip_is_off_by_the_angle_between_means() {
         let side = body.cracks[0].side_of(function.node as usize);
         let share = match function.kind {
             FunctionKind::Standard => 0.5 * side,
-            _ => -side,
+            _ => -0.5 * side,
         };
         for k in 0..3 {
             now.u[3 * f + k] = share * slip[k];

@@ -153,14 +153,19 @@ fn internal_force(body: &Body, u: &[f64]) -> Vec<f64> {
     let (dim, integrator) = (body.mesh.dim(), body.integrator());
     let mut force = vec![0.0; u.len()];
     for cell in 0..body.mesh.cell_count() {
-        let mut functions = integrator.functions(cell);
-        for p in integrator.points(cell).unwrap() {
-            let h = functions.field(&p.xi, &p.x, p.region, u).1;
+        let functions = body.enrichment.cell(cell);
+        for p in integrator.evaluated(cell).unwrap() {
+            let mut h = [[0.0; 3]; 3];
+            for (&f, g) in functions.iter().zip(&p.gradients) {
+                for (a, b) in (0..dim).flat_map(|a| (0..dim).map(move |b| (a, b))) {
+                    h[a][b] += u[f as usize * dim + a] * g[b];
+                }
+            }
             let sigma: [Point; 3] = stress(body.lame, dim, &h);
-            for (&f, g) in functions.numbers.iter().zip(&functions.gradients) {
+            for (&f, g) in functions.iter().zip(&p.gradients) {
                 for a in 0..dim {
                     let density: f64 = (0..dim).map(|b| sigma[a][b] * g[b]).sum();
-                    force[f as usize * dim + a] += p.weight * density;
+                    force[f as usize * dim + a] += p.at.weight * density;
                 }
             }
         }

@@ -234,7 +234,7 @@ fn an_initial_stress_does_work_on_the_strain_of_each_side() {
             let of = |side: f64| affine(&maps[usize::from(side < 0.0)], x);
             let value = match function.kind {
                 FunctionKind::Standard => of(side),
-                _ => [0, 1, 2].map(|a| of(-side)[a] - of(side)[a]),
+                _ => [0, 1, 2].map(|a| 0.5 * (of(-side)[a] - of(side)[a])),
             };
             found += (0..dim).map(|a| force[f * dim + a] * value[a]).sum::<f64>();
         }

@@ -86,7 +86,7 @@ fn edge_pairs_pass_every_patch_test_along_the_grid() {
 }
 
 /// Goal: the other spaces as they are. Edge pairs are not exact for cracks across the grid; facet multipliers keep the
-/// displacement but lose the traction where there are too many of them; so do constant ones between held ends.
+/// displacement but lose the traction where there are too many of them, but not to be told apart; constant ones too many are merged.
 #[test]
 fn what_other_spaces_cannot_do_is_seen() {
     let mut patches = flat(&[3e-1, 1e-9]).unwrap();
@@ -110,7 +110,9 @@ fn what_other_spaces_cannot_do_is_seen() {
         assert!(row.space == "edge-pairs" || held, "{row:#?}");
     }
     assert!(of("facet", "45°", 1e-9).iter().any(|r| r.traction > PASSED));
-    assert!(of("p0", "0°", 3e-1).iter().any(|r| r.traction > 1e-2));
+    // Between held ends there would be one constant multiplier too many.
+    let p0 = of("p0", "0°", 3e-1);
+    assert!(!p0.is_empty() && p0.iter().all(|r| r.passed()), "{p0:#?}");
 }
 
 /// Force on the top of a block that is pushed down and aside, cut from side to side at a distance from a node.

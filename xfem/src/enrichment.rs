@@ -23,7 +23,7 @@ use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, MOST_NODES};
 
-use self::basis::{Function, FunctionKind, Region};
+use self::basis::{Function, FunctionKind, Region, STEP};
 pub use self::error::EnrichmentError;
 use self::supports::{Pieces, Place, support_pieces};
 use self::tips::Tips;
@@ -172,7 +172,7 @@ impl Enrichment {
                         FunctionKind::Piece { piece } => {
                             let inside = |region| holds(node, piece, &(cell, region));
                             let regions = 0..parts.len();
-                            let steps = regions.map(|r| f64::from(u8::from(inside(r))));
+                            let steps = regions.map(|r| if inside(r) { STEP } else { 0.0 });
                             let steps: Vec<f64> = steps.collect();
                             if steps.iter().all(|&s| s == 0.0) {
                                 continue;
@@ -244,7 +244,7 @@ impl Enrichment {
         self.partition(cell)?.parts[region].side(crack)
     }
 
-    /// Constants of the functions of a cell, region by region and function by function: 1 on its piece and 0 elsewhere for a
+    /// Constants of the functions of a cell, region by region and function by function: [`STEP`] on its piece and 0 elsewhere for a
     /// piece function, the side of its crack for a branch function (0: by position), 1 for a standard one.
     pub fn steps(&self, cell: usize) -> &[f64] {
         const STANDARD: [f64; MOST_NODES] = [1.0; MOST_NODES];

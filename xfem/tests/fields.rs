@@ -148,8 +148,8 @@ fn found(body: &Body, linear: bool) -> f64 {
         let size = if linear { x[0] } else { 1.0 };
         // 1 on side 1: N_i of the nodes there, and the pieces of the others that lie there
         let amount = match function.kind {
-            FunctionKind::Piece { .. } if crack.distance(x) >= 0.0 => -1.0,
-            FunctionKind::Piece { .. } => 1.0,
+            FunctionKind::Piece { .. } if crack.distance(x) >= 0.0 => -0.5,
+            FunctionKind::Piece { .. } => 0.5,
             _ if crack.distance(x) >= 0.0 => 1.0,
             _ => 0.0,
         };

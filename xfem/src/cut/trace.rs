@@ -380,16 +380,22 @@ impl Trace {
                 }
             }
         }
-        // A node before an edge that ends there.
+        // One place found twice: on the same edge, or at a node and on an edge that ends there, where the node stays.
+        let same = |a: &Stop, b: &Stop| {
+            let (Some(one), Some(two)) = (a.vertex.nodes, b.vertex.nodes) else {
+                return false;
+            };
+            let meet = one.iter().all(|n| two.contains(n)) || two.iter().all(|n| one.contains(n));
+            meet && b.s - a.s <= 8.0 * near.edge_tolerance(one)
+        };
         let is_edge = |stop: &Stop| stop.vertex.nodes.is_none_or(|[i, j]| i != j);
         stops.sort_by(|a, b| a.s.total_cmp(&b.s));
         stops.dedup_by(|b, a| {
-            let nodes = a.vertex.nodes.or(b.vertex.nodes).unwrap_or_default();
-            let same = b.s - a.s <= 8.0 * near.edge_tolerance(nodes);
-            if same && is_edge(a) && !is_edge(b) {
+            let twice = same(a, b);
+            if twice && is_edge(a) && !is_edge(b) {
                 a.vertex = b.vertex;
             }
-            same
+            twice
         });
         stops
     }
@@ -427,14 +433,19 @@ fn host(
         .into_iter()
         .map(|cell| (near.depth(cell, &middle), cell));
     let best = deep.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-    let length = stops[1].s - stops[0].s;
+    // Between two places of one edge, without a bend.
+    let along_edge = near.edges.iter().any(|edge| {
+        let on = |key: &[u32; 2]| key.iter().all(|n| edge.contains(n));
+        keys.len() == 2 && keys.iter().all(on)
+    });
+    let mut path = arm.path.iter();
+    let straight = !path.any(|v| v.s > stops[0].s && v.s < stops[1].s);
     match best {
         Some((depth, cell)) => {
             let size = near.mesh.map(cell).longest_edge();
-            let slack = super::crack::on_crack(size, near.rounding);
             if depth < -1e-9 * size {
                 Ok(None)
-            } else if depth.abs() <= 4.0 * slack && length > 1e3 * slack && keys.len() == 2 {
+            } else if straight && along_edge {
                 Err(TraceError::AlongEdge(index, middle))
             } else {
                 Ok(Some(cell))

@@ -1,12 +1,12 @@
 //! The scalar functions of a body: standard, on pieces of supports, shifted branch functions.
 //!
 //! ```text
-//!   u(x) = Σ N_i ū_i + Σ N_j 1_p(x) b_jp + Σ N_k Σ_l (g_l(x) − g_l(x_k)) c_kl              (paper, Eq. 10)
+//!   u(x) = Σ N_i ū_i + Σ N_j 2·1_p(x) b_jp + Σ N_k Σ_l (g_l(x) − g_l(x_k)) c_kl              (paper, Eq. 10)
 //!   g = √r { sin θ/2, cos θ/2, sin θ/2 sin θ, cos θ/2 sin θ }                              (paper, Eq. 12)
 //! ```
 //!
 //! p runs over the pieces that the cracks leave of the support of node j, but for the node's own ([`super::supports`]): for
-//! one crack the span of the paper's shifted Heaviside function N_j (H(x) − H(x_j)). ū_i is the displacement of node i itself.
+//! one crack the paper's shifted Heaviside function N_j (H(x) − H(x_j)) but for its sign. ū_i is the displacement of node i itself.
 //! Of the branch functions only g_1 jumps: [[g_1]] = 2 √r.
 //!
 //! Within a radius of a tip the branch functions are multiplied by a ramp ρ = Σ N_i over the nodes inside the radius, and all
@@ -14,12 +14,15 @@
 //! nodes enriched, which would spoil the order (T.-P. Fries, Int. J. Numer. Meth. Engng 75 (2008) 503). The inside holds at
 //! least the cells around those of the tip, whatever the radius. Where there is no room for that, there is no ramp.
 
+/// Value of a piece function beside N_j: the jump of the paper's step H, so that unknowns have its scale.
+pub const STEP: f64 = 2.0;
+
 /// Kind of a scalar function; its node is kept beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FunctionKind {
     /// N_i.
     Standard,
-    /// N_j on a piece of its support, 0 elsewhere.
+    /// 2 N_j on a piece of its support, 0 elsewhere.
     Piece {
         /// Number of the piece among those of the node, from 0; the node's own is none of them.
         piece: u32,

@@ -160,7 +160,7 @@ impl Joiner<'_> {
             for two in 0..self.regions(cells[1]) {
                 let both = self.clipped(&corners, own.clone(), (cells[1], two));
                 // Rounding leaves less.
-                if area(&both) > 1e-20 * whole {
+                if area(&both) > 1e-26 * whole {
                     joins.push([(cells[0], one), (cells[1], two)]);
                 }
             }

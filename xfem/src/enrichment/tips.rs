@@ -5,8 +5,7 @@
 //! without that room for its own cells ends like one without branch functions, on the last cell edge it crosses; a short
 //! straight crack with none at either end takes functions of both ends at once.
 //!
-//! The radius is no larger than the room. A zone that no crack but its own and no border of the body enters is sought from
-//! the given radius downwards.
+//! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -387,12 +386,6 @@ impl Search<'_> {
             Tip::Branch | Tip::None => return Zone::plain(at_tip),
         };
         let smallest = nodes_around(mesh, &at_tip);
-        let border: BTreeSet<u32> = mesh
-            .sides
-            .keys()
-            .flat_map(|side| mesh.side_nodes(side))
-            .map(|n| n as u32)
-            .collect();
         let size = mesh.map(tip.cells[0]).diagonal();
         loop {
             let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
@@ -400,8 +393,7 @@ impl Search<'_> {
             let core = &inside | &smallest;
             let nodes = nodes_around(mesh, &core);
             let own = cells_around(mesh, &core).filter_map(|cell| self.partitions.get(&cell));
-            if nodes.is_disjoint(&border)
-                && own.into_iter().all(|p| self.is_own(p, tip.arm))
+            if own.into_iter().all(|p| self.is_own(p, tip.arm))
                 && !self.is_blocked(&frame, room, &nodes)
             {
                 return Zone { nodes, core };

@@ -184,7 +184,11 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<
                 own = clip(&own, &levels, 1.0);
             }
             if own.len() > 2 {
-                let rule = FanRule::fine(n < 8);
+                // Half of the angles on every interval.
+                let rule = FanRule {
+                    radial: n.max(6),
+                    angular: [2 * n + 8; 4],
+                };
                 points.extend(slice_points(
                     &own,
                     &[0.0, 0.0, 1.0],

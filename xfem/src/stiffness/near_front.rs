@@ -21,7 +21,7 @@ use crate::quadrature::{FanRule, WeightedPoint};
 const REACH: [f64; 2] = [0.15, 1.0];
 
 /// Halvings of what is not sliced: only cells cut by several cracks come nearer to a front than [`REACH`].
-const DEPTH: usize = 3;
+const DEPTH: usize = 4;
 
 /// How finely.
 #[derive(Debug, Clone, Copy, PartialEq)]

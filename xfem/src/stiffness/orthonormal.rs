@@ -59,17 +59,18 @@ pub struct SolverBasis {
 
 impl SolverBasis {
     /// Orthonormalises the nodes of ramped branch functions and of several cracks. `matrix`: stiffness of a cell over its
-    /// functions; `held`: whether a function has a prescribed component, which keeps its node as it is.
+    /// functions; `held`: whether a component of a function is prescribed, which keeps its node as it is.
     pub fn new<'a>(
         mesh: &Mesh,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
         matrix: impl Fn(usize) -> &'a CellMatrix,
-        held: impl Fn(usize) -> bool,
+        held: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let dim = mesh.dim();
         let mut basis = SolverBasis::default();
         let surplus = surplus(mesh, enrichment, &held);
+        let held = |f: usize| (0..dim).any(|a| held(f, a));
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
             let kind = |f: usize| enrichment.functions[f].kind;
@@ -230,7 +231,13 @@ impl SolverBasis {
 }
 
 /// The functions that the relations between branch functions make superfluous: two per straight ramped tip.
-fn surplus(mesh: &Mesh, enrichment: &Enrichment, held: impl Fn(usize) -> bool) -> BTreeSet<usize> {
+fn surplus(
+    mesh: &Mesh,
+    enrichment: &Enrichment,
+    held: impl Fn(usize, usize) -> bool,
+) -> BTreeSet<usize> {
+    let dim = mesh.dim();
+    let any = |f: usize| (0..dim).any(|a| held(f, a));
     let mut found = BTreeSet::new();
     for (number, tip) in enrichment.tips.iter().enumerate() {
         let own = |f: &usize| match enrichment.functions[*f].kind {
@@ -238,17 +245,16 @@ fn surplus(mesh: &Mesh, enrichment: &Enrichment, held: impl Fn(usize) -> bool) -
             _ => false,
         };
         let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
-        // A prescribed function breaks the relations.
-        if tip.shape != FrontShape::Straight
-            || !enrichment.is_ramped(number)
-            || functions.iter().any(|&f| held(f))
-        {
+        // A prescribed component breaks the relations of that component alone.
+        let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
+        if tip.shape != FrontShape::Straight || !enrichment.is_ramped(number) || broken {
             continue;
         }
         let node_of = |f: usize| enrichment.functions[f].node;
         let r = |f: usize| tip.distance(&mesh.nodes[node_of(f) as usize]);
         let own = functions.iter().copied();
-        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)));
+        let free = |f: usize| !enrichment.enriched_of(node_of(f) as usize).any(any);
+        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)) && free(f));
         let farthest = core.max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
         let node = farthest.map(node_of);
         found.extend(functions.into_iter().filter(|&f| {
