@@ -3,6 +3,7 @@
 use stickslip_methods::MethodError;
 use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::geometry::crack_shape::CrackShape;
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 
@@ -89,7 +90,33 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::ConformingTip { .. } => &spec.tip_span,
         _ => &spec.geometry_span,
     };
-    case.refuse(span, allowed, error)
+    let fitting = match (&spec.geometry, error) {
+        (_, EnrichmentError::TooShort { .. }) => fitting_cell(&spec.geometry),
+        _ => None,
+    };
+    match fitting {
+        Some(cell) => {
+            let allowed = format!("a longer crack, or cells of at most {cell:.2e} m");
+            case.refuse(span, &allowed, error)
+        }
+        None => case.refuse(span, allowed, error),
+    }
+}
+
+/// Edge of cells that a crack crosses often enough: a third of its length or width [m].
+fn fitting_cell(shape: &CrackShape) -> Option<f64> {
+    let third = |length: f64| Some(length / 3.0);
+    match shape {
+        CrackShape::Polyline(points) => {
+            let length = |w: &[[f64; 2]]| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]);
+            third(points.windows(2).map(length).sum())
+        }
+        CrackShape::Arc {
+            radius, from, to, ..
+        } => third(radius * (to - from).abs()),
+        CrackShape::Ellipse(ellipse) => third(2.0 * ellipse.half_axes[0].min(ellipse.half_axes[1])),
+        CrackShape::Plane { .. } => None,
+    }
 }
 
 /// The error of a body that can move, at the crack that cuts a piece off or at the supports.

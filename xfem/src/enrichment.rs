@@ -12,14 +12,15 @@ pub mod tips;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::Crack;
+use crate::cut::crack::{Crack, Geometry};
 use crate::cut::is_split;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
+use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
-use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
+use crate::geometry::{Point, mean};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, MOST_NODES};
 
@@ -86,13 +87,11 @@ impl Enrichment {
             };
             let mut divided = tips.partitions.values().chain(tips.endings.values());
             if !divided.any(own) {
-                let traced = trace.chains.values().flatten();
-                let mut traced = traced.filter(|c| cracks[c.arm].number == crack.number);
-                return Err(match traced.next() {
-                    Some(_) => EnrichmentError::TooShort {
+                return Err(match enters(mesh, crack) {
+                    true => EnrichmentError::TooShort {
                         crack: crack.number,
                     },
-                    None => EnrichmentError::Outside {
+                    false => EnrichmentError::Outside {
                         crack: crack.number,
                     },
                 });
@@ -340,6 +339,18 @@ fn beside(frame: &TipFrame, map: &CellMap) -> Side {
         FrontShape::Arc { .. } if behind => 1.0f64.copysign(frame.coordinates(&map.centre()).phi),
         _ => 0.0,
     }
+}
+
+/// Whether a crack has a part inside the body.
+fn enters(mesh: &Mesh, crack: &Crack) -> bool {
+    let middles = crack.path.windows(2).map(|w| mean([&w[0].x, &w[1].x]));
+    let centre = match &crack.geometry {
+        Geometry::Ellipse(ellipse) => Some(ellipse.centre),
+        _ => None,
+    };
+    middles
+        .chain(centre)
+        .any(|x| !cells_at(mesh, &x).is_empty())
 }
 
 /// Side of a crack that a cell it does not split lies on.

@@ -153,7 +153,7 @@ fn tips_take_a_radius_and_planes_have_none() {
         ("tip = \"branch\"", "tip = { branch_radius_m = inf }", "inf", "branch_radius_m > 0"),
         ("tip = \"branch\"", "tip = { radius_m = 1 }", "radius_m", "branch_radius_m"),
         ("tip = \"branch\"", "tip = 0.5", "0.5", "{ branch_radius_m = R }"),
-        ("tip = \"branch\"", "tip = \"branches\"", "\"branches\"", "none, branch"),
+        ("tip = \"branch\"", "tip = \"branches\"", "\"branches\"", "none, auto, branch"),
     ]);
     #[rustfmt::skip]
     assert_refused(SOLID, &[

@@ -193,7 +193,7 @@ fn absent_keys_take_their_documented_defaults() {
     let (point, normal) = ([0.0, 0.0, 0.7], [0.0, 0.6, 0.8]);
     assert_eq!(crack.geometry, CrackShape::Plane { point, normal });
     let plate = accepted(&PLANE.replace("tip = \"branch\"\n", ""));
-    assert_eq!(plate.cracks[0].tip, Tip::Branch);
+    assert_eq!(plate.cracks[0].tip, Tip::Auto);
 }
 
 #[test]
