@@ -189,7 +189,7 @@ impl Trace {
 
     /// The vertex at a place: on a node or an edge, if it is that close.
     fn place(&mut self, near: &Near<'_>, x: &Point) -> ChainVertex {
-        for (&node, _) in &near.cells_of {
+        for &node in near.cells_of.keys() {
             if norm(&sub(x, near.at(node))) <= 4.0 * near.tolerance(node) {
                 return self.vertex(near, [node, node], x);
             }
