@@ -9,6 +9,7 @@ mod errors;
 mod exact;
 mod exact_curve;
 mod fronts;
+mod geometries;
 mod incompressible;
 mod intensity;
 mod invariance;
