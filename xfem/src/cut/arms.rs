@@ -1,7 +1,7 @@
 //! Arms: the parts of cracks between the places where they meet others, or bend.
 //!
 //! Where cracks meet, all of them are cut, at one point that they share to the last bit: a crossing has four arms, a
-//! junction three. A bend sharper than [`BEND`] parts a crack too: the faces beside it have normals of their own, and so
+//! junction three. A bend sharper than ten degrees parts a crack too: the faces beside it have normals of their own, and so
 //! have the forces on them. In a solid a crack that crosses an earlier plane is parted by it.
 
 use crate::geometry::polygon::segment_foot;
