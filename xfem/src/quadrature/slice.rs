@@ -53,8 +53,10 @@ fn outside_points(
     tip: &Point,
     rule: FanRule,
 ) -> Vec<WeightedPoint> {
-    /// Halvings; a tip 1e-9 edges away needs 30.
+    /// Halvings in a row; a tip 1e-9 edges away needs 30.
     const DEPTH: usize = 40;
+    /// Halvings in all: two edges may point at the tip from all over a sliver.
+    const MOST: usize = 256;
     // Angles from the middle of the polygon, which lies within less than a half turn seen from outside.
     let from_tip: Vec<Point> = polygon.iter().map(|x| sub(x, tip)).collect();
     let e0 = unit(&mean(&from_tip));
@@ -90,6 +92,7 @@ fn outside_points(
             stack.push((low, high, [one, other], 0));
         }
     }
+    let mut halvings = 0;
     while let Some((low, high, edges, depth)) = stack.pop() {
         let pole_distance = |pole: f64| {
             // To the nearest of pole + kπ.
@@ -97,7 +100,8 @@ fn outside_points(
             gap(low).min(gap(high))
         };
         let nearest = pole_distance(edges[0].1).min(pole_distance(edges[1].1));
-        if high - low > nearest && depth < DEPTH {
+        if high - low > nearest && depth < DEPTH && halvings < MOST {
+            halvings += 1;
             let middle = 0.5 * (low + high);
             stack.push((low, middle, edges, depth + 1));
             stack.push((middle, high, edges, depth + 1));
