@@ -76,8 +76,6 @@ pub struct Body {
     pub loads: Vec<FixedLoad>,
     /// What the tests on the mesh found.
     pub checks: MeshChecks,
-    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked.
-    pub suspect: Option<String>,
 }
 
 /// Where the system of a run comes from: times shared by all runs on it.
@@ -227,13 +225,17 @@ impl Body {
             cracks,
             enrichment,
             checks: MeshChecks::default(),
-            suspect: None,
         };
         body.checks = mesh_checks(&body);
-        if body.quadrature == Quadrature::SubCells {
-            body.suspect = body.checks.reason();
-        }
         Ok(body)
+    }
+
+    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked.
+    pub fn suspect(&self) -> Option<String> {
+        match self.quadrature {
+            Quadrature::SubCells => self.checks.reason(),
+            Quadrature::Gauss(_) => None,
+        }
     }
 
     /// Integrator over the cells.
@@ -299,6 +301,9 @@ fn faces(
             rows.iter().map(|row| scaled(row)).collect()
         };
         let lost = rank::dependent(&arms, rows);
+        if lost.is_empty() {
+            break;
+        }
         let (fewer, merged) = rank::merge(&mut surface, &arms, &lost);
         arms = fewer;
         if merged == 0 {

@@ -102,16 +102,12 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
 /// ∫ [[φ_f]] n dΓ over the facets that carry multipliers, by function.
 fn jump_moments(body: &Body) -> Vec<Point> {
     let mut moments = vec![[0.0; 3]; body.enrichment.functions.len()];
+    let integrator = body.integrator();
     for q in &body.surface.quadrature {
-        let integrator = body.integrator();
-        let mut functions = integrator.functions(q.cell);
         let carried: f64 = q.shares.iter().map(|share| share.1).sum();
-        for (region, sign) in q.regions.into_iter().zip([1.0, -1.0]) {
-            functions.evaluate(&q.xi, &q.x, region);
-            for (&f, value) in functions.numbers.iter().zip(&functions.values) {
-                let moment = &mut moments[f as usize];
-                *moment = add_scaled(moment, sign * carried * q.weight * value, &q.frame[0]);
-            }
+        for (f, jump) in q.jump_terms(&integrator) {
+            let moment = &mut moments[f as usize];
+            *moment = add_scaled(moment, carried * q.weight * jump, &q.frame[0]);
         }
     }
     moments

@@ -81,6 +81,8 @@ pub struct Snapshot {
     pub strain_energy: f64,
     /// Relative residual of the discrete energy identity of the increment [-].
     pub energy_identity: f64,
+    /// Deepest overlap of the faces of every crack of the case, between its contact points too [m].
+    pub overlap: Vec<f64>,
 }
 
 impl Snapshot {
@@ -98,7 +100,13 @@ impl Snapshot {
             dissipation: 0.0,
             strain_energy: 0.0,
             energy_identity: 0.0,
+            overlap: vec![0.0; body.integrated.len()],
         }
+    }
+
+    /// Deepest overlap of the faces of all cracks [m].
+    pub fn deepest_overlap(&self) -> f64 {
+        self.overlap.iter().copied().fold(0.0, f64::max)
     }
 
     /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks.
@@ -142,6 +150,7 @@ impl Snapshot {
         Snapshot {
             external: loading.external_force(increment),
             time: loading.time(increment),
+            overlap: sampled_penetration(body, &u, &jump),
             jump,
             p: state.p.clone(),
             force,
@@ -226,21 +235,17 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
             }
         }
     }
-    let sampled = sampled_penetration(case, body, now);
     // Every crack, and all of them together.
     let all: Vec<usize> = (0..body.points.len()).collect();
-    let places = std::iter::once((
-        String::new(),
-        all.clone(),
-        sampled.iter().copied().fold(0.0, f64::max),
-    ))
-    .chain(sampled.iter().enumerate().map(|(crack, &deepest)| {
-        let own = all
-            .iter()
-            .copied()
-            .filter(|&i| body.points[i].crack == crack);
-        (format!("crack-{}", crack + 1), own.collect(), deepest)
-    }));
+    let places = std::iter::once((String::new(), all.clone(), now.deepest_overlap())).chain(
+        now.overlap.iter().enumerate().map(|(crack, &deepest)| {
+            let own = all
+                .iter()
+                .copied()
+                .filter(|&i| body.points[i].crack == crack);
+            (format!("crack-{}", crack + 1), own.collect(), deepest)
+        }),
+    );
     for (at, own, deepest) in places {
         if !at.is_empty() {
             for c in 0..dim {
@@ -280,18 +285,18 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
 
 /// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
 /// linear between its points, which then hold its extremes.
-pub fn sampled_penetration(case: &Case, body: &Body, now: &Snapshot) -> Vec<f64> {
+fn sampled_penetration(body: &Body, u: &[f64], jump: &[f64]) -> Vec<f64> {
     let (dim, integrator) = (body.mesh.dim(), body.integrator());
     let deepest = |crack: usize| {
         if body.cracks.iter().any(|c| c.number == crack) {
             let own = body.samples.iter().filter(|s| s.crack == crack);
-            return max_penetration(&integrator, own, &now.u);
+            return max_penetration(&integrator, own, u);
         }
-        let points = body.points.iter().zip(now.jump.chunks_exact(dim));
+        let points = body.points.iter().zip(jump.chunks_exact(dim));
         let own = points.filter(|(point, _)| point.crack == crack);
         own.map(|(_, jump)| -jump[0]).fold(0.0, f64::max)
     };
-    (0..case.cracks.len()).map(deepest).collect()
+    (0..body.integrated.len()).map(deepest).collect()
 }
 
 /// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place

@@ -5,7 +5,7 @@ use stickslip_methods::{ContactState, ContactSystem, Increment};
 use crate::case::Case;
 use crate::model::body::{Body, BodyError};
 use crate::model::loading::Loading;
-use crate::model::quantities::{Snapshot, sampled_penetration};
+use crate::model::quantities::Snapshot;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::record::{RunKey, RunRow};
@@ -105,16 +105,14 @@ impl LoadPathRun<'_> {
         let row = increment.run_row(key, self.system, body.setup, self.accuracy);
         RunRow {
             uniform_stress: body.checks.uniform,
-            overlap_m: now.map_or(f64::NAN, |now| {
-                let deepest = sampled_penetration(self.case, body, now);
-                deepest.into_iter().fold(0.0, f64::max)
-            }),
+            overlap_m: now.map_or(f64::NAN, Snapshot::deepest_overlap),
             ..row
         }
     }
 
-    /// Follows the path, up to the first increment without an honest verdict: what came after would start from a state
-    /// nobody vouches for. `each` is shown every increment, with the mechanics at its end where the verdict is honest.
+    /// Follows the path, up to the first increment whose algebra the judge does not vouch for: what came after would start
+    /// from nothing. On a suspect mesh it goes on, every increment with that verdict. `each` is shown every increment, with
+    /// the mechanics at its end where the algebra is vouched for.
     pub fn follow(&self, each: &mut Witness<'_>) -> PathEnd {
         self.follow_to(self.case.path.increments, each)
     }
@@ -178,9 +176,9 @@ impl LoadPathRun<'_> {
             }
             // The mechanics stay visible: what is suspect can be looked at.
             if solved.verdict.is_honest()
-                && let Some(reason) = &body.suspect
+                && let Some(reason) = body.suspect()
             {
-                solved.verdict = Verdict::Suspect(reason.clone());
+                solved.verdict = Verdict::Suspect(reason);
             }
             each(&end.key, &solved, end.now.as_ref());
             end.verdict = solved.verdict;

@@ -293,6 +293,11 @@ impl Enrichment {
         self.cores[tip].contains(&node)
     }
 
+    /// Where branch functions are singular in 2D: the tips that carry them [m].
+    pub fn singular_points(&self) -> Vec<Point> {
+        self.tips.iter().flat_map(TipFrame::tips).collect()
+    }
+
     /// Local nodes of a cell in the ramp of a tip, one bit each.
     pub fn ramp(&self, tip: usize, nodes: &[u32]) -> u8 {
         let core = &self.cores[tip];

@@ -82,6 +82,15 @@ pub fn bisect(mut holding: f64, mut failing: f64, holds: impl Fn(f64) -> bool) -
     0.5 * (holding + failing)
 }
 
+/// Root of an item in a forest of joined sets; halves the path to it.
+pub fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
 /// a / |a|; the argument must not vanish.
 pub fn unit(a: &Point) -> Point {
     let length = norm(a);

@@ -34,28 +34,13 @@ pub fn integrated(
     let quadrature = surface_points(integrator, index, facets, &multipliers)?;
     let mut points = vec![Moments::default(); multipliers.count];
     for q in &quadrature {
-        let terms = jump_terms(integrator, q);
+        let terms = q.jump_terms(integrator);
         for &(k, share) in &q.shares {
             points[k as usize].add(q, share * q.weight, &terms);
         }
     }
     let points: Vec<ContactPoint> = points.into_iter().map(|m| m.point(crack)).collect();
     Ok(assemble(&points, facets, &multipliers, quadrature))
-}
-
-/// [[φ_f]] of the functions of a cell at a point of the crack.
-fn jump_terms(integrator: &CellIntegrator<'_>, q: &SurfacePoint) -> Vec<(u32, f64)> {
-    let mut functions = integrator.functions(q.cell);
-    let [one, two] = q.regions.map(|region| {
-        functions.evaluate(&q.xi, &q.x, region);
-        functions.values.clone()
-    });
-    let numbers = functions.numbers.iter();
-    let jumps = numbers.zip(one.iter().zip(&two));
-    jumps
-        .map(|(&f, (one, two))| (f, one - two))
-        .filter(|(_, jump)| *jump != 0.0)
-        .collect()
 }
 
 /// ∫ φ_k (…) dΓ of one multiplier.

@@ -63,6 +63,21 @@ impl SurfacePoint {
         functions.jump(&self.xi, &self.x, self.regions, u)
     }
 
+    /// [[φ_f]] of the functions that jump here.
+    pub fn jump_terms(&self, integrator: &CellIntegrator<'_>) -> Vec<(u32, f64)> {
+        let mut functions = integrator.functions(self.cell);
+        let [one, two] = self.regions.map(|region| {
+            functions.evaluate(&self.xi, &self.x, region);
+            functions.values.clone()
+        });
+        let numbers = functions.numbers.iter();
+        let jumps = numbers.zip(one.iter().zip(&two));
+        jumps
+            .map(|(&f, (one, two))| (f, one - two))
+            .filter(|(_, jump)| *jump != 0.0)
+            .collect()
+    }
+
     /// A vector in the local frame (n, a, b).
     pub fn local(&self, v: &Point) -> [f64; 3] {
         resolve(&self.frame, v)

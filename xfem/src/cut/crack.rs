@@ -256,11 +256,6 @@ impl Crack {
             .map(tip)
             .collect()
     }
-
-    /// Length of an arm [m]; infinite in 3D.
-    pub fn length(&self) -> f64 {
-        self.range[1] - self.range[0]
-    }
 }
 
 /// The polyline that stands for a curve: its own vertices, or chords of an arc no longer than a quarter of a cell.

@@ -9,7 +9,7 @@
 //! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
 use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, snapped};
-use crate::geometry::{Point, cross, dot, mean, norm, sub};
+use crate::geometry::{Point, cross, dot, mean, norm, polygon, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
@@ -61,6 +61,19 @@ impl Partition {
         let pairs = whole.faces.iter().filter(|f| ending.contains(&f.crack));
         whole.joined = pairs.map(|f| f.parts).collect();
         whole
+    }
+
+    /// 2D: the part that lies beside the piece p q of the border, between two places of cracks; a continuation may end in
+    /// between.
+    pub fn beside(&self, p: &Point, q: &Point) -> Option<usize> {
+        let runs = |from: &Point, to: &Point| {
+            let along = |(a, b): (Point, Point)| {
+                a == *from && (b == *to || self.hits.contains(&b) && is_between(&b, from, to))
+            };
+            let mut parts = self.parts.iter();
+            parts.position(|part| polygon::edges(&part.polygon).any(along))
+        };
+        runs(p, q).or_else(|| runs(q, p))
     }
 
     /// An undivided cell.
@@ -158,6 +171,13 @@ impl Partition {
         }
         self.faces = faces;
     }
+}
+
+fn is_between(x: &Point, p: &Point, q: &Point) -> bool {
+    let (d, from) = (sub(q, p), sub(x, p));
+    let square = dot(&d, &d);
+    let along = dot(&from, &d);
+    along > 0.0 && along < square && norm(&cross(&d, &from)) <= 1e-9 * square
 }
 
 /// Whether a crack reaches into a part, or ends on another one before.

@@ -71,8 +71,6 @@ pub struct Trace {
     pub on_edges: BTreeMap<[u32; 2], Vec<Point>>,
     /// Free ends inside the body.
     pub tips: Vec<TracedTip>,
-    /// Nodes on an arm.
-    pub on_nodes: BTreeSet<u32>,
 }
 
 /// A place of an arm on its way.
@@ -206,7 +204,6 @@ impl Trace {
     /// The place on an edge, or the node: the known one if there is one that close.
     fn vertex(&mut self, near: &Near<'_>, nodes: [u32; 2], x: &Point) -> ChainVertex {
         if nodes[0] == nodes[1] {
-            self.on_nodes.insert(nodes[0]);
             let x = *near.at(nodes[0]);
             return ChainVertex {
                 x,

@@ -4,7 +4,7 @@ use crate::cut::crack::Crack;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::geometry::clip::{Side, clip, snapped};
-use crate::geometry::polygon::{border_distance, contains, edges};
+use crate::geometry::polygon::{border_distance, contains};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::Mesh;
 
@@ -33,34 +33,40 @@ pub fn pieces(
             _ => edge_pieces(cracks, partition, &vertices, [i, j]),
         };
     }
-    let phi = |crack: usize| {
-        let of_cell = cracks[crack].cell_phi(mesh, cell);
-        local.iter().map(|&i| of_cell[i]).collect::<Vec<f64>>()
-    };
-    let size = norm(&sub(&vertices[2], &vertices[0]));
-    let mut found = Vec::new();
-    for (region, part) in partition.parts.iter().enumerate() {
-        let mut polygon = vertices.clone();
-        for &(crack, side) in &part.sides {
-            // The nodes' own values, so that a node on the crack stays on it.
-            let own = phi(crack);
-            let level = |x: &Point| {
-                let node = vertices.iter().position(|v| v == x);
-                let value = node.map_or_else(|| cracks[crack].distance(x), |k| own[k]);
-                snapped(value, 1e-14 * size)
-            };
-            let levels: Vec<f64> = polygon.iter().map(level).collect();
-            polygon = if levels.iter().any(|v| v * side > 0.0) {
-                clip(&polygon, &levels, side)
-            } else {
-                Vec::new()
-            };
+    let nodes: Vec<u32> = local.iter().map(|&i| mesh.cell(cell)[i]).collect();
+    let parts = partition.parts.iter().enumerate();
+    let pieces = parts.map(|(region, part)| {
+        let polygon = clipped(mesh, cracks, &nodes, part, vertices.clone());
+        (polygon, region)
+    });
+    pieces.filter(|(polygon, _)| polygon.len() > 2).collect()
+}
+
+/// The part of a polygon in the face between some nodes that lies on the sides of a part of a cell.
+pub fn clipped(
+    mesh: &Mesh,
+    cracks: &[Crack],
+    nodes: &[u32],
+    part: &Part,
+    mut polygon: Vec<Point>,
+) -> Vec<Point> {
+    let at = |node: u32| &mesh.nodes[node as usize];
+    let size = norm(&sub(at(nodes[2]), at(nodes[0])));
+    for &(crack, side) in &part.sides {
+        let crack = &cracks[crack];
+        // The nodes' own values, so that a node on the crack stays on it.
+        let level = |x: &Point| {
+            let node = nodes.iter().find(|&&n| at(n) == x);
+            let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi[n as usize]);
+            snapped(value, 1e-14 * size)
+        };
+        let levels: Vec<f64> = polygon.iter().map(level).collect();
+        if !levels.iter().any(|v| v * side > 0.0) {
+            return Vec::new();
         }
-        if polygon.len() > 2 {
-            found.push((polygon, region));
-        }
+        polygon = clip(&polygon, &levels, side);
     }
-    found
+    polygon
 }
 
 /// An edge of a 2D cell, cut where chains end on it.
@@ -74,11 +80,7 @@ fn border_pieces(partition: &Partition, ends: &[Point], nodes: [usize; 2]) -> Ve
     points.insert(0, ends[0]);
     points.push(ends[1]);
     let region = |w: &[Point]| {
-        let runs = |p: &Point, q: &Point| {
-            let mut parts = partition.parts.iter();
-            parts.position(|part| edges(&part.polygon).any(|(a, b)| a == *p && b == *q))
-        };
-        let found = runs(&w[0], &w[1]).or_else(|| runs(&w[1], &w[0]));
+        let found = partition.beside(&w[0], &w[1]);
         found.map(|region| (w.to_vec(), region))
     };
     points.windows(2).filter_map(region).collect()

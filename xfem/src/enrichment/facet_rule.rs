@@ -2,7 +2,6 @@
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::mesh::Mesh;
 use crate::quadrature::front::FrontPiece;
@@ -39,7 +38,7 @@ pub fn facet_points(
     let affine = map.is_affine();
     let branch = enrichment.has_branch(facet.cell);
     if let &[p, q] = polygon.as_slice() {
-        let tips: Vec<Point> = enrichment.tips.iter().flat_map(TipFrame::tips).collect();
+        let tips = enrichment.singular_points();
         let integrand = match (branch, affine) {
             (true, _) => Integrand::Root(&tips),
             (false, true) => Integrand::Polynomial,

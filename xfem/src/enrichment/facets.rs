@@ -6,7 +6,8 @@ use crate::cut::crack::{Crack, Geometry};
 use crate::cut::part::Face;
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::curve::turned;
-use crate::geometry::{Point, add_scaled, cross, norm, sub, unit};
+use crate::geometry::polygon::space_area;
+use crate::geometry::{Point, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -192,7 +193,8 @@ fn inside_front(polygon: &[Corner], psi: impl Fn(&Point) -> f64) -> Option<Clipp
         (Corner { x, nodes, place }, 0.0)
     });
     let part: Vec<Corner> = inside.iter().map(|c| c.0).collect();
-    if part.len() < 3 || area(&part) <= 0.0 {
+    let places: Vec<Point> = part.iter().map(|corner| corner.x).collect();
+    if part.len() < 3 || space_area(&places) <= 0.0 {
         return None;
     }
     let on_front = inside.iter().filter(|c| c.1 == 0.0).map(|c| c.0.x);
@@ -204,15 +206,4 @@ fn inside_front(polygon: &[Corner], psi: impl Fn(&Point) -> f64) -> Option<Clipp
         face: polygon.iter().map(|c| c.x).collect(),
     });
     Some((part, cut))
-}
-
-fn area(polygon: &[Corner]) -> f64 {
-    let sum = (2..polygon.len()).fold([0.0; 3], |sum, i| {
-        let (p, q) = (
-            sub(&polygon[i - 1].x, &polygon[0].x),
-            sub(&polygon[i].x, &polygon[0].x),
-        );
-        add_scaled(&sum, 0.5, &cross(&p, &q))
-    });
-    norm(&sum)
 }

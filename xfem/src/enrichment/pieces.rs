@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, SVD, SymmetricEigen};
 
-use crate::geometry::Point;
+use crate::geometry::{Point, root};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -43,13 +43,6 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     // Copies by node and constants, 0 or 1.
     let mut number: Vec<Vec<(Vec<f64>, usize)>> = vec![Vec::new(); mesh.nodes.len()];
     let mut parent: Vec<usize> = Vec::new();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     let mut copy_at = |parent: &mut Vec<usize>, node: usize, constants: Vec<f64>| {
         let known = &mut number[node];
         match known.iter().find(|(c, _)| *c == constants) {

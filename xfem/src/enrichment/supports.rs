@@ -14,11 +14,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cut::crack::Crack;
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
-use crate::geometry::clip::{clip, snapped};
-use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, polygon, sub};
+use crate::geometry::polygon::space_area;
+use crate::geometry::{Point, norm, root, sub};
 use crate::mesh::Mesh;
 
 use super::basis::Region;
+use super::cell_facets::clipped;
 
 /// A region of a cell.
 pub type Place = (usize, Region);
@@ -128,7 +129,7 @@ impl Joiner<'_> {
         let parts = places.windows(2);
         let region = |cell: usize, p: &Point, q: &Point| match self.partitions.get(&cell) {
             None => Some(0),
-            Some(partition) => beside(partition, p, q).or_else(|| beside(partition, q, p)),
+            Some(partition) => partition.beside(p, q),
         };
         parts
             .filter_map(|w| {
@@ -153,14 +154,14 @@ impl Joiner<'_> {
             .iter()
             .map(|&n| self.mesh.nodes[n as usize])
             .collect();
-        let whole = area(&face);
+        let whole = space_area(&face);
         let mut joins = Vec::new();
         for one in 0..self.regions(cells[0]) {
             let own = self.clipped(&corners, face.clone(), (cells[0], one));
             for two in 0..self.regions(cells[1]) {
                 let both = self.clipped(&corners, own.clone(), (cells[1], two));
                 // Rounding leaves less.
-                if area(&both) > 1e-26 * whole {
+                if space_area(&both) > 1e-26 * whole {
                     joins.push([(cells[0], one), (cells[1], two)]);
                 }
             }
@@ -169,26 +170,14 @@ impl Joiner<'_> {
     }
 
     /// The part of a polygon in a face that lies on the sides of a region.
-    fn clipped(&self, nodes: &[u32], mut polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
-        let Some(partition) = self.partitions.get(&cell) else {
-            return polygon;
-        };
-        for &(crack, side) in &partition.parts[region].sides {
-            let size = self.mesh.map(cell).diagonal();
-            let level = |x: &Point| {
-                // The nodes' own values, so that a node on the crack stays on it.
-                let node = nodes.iter().find(|&&n| self.mesh.nodes[n as usize] == *x);
-                let crack = &self.cracks[crack];
-                let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi[n as usize]);
-                snapped(value, 1e-14 * size)
-            };
-            let levels: Vec<f64> = polygon.iter().map(level).collect();
-            if !levels.iter().any(|v| v * side > 0.0) {
-                return Vec::new();
+    fn clipped(&self, nodes: &[u32], polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
+        match self.partitions.get(&cell) {
+            None => polygon,
+            Some(partition) => {
+                let part = &partition.parts[region];
+                clipped(self.mesh, self.cracks, nodes, part, polygon)
             }
-            polygon = clip(&polygon, &levels, side);
         }
-        polygon
     }
 
     /// The pieces of the support of a node beyond its own.
@@ -256,41 +245,4 @@ impl Joiner<'_> {
         }
         best
     }
-}
-
-/// The region of a divided cell that has an edge from p towards q, both on the border of the cell.
-fn beside(partition: &Partition, p: &Point, q: &Point) -> Option<Region> {
-    let runs = |(a, b): (Point, Point)| {
-        // A continuation may end between the two.
-        a == *p && (b == *q || partition.hits.contains(&b) && is_between(&b, p, q))
-    };
-    let mut parts = partition.parts.iter();
-    parts.position(|part| polygon::edges(&part.polygon).any(runs))
-}
-
-fn is_between(x: &Point, p: &Point, q: &Point) -> bool {
-    let (d, from) = (sub(q, p), sub(x, p));
-    let square = dot(&d, &d);
-    let along = dot(&from, &d);
-    along > 0.0 && along < square && norm(&cross(&d, &from)) <= 1e-9 * square
-}
-
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
-}
-
-/// Area of a polygon in space [m²].
-fn area(polygon: &[Point]) -> f64 {
-    if polygon.len() < 3 {
-        return 0.0;
-    }
-    let centre = mean(polygon);
-    let sum = polygon::edges(polygon).fold([0.0; 3], |sum, (p, q)| {
-        add_scaled(&sum, 0.5, &cross(&sub(&p, &centre), &sub(&q, &centre)))
-    });
-    norm(&sum)
 }

@@ -92,14 +92,14 @@ impl Tips {
         };
         for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
             let zone = search.zone(tip, search.room(number));
-            tips.add(mesh, search.frame(tip), &tip.cells, zone);
+            tips.add(search.frame(tip), &tip.cells, zone);
         }
         for &arm in &search.pairs {
             let cells: Vec<usize> = search.cells_of(arm);
             let own = trace.tips.iter().filter(|t| t.arm == arm);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
             let zone = Zone::plain(nodes_of(mesh, cells));
-            tips.add(mesh, pair_frame(&arms[arm], arm), &at_ends, zone);
+            tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
         }
         tips.partitions = search.partitions;
         tips.cells.sort_unstable();
@@ -170,15 +170,14 @@ impl Tips {
                 }
                 _ => Zone::plain(at_front),
             };
-            tips.add(mesh, frame, &cells, zone);
+            tips.add(frame, &cells, zone);
         }
         tips.cells.sort_unstable();
         tips
     }
 
     /// Adds the branch functions of a tip or front with the given cells around it.
-    fn add(&mut self, mesh: &Mesh, frame: TipFrame, cells: &[usize], zone: Zone) {
-        debug_assert!(zone.nodes.iter().all(|&n| (n as usize) < mesh.nodes.len()));
+    fn add(&mut self, frame: TipFrame, cells: &[usize], zone: Zone) {
         let tip = self.frames.len();
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
         let branch = |node: u32| {

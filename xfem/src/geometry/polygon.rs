@@ -18,6 +18,18 @@ pub fn area(polygon: &[Point]) -> f64 {
         .sum()
 }
 
+/// Area of a flat polygon in space [m²].
+pub fn space_area(polygon: &[Point]) -> f64 {
+    let sum = (2..polygon.len()).fold([0.0; 3], |sum, i| {
+        let (p, q) = (
+            sub(&polygon[i - 1], &polygon[0]),
+            sub(&polygon[i], &polygon[0]),
+        );
+        add_scaled(&sum, 0.5, &cross(&p, &q))
+    });
+    norm(&sum)
+}
+
 /// The point of the segment p q nearest to x [m].
 pub fn segment_foot(x: &Point, p: &Point, q: &Point) -> Point {
     let d = sub(q, p);

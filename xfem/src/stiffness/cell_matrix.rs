@@ -19,7 +19,6 @@ use crate::enrichment::basis::Region;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
-use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, polygon};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
@@ -169,13 +168,14 @@ impl<'a> CellIntegrator<'a> {
     /// Direct integration of all functions.
     fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
         let mut gram = Gram::zero(self.enrichment.cell(cell).len(), self.mesh.dim());
-        for p in self.evaluated(cell)? {
+        let points = self.evaluated(cell)?;
+        for p in &points {
             gram.add(p.at.weight, &p.gradients);
         }
         match self.lame.dilatation {
             Dilatation::Full => Ok(gram.stiffness(self.lame)),
             Dilatation::Mean => {
-                let projected = ProjectedDilatation::new(self, cell)?;
+                let projected = ProjectedDilatation::of(self, cell, &points);
                 Ok(gram.projected_stiffness(self.lame, &projected.integrals()))
             }
         }
@@ -213,12 +213,7 @@ impl<'a> CellIntegrator<'a> {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
         let tip = self.tip_in(cell);
-        let tips: Vec<Point> = self
-            .enrichment
-            .tips
-            .iter()
-            .flat_map(TipFrame::tips)
-            .collect();
+        let tips = self.enrichment.singular_points();
         // A pair of tips has none of its own at its middle.
         let tip = tip
             .map(|tip| self.enrichment.tips[tip].tips())

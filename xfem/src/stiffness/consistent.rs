@@ -21,15 +21,14 @@ use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::{clip, fan};
 use crate::geometry::curve::turned;
-use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::quadrature::graded::{graded_segment, graded_triangles};
 use crate::quadrature::rational::rational_order;
-use crate::quadrature::{WeightedPoint, segment, triangle};
+use crate::quadrature::{Quadrature, WeightedPoint, segment, triangle};
 
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 
-/// A quadrature point with the values and gradients of all functions of its cell.
+/// A quadrature point with the gradients of all functions of its cell.
 pub struct EvaluatedPoint {
     /// The point.
     pub at: SidedPoint,
@@ -80,7 +79,6 @@ impl CellIntegrator<'_> {
 
     /// Whether the rule of a cell leaves something to correct.
     fn is_corrected(&self, cell: usize, functions: &CellFunctions<'_>) -> bool {
-        use crate::quadrature::Quadrature;
         self.quadrature == Quadrature::SubCells
             && !self.enrichment.is_plain(self.mesh, cell)
             && (self.enrichment.has_branch(cell) || !functions.map.is_affine())
@@ -295,12 +293,7 @@ impl CellIntegrator<'_> {
         let [from, to] = ends.map(|n| mesh.nodes[n as usize]);
         let pieces = pieces(mesh, self.cracks, self.enrichment, cell, order);
         let away = |x: &Point| norm(&sub(x, &from));
-        let tips: Vec<Point> = self
-            .enrichment
-            .tips
-            .iter()
-            .flat_map(TipFrame::tips)
-            .collect();
+        let tips = self.enrichment.singular_points();
         let mut places = self.enrichment.places_on(ends).to_vec();
         places.extend([from, to]);
         places.sort_by(|a, b| away(a).total_cmp(&away(b)));

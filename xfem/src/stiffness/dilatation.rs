@@ -29,6 +29,7 @@ use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::material::{Dilatation, Lame};
 
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+use super::consistent::EvaluatedPoint;
 
 /// A mode is dropped if less than this part of its square lies outside the span of those before it: all but those in the cells
 /// next to a tip, about 1 cell away. Three pressures in every cell with branch functions lock again: the sliding crack of
@@ -63,6 +64,15 @@ impl<'a> ProjectedDilatation<'a> {
     /// # Errors
     /// A cell that cannot be integrated.
     pub fn new(integrator: &CellIntegrator<'a>, cell: usize) -> Result<Self, CellError> {
+        let points = match integrator.lame.dilatation {
+            Dilatation::Full => Vec::new(),
+            Dilatation::Mean => integrator.evaluated(cell)?,
+        };
+        Ok(Self::of(integrator, cell, &points))
+    }
+
+    /// The same from the points of the cell, evaluated.
+    pub fn of(integrator: &CellIntegrator<'a>, cell: usize, evaluated: &[EvaluatedPoint]) -> Self {
         let mut projected = ProjectedDilatation {
             lame: integrator.lame,
             dim: integrator.mesh.dim(),
@@ -70,10 +80,9 @@ impl<'a> ProjectedDilatation<'a> {
             regions: Vec::new(),
         };
         if integrator.lame.dilatation == Dilatation::Full {
-            return Ok(projected);
+            return projected;
         }
         projected.tips = tips(integrator, cell);
-        let evaluated = integrator.evaluated(cell)?;
         let count = integrator.enrichment.cell(cell).len();
         for region in 0..integrator.enrichment.regions(cell) {
             let own = evaluated.iter().filter(|p| p.at.region == region);
@@ -93,7 +102,7 @@ impl<'a> ProjectedDilatation<'a> {
             }
             projected.regions.push(modes);
         }
-        Ok(projected)
+        projected
     }
 
     /// 1 and, for every tip, r^−½ sin θ/2 and r^−½ cos θ/2.

@@ -1,15 +1,15 @@
-//! Orthonormal enriched functions, node by node, where branch functions reach beyond the cells of their tip, or cracks meet.
+//! Orthonormal enriched functions, node by node, where there are branch functions.
 //!
 //! ```text
 //!   A_fg = ∫ ∇φ_f · ∇φ_g over the enriched functions of a node,   A = D L Lᵀ D,   φ' = T φ,   T = (D L)⁻¹
 //!   K' = T K Tᵀ,   B' = B Tᵀ,   f' = T f,   u = Tᵀ u'
 //! ```
 //!
-//! Far from the tip the four branch functions of a node, and its Heaviside function, are nearly the same: the condition of
-//! K grows like a high power of radius over cell size (1e12 instead of 1e3). Close to a junction the steps of two cracks
-//! may differ on a sliver only. Scaled Cholesky factors of the node blocks bring it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part
-//! outside the span of those before it is too small to be told from rounding is dropped. Functions keep their numbers;
-//! only what the solver sees is transformed.
+//! Far from the tip the four branch functions of a node, and its piece functions, are nearly the same: the condition of K
+//! grows like a high power of radius over cell size (1e12 instead of 1e3). Scaled Cholesky factors of the node blocks bring
+//! it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part outside the
+//! span of those before it is too small to be told from rounding is dropped. Functions keep their numbers; only what the
+//! solver sees is transformed.
 //!
 //! With a ramp the shape functions sum to one over all cells of a straight tip, and the branch functions become exactly
 //! dependent: with x, y ahead and across,
@@ -58,7 +58,7 @@ pub struct SolverBasis {
 }
 
 impl SolverBasis {
-    /// Orthonormalises the nodes of ramped branch functions and of several cracks. `matrix`: stiffness of a cell over its
+    /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its
     /// functions; `held`: whether a component of a function is prescribed, which keeps its node as it is.
     pub fn new<'a>(
         mesh: &Mesh,
