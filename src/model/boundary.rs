@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use stickslip_xfem::contact::free_jumps::FreeJumps;
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::enrichment::cell_facets::pieces;
 use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
@@ -83,7 +84,38 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
             }
         }
     }
+    hold_unguarded(integrator, &mut fixed);
     fixed
+}
+
+/// Holds wholly what supports hold in part and no multiplier can resist.
+fn hold_unguarded(integrator: &CellIntegrator<'_>, fixed: &mut BTreeMap<usize, Prescribed>) {
+    let dim = integrator.mesh.dim();
+    let functions = integrator.mesh.nodes.len()..integrator.enrichment.functions.len();
+    let holder = |fixed: &BTreeMap<usize, Prescribed>, f: usize| {
+        let mut components = (0..dim).map(|a| fixed.get(&(f * dim + a)));
+        components.find_map(|held| held.copied())
+    };
+    let in_part = |f: usize| (0..dim).any(|a| !fixed.contains_key(&(f * dim + a)));
+    if !functions
+        .into_iter()
+        .any(|f| holder(fixed, f).is_some() && in_part(f))
+    {
+        return;
+    }
+    for index in 0..integrator.cracks.len() {
+        let free = FreeJumps::new(integrator, index, |i| fixed.contains_key(&i));
+        for f in free.unguarded() {
+            if let Some(held) = holder(fixed, f) {
+                for a in 0..dim {
+                    fixed.entry(f * dim + a).or_insert(Prescribed {
+                        support: held.support,
+                        amount: Amount::Number(0.0),
+                    });
+                }
+            }
+        }
+    }
 }
 
 /// Enriched functions of some nodes of a cell that do not vanish between them.

@@ -12,13 +12,13 @@ pub mod tips;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Geometry};
+use crate::cut::crack::{Crack, Geometry, on_crack};
 use crate::cut::is_split;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
-use crate::geometry::clip::Side;
+use crate::geometry::clip::{Side, snapped};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
 use crate::mesh::Mesh;
@@ -157,6 +157,7 @@ impl Enrichment {
             let own = pieces.get(&node).and_then(|own| own.get(piece as usize));
             own.is_some_and(|places| places.binary_search(place).is_ok())
         };
+        let rounding = mesh.rounding();
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             let parts: Vec<Option<&Part>> = match self.partitions.get(&cell) {
@@ -182,17 +183,14 @@ impl Enrichment {
                         FunctionKind::Branch { tip, .. } => {
                             let crack = &cracks[self.tips[tip as usize].crack];
                             let frame = &self.tips[tip as usize];
-                            let elsewhere = match is_split(&crack.cell_phi(mesh, cell)) {
-                                true => beside(frame, &mesh.map(cell)),
-                                false => whole_side(crack, nodes),
-                            };
-                            let of_crack = |s: &&(usize, Side)| cracks[s.0].number == crack.number;
+                            let elsewhere = || beside(frame, &mesh.map(cell), rounding);
+                            let of_crack = |s: &&(usize, Side)| cracks[s.0].shares_tips(crack);
                             let side = |part: &Option<&Part>| {
                                 part.and_then(|p| p.sides.iter().find(of_crack))
                                     .map(|s| s.1)
                             };
                             let sides = parts.iter().map(side);
-                            sides.map(|side| side.unwrap_or(elsewhere)).collect()
+                            sides.map(|side| side.unwrap_or_else(elsewhere)).collect()
                         }
                         FunctionKind::Standard => continue,
                     };
@@ -336,9 +334,21 @@ impl Enrichment {
     }
 }
 
-/// Side of a tip's crack on which a cell lies that its chords leave whole although its arc enters it; 0 ahead of the tip,
-/// where the place tells.
-fn beside(frame: &TipFrame, map: &CellMap) -> Side {
+/// Side of the line of a tip's crack on which a cell lies that this crack does not divide; 0 where the place tells.
+///
+/// The line is that of the tip's own arm: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
+/// enters.
+fn beside(frame: &TipFrame, map: &CellMap, rounding: f64) -> Side {
+    let near = on_crack(map.diagonal(), rounding);
+    let levels = map.iter().map(|x| snapped(frame.coordinates(x).phi, near));
+    let levels: Vec<f64> = levels.collect();
+    if !is_split(&levels) {
+        return if levels.iter().any(|f| *f < 0.0) {
+            -1.0
+        } else {
+            1.0
+        };
+    }
     let behind = map.iter().all(|x| frame.coordinates(x).psi < 0.0);
     match frame.shape {
         FrontShape::Arc { .. } if behind => 1.0f64.copysign(frame.coordinates(&map.centre()).phi),
@@ -356,13 +366,4 @@ fn enters(mesh: &Mesh, crack: &Crack) -> bool {
     middles
         .chain(centre)
         .any(|x| !cells_at(mesh, &x).is_empty())
-}
-
-/// Side of a crack that a cell it does not split lies on.
-fn whole_side(crack: &Crack, nodes: &[u32]) -> Side {
-    if nodes.iter().any(|&n| crack.phi[n as usize] < 0.0) {
-        -1.0
-    } else {
-        1.0
-    }
 }

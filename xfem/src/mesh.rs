@@ -3,10 +3,11 @@
 pub mod box_mesh;
 pub mod cell;
 pub mod grid_motion;
+pub mod neighbours;
 pub mod ordering;
 pub mod stream;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::geometry::{Point, norm, sub};
 
@@ -74,6 +75,12 @@ impl Mesh {
     pub fn cell_mut(&mut self, cell: usize) -> &mut [u32] {
         let n = self.kind.nodes();
         &mut self.cells[n * cell..n * (cell + 1)]
+    }
+
+    /// Nodes of some cells.
+    pub fn nodes_of(&self, cells: impl IntoIterator<Item = usize>) -> BTreeSet<u32> {
+        let nodes = cells.into_iter().flat_map(|cell| self.cell(cell));
+        nodes.copied().collect()
     }
 
     /// The map from the reference cell to a cell.

@@ -10,7 +10,8 @@ const DEPENDENT: f64 = 1e-8;
 const RIGID: f64 = 1e-9;
 
 /// Checks that the modes are in the kernel of K and chooses one unknown per mode to pin (Gaussian elimination with
-/// complete pivoting, modes scaled to unit size).
+/// complete pivoting of D^½ R, modes scaled to unit size): unknowns of much stiffness, since what is left of K is the softer
+/// the smaller its part in the motion.
 pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, MethodError> {
     let n = k.size();
     let mut kr = vec![0.0; n];
@@ -24,11 +25,16 @@ pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>
         }
     }
     let largest = |r: &[f64]| r.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let scaled = |r: &[f64]| -> Vec<f64> {
+        let own = r.iter().enumerate();
+        own.map(|(j, v)| k.diagonal(j).sqrt() * v).collect()
+    };
     let mut work: Vec<(usize, Vec<f64>)> = modes
         .iter()
         .enumerate()
         .map(|(mode, r)| {
-            let size = largest(r);
+            let r = scaled(r);
+            let size = largest(&r);
             (mode, r.iter().map(|v| v / size).collect())
         })
         .collect();

@@ -1,16 +1,17 @@
 //! Where on a crack the displacement jumps and is free to do so: what a multiplier can act on.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::basis::{FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
-use crate::geometry::{norm, sub};
+use crate::geometry::{norm, root, sub};
 use crate::stiffness::cell_matrix::CellIntegrator;
 
 use super::pairs::{AT_TIP, vertex_weights};
 
-/// A facet smaller than this, in units of its cell's size to the power of its dimension, has no multiplier of its own.
-const SLIVER: f64 = 1e-10;
+/// A facet smaller than this, in units of its cell's size to the power of its dimension, has no multiplier of its own: its
+/// traction would be a force over next to no area, with the rounding of all forces around it.
+const SLIVER: f64 = 0.02;
 
 /// What the displacement does at a crossed mesh edge or node.
 #[derive(Debug, Clone, Copy)]
@@ -54,34 +55,66 @@ impl<'a> FreeJumps<'a> {
         }
     }
 
-    /// Copies of a node on both sides of a place of the crack, if it jumps there and is free to; 0: its own.
-    fn jump(&self, node: u32, (cell, regions): (usize, [Region; 2])) -> Option<[usize; 2]> {
+    /// Functions that jump where no multiplier of the crack can be: on a stretch of it without a free jump, beside supports
+    /// that hold them in part. Nothing would resist what is left of their jumps.
+    pub fn unguarded(&self) -> BTreeSet<usize> {
+        let facets = &self.facets.facets;
+        let mut parent: Vec<usize> = (0..self.facets.corners.len()).collect();
+        for facet in facets {
+            for w in facet.corners.windows(2) {
+                let [a, b] = [0, 1].map(|i| root(&mut parent, w[i]));
+                parent[a.max(b)] = a.min(b);
+            }
+        }
+        let mut stretch = |facet: &Facet| facet.corners.first().map(|&c| root(&mut parent, c));
+        let free = facets.iter().filter(|f| self.jumps_on(f));
+        let guarded: BTreeSet<Option<usize>> = free.map(&mut stretch).collect();
+        let bare = facets.iter().filter(|f| !guarded.contains(&stretch(f)));
+        bare.flat_map(|facet| {
+            let nodes = self.integrator.mesh.cell(facet.cell).iter();
+            nodes.flat_map(|&n| self.jumping(n, (facet.cell, facet.regions)))
+        })
+        .collect()
+    }
+
+    /// Functions of a node that jump at a place of the crack.
+    fn jumping(&self, node: u32, (cell, regions): (usize, [Region; 2])) -> Vec<usize> {
         let CellIntegrator {
             enrichment, cracks, ..
         } = self.integrator;
-        let own = enrichment.enriched_of(node as usize);
+        let jumps = |f: &usize| match enrichment.functions[*f].kind {
+            FunctionKind::Piece { .. } => {
+                let [one, two] = regions.map(|region| enrichment.step(cell, region, *f));
+                one != two
+            }
+            FunctionKind::Branch { tip, order: 0 } => {
+                let crack = &cracks[enrichment.tips[tip as usize].crack];
+                cracks[self.index].shares_tips(crack)
+            }
+            _ => false,
+        };
+        enrichment
+            .enriched_of(node as usize)
+            .filter(jumps)
+            .collect()
+    }
+
+    /// Copies of a node on both sides of a place of the crack, if it jumps there and is free to; 0: its own.
+    fn jump(&self, node: u32, place: (usize, [Region; 2])) -> Option<[usize; 2]> {
+        let enrichment = self.integrator.enrichment;
+        let (cell, regions) = place;
         let mut copies = [0, 0];
-        let mut jumps = false;
-        for (k, f) in own.enumerate() {
-            let differs = match enrichment.functions[f].kind {
-                FunctionKind::Piece { .. } => {
-                    let steps = regions.map(|region| enrichment.step(cell, region, f));
-                    for (copy, step) in copies.iter_mut().zip(steps) {
-                        if step != 0.0 {
-                            *copy = k + 1;
-                        }
+        for (k, f) in enrichment.enriched_of(node as usize).enumerate() {
+            if let FunctionKind::Piece { .. } = enrichment.functions[f].kind {
+                for (copy, region) in copies.iter_mut().zip(regions) {
+                    if enrichment.step(cell, region, f) != 0.0 {
+                        *copy = k + 1;
                     }
-                    steps[0] != steps[1]
                 }
-                FunctionKind::Branch { tip, order: 0 } => {
-                    let crack = enrichment.tips[tip as usize].crack;
-                    cracks[crack].number == cracks[self.index].number
-                }
-                _ => false,
-            };
-            jumps |= differs && self.free[f];
+            }
         }
-        jumps.then_some(copies)
+        let mut jumping = self.jumping(node, place).into_iter();
+        jumping.any(|f| self.free[f]).then_some(copies)
     }
 
     /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.

@@ -8,9 +8,11 @@
 //! ```
 //!
 //! a point whose rows are nearly combinations of those before it (a small pivot of the Cholesky factor of Ŝ) has a force
-//! that no displacement determines: at tips and junctions, on slivers, beside supports, on cracks of few cells. It is merged
-//! with the nearest point of its arm: their multiplier functions add up, so constant tractions stay exact. One rule, from
-//! what the rows are, not from where they come from.
+//! that no displacement determines: at tips and junctions, on slivers, beside supports, on cracks of few cells. Forces of
+//! many points that nothing resists together (constant ones that change sign from facet to facet around a circle) leave no
+//! small pivot but a small eigenvalue; the point that has most of it is such a point too. It is merged with the nearest point
+//! of its arm: their multiplier functions add up, so constant tractions stay exact. One rule, from what the rows are, not
+//! from where they come from.
 
 use std::collections::BTreeMap;
 
@@ -20,6 +22,9 @@ use super::pairs::{ContactPoint, ContactSurface};
 
 /// Pivots below this are zero: the square of what is new in a row of unit length.
 pub const DEPENDENT: f64 = 1e-2;
+
+/// Eigenvalues of Ŝ below this are zero: at most its inverse times rounding is what the forces may be off.
+pub const UNRESISTED: f64 = 1e-5;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
@@ -32,14 +37,21 @@ pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Ro
     order.sort_by_key(|arm| arm.len());
     let mut factor = Factor::default();
     let mut found = Vec::new();
+    // Points by row of the factor.
+    let mut owners = Vec::new();
     for point in order.into_iter().flat_map(|arm| arm.clone()) {
         let own = rows(point);
         let known = factor.len();
         // All rows of a point, or none.
-        if !own.into_iter().all(|row| factor.push(row)) {
+        if own.into_iter().all(|row| factor.push(row)) {
+            owners.resize(factor.len(), point);
+        } else {
             factor.truncate(known);
             found.push(point);
         }
+    }
+    if found.is_empty() {
+        found.extend(factor.unresisted().map(|row| owners[row]));
     }
     found
 }
@@ -69,6 +81,41 @@ impl Factor {
         }
         self.rows.truncate(count);
         self.lower.truncate(count);
+    }
+
+    /// The row with the largest part in the forces that least resists, if that is next to nothing: inverse iteration.
+    fn unresisted(&self) -> Option<usize> {
+        /// One less would do where the smallest eigenvalue stands alone.
+        const ROUNDS: usize = 4;
+        let count = self.len();
+        let length = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+        // No pattern of the mesh is orthogonal to it.
+        let mut x: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sin()).collect();
+        let mut eigenvalue = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let before = length(&x);
+            self.solve(&mut x);
+            let after = length(&x);
+            eigenvalue = before / after;
+            x.iter_mut().for_each(|v| *v /= after);
+        }
+        let largest = (0..count).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()));
+        largest.filter(|_| eigenvalue < UNRESISTED)
+    }
+
+    /// x := (L Lᵀ)⁻¹ x.
+    fn solve(&self, x: &mut [f64]) {
+        for (i, (start, entries)) in self.lower.iter().enumerate() {
+            let known = entries.iter().zip(&x[*start..i]);
+            let sum: f64 = known.map(|(l, v)| l * v).sum();
+            x[i] = (x[i] - sum) / entries[i - start];
+        }
+        for (i, (start, entries)) in self.lower.iter().enumerate().rev() {
+            x[i] /= entries[i - start];
+            for (l, k) in entries.iter().zip(*start..i) {
+                x[k] -= l * x[i];
+            }
+        }
     }
 
     /// Adds a row if it is independent of those before it.

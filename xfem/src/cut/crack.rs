@@ -109,6 +109,13 @@ pub struct Crack {
 }
 
 impl Crack {
+    /// Whether a tip or front of `other` is this arm's: all arms of an ellipse have one front, one in a plane body has the
+    /// ends of its own.
+    pub fn shares_tips(&self, other: &Crack) -> bool {
+        let solid = matches!(self.geometry, Geometry::Ellipse(_));
+        self.number == other.number && (solid || self.range == other.range)
+    }
+
     /// Places a crack in a mesh, alone.
     pub fn new(number: usize, shape: &CrackShape, tip: Tip, mesh: &Mesh) -> Self {
         let flat = |p: &[f64; 2]| [p[0], p[1], 0.0];

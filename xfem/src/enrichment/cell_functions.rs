@@ -101,22 +101,21 @@ impl<'a> CellFunctions<'a> {
                     (*value, *gradient) = (ni * step, dni.map(|d| d * step));
                 }
                 FunctionKind::Branch { tip, order } => {
-                    let branches = match cached {
-                        Some(known) if known.tip == tip => known,
-                        _ => {
-                            let side = (*step != 0.0).then_some(*step);
-                            let (values, gradients) = self.tips[tip as usize].branch(x, side);
-                            let (ramp, ramp_gradient) = ramp(f.ramp, &n, &dn);
-                            Branches {
-                                tip,
-                                values,
-                                gradients,
-                                ramp,
-                                ramp_gradient,
-                            }
+                    if cached.as_ref().is_some_and(|known| known.tip != tip) {
+                        cached = None;
+                    }
+                    let branches = cached.get_or_insert_with(|| {
+                        let side = (*step != 0.0).then_some(*step);
+                        let (values, gradients) = self.tips[tip as usize].branch(x, side);
+                        let (ramp, ramp_gradient) = ramp(f.ramp, &n, &dn);
+                        Branches {
+                            tip,
+                            values,
+                            gradients,
+                            ramp,
+                            ramp_gradient,
                         }
-                    };
-                    cached = Some(branches);
+                    });
                     let l = order as usize;
                     let (rho, h) = (branches.ramp, branches.values[l] - f.shift);
                     *value = ni * h * rho;
@@ -160,7 +159,6 @@ impl<'a> CellFunctions<'a> {
 }
 
 /// Branch functions of one tip and their ramp at one point.
-#[derive(Clone, Copy)]
 struct Branches {
     tip: u32,
     values: [f64; 4],

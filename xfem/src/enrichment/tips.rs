@@ -18,6 +18,7 @@ use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
 use crate::mesh::Mesh;
+use crate::mesh::neighbours::Neighbours;
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
@@ -71,6 +72,7 @@ impl Tips {
     pub fn flat(mesh: &Mesh, arms: &[Crack], trace: &Trace) -> Result<Self, EnrichmentError> {
         let mut search = Search {
             mesh,
+            near: Neighbours::new(mesh),
             arms,
             trace,
             kept: trace
@@ -98,7 +100,7 @@ impl Tips {
             let cells: Vec<usize> = search.cells_of(arm);
             let own = trace.tips.iter().filter(|t| t.arm == arm);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
-            let zone = Zone::plain(nodes_of(mesh, cells));
+            let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
         }
         tips.partitions = search.partitions;
@@ -152,19 +154,20 @@ impl Tips {
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
+        let near = Neighbours::new(mesh);
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
                 continue;
             };
             let cells: Vec<usize> = cells.into_iter().collect();
-            let at_front = nodes_of(mesh, cells.iter().copied());
+            let at_front = mesh.nodes_of(cells.iter().copied());
             let zone = match arms[index].tip {
                 Tip::Radius(radius) => {
                     let within = |node: &u32| frame.distance(&mesh.nodes[*node as usize]) <= radius;
                     let own = (0..mesh.nodes.len() as u32).filter(within);
-                    let core = &own.collect() | &nodes_around(mesh, &at_front);
+                    let core = &own.collect() | &near.nodes_around(&at_front);
                     Zone {
-                        nodes: nodes_around(mesh, &core),
+                        nodes: near.nodes_around(&core),
                         core,
                     }
                 }
@@ -199,6 +202,7 @@ impl Tips {
 /// The search for the tips of a 2D body that can carry branch functions.
 struct Search<'a> {
     mesh: &'a Mesh,
+    near: Neighbours<'a>,
     arms: &'a [Crack],
     trace: &'a Trace,
     /// By tip: whether it does, so far.
@@ -312,6 +316,13 @@ impl Search<'_> {
         kinks.map(|k| (k - from).abs()).fold(other, f64::min)
     }
 
+    /// Length of an arm inside the body [m].
+    fn inside(&self, arm: usize) -> f64 {
+        let chains = self.trace.chains.values().flatten();
+        let own = chains.filter(|c| c.arm == arm);
+        own.map(|c| c.range[1] - c.range[0]).sum()
+    }
+
     fn frame(&self, tip: &TracedTip) -> TipFrame {
         placement::tip_frame(tip.arm, &self.arms[tip.arm], tip.end, &tip.x)
     }
@@ -328,9 +339,9 @@ impl Search<'_> {
             .iter()
             .filter_map(divided)
             .all(|p| self.is_own(p, tip.arm));
-        let nodes = nodes_of(self.mesh, tip.cells.iter().copied());
+        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let size = self.mesh.map(tip.cells[0]).diagonal();
-        let parted = parted && self.room(number) > SHORTEST * size;
+        let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
         parted && alone && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
     }
 
@@ -343,7 +354,8 @@ impl Search<'_> {
     fn is_blocked(&self, frame: &TipFrame, room: f64, nodes: &BTreeSet<u32>) -> bool {
         let (size, _) = self.mesh.extent();
         let line = frame.behind(room, size, 0.1 * self.mesh.smallest_edge());
-        cells_around(self.mesh, nodes).any(|cell| {
+        let mut cells = self.near.cells_around(nodes).into_iter();
+        cells.any(|cell| {
             let map = self.mesh.map(cell);
             let slack = 1e-9 * map.diagonal();
             line.iter().any(|[p, q]| polygon::meets(&map, p, q, slack))
@@ -376,25 +388,24 @@ impl Search<'_> {
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
     fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
-        let mesh = self.mesh;
+        let (mesh, near) = (self.mesh, &self.near);
         let frame = self.frame(tip);
-        let at_tip = nodes_of(mesh, tip.cells.iter().copied());
+        let at_tip = mesh.nodes_of(tip.cells.iter().copied());
         let mut radius = match self.arms[tip.arm].tip {
             Tip::Radius(radius) => radius.min(room),
             Tip::Auto => SHARE * room.min(self.clearance(tip)),
             Tip::Branch | Tip::None => return Zone::plain(at_tip),
         };
-        let smallest = nodes_around(mesh, &at_tip);
+        let smallest = near.nodes_around(&at_tip);
         let size = mesh.map(tip.cells[0]).diagonal();
         loop {
             let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
             let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
             let core = &inside | &smallest;
-            let nodes = nodes_around(mesh, &core);
-            let own = cells_around(mesh, &core).filter_map(|cell| self.partitions.get(&cell));
-            if own.into_iter().all(|p| self.is_own(p, tip.arm))
-                && !self.is_blocked(&frame, room, &nodes)
-            {
+            let nodes = near.nodes_around(&core);
+            let own = near.cells_around(&core);
+            let mut own = own.iter().filter_map(|cell| self.partitions.get(cell));
+            if own.all(|p| self.is_own(p, tip.arm)) && !self.is_blocked(&frame, room, &nodes) {
                 return Zone { nodes, core };
             }
             if radius < 0.5 * size {
@@ -430,23 +441,4 @@ fn pair_frame(arm: &Crack, index: usize) -> TipFrame {
         half_length: 0.5 * norm(&d),
     };
     frame
-}
-
-/// Nodes of some cells.
-fn nodes_of(mesh: &Mesh, cells: impl IntoIterator<Item = usize>) -> BTreeSet<u32> {
-    cells
-        .into_iter()
-        .flat_map(|cell| mesh.cell(cell))
-        .copied()
-        .collect()
-}
-
-/// Cells with one of some nodes.
-fn cells_around(mesh: &Mesh, nodes: &BTreeSet<u32>) -> impl Iterator<Item = usize> {
-    (0..mesh.cell_count()).filter(|&cell| mesh.cell(cell).iter().any(|n| nodes.contains(n)))
-}
-
-/// Nodes of all cells with one of some nodes.
-fn nodes_around(mesh: &Mesh, nodes: &BTreeSet<u32>) -> BTreeSet<u32> {
-    nodes_of(mesh, cells_around(mesh, nodes))
 }

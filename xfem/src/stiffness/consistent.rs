@@ -326,8 +326,7 @@ impl CellIntegrator<'_> {
                 continue;
             }
             // On either side of other cracks the functions are the same.
-            let of_crack =
-                |s: &(usize, f64)| self.cracks[s.0].number == crack.number && s.1 == side;
+            let of_crack = |s: &(usize, f64)| self.cracks[s.0].shares_tips(crack) && s.1 == side;
             let region = self.enrichment.partition(cell).and_then(|partition| {
                 let mut parts = partition.parts.iter();
                 parts.position(|part| part.sides.iter().any(of_crack))

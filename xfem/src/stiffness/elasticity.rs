@@ -60,9 +60,15 @@ impl Gram {
     /// G += w g gᵀ; `g`: the gradients of all functions.
     pub fn add(&mut self, weight: f64, g: &[Point]) {
         self.measure += weight;
-        for gradient in g.iter().map(|g| &g[..self.dim]) {
-            self.gathered.extend_from_slice(gradient);
-            self.weighted.extend(gradient.iter().map(|v| weight * v));
+        let start = self.gathered.len();
+        self.gathered.resize(start + self.size, 0.0);
+        self.weighted.resize(start + self.size, 0.0);
+        // Number by number: copying two or three at once is a call each.
+        for (k, gradient) in g.iter().enumerate() {
+            for (a, value) in gradient.iter().enumerate().take(self.dim) {
+                self.gathered[start + k * self.dim + a] = *value;
+                self.weighted[start + k * self.dim + a] = weight * value;
+            }
         }
         if self.gathered.len() >= Self::GATHER * self.size {
             self.gather();
