@@ -1,5 +1,6 @@
 //! The increment seen from the contact points, and the pieces that methods on them are built from.
 
+pub(crate) mod anchor;
 pub(crate) mod branches;
 #[cfg(test)]
 pub(crate) mod fixture;

@@ -4,6 +4,8 @@
 //! ```text
 //! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
 //! ```
+//! A floating body has a generalised inverse G for K⁻¹, and balanced rows: those of B P (`floating::Balance`).
+//!
 //! Row i of B touches few unknowns, so column i of Y is zero above the first of them. Columns are therefore sorted by
 //! their first non-zero and both the triangular solve and the product skip the leading zeros.
 
@@ -226,11 +228,13 @@ impl<'a> Half<'a> {
         for &pin in &factor.pins {
             pinned[pin] = true;
         }
-        // Pinned unknowns do not move, so they carry no part of the jump.
+        // Pinned unknowns take no part of balanced forces.
         let entries = |i: usize| -> Vec<(usize, f64)> {
-            jump.row(i)
-                .filter(|&(j, b)| b != 0.0 && !pinned[j])
-                .map(|(j, b)| (factor.ordering.inverse[j] - begin, b * factor.scale[j]))
+            let row: Vec<(usize, f64)> = jump.row(i).filter(|e| e.1 != 0.0).collect();
+            let own = row.iter().map(|&(j, b)| (j, b * factor.scale[j]));
+            own.chain(factor.balance.completion(&row))
+                .filter(|&(j, _)| !pinned[j])
+                .map(|(j, value)| (factor.ordering.inverse[j] - begin, value))
                 .collect()
         };
         let unsorted: Vec<Vec<(usize, f64)>> = rows.iter().map(|&i| entries(i)).collect();

@@ -1,7 +1,8 @@
 //! Sparse Cholesky factor of the symmetrically scaled stiffness, D K D = L Lᵀ with D = diag(K)^(−1/2).
 //!
 //! The scaling keeps the condition number bounded however small a cut cell is. Rows and columns of pinned unknowns
-//! (one per rigid motion) are replaced by those of the unit matrix.
+//! (one per rigid motion) are replaced by those of the unit matrix; what is solved for are balanced forces, see
+//! [`Balance`].
 
 use std::fmt::Debug;
 use std::time::Instant;
@@ -19,6 +20,7 @@ use faer::sparse::{CreationError, FaerError, SparseColMatRef, SymbolicSparseColM
 use faer::{Conj, Mat, MatMut, Par, Side};
 
 use crate::algebra::dense::norm;
+use crate::algebra::floating::Balance;
 use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::ordering::Ordering;
 use crate::error::MethodError;
@@ -39,6 +41,8 @@ pub(crate) struct Factor {
     pub scale: Vec<f64>,
     /// Pinned unknowns.
     pub pins: Vec<usize>,
+    /// Forces and motions of a floating body.
+    pub balance: Balance,
     pub analysis_s: f64,
     pub factorisation_s: f64,
 }
@@ -48,6 +52,7 @@ impl Factor {
         k: &SymmetricMatrix,
         ordering: Ordering,
         pins: Vec<usize>,
+        balance: Balance,
     ) -> Result<Self, MethodError> {
         let n = k.size();
         let clock = Instant::now();
@@ -100,6 +105,7 @@ impl Factor {
             ordering,
             scale,
             pins,
+            balance,
             analysis_s,
             factorisation_s,
         };
@@ -124,12 +130,13 @@ impl Factor {
         Ok(())
     }
 
-    /// Solves K x = f in place with iterative refinement; pinned entries of f are ignored and those of x are 0.
+    /// x := G f in place with iterative refinement: solves K x = f if f leaves no rigid motion a resultant.
     pub fn solve(&self, k: &SymmetricMatrix, x: &mut [f64]) -> Result<(), MethodError> {
         let n = k.size();
         let req = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let mut memory = solve_memory(req)?;
         let mut f = x.to_vec();
+        self.balance.balance(&mut f);
         for &pin in &self.pins {
             f[pin] = 0.0;
         }
@@ -162,14 +169,23 @@ impl Factor {
                 x[j] += residual[j];
             }
         }
+        self.balance.take_out(x);
         Ok(())
     }
 
-    /// Solves K X = F in place for all columns together, without refinement; pinned rows of F must be 0.
+    /// X := G F in place for all columns together, without refinement.
     pub fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
         let req = (self.symbolic).solve_in_place_scratch::<f64>(x.ncols(), Par::Seq);
         let mut memory = solve_memory(req)?;
+        for j in 0..x.ncols() {
+            let f = x.col_as_slice_mut(j);
+            self.balance.balance(f);
+            self.pins.iter().for_each(|&pin| f[pin] = 0.0);
+        }
         self.solve_scaled(x.as_mut(), &mut memory);
+        for j in 0..x.ncols() {
+            self.balance.take_out(x.col_as_slice_mut(j));
+        }
         Ok(())
     }
 

@@ -1,4 +1,11 @@
 //! Rigid motions of a body without enough supports: pins that make K regular, and the jumps the motions cause.
+//!
+//! Forces that the pins would take are balanced before a solve, and the rigid motion of its result is taken out:
+//! ```text
+//! G = P Kₚ⁻¹ Pᵀ,   P = I − Σ r (D s)ᵀ,   s = D r on the contact unknowns, 0 elsewhere,   D = diag(K)^½,   sᵢ·sⱼ = δᵢⱼ
+//! ```
+//! Kₚ is K with pins. G is a generalised inverse (K G K = K) that the choice of pins does not change. With Kₚ⁻¹ alone a
+//! slender piece sways about its pins by 10⁵ times what it deforms, and as many digits are lost.
 
 use crate::algebra::dense::{dot, norm};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
@@ -62,6 +69,89 @@ pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>
         pins.push(pivot);
     }
     Ok(pins)
+}
+
+/// A rigid motion of the balanced solution.
+#[derive(Debug, Clone)]
+struct Motion {
+    /// r by unknown.
+    r: Vec<f64>,
+    /// s by contact unknown, where it is not zero.
+    s: Vec<(usize, f64)>,
+}
+
+/// P of the generalised inverse.
+#[derive(Debug, Clone)]
+pub(crate) struct Balance {
+    /// D by unknown.
+    root: Vec<f64>,
+    motions: Vec<Motion>,
+}
+
+impl Balance {
+    /// From modes that span the kernel of K. A motion that moves no contact unknown is left to the pins: no force
+    /// balances it.
+    pub fn new(k: &SymmetricMatrix, modes: &[Vec<f64>], in_contact: &[bool]) -> Self {
+        let mut balance = Self {
+            root: Vec::new(),
+            motions: Vec::new(),
+        };
+        if modes.is_empty() {
+            return balance;
+        }
+        balance.root = (0..k.size()).map(|j| k.diagonal(j).sqrt()).collect();
+        for mode in modes {
+            let mut r = mode.clone();
+            let size = |r: &[f64]| norm(&balance.weighted(r, in_contact));
+            let before = size(&r);
+            // Twice for orthogonality.
+            for _ in 0..2 {
+                balance.take_out(&mut r);
+            }
+            let length = size(&r);
+            if length <= DEPENDENT * before || length == 0.0 {
+                continue;
+            }
+            r.iter_mut().for_each(|v| *v /= length);
+            let weighted = balance.weighted(&r, in_contact);
+            let s = weighted.into_iter().enumerate().filter(|s| s.1 != 0.0);
+            let s = s.collect();
+            balance.motions.push(Motion { r, s });
+        }
+        balance
+    }
+
+    /// D r on the contact unknowns, 0 elsewhere.
+    fn weighted(&self, r: &[f64], in_contact: &[bool]) -> Vec<f64> {
+        let own = r.iter().zip(&self.root).zip(in_contact);
+        own.map(|((r, d), &c)| if c { d * r } else { 0.0 })
+            .collect()
+    }
+
+    /// f := Pᵀ f.
+    pub fn balance(&self, f: &mut [f64]) {
+        for Motion { r, s } in &self.motions {
+            let resultant = dot(r, f);
+            (s.iter()).for_each(|&(j, s)| f[j] -= resultant * self.root[j] * s);
+        }
+    }
+
+    /// x := P x.
+    pub fn take_out(&self, x: &mut [f64]) {
+        for Motion { r, s } in &self.motions {
+            let amount: f64 = s.iter().map(|&(j, s)| self.root[j] * s * x[j]).sum();
+            x.iter_mut().zip(r).for_each(|(x, r)| *x -= amount * r);
+        }
+    }
+
+    /// What Pᵀ adds to D⁻¹ b, by contact unknown.
+    pub fn completion(&self, b: &[(usize, f64)]) -> impl Iterator<Item = (usize, f64)> {
+        self.motions.iter().flat_map(|Motion { r, s }| {
+            let resultant: f64 = b.iter().map(|&(j, b)| r[j] * b).sum();
+            let own = if resultant == 0.0 { &[][..] } else { s };
+            own.iter().map(move |&(j, s)| (j, -resultant * s))
+        })
+    }
 }
 
 /// Orthonormal basis of the jumps the rigid motions cause on the listed rows, with the map between the two.

@@ -9,7 +9,7 @@ use crate::MethodError;
 use crate::algebra::delassus::{self, Condensed};
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::Factor;
-use crate::algebra::floating::{ModeJumps, pins};
+use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::algebra::ordering;
 
@@ -27,7 +27,7 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Factorisations so far, with the seconds of analysis and of numeric work.
     fn factorisations(&self) -> (usize, f64, f64);
 
-    /// Solves K x = f in place, with iterative refinement.
+    /// Solves K x = f in place, with iterative refinement; where K is singular, by a generalised inverse.
     fn solve(&self, x: &mut [f64]) -> Result<(), MethodError>;
 
     /// Solves K X = F in place for all columns together, without refinement.
@@ -42,6 +42,10 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
     fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64;
 
+    /// Σ_ij B_ij² / max_j K_jj, the maximum over the unknowns of a row: what is left of it where the softer side of a contact
+    /// point is held by other points.
+    fn stiffest_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64;
+
     /// Backward error of equilibrium between displacements and the sum of some forces.
     fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64;
 }
@@ -53,6 +57,7 @@ pub(crate) struct SparseStiffness {
     order: Vec<usize>,
     in_contact: Vec<bool>,
     pins: Vec<usize>,
+    balance: Balance,
     factor: OnceLock<Result<Factor, MethodError>>,
 }
 
@@ -70,8 +75,10 @@ impl SparseStiffness {
         let pins = pins(&k, floating)?;
         let mut in_contact = vec![false; k.size()];
         contact.for_each(|j| in_contact[j] = true);
+        let balance = Balance::new(&k, floating, &in_contact);
         Ok(Self {
             k,
+            balance,
             order,
             in_contact,
             pins,
@@ -85,7 +92,8 @@ impl SparseStiffness {
             let clock = Instant::now();
             let ordering = ordering::contact_last(&self.k, &self.order, &self.in_contact);
             let ordering_s = clock.elapsed().as_secs_f64();
-            let mut factor = Factor::new(&self.k, ordering, self.pins.clone())?;
+            let (pins, balance) = (self.pins.clone(), self.balance.clone());
+            let mut factor = Factor::new(&self.k, ordering, pins, balance)?;
             factor.analysis_s += ordering_s;
             Ok(factor)
         };
@@ -138,6 +146,17 @@ impl Stiffness for SparseStiffness {
             .flat_map(|&i| jump.row(i))
             .map(|(j, b)| b * b / self.k.diagonal(j))
             .sum()
+    }
+
+    fn stiffest_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {
+        let of_row = |&i: &usize| {
+            let own = jump.row(i).filter(|e| e.1 != 0.0);
+            own.fold((0.0, 0.0), |(square, stiffest): (f64, f64), (j, b)| {
+                (square + b * b, stiffest.max(self.k.diagonal(j)))
+            })
+        };
+        let rows = rows.iter().map(of_row);
+        rows.map(|(square, stiffest)| ratio(square, stiffest)).sum()
     }
 
     /// |K u − Σ f| / (Σ |f| + ||K| |u||).
@@ -205,6 +224,10 @@ impl Stiffness for DelassusOnly {
 
     fn local_compliance(&self, _: &JumpOperator, rows: &[usize]) -> f64 {
         rows.iter().map(|&i| self.w.diagonal(i)).sum()
+    }
+
+    fn stiffest_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {
+        self.local_compliance(jump, rows)
     }
 
     /// |u − W Σ f| / (|u| + ||W| |Σ f||), up to rigid motions, or |Qᵀ Σ f| / Σ |f| if that is larger, Q an orthonormal

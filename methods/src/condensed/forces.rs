@@ -14,6 +14,14 @@ pub struct Forces {
 }
 
 impl Forces {
+    /// Both.
+    pub(crate) fn of(p: &[f64], beta: &[f64]) -> Self {
+        Self {
+            p: p.to_vec(),
+            beta: beta.to_vec(),
+        }
+    }
+
     /// self + t step.
     pub fn moved(&self, t: f64, step: &Forces) -> Self {
         Self {

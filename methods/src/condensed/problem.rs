@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::algebra::dense::{dot, norm};
 use crate::algebra::rows::RowSet;
+use crate::condensed::anchor::Anchor;
 use crate::condensed::forces::{End, Forces};
 use crate::contract::judge::{Violations, free_jump, reference_force, slip_from};
 use crate::contract::operator::{ContactOperator, DelassusForm};
@@ -27,9 +28,6 @@ const MAX_RESCUES: usize = 6;
 
 /// Iterations without progress after which a Newton method is moved on.
 const STAGNATION: usize = 15;
-
-/// Corrections of q per increment; each gains the digits that W has right.
-const MAX_CORRECTIONS: usize = 3;
 
 /// A violation counts as progress below this fraction of the best before.
 const IMPROVEMENT: f64 = 0.99;
@@ -99,8 +97,10 @@ pub struct ContactProblem<'a> {
     free_jump: f64,
     rescues: usize,
     /// Smallest violation so far and its iteration.
-    best: (f64, usize),
-    corrections: usize,
+    pub(super) best: (f64, usize),
+    pub(super) corrections: usize,
+    /// Where the jump is known from the body itself.
+    pub(super) anchor: Option<Anchor>,
     /// The iterate confirmed last, with its displacements.
     pub(crate) confirmed: Option<ContactState>,
 }
@@ -170,6 +170,7 @@ impl<'a> ContactProblem<'a> {
             further: Vec::new(),
             claim: claim(operator.rho),
             corrections: 0,
+            anchor: None,
             confirmed: None,
             operator,
         })))
@@ -303,14 +304,6 @@ impl<'a> ContactProblem<'a> {
         }
     }
 
-    /// v = q + W P + Q β.
-    pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
-        let mut v = self.q.clone();
-        self.operator.w.apply_add(p, &mut v);
-        self.operator.modes.add(beta, &mut v);
-        v
-    }
-
     /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
     pub(crate) fn mean_jump(&self) -> f64 {
         let least = norm(&self.balance) / self.operator.rho;
@@ -327,7 +320,7 @@ impl<'a> ContactProblem<'a> {
     pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        let (rho, p_ref) = (self.operator.rho, self.reference_force(p));
+        let (rho, p_ref) = (self.operator.sharp, self.reference_force(p));
         Violations::of(friction, self.rows, rho, p_ref, p, v).largest()
     }
 
@@ -379,54 +372,8 @@ impl<'a> ContactProblem<'a> {
         monitor: &mut dyn Monitor,
     ) -> Result<Check, MethodError> {
         match self.ends(violation, changes, limits, monitor) {
-            None => Ok(Check::GoOn),
+            None => self.surface(violation, p, beta),
             Some(status) => self.confirm(status, p, beta),
-        }
-    }
-
-    /// Checks a converged iterate against K itself, as the judge will: W has lost digits to its own condition.
-    ///
-    /// If the recovered displacements do not fulfil the laws, q takes up the difference between their jump and the
-    /// condensed one, and the method goes on from where it is: iterative refinement of the condensed problem.
-    pub(crate) fn confirm(
-        &mut self,
-        status: Status,
-        p: &[f64],
-        beta: &[f64],
-    ) -> Result<Check, MethodError> {
-        if status != Status::Converged {
-            return Ok(Check::End(status));
-        }
-        let Some(state) = self.recover(p, beta)? else {
-            return Ok(Check::End(Status::Diverged));
-        };
-        let found = self.slip_of(&state.u);
-        let violation = self.violation(&self.rows.restrict(&state.p), &found);
-        if violation <= self.increment.tolerance {
-            self.confirmed = Some(state);
-            return Ok(Check::End(status));
-        }
-        if self.corrections == MAX_CORRECTIONS {
-            return Ok(Check::End(Status::Stalled));
-        }
-        self.corrections += 1;
-        self.counters.iterations += 1;
-        self.best = (f64::INFINITY, self.counters.iterations);
-        self.correct(&found, p, beta);
-        Ok(Check::Corrected)
-    }
-
-    /// Rows (g, d) of displacements.
-    pub(crate) fn slip_of(&self, u: &[f64]) -> Vec<f64> {
-        let (increment, dim) = (self.increment, self.increment.system.dim());
-        slip_from(self.rows, dim, &increment.jump(u), &increment.start_jump())
-    }
-
-    /// q takes up the difference between the jump found on the body and the condensed one.
-    pub(crate) fn correct(&mut self, found: &[f64], p: &[f64], beta: &[f64]) {
-        let condensed = self.jump(p, beta);
-        for ((q, found), condensed) in self.q.iter_mut().zip(found).zip(&condensed) {
-            *q += found - condensed;
         }
     }
 
@@ -434,32 +381,6 @@ impl<'a> ContactProblem<'a> {
     pub fn all_forces(&self, p: &[f64]) -> Vec<f64> {
         let system = self.increment.system;
         self.rows.extend(p, system.dim() * system.points())
-    }
-
-    /// The state with u = K⁻¹ (f + Bᵀ P) + R α, one solve; `None` if the forces left the finite range. What rounding took
-    /// from the balance of P is put back, so that it is small beside P itself however small that has become.
-    pub(crate) fn recover(
-        &mut self,
-        p: &[f64],
-        beta: &[f64],
-    ) -> Result<Option<ContactState>, MethodError> {
-        let mut p = p.to_vec();
-        self.rebalance(&mut p);
-        let p = self.all_forces(&p);
-        let elastic = self.increment.system.elastic();
-        let mut u = self.increment.load.force.clone();
-        elastic.jump().mul_transpose_add(&p, &mut u);
-        u.iter_mut().zip(&self.further).for_each(|(u, f)| *u += f);
-        if !u.iter().all(|x| x.is_finite()) {
-            return Ok(None);
-        }
-        elastic.solve(&mut u)?;
-        self.counters.solves += 1;
-        let amplitudes = self.operator.modes.amplitudes(beta);
-        for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
-            u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
-        }
-        Ok(Some(ContactState { u, p }))
     }
 
     /// Closes the outcome with the displacements of the last iterate.

@@ -287,6 +287,11 @@ impl Elastic {
         self.stiffness.local_compliance(&self.jump, rows)
     }
 
+    /// Compliance of the rows on their stiffest unknowns alone.
+    pub(crate) fn stiffest_compliance(&self, rows: &[usize]) -> f64 {
+        self.stiffness.stiffest_compliance(&self.jump, rows)
+    }
+
     /// Rows that are condensed.
     pub(crate) fn rows(&self) -> RowSet {
         condensed_rows(self.dim, self.points(), self.frictionless)

@@ -11,8 +11,8 @@ use crate::error::{MethodError, check_finite, check_len};
 
 /// Residuals of one state, dimensionless but for the reference sizes: they change neither with units nor with the tangent frames.
 ///
-/// Reference sizes: u_ref = max(|q|, |P|/ρ) and P_ref = ρ u_ref, with q the jump without contact forces, ρ =
-/// rows / trace(W), and Euclidean norms over all points.
+/// Reference sizes: P_ref = max(ρ |q|, |P|) and u_ref = P_ref/ρ̂, with q the jump without contact forces, ρ =
+/// rows / trace(W), ρ̂ = ρ unless slender parts sway ([`ContactOperator::sharp`]), and Euclidean norms over all points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
@@ -32,12 +32,12 @@ pub struct Residuals {
     pub cone: f64,
     /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
     pub slip_direction: f64,
-    /// |e| / P_ref with e = P − proj(P − ρ ṽ) the natural map with De Saxcé's correction: zero if and only if all
+    /// |e| / P_ref with e = P − proj(P − ρ̂ ṽ) the natural map with De Saxcé's correction: zero if and only if all
     /// contact laws hold.
     pub natural_map: f64,
     /// η: the largest of natural map, penetration, adhesion, complementarity and cone. Tiers and verdicts refer to it.
     ///
-    /// The natural map alone divides penetration and cone by √(1 + μ²): −ρ g ≤ |e_n| + μ |e_t|, and as much for
+    /// The natural map alone divides penetration and cone by √(1 + μ²): −ρ̂ g ≤ |e_n| + μ |e_t|, and as much for
     /// |P_t| − μ P_n. On scales of their own no μ hides them.
     pub violation: f64,
     /// P_ref \[N, in 2D N/m\]; 0 where nothing had to be compared.
@@ -91,7 +91,7 @@ pub fn residuals_of(
 
     // W is not formed to judge: one product, which is one solve, and the trace in ρ.
     let operator = system.operator(DelassusForm::Products)?;
-    let (rho, rows) = (operator.rho, system.row_set());
+    let (rho, rows) = (operator.sharp, system.row_set());
     let v = slip_from(rows, dim, &jump, &i.start_jump());
     let p = rows.restrict(&s.p);
     let mut q = rows.restrict(&jump);
@@ -99,7 +99,7 @@ pub fn residuals_of(
     operator.w.apply_add(&p, &mut wp);
     q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
     let free = free_jump(i, &operator, &q, &operator.modes.components(&p));
-    let p_ref = reference_force(rho, &p, free);
+    let p_ref = reference_force(operator.rho, &p, free);
     let u_ref = p_ref / rho;
 
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);

@@ -14,6 +14,10 @@ use crate::contract::elastic::Elastic;
 /// Below this fraction of the local compliance the trace of W is rounding.
 const NO_TRACE: f64 = 1e-10;
 
+/// Above this multiple of the compliance on the stiffest unknowns the trace of W is that of a few swaying motions; of a
+/// plate, a beam, an inner crack it is 3 to 20.
+const SWAYING: f64 = 100.0;
+
 /// How a method works with the Delassus operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DelassusForm {
@@ -32,6 +36,9 @@ pub struct ContactOperator {
     pub(crate) modes: ModeJumps,
     /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
     pub rho: f64,
+    /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: ρ, but at least rows / (100 Σ_i |B_i|² / max_j K_jj). Where
+    /// slender parts sway, overlap that is nothing beside their motion can be all there is of the answer elsewhere.
+    pub sharp: f64,
 }
 
 impl ContactOperator {
@@ -51,14 +58,20 @@ impl ContactOperator {
         if rows.len() > 0 && local <= 0.0 {
             return Err(MethodError::RigidContact);
         }
+        let stiffest = elastic.stiffest_compliance(&rows.source);
         // Where every contact row moves rigidly, W⊥ vanishes and the local compliance sets the scale.
         let compliance = if trace > NO_TRACE * local {
             trace
         } else {
             local
         };
-        let rho = rows.len() as f64 / compliance;
-        Ok(Self { w, modes, rho })
+        let scale = |compliance: f64| rows.len() as f64 / compliance;
+        Ok(Self {
+            w,
+            modes,
+            rho: scale(compliance),
+            sharp: scale(compliance.min(SWAYING * stiffest)),
+        })
     }
 }
 

@@ -1,0 +1,227 @@
+//! From iterates to displacements, and back: iterative refinement of the condensed problem on the body itself.
+//!
+//! W has lost digits to its own condition, and v = q + W P more where slender parts sway by 10⁵ times what they deform. So
+//! an iterate that holds to be solved is recovered and measured as the judge will. If its displacements do not fulfil the
+//! laws, it becomes the anchor, from which the method goes on: what is computed then are differences, and what rounding
+//! spoils is relative to those.
+
+use crate::algebra::dense::minus;
+use crate::condensed::forces::Forces;
+use crate::condensed::problem::{Check, ContactProblem};
+use crate::contract::judge::slip_from;
+use crate::contract::state::{ContactState, Status};
+use crate::error::MethodError;
+
+/// Corrections of q per increment; each gains the digits that W has right.
+const MAX_CORRECTIONS: usize = 3;
+
+/// Violations below this may be rounding of W P where slender parts sway, once they have not fallen for some iterations.
+const DROWNED: f64 = 1e-3;
+const DROWNING: usize = 3;
+
+/// An iterate whose displacements were recovered.
+pub(crate) struct Anchor {
+    at: Forces,
+    /// Rows (g, d).
+    v: Vec<f64>,
+    state: ContactState,
+}
+
+impl Anchor {
+    /// The way from here to an iterate.
+    fn step_to(&self, p: &[f64], beta: &[f64]) -> Forces {
+        Forces {
+            p: minus(p, &self.at.p),
+            beta: minus(beta, &self.at.beta),
+        }
+    }
+}
+
+impl ContactProblem<'_> {
+    /// v = q + W P + Q β.
+    pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
+        let (mut v, step) = match &self.anchor {
+            Some(anchor) => (anchor.v.clone(), anchor.step_to(p, beta)),
+            None => (self.q.clone(), Forces::of(p, beta)),
+        };
+        self.operator.w.apply_add(&step.p, &mut v);
+        self.operator.modes.add(&step.beta, &mut v);
+        v
+    }
+
+    /// Checks a converged iterate against K itself. If it falls short, the method goes on from its displacements.
+    pub(crate) fn confirm(
+        &mut self,
+        status: Status,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Check, MethodError> {
+        if status != Status::Converged {
+            return Ok(Check::End(status));
+        }
+        let Some(state) = self.recover(p, beta)? else {
+            return Ok(Check::End(Status::Diverged));
+        };
+        let found = self.slip_of(&state.u);
+        let violation = self.violation(&self.rows.restrict(&state.p), &found);
+        if violation <= self.increment.tolerance {
+            self.confirmed = Some(state);
+            return Ok(Check::End(status));
+        }
+        if self.corrections == MAX_CORRECTIONS {
+            return Ok(Check::End(Status::Stalled));
+        }
+        self.counters.iterations += 1;
+        self.move_anchor(state, p, beta);
+        Ok(Check::Corrected)
+    }
+
+    /// Puts the anchor to an iterate whose violation no longer falls because slender parts sway: what is left of it is
+    /// rounding of W P.
+    pub(crate) fn surface(
+        &mut self,
+        violation: f64,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Check, MethodError> {
+        let swaying = self.operator.sharp > self.operator.rho;
+        let drowned = swaying && violation < DROWNED && self.idle() >= DROWNING;
+        if drowned
+            && self.corrections < MAX_CORRECTIONS
+            && let Some(state) = self.recover(p, beta)?
+        {
+            self.move_anchor(state, p, beta);
+            return Ok(Check::Corrected);
+        }
+        Ok(Check::GoOn)
+    }
+
+    /// The jump at x + t step.
+    pub(crate) fn jump_after(&self, x: &Forces, t: f64, step: &Forces) -> Vec<f64> {
+        match &self.anchor {
+            Some(anchor) if anchor.at.p == x.p => {
+                let (mut v, step) = (anchor.v.clone(), scaled(t, step));
+                self.operator.w.apply_add(&step.p, &mut v);
+                self.operator.modes.add(&step.beta, &mut v);
+                v
+            }
+            _ => {
+                let moved = x.moved(t, step);
+                self.jump(&moved.p, &moved.beta)
+            }
+        }
+    }
+
+    /// x + t step, balanced. If x is the anchor, its displacements go along: they follow from the step itself, whose
+    /// digits P + t step does not keep.
+    pub(crate) fn moved(
+        &mut self,
+        x: &Forces,
+        t: f64,
+        step: &Forces,
+    ) -> Result<Forces, MethodError> {
+        let mut moved = x.moved(t, step);
+        self.rebalance(&mut moved.p);
+        if self.anchor.as_ref().is_none_or(|anchor| anchor.at.p != x.p) {
+            return Ok(moved);
+        }
+        if let Some(u) = self.displaced(&scaled(t, step))? {
+            let v = self.slip_of(&u);
+            let p = self.balanced(&moved.p);
+            self.anchor = Some(Anchor {
+                at: moved.clone(),
+                v,
+                state: ContactState { u, p },
+            });
+        }
+        Ok(moved)
+    }
+
+    /// From an iterate with its recovered displacements on, all is computed relative to it.
+    fn move_anchor(&mut self, state: ContactState, p: &[f64], beta: &[f64]) {
+        let found = self.slip_of(&state.u);
+        self.corrections += 1;
+        self.best = (f64::INFINITY, self.counters.iterations);
+        self.correct(&found, p, beta);
+        self.anchor = Some(Anchor {
+            at: Forces::of(p, beta),
+            v: found,
+            state,
+        });
+    }
+
+    /// Rows (g, d) of displacements.
+    pub(crate) fn slip_of(&self, u: &[f64]) -> Vec<f64> {
+        let (increment, dim) = (self.increment, self.increment.system.dim());
+        slip_from(self.rows, dim, &increment.jump(u), &increment.start_jump())
+    }
+
+    /// q takes up the difference between the jump found on the body and the condensed one.
+    pub(crate) fn correct(&mut self, found: &[f64], p: &[f64], beta: &[f64]) {
+        let condensed = self.jump(p, beta);
+        for ((q, found), condensed) in self.q.iter_mut().zip(found).zip(&condensed) {
+            *q += found - condensed;
+        }
+    }
+
+    /// The state with u = G (f + Bᵀ P) + R α, one solve; `None` if the forces left the finite range. What rounding took
+    /// from the balance of P is put back, so that it is small beside P itself however small that has become.
+    pub(crate) fn recover(
+        &mut self,
+        p: &[f64],
+        beta: &[f64],
+    ) -> Result<Option<ContactState>, MethodError> {
+        let p = self.balanced(p);
+        let step = match &self.anchor {
+            Some(anchor) => Forces {
+                p: self.rows.restrict(&minus(&p, &anchor.state.p)),
+                beta: minus(beta, &anchor.at.beta),
+            },
+            None => Forces::of(&self.rows.restrict(&p), beta),
+        };
+        Ok(self.displaced(&step)?.map(|u| ContactState { u, p }))
+    }
+
+    /// All contact forces of an iterate, balanced.
+    fn balanced(&self, p: &[f64]) -> Vec<f64> {
+        let mut p = p.to_vec();
+        self.rebalance(&mut p);
+        self.all_forces(&p)
+    }
+
+    /// Displacements after a step from the anchor, or from no contact forces, one solve; `None` if they left the finite range.
+    fn displaced(&mut self, step: &Forces) -> Result<Option<Vec<f64>>, MethodError> {
+        let elastic = self.increment.system.elastic();
+        let mut u = match &self.anchor {
+            Some(_) => vec![0.0; self.free.len()],
+            None => self.increment.load.force.clone(),
+        };
+        let forces = self.all_forces(&step.p);
+        elastic.jump().mul_transpose_add(&forces, &mut u);
+        if self.anchor.is_none() {
+            u.iter_mut().zip(&self.further).for_each(|(u, f)| *u += f);
+        }
+        if !u.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        elastic.solve(&mut u)?;
+        self.counters.solves += 1;
+        let amplitudes = self.operator.modes.amplitudes(&step.beta);
+        for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
+            u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
+        }
+        if let Some(anchor) = &self.anchor {
+            let known = &anchor.state.u;
+            u.iter_mut().zip(known).for_each(|(u, known)| *u += known);
+        }
+        Ok(Some(u))
+    }
+}
+
+fn scaled(t: f64, step: &Forces) -> Forces {
+    let times = |x: &[f64]| x.iter().map(|x| t * x).collect();
+    Forces {
+        p: times(&step.p),
+        beta: times(&step.beta),
+    }
+}
