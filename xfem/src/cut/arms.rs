@@ -21,6 +21,9 @@ const ON_OTHER: f64 = 1e-4;
 /// Places of one crack closer than this are one, in the same units; what is shorter is no arm.
 const SAME_PLACE: f64 = 10.0 * ON_OTHER;
 
+/// Cracks closer than this run along each other, in the same units: what lies between them is lost in rounding.
+const ALONG: f64 = 1e-6;
+
 /// Two cracks in one place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("cracks {} and {} run along each other, near {at:?}: nothing parts them", cracks[0] + 1, cracks[1] + 1)]
@@ -89,13 +92,18 @@ impl Places {
                     )
                 });
                 let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
-                if let Some((_, s, foot)) = nearest.filter(|n| n.0 <= self.slack) {
+                if let Some((away, s, foot)) = nearest.filter(|n| n.0 <= self.slack) {
                     // Followed to where it really crosses, if that is next to it: both keep their directions.
                     let crossing = crossings(ending, other, 100.0 * self.slack)
                         .into_iter()
                         .filter(|c| (c[0].s - end.s).abs() <= 100.0 * self.slack)
                         .min_by(|a, b| (a[0].s - end.s).abs().total_cmp(&(b[0].s - end.s).abs()));
-                    let (s, x) = crossing.map_or((s, foot), |c| (c[1].s, c[1].x));
+                    let (s, x) = match crossing {
+                        Some(c) => (c[1].s, c[1].x),
+                        // It runs beside the other.
+                        None if away > ALONG / ON_OTHER * self.slack => continue,
+                        None => (s, foot),
+                    };
                     self.add([pair[k], pair[l]], [end.s, s], x);
                 }
             }
@@ -125,6 +133,7 @@ impl Places {
     /// Refuses two cracks of which a piece of one lies on the other.
     fn overlap(&self, cracks: [&Crack; 2]) -> Result<(), Overlap> {
         let [one, two] = cracks;
+        let along = ALONG / ON_OTHER * self.slack;
         for p in one.path.windows(2) {
             for q in two.path.windows(2) {
                 let shared: Vec<Point> = [
@@ -134,7 +143,7 @@ impl Places {
                     (&p[1].x, &q[0].x, &q[1].x),
                 ]
                 .into_iter()
-                .filter(|(x, a, b)| distance(x, &segment_foot(x, a, b)) <= self.slack)
+                .filter(|(x, a, b)| distance(x, &segment_foot(x, a, b)) <= along)
                 .map(|(x, ..)| *x)
                 .collect();
                 for x in &shared {
