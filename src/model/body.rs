@@ -295,18 +295,22 @@ fn faces(
             }
         }
     }
+    let rows = |point: &[ContactPoint]| {
+        let rows = jump_rows(dim, point);
+        rows.iter().map(|row| scaled(row)).collect()
+    };
     loop {
-        let rows = |k: usize| {
-            let rows = jump_rows(dim, &surface.points[k..=k]);
-            rows.iter().map(|row| scaled(row)).collect()
-        };
-        let lost = rank::dependent(&arms, rows);
+        let lost = rank::dependent(&arms, |k| rows(&surface.points[k..=k]));
         if lost.is_empty() {
             break;
         }
         let (fewer, merged) = rank::merge(&mut surface, &arms, &lost);
         arms = fewer;
         if merged == 0 {
+            if let Some(&point) = rank::singular(&arms, |k| rows(&surface.points[k..=k])).first() {
+                let crack = surface.points[point].crack;
+                return Err(crack_error(case, &EnrichmentError::Undetermined { crack }).into());
+            }
             break;
         }
     }

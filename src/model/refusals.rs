@@ -72,6 +72,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     let (crack, allowed) = match error {
         EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
+        EnrichmentError::Undetermined { crack } => (*crack, "a finer mesh, or longer pieces"),
         EnrichmentError::Overlap(overlap) => (overlap.cracks[1], "cracks that cross or lie apart"),
         EnrichmentError::Lost { crack, .. } => {
             (*crack, "a mesh that the crack crosses from cell to cell")

@@ -23,8 +23,12 @@ use super::pairs::{ContactPoint, ContactSurface};
 /// Pivots below this are zero: the square of what is new in a row of unit length.
 pub const DEPENDENT: f64 = 1e-2;
 
-/// Eigenvalues of Ŝ below this are zero: at most its inverse times rounding is what the forces may be off.
-pub const UNRESISTED: f64 = 1e-5;
+/// Eigenvalues of Ŝ below this are zero: at most its inverse times rounding is what the forces may be off. With 1e-4 the
+/// constant forces of facets around a circle had twice to ten times the error in their tractions.
+pub const UNRESISTED: f64 = 1e-3;
+
+/// Pivots and eigenvalues below this are rounding. Between two cracks that nearly touch both fall with their distance.
+const SINGULAR: f64 = 1e-10;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
@@ -33,6 +37,19 @@ type Row = Vec<(usize, f64)>;
 ///
 /// Arms with few points come first and keep them.
 pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
+    search(arms, rows, [DEPENDENT, UNRESISTED])
+}
+
+/// Points whose forces nothing at all tells from those of the others.
+pub fn singular(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
+    search(arms, rows, [SINGULAR; 2])
+}
+
+fn search(
+    arms: &[std::ops::Range<usize>],
+    rows: impl Fn(usize) -> Vec<Row>,
+    [pivot, eigenvalue]: [f64; 2],
+) -> Vec<usize> {
     let mut order: Vec<&std::ops::Range<usize>> = arms.iter().collect();
     order.sort_by_key(|arm| arm.len());
     let mut factor = Factor::default();
@@ -43,7 +60,7 @@ pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Ro
         let own = rows(point);
         let known = factor.len();
         // All rows of a point, or none.
-        if own.into_iter().all(|row| factor.push(row)) {
+        if own.into_iter().all(|row| factor.push(row, pivot)) {
             owners.resize(factor.len(), point);
         } else {
             factor.truncate(known);
@@ -51,7 +68,7 @@ pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Ro
         }
     }
     if found.is_empty() {
-        found.extend(factor.unresisted().map(|row| owners[row]));
+        found.extend(factor.unresisted(eigenvalue).map(|row| owners[row]));
     }
     found
 }
@@ -84,7 +101,7 @@ impl Factor {
     }
 
     /// The row with the largest part in the forces that least resists, if that is next to nothing: inverse iteration.
-    fn unresisted(&self) -> Option<usize> {
+    fn unresisted(&self, least: f64) -> Option<usize> {
         /// One less would do where the smallest eigenvalue stands alone.
         const ROUNDS: usize = 4;
         let count = self.len();
@@ -100,7 +117,7 @@ impl Factor {
             x.iter_mut().for_each(|v| *v /= after);
         }
         let largest = (0..count).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()));
-        largest.filter(|_| eigenvalue < UNRESISTED)
+        largest.filter(|_| eigenvalue < least)
     }
 
     /// x := (L Lᵀ)⁻¹ x.
@@ -118,8 +135,8 @@ impl Factor {
         }
     }
 
-    /// Adds a row if it is independent of those before it.
-    fn push(&mut self, mut row: Row) -> bool {
+    /// Adds a row if its pivot reaches a least one.
+    fn push(&mut self, mut row: Row, least: f64) -> bool {
         let length = row.iter().map(|(_, v)| v * v).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {
             return false;
@@ -147,7 +164,7 @@ impl Factor {
             y.push((products.get(&j).copied().unwrap_or(0.0) - dot) / pivot);
         }
         let square = 1.0 - y.iter().map(|v| v * v).sum::<f64>();
-        if square < DEPENDENT {
+        if square < least {
             return false;
         }
         y.push(square.sqrt());

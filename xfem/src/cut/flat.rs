@@ -1,12 +1,12 @@
 //! A 2D cell divided by the chains of the arms that run through it.
 //!
 //! Polygons are cut along chains whose ends are corners of theirs; a chain that ends on another waits until that is in its
-//! place. A chain with a free end goes on straight to the border of its polygon: the two parts beside that extension are
-//! one. What leads nowhere divides nothing.
+//! place. A chain with a free end goes on straight to the border of its polygon, one inside the cell to both sides: the two
+//! parts beside such an extension are one. What leads nowhere divides nothing.
 
 use crate::geometry::clip::Side;
 use crate::geometry::polygon::{self, Polygon};
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::crack::Crack;
@@ -21,6 +21,8 @@ struct Pending {
     arms: Vec<(usize, Side)>,
     /// Whether its last vertex is a free end.
     free: bool,
+    /// Whether its first is one too.
+    loose: bool,
 }
 
 impl Pending {
@@ -30,8 +32,9 @@ impl Pending {
             arms: vec![(chain.arm, 1.0); vertices.len() - 1],
             vertices,
             free: false,
+            loose: chain.tip == [true; 2],
         };
-        if chain.tip[0] {
+        if chain.tip[0] && !pending.loose {
             pending.reverse();
         }
         pending.free = chain.tip != [false; 2];
@@ -60,6 +63,7 @@ impl Pending {
             vertices: self.vertices[from..=to].to_vec(),
             arms: self.arms[from..to].to_vec(),
             free: self.free && to + 1 == self.vertices.len(),
+            loose: self.loose && from == 0,
         }
     }
 }
@@ -106,7 +110,10 @@ pub fn divide(
     while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
     let mut dropped = Vec::new();
     for chain in pending {
-        if chain.free && division.is_corner(chain.first()) {
+        if chain.loose && chain.vertices.len() == 2 {
+            let begun = division.begun(chain)?;
+            division.extend(begun)?;
+        } else if chain.free && division.is_corner(chain.first()) {
             division.extend(chain)?;
         } else {
             dropped.extend(chain.arms.iter().map(|arm| arm.0));
@@ -153,7 +160,9 @@ impl Division {
             let number = |arm: &(usize, Side)| arms[arm.0].number;
             let first = (*chain.first(), chain.arms.first().map(number), false);
             let last = (*chain.last(), chain.arms.last().map(number), true);
-            if chain.free {
+            if chain.loose {
+                Vec::new()
+            } else if chain.free {
                 vec![first]
             } else {
                 vec![first, last]
@@ -221,7 +230,8 @@ impl Division {
         Ok(progress)
     }
 
-    /// Cuts the polygon that a chain runs through; its segments from vertex `beyond` on are no faces.
+    /// Cuts the polygon that a chain runs through; its segments from vertex `beyond` on are no faces, nor is the first of a
+    /// loose one.
     fn cut(&mut self, chain: &Pending, beyond: usize) -> Result<(), PartitionError> {
         let (first, last) = (chain.first(), chain.last());
         let middle = add_scaled(first, 0.5, &sub(&chain.vertices[1], first));
@@ -270,47 +280,27 @@ impl Division {
             self.segments.push(Segment {
                 arm,
                 ends,
-                extension: i + 1 >= beyond,
+                extension: i + 1 >= beyond || chain.loose && i == 0,
             });
         }
         Ok(())
     }
 
+    /// A loose chain from the border of its polygon on.
+    fn begun(&mut self, mut chain: Pending) -> Result<Pending, PartitionError> {
+        let first = *chain.first();
+        let behind = unit(&sub(&first, &chain.vertices[1]));
+        let hit = self.reached(&[first, *chain.last()], &first, &behind)?;
+        chain.vertices.insert(0, hit);
+        chain.arms.insert(0, chain.arms[0]);
+        Ok(chain)
+    }
+
     /// Cuts along a chain with a free end and straight on to the border of its polygon.
     fn extend(&mut self, mut chain: Pending) -> Result<(), PartitionError> {
         let tip = *chain.last();
-        let ahead = sub(&tip, &chain.vertices[chain.vertices.len() - 2]);
-        let ahead = ahead.map(|v| v / norm(&ahead));
-        let inside =
-            |r: &&Region| r.polygon.contains(chain.first()) && polygon::contains(&r.polygon, &tip);
-        let host = self
-            .regions
-            .iter()
-            .find(inside)
-            .ok_or(PartitionError::Muddle)?;
-        // Where the ray tip + t ahead meets an edge p q: the nearest.
-        let hits = polygon::edges(&host.polygon).filter_map(|(p, q)| {
-            let [f, g] = [&p, &q].map(|x| cross(&ahead, &sub(x, &tip))[2]);
-            if f * g > 0.0 || f == g {
-                return None;
-            }
-            let share = f / (f - g);
-            let x = add_scaled(&p, share, &sub(&q, &p));
-            let t = dot(&sub(&x, &tip), &ahead);
-            (t > 1e-12 * self.size).then_some((t, share, x, [p, q]))
-        });
-        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0));
-        let (_, share, x, [p, q]) = nearest.ok_or(PartitionError::Muddle)?;
-        /// A hit this close to a corner, in parts of the edge, is the corner.
-        const AT_CORNER: f64 = 1e-9;
-        let hit = if share < AT_CORNER {
-            p
-        } else if share > 1.0 - AT_CORNER {
-            q
-        } else {
-            self.add_corner([p, q], x);
-            x
-        };
+        let ahead = unit(&sub(&tip, &chain.vertices[chain.vertices.len() - 2]));
+        let hit = self.reached(&[*chain.first(), tip], &tip, &ahead)?;
         if hit == *chain.first() {
             return Err(PartitionError::Muddle);
         }
@@ -320,6 +310,42 @@ impl Division {
         }
         chain.vertices.push(hit);
         self.cut(&chain, beyond)
+    }
+
+    /// Where the ray from a point leaves the polygon that holds some points: a corner of it then.
+    fn reached(
+        &mut self,
+        held: &[Point],
+        from: &Point,
+        ahead: &Point,
+    ) -> Result<Point, PartitionError> {
+        let holds =
+            |r: &Region, x: &Point| r.polygon.contains(x) || polygon::contains(&r.polygon, x);
+        let inside = |r: &&Region| held.iter().all(|x| holds(r, x));
+        let host = (self.regions.iter().find(inside)).ok_or(PartitionError::Muddle)?;
+        // Where the ray meets an edge p q: the nearest.
+        let hits = polygon::edges(&host.polygon).filter_map(|(p, q)| {
+            let [f, g] = [&p, &q].map(|x| cross(ahead, &sub(x, from))[2]);
+            if f * g > 0.0 || f == g {
+                return None;
+            }
+            let share = f / (f - g);
+            let x = add_scaled(&p, share, &sub(&q, &p));
+            let t = dot(&sub(&x, from), ahead);
+            (t > 1e-12 * self.size).then_some((t, share, x, [p, q]))
+        });
+        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, share, x, [p, q]) = nearest.ok_or(PartitionError::Muddle)?;
+        /// A hit this close to a corner, in parts of the edge, is the corner.
+        const AT_CORNER: f64 = 1e-9;
+        if share < AT_CORNER {
+            return Ok(p);
+        }
+        if share > 1.0 - AT_CORNER {
+            return Ok(q);
+        }
+        self.add_corner([p, q], x);
+        Ok(x)
     }
 
     /// Makes a point on the edge p q a corner of the polygons on both sides of it.

@@ -281,9 +281,6 @@ impl Trace {
             let Some(cell) = host(near, index, arm, [&from, &to])? else {
                 continue;
             };
-            if tip == [true; 2] {
-                continue; // wholly inside a cell
-            }
             let inner = arm.path.iter().filter(|v| {
                 let small = 1e-9 * (to.s - from.s);
                 v.s > from.s + small && v.s < to.s - small
@@ -302,13 +299,18 @@ impl Trace {
             self.chains.entry(cell).or_default().push(chain);
             for k in 0..2 {
                 if tip[k] {
-                    let (end, entry) = if k == 0 { (from, to) } else { (to, from) };
+                    let (end, other) = if k == 0 { (from, to) } else { (to, from) };
+                    let entry = match tip {
+                        // Wholly inside the cell.
+                        [true, true] => 0.5 * (from.s + to.s),
+                        _ => other.s,
+                    };
                     self.tips.push(TracedTip {
                         arm: index,
                         end: k,
                         x: end.vertex.x,
                         cells: vec![cell],
-                        entry: entry.s,
+                        entry,
                     });
                 }
             }

@@ -19,6 +19,12 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
+    /// Pieces of it share all displacements: no contact force can be told from another.
+    #[error("crack {} has a piece between its bends, junctions and ends that is too short for this mesh: nothing tells the force on it from those beside it", crack + 1)]
+    Undetermined {
+        /// Crack number, from 0.
+        crack: usize,
+    },
     /// Two cracks in one place.
     #[error(transparent)]
     Overlap(#[from] Overlap),

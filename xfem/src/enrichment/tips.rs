@@ -378,7 +378,8 @@ impl Search<'_> {
                 && arm.path.len() == 2
                 && own.len() == 2
                 && alone
-                && !cells.is_empty()
+                && (cells.iter())
+                    .any(|&c| self.inside(index) > SHORTEST * self.mesh.map(c).diagonal())
             {
                 self.pairs.push(index);
             }
