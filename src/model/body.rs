@@ -28,7 +28,7 @@ use crate::model::boundary::{Prescribed, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::mesh_checks::{MeshChecks, mesh_checks};
 pub use crate::model::refusals::BodyError;
-use crate::model::refusals::{check_probes, check_supports, crack_error, motion_error};
+use crate::model::refusals::{cell_error, check_probes, check_supports, crack_error, motion_error};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -130,8 +130,9 @@ impl Body {
         let assembly = Assembly::new(dim, &enrichment);
         let mut setup_s = clock.elapsed().as_secs_f64();
 
+        let unfilled = |e: CellError| cell_error(case, &cracks, e);
         let clock = Instant::now();
-        let mut matrices = CellMatrices::new(&integrator)?;
+        let mut matrices = CellMatrices::new(&integrator).map_err(unfilled)?;
         let stiffness = assembly.sum(|cell| matrices.of(cell));
         let basis = SolverBasis::new(
             &mesh,
@@ -161,7 +162,7 @@ impl Body {
         };
         let ContactSurface { points, surface } =
             faces(case, &integrator, doubled, &numbers, scaled)?;
-        let samples = facet_samples(&integrator)?;
+        let samples = facet_samples(&integrator).map_err(unfilled)?;
         let jump = jump_rows(dim, &points);
         let integrated: Vec<bool> = (case.cracks.iter().enumerate())
             .map(|(number, spec)| {
@@ -170,7 +171,7 @@ impl Body {
             })
             .collect();
         let traction = if needs.traction {
-            traction(&integrated, &integrator, &points, &surface)?
+            traction(&integrated, &integrator, &points, &surface).map_err(unfilled)?
         } else {
             Vec::new()
         };

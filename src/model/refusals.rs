@@ -1,6 +1,7 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
 use stickslip_methods::MethodError;
+use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
@@ -101,6 +102,20 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
             case.refuse(span, &allowed, error)
         }
         None => case.refuse(span, allowed, error),
+    }
+}
+
+/// The error of a cell, at the crack nearest to it.
+pub fn cell_error(case: &Case, cracks: &[Crack], error: CellError) -> BodyError {
+    let away = |crack: &&Crack| crack.distance(&error.at).abs();
+    let nearest = cracks.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    match nearest {
+        Some(crack) => {
+            let allowed = "another number of cells, or a crack moved by a hundredth of a cell";
+            let span = &case.cracks[crack.number].geometry_span;
+            case.refuse(span, allowed, error).into()
+        }
+        None => error.into(),
     }
 }
 

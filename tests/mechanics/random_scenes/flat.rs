@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::generator::{Grid, decades, list, offset};
+use super::generator::{Grid, Shape, decades, list, offset};
 
 type Place = [f64; 2];
 
@@ -271,6 +271,15 @@ fn any_order(mut cracks: Vec<Flat>, s: &mut Stream) -> Vec<Flat> {
         cracks.reverse();
     }
     cracks
+}
+
+/// Distance of two parallel cracks; none of others [m].
+pub fn apart(cracks: &[Shape]) -> f64 {
+    let [Shape::Flat(Flat::Chain(one)), Shape::Flat(Flat::Chain(two))] = cracks else {
+        return f64::INFINITY;
+    };
+    let n = normal(&one[0], &one[1]);
+    ((two[0][0] - one[0][0]) * n[0] + (two[0][1] - one[0][1]) * n[1]).abs()
 }
 
 /// Cracks of a category. `h`: the shortest cell edge, the unit of all small distances.

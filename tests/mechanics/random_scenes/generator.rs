@@ -21,6 +21,16 @@ pub enum Shape {
     Solid(Flaw),
 }
 
+impl Shape {
+    /// Length in a body, in a solid the smaller width of the whole crack [m].
+    fn length_in(&self, body: &Exact) -> f64 {
+        match self {
+            Shape::Flat(f) => f.length_in(&body.min, &body.max),
+            Shape::Solid(f) => f.width(),
+        }
+    }
+}
+
 /// A random case with the answer to it.
 pub struct Scene {
     /// Number in its series; with the seed it makes the scene again alone.
@@ -32,6 +42,9 @@ pub struct Scene {
     pub methods: &'static [&'static str],
     pub cracks: Vec<Shape>,
     pub exact: Exact,
+    /// Whether no mesh of such cells can carry it: two cracks within 1e-6 of a cell along each other, or a crack without tip
+    /// functions that is shorter than two cells.
+    pub beyond: bool,
 }
 
 /// Uniform stress in a box.
@@ -198,16 +211,20 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
     text += &mesh(&grid, s);
     text += &motion;
     let cracks: Vec<Shape> = if dim == 2 {
-        flat::cracks(category, &grid, s)
-            .into_iter()
-            .map(Shape::Flat)
-            .collect()
+        // One that leaves the body where it begins is none.
+        let inside = |f: &Flat| f.length_in(&exact.min, &exact.max) > 0.3 * grid.h();
+        let mut cracks = flat::cracks(category, &grid, s);
+        while !cracks.iter().all(inside) {
+            cracks = flat::cracks(category, &grid, s);
+        }
+        cracks.into_iter().map(Shape::Flat).collect()
     } else {
         solid::cracks(category, &grid, s)
             .into_iter()
             .map(Shape::Solid)
             .collect()
     };
+    let mut beyond = category == "parallel" && flat::apart(&cracks) < 1e-6 * grid.h();
     // Without friction a part that a crack cuts off, or a ring around a disc, would move freely.
     let held = ["inner", "short", "disc", "ellipse"].contains(&category) && cracks.len() == 1;
     for crack in &cracks {
@@ -226,7 +243,10 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
         if ends {
             text += &match s.whole(0, 3) {
                 0 => String::new(),
-                1 => "tip = \"none\"\n".to_owned(),
+                1 => {
+                    beyond |= crack.length_in(&exact) < 2.0 * exact.cell;
+                    "tip = \"none\"\n".to_owned()
+                }
                 2 => "tip = \"branch\"\n".to_owned(),
                 _ => {
                     let radius = s.between(0.3, if dim == 2 { 6.0 } else { 2.0 }) * grid.h();
@@ -256,6 +276,7 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
         methods,
         cracks,
         exact,
+        beyond,
     }
 }
 

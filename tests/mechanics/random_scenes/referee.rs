@@ -34,8 +34,9 @@ const FLOOR: f64 = 1e-12;
 /// Name of the file, as errors tell it.
 const FILE: &str = "scene.toml";
 
-pub const OUTCOMES: [&str; 7] = [
-    "right", "wrong", "suspect", "failed", "refused", "broken", "other",
+/// `beyond`: refused, and by construction more than the mesh can carry.
+pub const OUTCOMES: [&str; 8] = [
+    "right", "wrong", "suspect", "failed", "refused", "beyond", "broken", "other",
 ];
 
 /// What became of a scene.

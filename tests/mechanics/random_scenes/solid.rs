@@ -49,6 +49,12 @@ impl Flaw {
         self.front.is_some()
     }
 
+    /// Smaller width; endless of a plane [m].
+    pub fn width(&self) -> f64 {
+        let halves = self.front.map(|front| front.1);
+        halves.map_or(f64::INFINITY, |[a, b]| 2.0 * a.min(b))
+    }
+
     /// Unit normal.
     pub fn normal(&self) -> Place {
         unit(&self.normal)

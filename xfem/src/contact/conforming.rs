@@ -28,7 +28,8 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
             });
         }
     }
-    if crack.tip != Tip::None && !ends_inside(mesh, crack).is_empty() {
+    let asked = matches!(crack.tip, Tip::Branch | Tip::Radius(_));
+    if asked && !ends_inside(mesh, crack).is_empty() {
         return Err(EnrichmentError::ConformingTip {
             crack: crack.number,
         });

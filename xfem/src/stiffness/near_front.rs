@@ -20,8 +20,12 @@ use crate::quadrature::{FanRule, WeightedPoint};
 /// Distances in edges of the cell within which a front is resolved by slices: in whole cells, in cut ones.
 const REACH: [f64; 2] = [0.15, 1.0];
 
-/// Halvings of what is not sliced: only cells cut by several cracks come nearer to a front than [`REACH`].
-const DEPTH: usize = 4;
+/// Distances where tetrahedra are halved, times this: parts between several cracks have dozens of them, small beside the cell.
+const BETWEEN: f64 = 2.0;
+
+/// Halvings of what is not sliced, of boxes and of tetrahedra: only cells cut by several cracks come nearer to a front than
+/// [`REACH`].
+const DEPTH: [usize; 2] = [4, 3];
 
 /// How finely.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,8 +88,9 @@ impl NearFront<'_> {
             let phi = phi(front.crack);
             return self.slices(front, &nearest, &phi, effort.slices);
         }
+        let between = |x: &Point| BETWEEN * nearer(x);
         match self.parts {
-            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH)
+            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH[0])
                 .into_iter()
                 .map(|p| (p, 0))
                 .collect(),
@@ -93,7 +98,7 @@ impl NearFront<'_> {
                 .iter()
                 .enumerate()
                 .flat_map(|(region, part)| {
-                    let points = graded_tetrahedra(&part.tetrahedra, nearer, DEPTH);
+                    let points = graded_tetrahedra(&part.tetrahedra, between, DEPTH[1]);
                     points.into_iter().map(move |p| (p, region))
                 })
                 .collect(),
