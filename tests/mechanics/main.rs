@@ -16,6 +16,7 @@ mod invariance;
 mod junctions;
 mod load_path;
 mod loads;
+mod mesh_judge;
 mod nitsche;
 mod patch;
 mod penetration;

@@ -1,0 +1,118 @@
+//! The judge of the mesh: silent on sound bodies, and it speaks for every fault planted in one.
+
+use crate::common::*;
+use stickslip::model::body::Body;
+use stickslip::model::mesh_checks::{UNIFORM, mesh_checks};
+use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::geometry::add_scaled;
+
+/// A slanted crack with a zone of branch functions, crossed by another.
+const CROSSED: &str = r#"
+title = "crossed"
+model = "plane-strain"
+[material]
+young_pa = 1e9
+poisson = 0.3
+[mesh.box]
+min_m = [0.0, 0.0]
+max_m = [1.0, 1.0]
+cells = [12, 11]
+[[crack]]
+points_m = [[0.21, 0.33], [0.77, 0.62]]
+friction = 0.5
+tip = { branch_radius_m = 0.1 }
+[[crack]]
+points_m = [[0.52, 0.22], [0.43, 0.81]]
+friction = 0.5
+[[support]]
+on = "bottom"
+displacement_m = [0.0, 0.0]
+[[support]]
+on = "top"
+displacement_m = [0.0, -1e-3]
+"#;
+
+/// Relative size of the planted faults: a thousand times what the judge lets pass.
+const FAULT: f64 = 1e3 * UNIFORM;
+
+/// What the judge finds after a change of a sound body.
+fn after(change: impl FnOnce(&mut Body)) -> (f64, Option<String>) {
+    let mut body = body(CROSSED);
+    assert_below(mesh_checks(&body).uniform, 1e-12, "sound");
+    assert!(mesh_checks(&body).reason().is_none());
+    change(&mut body);
+    let found = mesh_checks(&body);
+    (found.uniform, found.reason())
+}
+
+/// A place of the surface where functions jump and a multiplier acts.
+fn carried(body: &mut Body) -> &mut SurfacePoint {
+    let mut points = body.surface.quadrature.iter_mut();
+    let own = points.find(|q| !q.shares.is_empty() && q.weight > 1e-3);
+    own.expect("a point with a multiplier")
+}
+
+/// Goal: a part of a facet lost from its partition, the wrong side of a facet, a normal the wrong way round, a facet whose
+/// multiplier is missing, branch functions that do not start at the tip of the crack: each leaves a residual of uniform stress
+/// and a reason that names the place.
+#[test]
+fn every_planted_fault_is_told() {
+    let faults: [(&str, fn(&mut Body)); 6] = [
+        ("partition", |b| carried(b).weight *= 1.0 + FAULT),
+        ("side", |b| carried(b).regions.reverse()),
+        ("orientation", |b| {
+            let n = &mut carried(b).frame[0];
+            *n = n.map(|v| -v);
+        }),
+        ("rank", |b| carried(b).shares.clear()),
+        ("zone", |b| {
+            let tip = &mut b.enrichment.tips[0];
+            tip.position = add_scaled(&tip.position, FAULT, &tip.ahead);
+        }),
+        ("stiffness", |b| {
+            let other = body(&CROSSED.replace("0.62]", "0.620001]"));
+            b.stiffness = other.stiffness;
+        }),
+    ];
+    for (name, plant) in faults {
+        let (residual, reason) = after(plant);
+        println!("{name} {residual:.1e}");
+        assert!(residual > UNIFORM, "{name}: {residual:.1e}");
+        let reason = reason.unwrap_or_else(|| panic!("{name}: no reason"));
+        assert!(reason.contains("uniform stress is off by"), "{reason}");
+    }
+}
+
+/// Goal: where two pieces of a crack share all displacements, no force can be told from the other: refused at the crack, with
+/// what would do.
+#[test]
+fn forces_that_nothing_tells_apart_are_refused() {
+    let text = r#"
+title = "short pieces"
+model = "plane-stress"
+[material]
+young_pa = 7.0
+poisson = 0.42
+[mesh.box]
+min_m = [-0.009243, 0.002679]
+max_m = [0.016857, 0.013968]
+cells = [11, 3]
+[mesh.distort]
+amplitude = 0.06978818568496144
+seed = 60
+[[crack]]
+points_m = [[0.00077257, 0.01038711], [0.00026469, 0.00696933], [0.00436015, 0.00756945]]
+friction = 0.5
+tip = "branch"
+[[support]]
+on = "bottom"
+displacement_m = [0.0, 0.0]
+[[support]]
+on = "top"
+displacement_m = [0.0, -1e-6]
+"#;
+    let error = try_body(text).err().expect("a refusal").to_string();
+    assert!(error.contains("nothing tells the force on it"), "{error}");
+    assert!(error.contains("a finer mesh, or longer pieces"), "{error}");
+    assert!(error.contains("crack[1].points_m"), "{error}");
+}
