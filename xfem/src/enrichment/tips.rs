@@ -378,8 +378,8 @@ impl Search<'_> {
                 && arm.path.len() == 2
                 && own.len() == 2
                 && alone
-                && (cells.iter())
-                    .any(|&c| self.inside(index) > SHORTEST * self.mesh.map(c).diagonal())
+                && !cells.is_empty()
+                && self.inside(index) > SHORTEST * self.mesh.smallest_edge()
             {
                 self.pairs.push(index);
             }

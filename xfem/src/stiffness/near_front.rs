@@ -20,12 +20,12 @@ use crate::quadrature::{FanRule, WeightedPoint};
 /// Distances in edges of the cell within which a front is resolved by slices: in whole cells, in cut ones.
 const REACH: [f64; 2] = [0.15, 1.0];
 
-/// Distances where tetrahedra are halved, times this: parts between several cracks have dozens of them, small beside the cell.
-const BETWEEN: f64 = 2.0;
-
-/// Halvings of what is not sliced, of boxes and of tetrahedra: only cells cut by several cracks come nearer to a front than
-/// [`REACH`].
+/// Halvings of what is not sliced. Only cells cut by several cracks come nearer to a front than [`REACH`]; their parts have
+/// dozens of tetrahedra, small beside the cell, and are halved once less.
 const DEPTH: [usize; 2] = [4, 3];
+
+/// Distances in cells cut by several cracks, times this: entries to some hundredths of their diagonals at worst.
+const BETWEEN: f64 = 1.5;
 
 /// How finely.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,7 +88,11 @@ impl NearFront<'_> {
             let phi = phi(front.crack);
             return self.slices(front, &nearest, &phi, effort.slices);
         }
-        let between = |x: &Point| BETWEEN * nearer(x);
+        let mut cracks = self.parts.iter().flat_map(|part| &part.sides).map(|s| s.0);
+        let first = cracks.next();
+        let several = cracks.any(|crack| Some(crack) != first);
+        let stretch = if several { BETWEEN } else { 1.0 };
+        let between = |x: &Point| stretch * nearer(x);
         match self.parts {
             [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH[0])
                 .into_iter()
@@ -98,7 +102,8 @@ impl NearFront<'_> {
                 .iter()
                 .enumerate()
                 .flat_map(|(region, part)| {
-                    let points = graded_tetrahedra(&part.tetrahedra, between, DEPTH[1]);
+                    let points =
+                        graded_tetrahedra(&part.tetrahedra, between, DEPTH[usize::from(several)]);
                     points.into_iter().map(move |p| (p, region))
                 })
                 .collect(),
