@@ -35,6 +35,9 @@ displacement_m = [0.0, -1e-3]
 /// Relative size of the planted faults: a thousand times what the judge lets pass.
 const FAULT: f64 = 1e3 * UNIFORM;
 
+/// A change of a sound body.
+type Plant = fn(&mut Body);
+
 /// What the judge finds after a change of a sound body.
 fn after(change: impl FnOnce(&mut Body)) -> (f64, Option<String>) {
     let mut body = body(CROSSED);
@@ -57,7 +60,7 @@ fn carried(body: &mut Body) -> &mut SurfacePoint {
 /// and a reason that names the place.
 #[test]
 fn every_planted_fault_is_told() {
-    let faults: [(&str, fn(&mut Body)); 6] = [
+    let faults: [(&str, Plant); 6] = [
         ("partition", |b| carried(b).weight *= 1.0 + FAULT),
         ("side", |b| carried(b).regions.reverse()),
         ("orientation", |b| {
