@@ -276,6 +276,8 @@ impl<'a> CellIntegrator<'a> {
         let map = self.mesh.map(cell);
         // A slip in the geometry shows as a wrong measure: never integrate over it.
         let measure = measure(&map);
+        let largest = map.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let tolerance = tolerance.max(64.0 * f64::EPSILON * largest / map.diagonal());
         let sum: f64 = points.iter().map(|(p, _)| p.weight).sum();
         if (sum - measure).abs() > tolerance * measure {
             let reason = format!("sub-cells measure {sum:e} instead of {measure:e}");
