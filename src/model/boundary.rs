@@ -91,16 +91,13 @@ pub fn prescribed(case: &Case, integrator: &CellIntegrator<'_>) -> BTreeMap<usiz
 /// Holds wholly what supports hold in part and no multiplier can resist.
 fn hold_unguarded(integrator: &CellIntegrator<'_>, fixed: &mut BTreeMap<usize, Prescribed>) {
     let dim = integrator.mesh.dim();
-    let functions = integrator.mesh.nodes.len()..integrator.enrichment.functions.len();
+    let mut enriched = integrator.mesh.nodes.len()..integrator.enrichment.functions.len();
     let holder = |fixed: &BTreeMap<usize, Prescribed>, f: usize| {
         let mut components = (0..dim).map(|a| fixed.get(&(f * dim + a)));
         components.find_map(|held| held.copied())
     };
     let in_part = |f: usize| (0..dim).any(|a| !fixed.contains_key(&(f * dim + a)));
-    if !functions
-        .into_iter()
-        .any(|f| holder(fixed, f).is_some() && in_part(f))
-    {
+    if !enriched.any(|f| holder(fixed, f).is_some() && in_part(f)) {
         return;
     }
     for index in 0..integrator.cracks.len() {

@@ -5,6 +5,7 @@
 //! [`Balance`].
 
 use std::fmt::Debug;
+use std::sync::Arc;
 use std::time::Instant;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
@@ -42,7 +43,7 @@ pub(crate) struct Factor {
     /// Pinned unknowns.
     pub pins: Vec<usize>,
     /// Forces and motions of a floating body.
-    pub balance: Balance,
+    pub balance: Arc<Balance>,
     pub analysis_s: f64,
     pub factorisation_s: f64,
 }
@@ -52,7 +53,7 @@ impl Factor {
         k: &SymmetricMatrix,
         ordering: Ordering,
         pins: Vec<usize>,
-        balance: Balance,
+        balance: Arc<Balance>,
     ) -> Result<Self, MethodError> {
         let n = k.size();
         let clock = Instant::now();

@@ -17,7 +17,7 @@ const DEPENDENT: f64 = 1e-8;
 const RIGID: f64 = 1e-9;
 
 /// Checks that the modes are in the kernel of K and chooses one unknown per mode to pin (Gaussian elimination with
-/// complete pivoting of D^½ R, modes scaled to unit size): unknowns of much stiffness, since what is left of K is the softer
+/// complete pivoting of D R, modes scaled to unit size): unknowns of much stiffness, since what is left of K is the softer
 /// the smaller its part in the motion.
 pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, MethodError> {
     let n = k.size();

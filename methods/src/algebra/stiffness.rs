@@ -1,6 +1,6 @@
 //! What stands behind the contact points of a body: how displacements follow from forces.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use faer::Mat;
@@ -57,7 +57,7 @@ pub(crate) struct SparseStiffness {
     order: Vec<usize>,
     in_contact: Vec<bool>,
     pins: Vec<usize>,
-    balance: Balance,
+    balance: Arc<Balance>,
     factor: OnceLock<Result<Factor, MethodError>>,
 }
 
@@ -75,7 +75,7 @@ impl SparseStiffness {
         let pins = pins(&k, floating)?;
         let mut in_contact = vec![false; k.size()];
         contact.for_each(|j| in_contact[j] = true);
-        let balance = Balance::new(&k, floating, &in_contact);
+        let balance = Arc::new(Balance::new(&k, floating, &in_contact));
         Ok(Self {
             k,
             balance,

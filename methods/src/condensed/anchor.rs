@@ -40,10 +40,15 @@ impl Anchor {
 impl ContactProblem<'_> {
     /// v = q + W P + Q β.
     pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
-        let (mut v, step) = match &self.anchor {
-            Some(anchor) => (anchor.v.clone(), anchor.step_to(p, beta)),
-            None => (self.q.clone(), Forces::of(p, beta)),
-        };
+        match &self.anchor {
+            Some(anchor) => self.jump_from(&anchor.v, &anchor.step_to(p, beta)),
+            None => self.jump_from(&self.q, &Forces::of(p, beta)),
+        }
+    }
+
+    /// v + W δP + Q δβ.
+    fn jump_from(&self, v: &[f64], step: &Forces) -> Vec<f64> {
+        let mut v = v.to_vec();
         self.operator.w.apply_add(&step.p, &mut v);
         self.operator.modes.add(&step.beta, &mut v);
         v
@@ -72,7 +77,7 @@ impl ContactProblem<'_> {
             return Ok(Check::End(Status::Stalled));
         }
         self.counters.iterations += 1;
-        self.move_anchor(state, p, beta);
+        self.move_anchor(state, found, p, beta);
         Ok(Check::Corrected)
     }
 
@@ -90,7 +95,8 @@ impl ContactProblem<'_> {
             && self.corrections < MAX_CORRECTIONS
             && let Some(state) = self.recover(p, beta)?
         {
-            self.move_anchor(state, p, beta);
+            let found = self.slip_of(&state.u);
+            self.move_anchor(state, found, p, beta);
             return Ok(Check::Corrected);
         }
         Ok(Check::GoOn)
@@ -99,12 +105,7 @@ impl ContactProblem<'_> {
     /// The jump at x + t step.
     pub(crate) fn jump_after(&self, x: &Forces, t: f64, step: &Forces) -> Vec<f64> {
         match &self.anchor {
-            Some(anchor) if anchor.at.p == x.p => {
-                let (mut v, step) = (anchor.v.clone(), scaled(t, step));
-                self.operator.w.apply_add(&step.p, &mut v);
-                self.operator.modes.add(&step.beta, &mut v);
-                v
-            }
+            Some(anchor) if anchor.at.p == x.p => self.jump_from(&anchor.v, &scaled(t, step)),
             _ => {
                 let moved = x.moved(t, step);
                 self.jump(&moved.p, &moved.beta)
@@ -137,9 +138,8 @@ impl ContactProblem<'_> {
         Ok(moved)
     }
 
-    /// From an iterate with its recovered displacements on, all is computed relative to it.
-    fn move_anchor(&mut self, state: ContactState, p: &[f64], beta: &[f64]) {
-        let found = self.slip_of(&state.u);
+    /// From an iterate with its recovered displacements, and the rows found on them, all is computed relative to it.
+    fn move_anchor(&mut self, state: ContactState, found: Vec<f64>, p: &[f64], beta: &[f64]) {
         self.corrections += 1;
         self.best = (f64::INFINITY, self.counters.iterations);
         self.correct(&found, p, beta);

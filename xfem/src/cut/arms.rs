@@ -48,7 +48,7 @@ pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Result<Vec<Crack>, Overlap> {
     }
     let size = mesh.smallest_edge();
     let mut places = Places {
-        slack: ON_OTHER * size,
+        size,
         points: Vec::new(),
         cuts: vec![Vec::new(); cracks.len()],
     };
@@ -65,8 +65,8 @@ pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Result<Vec<Crack>, Overlap> {
 
 /// Where cracks meet.
 struct Places {
-    /// Closer than this is on a crack [m].
-    slack: f64,
+    /// The shortest edge [m].
+    size: f64,
     /// All places.
     points: Vec<Point>,
     /// By crack: abscissa [m] and place.
@@ -77,6 +77,7 @@ impl Places {
     /// Adds where two cracks meet.
     fn meet(&mut self, cracks: &[Crack], pair: [usize; 2]) -> Result<(), Overlap> {
         let [one, two] = pair.map(|k| &cracks[k]);
+        let slack = ON_OTHER * self.size;
         // Where one ends on the other, or beside it.
         for (k, l) in [(0, 1), (1, 0)] {
             let (ending, other) = (&cracks[pair[k]], &cracks[pair[l]]);
@@ -92,16 +93,16 @@ impl Places {
                     )
                 });
                 let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
-                if let Some((away, s, foot)) = nearest.filter(|n| n.0 <= self.slack) {
+                if let Some((away, s, foot)) = nearest.filter(|n| n.0 <= slack) {
                     // Followed to where it really crosses, if that is next to it: both keep their directions.
-                    let crossing = crossings(ending, other, 100.0 * self.slack)
+                    let crossing = crossings(ending, other, 100.0 * slack)
                         .into_iter()
-                        .filter(|c| (c[0].s - end.s).abs() <= 100.0 * self.slack)
+                        .filter(|c| (c[0].s - end.s).abs() <= 100.0 * slack)
                         .min_by(|a, b| (a[0].s - end.s).abs().total_cmp(&(b[0].s - end.s).abs()));
                     let (s, x) = match crossing {
                         Some(c) => (c[1].s, c[1].x),
                         // It runs beside the other.
-                        None if away > ALONG / ON_OTHER * self.slack => continue,
+                        None if away > ALONG * self.size => continue,
                         None => (s, foot),
                     };
                     self.add([pair[k], pair[l]], [end.s, s], x);
@@ -116,7 +117,7 @@ impl Places {
 
     /// Adds a place of two cracks at their abscissas; close to another, it is that one.
     fn add(&mut self, cracks: [usize; 2], s: [f64; 2], x: Point) {
-        let same = SAME_PLACE / ON_OTHER * self.slack;
+        let same = SAME_PLACE * self.size;
         let known = self.points.iter().find(|p| distance(p, &x) <= same);
         let x = known.copied().unwrap_or_else(|| {
             self.points.push(x);
@@ -133,7 +134,7 @@ impl Places {
     /// Refuses two cracks of which a piece of one lies on the other.
     fn overlap(&self, cracks: [&Crack; 2]) -> Result<(), Overlap> {
         let [one, two] = cracks;
-        let along = ALONG / ON_OTHER * self.slack;
+        let along = ALONG * self.size;
         for p in one.path.windows(2) {
             for q in two.path.windows(2) {
                 let shared: Vec<Point> = [
@@ -147,7 +148,7 @@ impl Places {
                 .map(|(x, ..)| *x)
                 .collect();
                 for x in &shared {
-                    if distance(x, &shared[0]) > SAME_PLACE / ON_OTHER * self.slack {
+                    if distance(x, &shared[0]) > SAME_PLACE * self.size {
                         return Err(Overlap {
                             cracks: [one.number, two.number],
                             at: add_scaled(&shared[0], 0.5, &sub(x, &shared[0])),

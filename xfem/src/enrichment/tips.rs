@@ -154,7 +154,6 @@ impl Tips {
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
-        let near = Neighbours::new(mesh);
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
                 continue;
@@ -165,6 +164,7 @@ impl Tips {
                 Tip::Radius(radius) => {
                     let within = |node: &u32| frame.distance(&mesh.nodes[*node as usize]) <= radius;
                     let own = (0..mesh.nodes.len() as u32).filter(within);
+                    let near = Neighbours::new(mesh);
                     let core = &own.collect() | &near.nodes_around(&at_front);
                     Zone {
                         nodes: near.nodes_around(&core),
