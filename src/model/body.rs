@@ -149,9 +149,12 @@ impl Body {
             matrices.transform(&integrator, &basis);
             Some(assembly.sum(|cell| matrices.of(cell)))
         };
+        // On large meshes they are most of the memory.
+        drop((assembly, matrices));
         let in_basis = transformed.as_ref().unwrap_or(&stiffness);
         let (col_ptr, row_idx, values) = in_basis.restrict(&solver_numbers);
         let diagonal = in_basis.diagonal();
+        drop(transformed);
         let assembly_s = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();

@@ -1,8 +1,8 @@
 //! The judge of the mesh: cheap tests on a body before anything is solved on it.
 //!
 //! ```text
-//!   uniform stress    u = ε x, no jumps:  r_f = (K u)_f + ∫_Γ [[φ_f]] σ n dΓ = 0 for every function f that vanishes on the
-//!                     border of the body;  largest |r_f| / √(K_ff σ:ε V), V: mean measure of a cell, σ = C ε, all unit ε
+//!   uniform stress    u = ε x, no jumps:  r_f = (K u)_f + ∫_Γ [[φ_f]] σ n dΓ = 0 for every function f of a cell near a
+//!                     crack that vanishes on the border of the body;  largest |r_f| / √(K_ff σ:ε V), V: mean measure of these cells, σ = C ε, all unit ε
 //! ```
 //!
 //! K u integrates the gradients over the parts of the cells, the other term the jumps over the facets that carry multipliers:
@@ -49,32 +49,37 @@ impl MeshChecks {
 pub fn mesh_checks(body: &Body) -> MeshChecks {
     let (mesh, dim, lame) = (&body.mesh, body.mesh.dim(), body.lame);
     let (_, centre) = mesh.extent();
-    let volume: f64 = (0..mesh.cell_count()).map(|c| measure(&mesh.map(c))).sum();
-    let cell = volume / mesh.cell_count() as f64;
-    let outside = border_functions(body);
-    let diagonal = body.stiffness.diagonal();
+    let enriched = |cell: &usize| !body.enrichment.is_plain(mesh, *cell);
+    let cells: Vec<usize> = (0..mesh.cell_count()).filter(enriched).collect();
+    let volume: f64 = cells.iter().map(|&c| measure(&mesh.map(c))).sum();
+    let cell = volume / cells.len().max(1) as f64;
+    let tested = tested_functions(body, &cells);
+    let columns = neighbours(body, &tested);
     let jumps = jump_moments(body);
-    let mut found = MeshChecks {
-        uniform: 0.0,
-        at: centre,
-        rounding: mesh.rounding() / mesh.smallest_edge(),
+    let strains: Vec<_> = (0..dim)
+        .flat_map(|a| (0..=a).map(move |b| (a, b)))
+        .collect();
+    // Largest residual and its function; NaN is the worst.
+    let worse = |x: (f64, usize), y: (f64, usize)| {
+        if y.0 <= x.0 || x.0.is_nan() { x } else { y }
     };
-    for (a, b) in (0..dim).flat_map(|a| (0..=a).map(move |b| (a, b))) {
+    let of_strain = |&(a, b): &(usize, usize)| {
         let mut strain = [[0.0; 3]; 3];
         strain[a][b] += 0.5;
         strain[b][a] += 0.5;
         let sigma = stress(lame, dim, &strain);
         let energy: f64 = sigma.iter().zip(&strain).map(|(s, e)| dot(s, e)).sum();
         let mut u = vec![0.0; body.numbers.len()];
-        for (node, x) in mesh.nodes.iter().enumerate() {
-            let from = add_scaled(x, -1.0, &centre);
+        for &node in columns.iter().filter(|&&f| f < mesh.nodes.len()) {
+            let from = add_scaled(&mesh.nodes[node], -1.0, &centre);
             for c in 0..dim {
                 u[node * dim + c] = dot(&strain[c], &from);
             }
         }
-        let force = body.stiffness.mul(&u);
+        let wanted = |f: usize| tested[f];
+        let force = (body.stiffness).mul_at(columns.iter().copied(), wanted, &u);
         let residual = |f: usize| {
-            let scale = |i: usize| (diagonal[i] * energy * cell).sqrt();
+            let scale = |i: usize| (body.stiffness.diagonal_at(i) * energy * cell).sqrt();
             let of = |c: usize| {
                 let i = f * dim + c;
                 let missing = force[i] + dot(&sigma[c], &jumps[f]);
@@ -86,29 +91,28 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
             };
             (0..dim).map(of).fold(0.0, f64::max)
         };
-        let functions = (0..body.enrichment.functions.len()).into_par_iter();
-        let worst = functions
-            .filter(|f| !outside[*f])
-            .map(|f| (residual(f), f))
-            .reduce(
-                || (0.0, 0),
-                |x, y| if y.0 > x.0 || x.0.is_nan() { y } else { x },
-            );
-        if worst.0 > found.uniform || worst.0.is_nan() {
-            found.uniform = worst.0;
-            found.at = mesh.nodes[body.enrichment.functions[worst.1].node as usize];
-        }
+        let of_tested = columns.iter().filter(|&&f| tested[f]);
+        let residuals = of_tested.map(|&f| (residual(f), f));
+        residuals.fold((0.0, 0), worse)
+    };
+    let worst: Vec<(f64, usize)> = strains.par_iter().map(of_strain).collect();
+    let (uniform, function) = worst.into_iter().fold((0.0, 0), worse);
+    MeshChecks {
+        uniform,
+        at: mesh.nodes[body.enrichment.functions[function].node as usize],
+        rounding: mesh.rounding() / mesh.smallest_edge(),
     }
-    found
 }
 
 /// ∫ [[φ_f]] n dΓ over the facets that carry multipliers, by function.
 fn jump_moments(body: &Body) -> Vec<Point> {
-    let mut moments = vec![[0.0; 3]; body.enrichment.functions.len()];
     let integrator = body.integrator();
-    for q in &body.surface.quadrature {
+    let mut moments = vec![[0.0; 3]; body.enrichment.functions.len()];
+    let quadrature = body.surface.quadrature.par_iter();
+    let terms: Vec<_> = quadrature.map(|q| q.jump_terms(&integrator)).collect();
+    for (q, terms) in body.surface.quadrature.iter().zip(terms) {
         let carried: f64 = q.shares.iter().map(|share| share.1).sum();
-        for (f, jump) in q.jump_terms(&integrator) {
+        for (f, jump) in terms {
             let moment = &mut moments[f as usize];
             *moment = add_scaled(moment, carried * q.weight * jump, &q.frame[0]);
         }
@@ -116,17 +120,37 @@ fn jump_moments(body: &Body) -> Vec<Point> {
     moments
 }
 
-/// Functions that do not vanish on the border of the body or on a crack along cell facets.
-fn border_functions(body: &Body) -> Vec<bool> {
+/// Functions of the cells near cracks that vanish on the border of the body and on cracks along cell facets: in plain cells
+/// uniform stress holds on any mesh.
+fn tested_functions(body: &Body, cells: &[usize]) -> Vec<bool> {
     let mesh = &body.mesh;
-    let mut nodes: BTreeSet<u32> = BTreeSet::new();
+    let functions = &body.enrichment.functions;
+    let mut tested = vec![false; functions.len()];
+    for &function in cells.iter().flat_map(|&cell| body.enrichment.cell(cell)) {
+        tested[function as usize] = true;
+    }
+    let mut border: BTreeSet<u32> = BTreeSet::new();
     for facet in mesh.sides.values().flatten() {
-        nodes.extend(mesh.facet_nodes(*facet).map(|n| n as u32));
+        border.extend(mesh.facet_nodes(*facet).map(|n| n as u32));
     }
     for point in body.points.iter() {
         let standard = |f: &u32| (*f as usize) < mesh.nodes.len();
-        nodes.extend(point.terms.iter().map(|(f, _)| *f).filter(standard));
+        border.extend(point.terms.iter().map(|(f, _)| *f).filter(standard));
     }
-    let functions = body.enrichment.functions.iter();
-    functions.map(|f| nodes.contains(&f.node)).collect()
+    for (tested, function) in tested.iter_mut().zip(functions) {
+        *tested = *tested && !border.contains(&function.node);
+    }
+    tested
+}
+
+/// Functions that share a cell with a tested one, ascending.
+fn neighbours(body: &Body, tested: &[bool]) -> Vec<usize> {
+    let mut shared = vec![false; tested.len()];
+    for cell in 0..body.mesh.cell_count() {
+        let functions = body.enrichment.cell(cell);
+        if functions.iter().any(|&f| tested[f as usize]) {
+            functions.iter().for_each(|&f| shared[f as usize] = true);
+        }
+    }
+    (0..shared.len()).filter(|&f| shared[f]).collect()
 }

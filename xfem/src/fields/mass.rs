@@ -31,7 +31,7 @@ pub fn mass(integrator: &CellIntegrator<'_>) -> Result<BlockMatrix, CellError> {
         .map(|cell| cell_mass(integrator, cell))
         .collect::<Result<_, _>>()?;
     let assembly = Assembly::new(integrator.mesh.dim(), integrator.enrichment);
-    Ok(assembly.sum(|cell| &cells[cell]))
+    Ok(assembly.sum(|cell| cells[cell].view()))
 }
 
 fn cell_mass(integrator: &CellIntegrator<'_>, cell: usize) -> Result<CellMatrix, CellError> {

@@ -1,21 +1,24 @@
 //! Assembly: cell matrices into the block matrix of the body, identical bits for any number of threads.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::enrichment::Enrichment;
 use crate::mesh::Mesh;
 use crate::mesh::ordering::nested_dissection;
 
-use super::block_matrix::BlockMatrix;
-use super::elasticity::CellMatrix;
+use super::block_matrix::{BlockMatrix, BlockPattern};
+use super::elasticity::CellView;
 
 /// Pattern of a body's matrices and the place of every cell in it: computed once per mesh.
 #[derive(Debug)]
 pub struct Assembly<'a> {
+    dim: usize,
     enrichment: &'a Enrichment,
     /// Cells that carry each function, ascending.
     pub users: Vec<Vec<u32>>,
-    pattern: BlockMatrix,
+    pattern: Arc<BlockPattern>,
     start: Vec<usize>,
     /// For cell-local functions (l, k), l the column: position of row k in column l; unused above the diagonal.
     position: Vec<u16>,
@@ -25,14 +28,14 @@ impl<'a> Assembly<'a> {
     /// Finds the position of every cell block.
     pub fn new(dim: usize, enrichment: &'a Enrichment) -> Self {
         let users = enrichment.users();
-        let pattern = BlockMatrix::pattern(dim, &users, |cell| enrichment.cell(cell));
+        let pattern = BlockPattern::new(&users, |cell| enrichment.cell(cell));
         let lists: Vec<Vec<u16>> = (0..enrichment.cells())
             .into_par_iter()
             .map(|cell| {
                 let functions = enrichment.cell(cell);
                 let mut positions = Vec::with_capacity(functions.len() * functions.len());
                 for &column in functions {
-                    let rows = pattern.column_rows(column as usize);
+                    let rows = pattern.column(column as usize);
                     for row in functions {
                         // Rows above the diagonal are absent and never asked for.
                         positions.push(rows.binary_search(row).unwrap_or_default() as u16);
@@ -46,18 +49,19 @@ impl<'a> Assembly<'a> {
             start.push(start[start.len() - 1] + list.len());
         }
         Assembly {
+            dim,
             enrichment,
             users,
-            pattern,
+            pattern: Arc::new(pattern),
             start,
             position: lists.concat(),
         }
     }
 
     /// The sum of cell matrices over their functions. Every column gathers its cells in ascending order.
-    pub fn sum<'m>(&self, of_cell: impl Fn(usize) -> &'m CellMatrix + Sync) -> BlockMatrix {
-        let mut matrix = self.pattern.clone();
-        let dim = matrix.dim();
+    pub fn sum<'m>(&self, of_cell: impl Fn(usize) -> CellView<'m> + Sync) -> BlockMatrix {
+        let dim = self.dim;
+        let mut matrix = BlockMatrix::zeros(dim, self.pattern.clone());
         matrix.fill(|column, _, values| {
             for &cell in &self.users[column] {
                 let cell = cell as usize;

@@ -8,16 +8,25 @@ use crate::geometry::sub;
 use crate::mesh::cell::{CellMap, MOST_NODES};
 
 use super::cell_matrix::{CellError, CellIntegrator};
-use super::elasticity::{CellMatrix, cell_stiffness};
+use super::elasticity::{CellMatrix, CellView, cell_stiffness};
 use super::orthonormal::SolverBasis;
 
 /// Shape up to translation, in quanta of length.
 type ShapeKey = [i64; 3 * (MOST_NODES - 1)];
 
+/// Enriched cells worked on at once: enough for all threads, few beside all matrices.
+const AT_ONCE: usize = 4096;
+
 /// Stiffness matrices of all cells over their functions.
 pub struct CellMatrices {
-    distinct: Vec<CellMatrix>,
+    /// Those of plain cells, one per shape.
+    plain: Vec<CellMatrix>,
+    /// Of every cell: its shape, or after all shapes its place among the enriched cells.
     of_cell: Vec<u32>,
+    /// Enriched cells, ascending, and where the matrix of each begins.
+    enriched: Vec<(u32, usize)>,
+    /// Their matrices one after the other: as one block, memory that goes back when they are no longer used.
+    own: Vec<f64>,
 }
 
 impl CellMatrices {
@@ -45,37 +54,63 @@ impl CellMatrices {
                 })
             })
             .collect();
-        let mut distinct: Vec<CellMatrix> = first
+        let plain: Vec<CellMatrix> = first
             .par_iter()
             .map(|&cell| cell_stiffness(&mesh.map(cell), integrator.lame))
             .collect();
-        let enriched: Vec<usize> = (0..mesh.cell_count())
-            .filter(|&c| !enrichment.is_plain(mesh, c))
-            .collect();
-        let own: Vec<CellMatrix> = enriched
-            .par_iter()
-            .map(|&cell| integrator.stiffness(cell, &distinct[shape[cell] as usize]))
-            .collect::<Result<_, _>>()?;
-        let mut of_cell = shape;
-        for (position, &cell) in enriched.iter().enumerate() {
-            of_cell[cell] = (distinct.len() + position) as u32;
+        let mut total = 0;
+        let mut enriched = Vec::new();
+        for cell in (0..mesh.cell_count()).filter(|&c| !enrichment.is_plain(mesh, c)) {
+            enriched.push((cell as u32, total));
+            total += (enrichment.cell(cell).len() * mesh.dim()).pow(2);
         }
-        distinct.extend(own);
-        Ok(CellMatrices { distinct, of_cell })
+        let mut own = Vec::with_capacity(total);
+        for some in enriched.chunks(AT_ONCE) {
+            let stiffness = |&(cell, _): &(u32, usize)| {
+                let cell = cell as usize;
+                integrator.stiffness(cell, &plain[shape[cell] as usize])
+            };
+            let matrices = some.par_iter().map(stiffness);
+            for k in matrices.collect::<Result<Vec<_>, _>>()? {
+                own.extend_from_slice(k.values());
+            }
+        }
+        let mut of_cell = shape;
+        for (place, &(cell, _)) in enriched.iter().enumerate() {
+            of_cell[cell as usize] = (plain.len() + place) as u32;
+        }
+        Ok(CellMatrices {
+            plain,
+            of_cell,
+            enriched,
+            own,
+        })
     }
 
     /// Matrix of a cell over its functions.
-    pub fn of(&self, cell: usize) -> &CellMatrix {
-        &self.distinct[self.of_cell[cell] as usize]
+    pub fn of(&self, cell: usize) -> CellView<'_> {
+        let matrix = self.of_cell[cell] as usize;
+        let Some(place) = matrix.checked_sub(self.plain.len()) else {
+            return self.plain[matrix].view();
+        };
+        let from = self.enriched[place].1;
+        let next = self.enriched.get(place + 1);
+        let values = &self.own[from..next.map_or(self.own.len(), |e| e.1)];
+        CellView::new(values.len().isqrt(), values)
     }
 
     /// Goes over to the basis of the solver.
     pub fn transform(&mut self, integrator: &CellIntegrator<'_>, basis: &SolverBasis) {
-        for cell in 0..self.of_cell.len() {
-            let functions = integrator.enrichment.cell(cell);
-            if let Some(k) = basis.matrix(integrator.mesh.dim(), functions, self.of(cell)) {
-                // Cells with enriched functions have a matrix of their own.
-                self.distinct[self.of_cell[cell] as usize] = k;
+        let (dim, enrichment) = (integrator.mesh.dim(), integrator.enrichment);
+        for some in self.enriched.chunks(AT_ONCE) {
+            let changed = some.par_iter().map(|&(cell, from)| {
+                let cell = cell as usize;
+                let k = basis.matrix(dim, enrichment.cell(cell), self.of(cell));
+                k.map(|k| (from, k))
+            });
+            for (from, k) in changed.collect::<Vec<_>>().into_iter().flatten() {
+                let values = k.values();
+                self.own[from..from + values.len()].copy_from_slice(values);
             }
         }
     }

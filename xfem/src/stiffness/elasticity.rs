@@ -166,6 +166,26 @@ pub struct CellMatrix {
     values: Vec<f64>,
 }
 
+/// A cell matrix that lies elsewhere.
+#[derive(Debug, Clone, Copy)]
+pub struct CellView<'a> {
+    size: usize,
+    values: &'a [f64],
+}
+
+impl<'a> CellView<'a> {
+    /// size² entries, row by row.
+    pub fn new(size: usize, values: &'a [f64]) -> Self {
+        debug_assert_eq!(values.len(), size * size);
+        CellView { size, values }
+    }
+
+    /// Entry (i, j).
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.values[i * self.size + j]
+    }
+}
+
 impl CellMatrix {
     /// Zero matrix.
     pub fn zero(size: usize) -> Self {
@@ -178,6 +198,16 @@ impl CellMatrix {
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.size
+    }
+
+    /// The matrix for reading.
+    pub fn view(&self) -> CellView<'_> {
+        CellView::new(self.size, &self.values)
+    }
+
+    /// Entries, row by row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// Entry (i, j).

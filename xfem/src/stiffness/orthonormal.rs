@@ -27,7 +27,7 @@ use crate::enrichment::basis::FunctionKind;
 use crate::geometry::tip_frame::FrontShape;
 use crate::mesh::Mesh;
 
-use super::elasticity::CellMatrix;
+use super::elasticity::{CellMatrix, CellView};
 
 /// A function is dropped if the square of its part outside the span of the others is smaller than this part of its own
 /// square: K' carries the rounding of K divided by it.
@@ -64,7 +64,7 @@ impl SolverBasis {
         mesh: &Mesh,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
-        matrix: impl Fn(usize) -> &'a CellMatrix,
+        matrix: impl Fn(usize) -> CellView<'a>,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let dim = mesh.dim();
@@ -185,7 +185,7 @@ impl SolverBasis {
     }
 
     /// T K Tᵀ of a cell over its functions; `None` if it is K.
-    pub fn matrix(&self, dim: usize, functions: &[u32], k: &CellMatrix) -> Option<CellMatrix> {
+    pub fn matrix(&self, dim: usize, functions: &[u32], k: CellView<'_>) -> Option<CellMatrix> {
         let touched = |f: &u32| self.block_of.get(*f as usize).copied().flatten().is_some();
         if !functions.iter().any(touched) {
             return None;
@@ -272,7 +272,7 @@ fn gram<'a>(
     dim: usize,
     own: std::ops::Range<usize>,
     users: &[Vec<u32>],
-    matrix: &impl Fn(usize) -> &'a CellMatrix,
+    matrix: &impl Fn(usize) -> CellView<'a>,
 ) -> Vec<f64> {
     let count = own.len();
     let mut gram = vec![0.0; count * count];
