@@ -141,7 +141,7 @@ impl Body {
             |cell| matrices.of(cell),
             |f, a| numbers[f * dim + a].is_none(),
         );
-        let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(i / dim));
+        let kept = (0..numbers.len()).map(|i| numbers[i].is_some() && !basis.drops(dim, i));
         let (solver_numbers, free) = numbered(kept);
         let transformed = if basis.is_identity() {
             None

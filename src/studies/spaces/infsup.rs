@@ -259,7 +259,7 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
     }
     // In the basis of the solver: branch functions within a radius are not independent as they stand.
     let dim = body.mesh.dim();
-    let (kept, n) = numbered((0..all.len()).map(|i| !body.basis.drops(i / dim)));
+    let (kept, n) = numbered((0..all.len()).map(|i| !body.basis.drops(dim, i)));
     let columns: Vec<Vec<(usize, f64)>> =
         (0..all.len()).map(|i| body.basis.column(dim, i)).collect();
     let mut sum: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); n];

@@ -41,6 +41,8 @@ struct Block {
     /// T, lower triangular, row by row; the row of a dropped function is zero.
     t: Vec<f64>,
     count: usize,
+    /// Components it acts on: those of which nothing is prescribed.
+    free: [bool; 3],
 }
 
 impl Block {
@@ -59,7 +61,7 @@ pub struct SolverBasis {
 
 impl SolverBasis {
     /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its
-    /// functions; `held`: whether a component of a function is prescribed, which keeps its node as it is.
+    /// functions; `held`: whether a component of a function is prescribed, which keeps this component of its node as it is.
     pub fn new<'a>(
         mesh: &Mesh,
         enrichment: &Enrichment,
@@ -70,14 +72,14 @@ impl SolverBasis {
         let dim = mesh.dim();
         let mut basis = SolverBasis::default();
         let surplus = surplus(mesh, enrichment, &held);
-        let held = |f: usize| (0..dim).any(|a| held(f, a));
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
             let kind = |f: usize| enrichment.functions[f].kind;
             let branch = |f: usize| matches!(kind(f), FunctionKind::Branch { .. });
             // Pieces are disjoint: their functions depend on no other.
             let dependent = own.clone().any(branch);
-            if !dependent || own.clone().any(&held) {
+            let free = [0, 1, 2].map(|a| a < dim && !own.clone().any(|f| held(f, a)));
+            if !dependent || free == [false; 3] {
                 continue;
             }
             if basis.block_of.is_empty() {
@@ -91,6 +93,7 @@ impl SolverBasis {
                 first: own.start,
                 t: inverse_factor(&gram, own.len(), |i| surplus.contains(&(own.start + i))),
                 count: own.len(),
+                free,
             });
         }
         basis
@@ -101,20 +104,24 @@ impl SolverBasis {
         self.blocks.is_empty()
     }
 
-    /// True for a function that the solver does not see.
-    pub fn drops(&self, function: usize) -> bool {
-        let block = self.block_of.get(function).copied().flatten();
-        block.is_some_and(|b| {
-            let block = &self.blocks[b as usize];
-            let i = function - block.first;
-            block.t(i, i) == 0.0
-        })
+    /// The block that acts on an unknown, and the place of its function there.
+    fn block(&self, dim: usize, unknown: usize) -> Option<(&Block, usize)> {
+        let (function, a) = (unknown / dim, unknown % dim);
+        let number = self.block_of.get(function).copied().flatten()?;
+        let block = &self.blocks[number as usize];
+        block.free[a].then(|| (block, function - block.first))
+    }
+
+    /// True for an unknown that the solver does not see.
+    pub fn drops(&self, dim: usize, unknown: usize) -> bool {
+        let block = self.block(dim, unknown);
+        block.is_some_and(|(block, i)| block.t(i, i) == 0.0)
     }
 
     /// Changes the values of every block, component by component.
     fn change(&self, dim: usize, v: &mut [f64], change: impl Fn(&Block, &mut [f64])) {
         for block in &self.blocks {
-            for a in 0..dim {
+            for a in (0..dim).filter(|&a| block.free[a]) {
                 let at = |i: usize| (block.first + i) * dim + a;
                 let mut own: Vec<f64> = (0..block.count).map(|i| v[at(i)]).collect();
                 change(block, &mut own);
@@ -158,13 +165,11 @@ impl SolverBasis {
 
     /// Column of T: the unknowns of the solver to which one unknown contributes, with the factors.
     pub fn column(&self, dim: usize, unknown: usize) -> Vec<(usize, f64)> {
-        let (function, a) = (unknown / dim, unknown % dim);
-        match self.block_of.get(function).copied().flatten() {
+        match self.block(dim, unknown) {
             None => vec![(unknown, 1.0)],
-            Some(b) => {
-                let block = &self.blocks[b as usize];
-                let j = function - block.first;
-                let rows = (j..block.count).map(|i| ((block.first + i) * dim + a, block.t(i, j)));
+            Some((block, j)) => {
+                let at = |i: usize| (block.first + i) * dim + unknown % dim;
+                let rows = (j..block.count).map(|i| (at(i), block.t(i, j)));
                 rows.filter(|(_, t)| *t != 0.0).collect()
             }
         }
@@ -190,39 +195,33 @@ impl SolverBasis {
         if !functions.iter().any(touched) {
             return None;
         }
-        // (T restricted to the cell's functions) one after the other on rows and columns.
-        let parts: Vec<Vec<(usize, f64)>> = functions
-            .iter()
-            .enumerate()
-            .map(|(p, &f)| match self.block_of[f as usize] {
-                None => vec![(p, 1.0)],
-                Some(b) => {
-                    let block = &self.blocks[b as usize];
-                    let i = f as usize - block.first;
+        // (T restricted to the cell's unknowns) one after the other on rows and columns.
+        let of_unknown = |(p, &f): (usize, &u32)| {
+            (0..dim).map(move |a| match self.block(dim, f as usize * dim + a) {
+                None => vec![(p * dim + a, 1.0)],
+                Some((block, i)) => {
                     let place = |f: usize| functions.iter().position(|&g| g as usize == f);
-                    let entry = |j: usize| Some((place(block.first + j)?, block.t(i, j)));
+                    let entry = |j: usize| Some((place(block.first + j)? * dim + a, block.t(i, j)));
                     (0..=i).filter_map(entry).collect()
                 }
             })
-            .collect();
+        };
+        let parts: Vec<Vec<(usize, f64)>> =
+            functions.iter().enumerate().flat_map(of_unknown).collect();
         let n = functions.len() * dim;
         let mut half = CellMatrix::zero(n);
         for (p, part) in parts.iter().enumerate() {
             for &(q, t) in part {
-                for a in 0..dim {
-                    for column in 0..n {
-                        half.add(p * dim + a, column, t * k.get(q * dim + a, column));
-                    }
+                for column in 0..n {
+                    half.add(p, column, t * k.get(q, column));
                 }
             }
         }
         let mut found = CellMatrix::zero(n);
         for (p, part) in parts.iter().enumerate() {
             for &(q, t) in part {
-                for a in 0..dim {
-                    for row in 0..n {
-                        found.add(row, p * dim + a, t * half.get(row, q * dim + a));
-                    }
+                for row in 0..n {
+                    found.add(row, p, t * half.get(row, q));
                 }
             }
         }
