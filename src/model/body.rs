@@ -26,7 +26,7 @@ use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 use crate::case::{Case, CaseError, Quadrature};
 use crate::model::boundary::{Prescribed, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
-use crate::model::mesh_checks::{MeshChecks, mesh_checks};
+use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
 use crate::model::refusals::{cell_error, check_probes, check_supports, crack_error, motion_error};
 
@@ -234,10 +234,11 @@ impl Body {
         Ok(body)
     }
 
-    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked.
-    pub fn suspect(&self) -> Option<String> {
+    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked. `sway`: see
+    /// [`Residuals`](stickslip_methods::Residuals).
+    pub fn suspect(&self, sway: f64) -> Option<String> {
         match self.quadrature {
-            Quadrature::SubCells => self.checks.reason(),
+            Quadrature::SubCells => self.checks.reason().or_else(|| swaying(sway)),
             Quadrature::Gauss(_) => None,
         }
     }

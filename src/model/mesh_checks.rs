@@ -21,6 +21,11 @@ use crate::model::body::Body;
 /// A body whose uniform stress is off by more than this is suspect, unless its coordinates hold fewer digits.
 pub const UNIFORM: f64 = 1e-9;
 
+/// Where contact forces move slender parts this many times as far as they deform stiff cells, displacements carry the
+/// rounding of the stiffness, 2e-16, times it: layers between cracks were off by 1e-13 to 3e-10 below 1e8, by 1e-9 to 1e-7
+/// above.
+const SWAY: f64 = 1e8;
+
 /// What the tests on a body found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshChecks {
@@ -43,6 +48,14 @@ impl MeshChecks {
             format!("uniform stress is off by {off:.1e} near ({x:.6}, {y:.6}, {z:.6})")
         })
     }
+}
+
+/// What is wrong with a body whose slender parts sway so far, if anything is.
+pub fn swaying(sway: f64) -> Option<String> {
+    let digits = -(f64::EPSILON * sway).log10();
+    (sway > SWAY).then(|| {
+        format!("slender parts between cracks move {sway:.0e} times as far as cells deform: displacements hold {digits:.0} digits")
+    })
 }
 
 /// Tests a body.

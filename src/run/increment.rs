@@ -173,6 +173,7 @@ impl JudgedIncrement {
             cone: found(|f| f.cone),
             reference_force: found(|f| f.reference_force),
             reference_jump_m: found(|f| f.reference_jump),
+            sway: found(|f| f.sway),
             uniform_stress: f64::NAN,
             overlap_m: f64::NAN,
             tangent_factorisations: counters.factorisations,

@@ -175,8 +175,8 @@ impl LoadPathRun<'_> {
                 end.now = None;
             }
             // The mechanics stay visible: what is suspect can be looked at.
-            if solved.verdict.is_honest()
-                && let Some(reason) = body.suspect()
+            if let Some(judged) = solved.honest()
+                && let Some(reason) = body.suspect(judged.found.sway)
             {
                 solved.verdict = Verdict::Suspect(reason);
             }

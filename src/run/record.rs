@@ -97,6 +97,8 @@ pub struct RunRow {
     pub reference_force: f64,
     /// u_ref [m]; likewise.
     pub reference_jump_m: f64,
+    /// How far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes [-].
+    pub sway: f64,
     /// Residual of uniform stress states on the mesh, found by its judge [-].
     pub uniform_stress: f64,
     /// Deepest overlap of the faces anywhere, sampled much closer than the contact points [m].

@@ -97,7 +97,7 @@ fn cracks_along_each_other_are_refused_at_the_later() {
     let points = "[[0.05, -0.6], [0.1, 0.26]]";
     let second = format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\n");
     let body = try_body(&(good() + &second)).unwrap_or_else(|e| panic!("{e}"));
-    assert!(body.suspect().is_none() && body.checks.uniform < 1e-12);
+    assert!(body.suspect(0.0).is_none() && body.checks.uniform < 1e-12);
 }
 
 #[test]

@@ -119,3 +119,34 @@ displacement_m = [0.0, -1e-6]
     assert!(error.contains("a finer mesh, or longer pieces"), "{error}");
     assert!(error.contains("crack[1].points_m"), "{error}");
 }
+
+/// Goal: a layer between two cracks too thin for the digits of the stiffness is suspect, with how many digits are left; ten
+/// thousand times as thick it is sound.
+#[test]
+fn a_layer_that_holds_too_few_digits_is_suspect() {
+    let between = |thickness: f64| {
+        let other = [-0.21 - 0.6 * thickness, 0.13 + 0.8 * thickness];
+        let layer = [[-0.21, 0.13], other]
+            .map(|[x, y]| crack([x - 2.4, y - 1.8], [x + 2.4, y + 1.8], 0.9, "none"));
+        let supports = [
+            support("\"left\"", "[0.0, \"free\"]"),
+            support("\"bottom\"", "[\"free\", 0.0]"),
+            support("\"right\"", "[-3e-4, \"free\"]"),
+            support("\"top\"", "[\"free\", -3.1e-4]"),
+        ];
+        let text = plane(
+            [-1.0, -1.0],
+            [1.0, 1.0],
+            [20, 20],
+            &(layer.concat() + &supports.concat()),
+        );
+        let results = run(&parse(&text), &["hybrid"]);
+        results.runs.last().expect("a run").clone()
+    };
+    let (thin, thick) = (between(5e-7), between(5e-3));
+    let told = thin.verdict.to_string();
+    println!("{told}; sway {:.1e} and {:.1e}", thin.sway, thick.sway);
+    assert!(told.starts_with("suspect mesh: slender parts"), "{told}");
+    assert_eq!(thick.verdict.to_string(), "solved");
+    assert!(thick.sway < 1e-4 * thin.sway);
+}

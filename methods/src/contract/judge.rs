@@ -44,6 +44,8 @@ pub struct Residuals {
     pub reference_force: f64,
     /// u_ref \[m\]; likewise.
     pub reference_jump: f64,
+    /// [`ContactOperator::sway`]; likewise.
+    pub sway: f64,
 }
 
 /// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
@@ -123,6 +125,7 @@ pub fn residuals_of(
     result.violation = found.largest();
     result.reference_force = p_ref;
     result.reference_jump = u_ref;
+    result.sway = operator.sway;
     for point in 0..rows.points() {
         let (p, v) = (&p[rows.of(point)], &v[rows.of(point)]);
         let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();

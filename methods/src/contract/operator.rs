@@ -39,6 +39,9 @@ pub struct ContactOperator {
     /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: ρ, but at least rows / (100 Σ_i |B_i|² / max_j K_jj). Where
     /// slender parts sway, overlap that is nothing beside their motion can be all there is of the answer elsewhere.
     pub sharp: f64,
+    /// trace(W⊥) / (Σ_i |B_i|² / max_j K_jj): how far contact forces move the body beside what they press into its
+    /// stiffest unknowns. Displacements carry the rounding of K times this.
+    pub sway: f64,
 }
 
 impl ContactOperator {
@@ -71,6 +74,7 @@ impl ContactOperator {
             modes,
             rho: scale(compliance),
             sharp: scale(compliance.min(SWAYING * stiffest)),
+            sway: compliance / stiffest,
         })
     }
 }

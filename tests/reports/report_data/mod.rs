@@ -101,6 +101,7 @@ fn add_run(results: &mut Results, key: RunKey) {
         overlap_m: 1.5e-7,
         reference_force: 1e8,
         reference_jump_m: 0.1,
+        sway: 12.5,
         tangent_factorisations: 3,
         global_factorisations: 0,
         local_solves: 33,
