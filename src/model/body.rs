@@ -179,7 +179,7 @@ impl Body {
             Vec::new()
         };
         let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
-            .map_err(|e| motion_error(case, &e))?;
+            .map_err(|e| motion_error(case, &integrator, &surface, &e))?;
         let order = elimination_order(&mesh, &enrichment, &solver_numbers);
         let rows = |rows: &[Vec<(usize, f64)>]| {
             let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();

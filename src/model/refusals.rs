@@ -1,10 +1,12 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
 use stickslip_methods::MethodError;
+use stickslip_xfem::contact::pairs::CrackSurface;
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
+use stickslip_xfem::geometry::norm;
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 
@@ -74,6 +76,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
         EnrichmentError::Undetermined { crack } => (*crack, "a finer mesh, or longer pieces"),
+        EnrichmentError::Loose { crack } => (*crack, "a finer mesh, or supports on the piece"),
         EnrichmentError::Overlap(overlap) => (overlap.cracks[1], "cracks that cross or lie apart"),
         EnrichmentError::Lost { crack, .. } => {
             (*crack, "a mesh that the crack crosses from cell to cell")
@@ -135,11 +138,26 @@ fn fitting_cell(shape: &CrackShape) -> Option<f64> {
     }
 }
 
-/// The error of a body that can move, at the crack that cuts a piece off or at the supports.
-pub fn motion_error(case: &Case, error: &MotionError) -> CaseError {
-    let (span, allowed) = match (error, case.supports.first()) {
-        (_, Some(support)) => (&support.span, "supports that hold every rigid motion"),
-        (_, None) => (&case.mesh.span, "at least one [[support]]"),
+/// The error of a body that can move, at the crack that these motions open or at the supports.
+pub fn motion_error(
+    case: &Case,
+    integrator: &CellIntegrator<'_>,
+    surface: &CrackSurface,
+    error: &MotionError,
+) -> CaseError {
+    /// Motions are of order one.
+    const OPEN: f64 = 1e-6;
+    let opened = |motion: &Vec<f64>| {
+        let mut points = surface.quadrature.iter();
+        let open = points.find(|q| norm(&q.jump(integrator, motion)) > OPEN);
+        open.map(|q| q.crack)
+    };
+    if let Some(crack) = error.motions.iter().find_map(opened) {
+        return crack_error(case, &EnrichmentError::Loose { crack });
+    }
+    let (span, allowed) = match case.supports.first() {
+        Some(support) => (&support.span, "supports that hold every rigid motion"),
+        None => (&case.mesh.span, "at least one [[support]]"),
     };
     case.refuse(span, allowed, error)
 }

@@ -25,6 +25,12 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
+    /// It cuts off a piece that can move without any of its contact points telling.
+    #[error("crack {} has too few contact points on this mesh for the piece that it cuts off: it can move freely", crack + 1)]
+    Loose {
+        /// Crack number, from 0.
+        crack: usize,
+    },
     /// Two cracks in one place.
     #[error(transparent)]
     Overlap(#[from] Overlap),

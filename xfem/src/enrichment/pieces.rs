@@ -18,15 +18,12 @@ pub struct FreeMotions {
     pub modes: Vec<Vec<f64>>,
 }
 
-/// A body that can move without any contact resisting.
+/// A body that can move without any contact point telling.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MotionError {
-    /// A rigid motion opens no crack.
-    #[error("the supports leave {count} rigid motion(s) that no contact can resist")]
-    Rigid {
-        /// Number of independent motions.
-        count: usize,
-    },
+#[error("the supports leave {} rigid motion(s) that no contact can resist", motions.len())]
+pub struct MotionError {
+    /// Independent motions, over all unknowns.
+    pub motions: Vec<Vec<f64>>,
 }
 
 /// The connected pieces of a body.
@@ -179,16 +176,7 @@ pub fn free_motions(
     let eigen = SymmetricEigen::new(support / scale);
     let free: Vec<Vec<f64>> = (0..m)
         .filter(|&k| eigen.eigenvalues[k].abs() < ZERO)
-        .map(|k| {
-            let mut mode = vec![0.0; numbers.len()];
-            for (l, part) in modes.iter().enumerate() {
-                let c = eigen.eigenvectors[(l, k)];
-                for (value, p) in mode.iter_mut().zip(part) {
-                    *value += c * p;
-                }
-            }
-            mode
-        })
+        .map(|k| combined(&modes, |l| eigen.eigenvectors[(l, k)]))
         .collect();
     if !free.is_empty() {
         // Contact must feel every free motion: the Gram matrix of their jumps must be regular.
@@ -197,17 +185,28 @@ pub fn free_motions(
             jumps[k].iter().zip(&jumps[l]).map(|(a, b)| a * b).sum()
         });
         let size = gram.diagonal().max().max(f64::MIN_POSITIVE);
-        let values = SymmetricEigen::new(gram / size).eigenvalues;
-        let silent = if size == f64::MIN_POSITIVE {
-            free.len()
-        } else {
-            values.iter().filter(|v| v.abs() < ZERO).count()
-        };
-        if silent > 0 {
-            return Err(MotionError::Rigid { count: silent });
+        let eigen = SymmetricEigen::new(gram / size);
+        let motions: Vec<Vec<f64>> = (0..free.len())
+            .filter(|&k| size == f64::MIN_POSITIVE || eigen.eigenvalues[k].abs() < ZERO)
+            .map(|k| combined(&free, |l| eigen.eigenvectors[(l, k)]))
+            .collect();
+        if !motions.is_empty() {
+            return Err(MotionError { motions });
         }
     }
     Ok(FreeMotions { modes: free })
+}
+
+/// Σ_l c_l mode_l.
+fn combined(modes: &[Vec<f64>], c: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut sum = vec![0.0; modes[0].len()];
+    for (l, mode) in modes.iter().enumerate() {
+        let c = c(l);
+        for (value, m) in sum.iter_mut().zip(mode) {
+            *value += c * m;
+        }
+    }
+    sum
 }
 
 /// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
