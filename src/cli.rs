@@ -9,6 +9,7 @@ mod output;
 mod page;
 mod paper;
 mod progress;
+mod robustness;
 mod run;
 mod show;
 mod spaces;
@@ -42,7 +43,7 @@ enum Verb {
     Paper(paper::Arguments),
     /// Run cases: files, or names of shipped cases
     Run(run::Arguments),
-    /// Run every method on random problems: how often each succeeds, by friction coefficient
+    /// Search for what breaks: random scenes by every method, judged, shrunk, with causes
     Stress(stress::Arguments),
     /// Measure errors and observed orders on sequences of meshes, by contact space and tip enrichment
     Converge(converge::Arguments),

@@ -16,6 +16,7 @@ pub mod robustness;
 pub mod schema;
 pub mod spaces;
 pub mod standard;
+pub mod stress;
 pub mod sweep;
 pub mod table;
 pub mod tables;

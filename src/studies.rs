@@ -2,7 +2,10 @@
 
 pub mod convergence;
 pub mod exchange;
+mod memory;
 pub mod paper;
+pub mod robustness;
 pub mod spaces;
 pub mod stress;
 pub mod sweep;
+pub mod worker;

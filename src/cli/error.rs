@@ -9,8 +9,9 @@ use crate::run::run_case::RunError;
 use crate::studies::exchange::export::ExportError;
 use crate::studies::exchange::problem_file::ProblemFileError;
 use crate::studies::paper::PaperError;
+use crate::studies::robustness::RobustnessError;
 use crate::studies::spaces::infsup::InfSupError;
-use crate::studies::stress::StressError;
+use crate::studies::stress;
 use crate::studies::sweep::conduct::ConductError;
 use crate::studies::sweep::plan::PlanError;
 use crate::studies::sweep::store::StoreError;
@@ -23,7 +24,10 @@ pub enum CliError {
     Run(#[from] RunError),
     /// The robustness study.
     #[error(transparent)]
-    Stress(#[from] StressError),
+    Robustness(#[from] RobustnessError),
+    /// The stress suite.
+    #[error(transparent)]
+    Stress(#[from] stress::conduct::ConductError),
     /// The study of the contact spaces.
     #[error(transparent)]
     InfSup(#[from] InfSupError),

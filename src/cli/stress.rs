@@ -1,122 +1,159 @@
-//! The verb `stress`: the random robustness study.
+//! The verb `stress`: the suite of random scenes, and the study of all methods on random problems.
 
 use std::path::PathBuf;
 
-use stickslip_methods::Tier;
-
-use super::arguments::methods_or_all;
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
+use super::robustness;
+use super::sweep::{STOP, shard, watch_for_interruption};
 use crate::report::table::readable;
-use crate::report::{Provenance, prepare_output, robustness};
-use crate::studies::stress;
-use crate::studies::stress::StressPlan;
-use crate::studies::stress::robustness::{RobustnessRow, rows};
+use crate::report::{Provenance, page, prepare_output, stress as report};
+use crate::studies::stress::conduct::{Conduct, Suite, conduct};
+use crate::studies::stress::examine::examine;
+use crate::studies::stress::summary;
+use crate::studies::stress::{Family, scene};
+use crate::studies::sweep::conduct::Shard;
+
+/// Scenes of every family by default, and with `--full`: about 10 minutes, and a night, on two cores.
+const SCENES: [(Family, u64, u64); 4] = [
+    (Family::Patch2d, 720, 11_000),
+    (Family::Patch3d, 44, 1000),
+    (Family::Slip2d, 540, 7000),
+    (Family::Slip3d, 33, 1000),
+];
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
-    /// Problems per friction coefficient and dimension
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    problems: u32,
-    /// Seed: the same problems on every machine
+    #[command(subcommand)]
+    part: Option<Part>,
+    /// Seed: the same scenes on every machine
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only this problem of the study, e.g. one of failures.csv; its case files are written too
-    #[arg(long, value_name = "INDEX")]
-    only: Option<u32>,
-    /// Dimension, 2 or 3; may be repeated
-    #[arg(long = "dim", default_values_t = [2, 3], value_parser = clap::value_parser!(u8).range(2..=3))]
-    dims: Vec<u8>,
-    /// Friction coefficients
-    #[arg(long, value_delimiter = ',', default_values_t = [0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0], value_parser = friction)]
-    friction: Vec<f64>,
-    /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all methods by default
-    #[arg(long, short)]
-    method: Vec<String>,
-    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
-    #[arg(long, default_value = "high")]
-    tier: Tier,
-    /// Folder for the results
+    /// Only scenes of this family: patch-2d, patch-3d, slip-2d, slip-3d; may be repeated
+    #[arg(long, value_parser = family)]
+    family: Vec<Family>,
+    /// Scenes per family, instead of the numbers of the suite
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    scenes: Option<u64>,
+    /// 20 000 scenes
+    #[arg(long, conflicts_with = "scenes")]
+    full: bool,
+    /// Only this scene of a family, in this process: its case file is written to the folder of the results
+    #[arg(long, value_name = "NUMBER", requires = "family")]
+    only: Option<u64>,
+    /// Folder for the findings and the report; scenes that have a finding there are not examined again
     #[arg(long, default_value = "results")]
     out: PathBuf,
-    /// Bodies worked on at the same time; times are recorded for 1 only
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: u16,
+    /// Scenes at the same time; by default as many as there are cores
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Part of the scenes, e.g. 2/8
+    #[arg(long, value_parser = shard)]
+    shard: Option<Shard>,
 }
 
-fn friction(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mu) if mu >= 0.0 && mu.is_finite() => Ok(mu),
-        _ => Err("a finite number >= 0".into()),
-    }
+/// What else there is.
+#[derive(Debug, clap::Subcommand)]
+enum Part {
+    /// Every method on random problems with one crack: how often each succeeds, by friction coefficient
+    Methods(robustness::Arguments),
 }
 
-/// Runs the study; false if a method claimed what does not hold, or failed with an error. Giving up is a result here.
+fn family(text: &str) -> Result<Family, String> {
+    let known = Family::ALL.into_iter().find(|f| f.name() == text);
+    known.ok_or_else(|| Family::ALL.map(Family::name).join(", "))
+}
+
+/// Runs the suite; false if the program was wrong, or the default method missed a scene with one answer.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let choices = methods_or_all(&arguments.method)?;
-    let sorted = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
-    };
-    let mut dims: Vec<usize> = arguments.dims.iter().map(|&d| usize::from(d)).collect();
-    dims.sort_unstable();
-    dims.dedup();
-    let plan = StressPlan {
-        seed: arguments.seed,
-        dims,
-        problems: arguments.problems as usize,
-        only: arguments.only.map(|index| index as usize),
-        friction: sorted(arguments.friction),
-        tier: arguments.tier,
-        jobs: usize::from(arguments.jobs),
-    };
-    prepare_output(&arguments.out)?;
-    let bar = Bar::new();
-    let trials = stress::run(&plan, &choices, &bar)?;
-    bar.finish();
-
-    let provenance = Provenance::collect(plan.jobs)
-        .with_option("jobs", plan.jobs.to_string())
-        .with_option("tier", plan.tier.to_string())
-        .with_option("seed", plan.seed.to_string())
-        .with_option("problems", plan.problems.to_string());
-    let rows = rows(&plan, &trials);
-    let mut bundle = robustness::bundle(&plan, &trials, &rows, &provenance)?;
-    if let Some(problem) = plan.only {
-        for &dim in &plan.dims {
-            let name = format!("problem-{dim}d-{problem}.toml");
-            bundle.add(name, stress::case_of(&plan, &choices, dim, problem)?)?;
-        }
+    if let Some(Part::Methods(methods)) = arguments.part {
+        return robustness::run(methods);
     }
-    bundle.commit(&arguments.out)?;
-    say(format_args!("{}", readable(&rows, "").terminal()));
+    prepare_output(&arguments.out)?;
+    if let (Some(number), Some(&family)) = (arguments.only, arguments.family.first()) {
+        return one(&arguments, family, number);
+    }
+    let wanted = |f: &Family| arguments.family.is_empty() || arguments.family.contains(f);
+    let count = |few: u64, many: u64| {
+        let own = if arguments.full { many } else { few };
+        arguments.scenes.unwrap_or(own)
+    };
+    let own = SCENES.into_iter().filter(|(f, ..)| wanted(f));
+    let suite = Suite {
+        seed: arguments.seed,
+        scenes: own.map(|(f, few, many)| (f, count(few, many))).collect(),
+    };
+    let program = std::env::current_exe().map_err(CliError::Program)?;
+    watch_for_interruption()?;
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    let how = Conduct {
+        program: &program,
+        jobs: arguments.jobs.map_or(cores, usize::from),
+        shard: (shard.number as u64, shard.of as u64),
+        stop: &STOP,
+    };
+    let bar = Bar::with_lines();
+    let findings = conduct(&suite, &arguments.out, how, &bar)?;
+    bar.finish();
+    let provenance = Provenance::collect(how.jobs).with_option("seed", suite.seed.to_string());
+    let bundle = report::bundle(&suite, &findings, &provenance)?;
+    bundle.commit_all(&arguments.out, "cases")?;
+    page::write(&arguments.out)?;
+    let causes = summary::causes(&findings);
+    say(format_args!("{}", readable(&causes, "").terminal()));
+    let invariances = summary::invariances(&findings);
+    say(format_args!("{}", readable(&invariances, "").terminal()));
+    let methods = summary::methods(&findings);
+    say(format_args!("{}", readable(&methods, "").terminal()));
+    let total: u64 = suite.scenes.values().sum();
     say(format_args!(
-        "{}\nResults: {}",
-        summary(&rows),
+        "{} of {total} scenes. Results: {}",
+        findings.len(),
         arguments.out.display()
     ));
-    for trial in trials.iter().filter(|t| t.is_wrong()) {
-        warn(format_args!(
-            "{}: {}D problem {} mu={} {}",
-            trial.verdict, trial.dim, trial.problem, trial.friction, trial.method
-        ));
+    for finding in findings
+        .iter()
+        .filter(|f| f.cause.is_some_and(|c| c.is_fault()))
+    {
+        let (name, number) = (finding.family.name(), finding.number);
+        let cause = finding.cause.map_or("", |c| c.name());
+        warn(format_args!("{cause}: {name} {number}: {}", finding.reason));
     }
-    Ok(stress::as_expected(&trials))
+    Ok(summary::as_expected(&findings))
 }
 
-fn summary(rows: &[RobustnessRow]) -> String {
-    let sum = |count: fn(&RobustnessRow) -> usize| rows.iter().map(count).sum::<usize>();
-    format!(
-        "{} runs: {} solved, {} approximate, {} gave up, {} refused, {} false claims, {} crashed",
-        sum(|row| row.problems),
-        sum(|row| row.solved),
-        sum(|row| row.approximate.iter().sum()),
-        sum(|row| row.gave_up),
-        sum(|row| row.refused),
-        sum(|row| row.false_claims),
-        sum(|row| row.crashed),
-    )
+/// One scene: its case file, and what is found.
+fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliError> {
+    let scene = scene(family, arguments.seed, number);
+    let mut bundle = crate::report::Bundle::new();
+    let file = format!("{}-{number}.toml", family.name());
+    bundle.add(file.clone(), scene.text.clone())?;
+    bundle.commit(&arguments.out)?;
+    let finding = examine(&scene);
+    for trial in &finding.trials {
+        let cause = trial.cause.map_or("", |c| c.name());
+        let (method, verdict) = (&trial.method, trial.verdict.to_string());
+        say(format_args!(
+            "{method:22} {verdict:24} {:6} {cause}",
+            trial.iterations
+        ));
+    }
+    for change in &finding.invariance {
+        let force = (change.force).map_or("other points".into(), |f| format!("{f:.1e}"));
+        let (name, energy) = (&change.transformation, change.energy);
+        say(format_args!(
+            "{name:34} forces {force:12} energy {energy:.1e}"
+        ));
+    }
+    let cause = finding.cause.map_or("right", |c| c.name());
+    say(format_args!(
+        "{cause} {}\nCase: {}",
+        finding.reason,
+        arguments.out.join(file).display()
+    ));
+    Ok(summary::as_expected(&[finding]))
 }

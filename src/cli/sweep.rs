@@ -9,14 +9,16 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, page, prepare_output, sweep};
+use crate::studies::stress;
 use crate::studies::sweep::compare::compare;
-use crate::studies::sweep::conduct::{Conduct, Shard, conduct};
+use crate::studies::sweep::conduct::{self, Conduct, Request, Shard, conduct};
+use crate::studies::sweep::measure::Bench;
 use crate::studies::sweep::merge::merge;
 use crate::studies::sweep::plan::Plan;
 use crate::studies::sweep::record::Limits;
 use crate::studies::sweep::record::{Origin, Record};
 use crate::studies::sweep::store::Store;
-use crate::studies::sweep::worker::serve;
+use crate::studies::worker::serve;
 
 /// The sweep that is run without a file: work and precision of all methods.
 const STANDARD: (&str, &str) = (
@@ -90,9 +92,12 @@ pub struct WorkArguments {
     /// Limit on the address space, in MB
     #[arg(long)]
     memory_mb: Option<u64>,
+    /// Examine scenes of `stress` instead of cells of `study`
+    #[arg(long)]
+    scenes: bool,
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+pub fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/');
     match parts.map(|(number, of)| (number.parse(), of.parse())) {
         Some((Ok(number), Ok(of))) if 1 <= number && number <= of => Ok(Shard { number, of }),
@@ -108,7 +113,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Set by an interruption.
-static STOP: AtomicBool = AtomicBool::new(false);
+pub static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Runs the verb `study`; false if cells are left, or in a whole sweep one claimed what does not hold or crashed.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
@@ -185,7 +190,7 @@ fn changes(a: &[Record], b: &[Record], out: Option<&Path>) -> Result<bool, CliEr
 
 /// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
 /// group: what comes within a second is the same one.
-fn watch_for_interruption() -> Result<(), CliError> {
+pub fn watch_for_interruption() -> Result<(), CliError> {
     let mut first: Option<Instant> = None;
     ctrlc::set_handler(move || match first {
         None => {
@@ -220,7 +225,14 @@ pub fn run_work(arguments: &WorkArguments) -> Result<bool, CliError> {
     ctrlc::set_handler(|| ()).map_err(CliError::Interrupt)?;
     end_with_parent().map_err(CliError::Work)?;
     let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
-    serve(input, output, arguments.memory_mb).map_err(CliError::Work)?;
+    let memory = arguments.memory_mb;
+    if arguments.scenes {
+        serve(input, output, memory, stress::conduct::answer).map_err(CliError::Work)?;
+    } else {
+        let mut bench = Bench::default();
+        let measured = |request: Request| conduct::answer(&mut bench, &request);
+        serve(input, output, memory, measured).map_err(CliError::Work)?;
+    }
     Ok(true)
 }
 

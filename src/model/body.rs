@@ -24,7 +24,7 @@ use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
 use crate::case::{Case, CaseError, Quadrature};
-use crate::model::boundary::{Prescribed, prescribed, region_nodes};
+use crate::model::boundary::{Prescribed, held_sides, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
@@ -112,7 +112,9 @@ impl Body {
             case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
         let (cracks, doubled) = place_cracks(case, &mut mesh)?;
-        let enrichment = Enrichment::new(&mesh, &cracks).map_err(|e| crack_error(case, &e))?;
+        let beside = held_sides(case, &mesh, &cracks);
+        let enrichment =
+            Enrichment::new(&mesh, &cracks, &beside).map_err(|e| crack_error(case, &e))?;
         let lame = case.lame();
         let integrator = CellIntegrator {
             mesh: &mesh,

@@ -3,8 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stickslip_xfem::contact::free_jumps::FreeJumps;
+use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::enrichment::cell_facets::pieces;
+use stickslip_xfem::geometry::{Point, add_scaled};
+use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
 
 use crate::case::{Amount, Case, Region};
@@ -20,11 +23,47 @@ pub struct Prescribed {
 
 /// Nodes of a region, sorted.
 pub fn region_nodes(integrator: &CellIntegrator<'_>, region: &Region) -> Vec<usize> {
-    let mut nodes = integrator.mesh.meeting_nodes(&region.sides);
+    nodes_of(integrator.mesh, region)
+}
+
+fn nodes_of(mesh: &Mesh, region: &Region) -> Vec<usize> {
+    let mut nodes = mesh.meeting_nodes(&region.sides);
     if let Some(condition) = &region.condition {
-        nodes.retain(|&node| condition.holds(&integrator.mesh.nodes[node]));
+        nodes.retain(|&node| condition.holds(&mesh.nodes[node]));
     }
     nodes
+}
+
+/// Places beside nodes that lie on a crack and on a support, on the side of the crack where the facets that the support
+/// holds are; none where it holds facets of both sides. The other side touches the support in a point, which holds nothing.
+pub fn held_sides(case: &Case, mesh: &Mesh, cracks: &[Crack]) -> BTreeMap<u32, Point> {
+    // By node: a facet below its first crack, and one above.
+    let mut found: BTreeMap<u32, [Option<Point>; 2]> = BTreeMap::new();
+    for support in &case.supports {
+        let held: BTreeSet<usize> = nodes_of(mesh, &support.on).into_iter().collect();
+        let sides = support.on.sides.iter();
+        for &facet in sides.flat_map(|side| mesh.sides.get(side).into_iter().flatten()) {
+            let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+            if !nodes.iter().all(|n| held.contains(n)) {
+                continue;
+            }
+            let part = 1.0 / nodes.len() as f64;
+            let centre = nodes
+                .iter()
+                .fold([0.0; 3], |sum, &n| add_scaled(&sum, part, &mesh.nodes[n]));
+            for &node in &nodes {
+                if let Some(crack) = cracks.iter().find(|c| c.phi[node] == 0.0) {
+                    let above = crack.distance(&centre) > 0.0;
+                    found.entry(node as u32).or_default()[usize::from(above)] = Some(centre);
+                }
+            }
+        }
+    }
+    let of_one_side = |(node, sides): (u32, [Option<Point>; 2])| match sides {
+        [Some(place), None] | [None, Some(place)] => Some((node, place)),
+        _ => None,
+    };
+    found.into_iter().filter_map(of_one_side).collect()
 }
 
 /// Name of a region in the tables: its sides joined by `+`.

@@ -1,15 +1,15 @@
 //! The files of the random robustness study.
 
 use super::{Bundle, Provenance, ReportError, figures, table};
-use crate::studies::stress::robustness::{RobustnessRow, failures};
-use crate::studies::stress::{StressPlan, Trial};
+use crate::studies::robustness::summary::{RobustnessRow, failures};
+use crate::studies::robustness::{RobustnessPlan, Trial};
 
 /// `robustness.*`, `failures.csv`, the figure, provenance.
 ///
 /// # Errors
 /// Those of [`table::add`] and of the figure.
 pub fn bundle(
-    plan: &StressPlan,
+    plan: &RobustnessPlan,
     trials: &[Trial],
     rows: &[RobustnessRow],
     provenance: &Provenance,

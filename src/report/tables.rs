@@ -3,6 +3,7 @@
 pub mod convergence;
 pub mod paper;
 pub mod ranks;
+pub mod robustness;
 pub mod runs;
 pub mod spaces;
 pub mod stress;
@@ -18,8 +19,9 @@ use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
+use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
 use crate::studies::spaces::patch::PatchRow;
-use crate::studies::stress::robustness::{FailureRow, RobustnessRow};
+use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::success::SuccessRow;
 
@@ -32,6 +34,8 @@ pub enum Chapter {
     Methods,
     /// Run time against error.
     Study,
+    /// Random scenes: what fails, and why.
+    Stress,
     /// Random problems.
     Robustness,
     /// Errors of meshes.
@@ -48,10 +52,11 @@ pub enum Chapter {
 
 impl Chapter {
     /// All, in the order of the page.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Paper,
         Self::Methods,
         Self::Study,
+        Self::Stress,
         Self::Robustness,
         Self::Accuracy,
         Self::Spaces,
@@ -66,6 +71,7 @@ impl Chapter {
             Self::Paper => "paper",
             Self::Methods => "methods",
             Self::Study => "study",
+            Self::Stress => "stress",
             Self::Robustness => "robustness",
             Self::Accuracy => "accuracy",
             Self::Spaces => "spaces",
@@ -81,6 +87,7 @@ impl Chapter {
             Self::Paper => "Founding paper",
             Self::Methods => "Methods on all cases",
             Self::Study => "Run time against error",
+            Self::Stress => "Numerical stability",
             Self::Robustness => "Robustness",
             Self::Accuracy => "Accuracy of the discretisation",
             Self::Spaces => "Contact spaces",
@@ -105,8 +112,13 @@ impl Chapter {
                  method: preparation and solution of all increments, K factored and condensed before; median of repetitions \
                  on one thread. A time counts beside a right answer only."
             }
+            Self::Stress => {
+                "Random scenes whose cracks lie where discretisations break: as good as on nodes, edges, sides, corners, tips and \
+                 each other, at distances from 1e-14 of a cell. Every one is run by every method, judged, and run again in other \
+                 units, elsewhere and with other names of sides and faces (`stickslip stress`)."
+            }
             Self::Robustness => {
-                "The same seeded random problems for every method (`stickslip stress`). Exact methods succeed where they \
+                "The same seeded random problems for every method (`stickslip stress methods`). Exact methods succeed where they \
                  solved the contact laws, approximate ones where they kept their claim."
             }
             Self::Accuracy => {
@@ -161,6 +173,12 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<sweep::TimeRow<'_>>(),
         Description::of::<ranks::ChangeRow<'_>>(),
     ];
+    let stress = vec![
+        Description::of::<CauseRow>(),
+        Description::of::<InvarianceRow>(),
+        Description::of::<MethodRow>(),
+        Description::of::<SceneRow>(),
+    ];
     let robustness = vec![
         Description::of::<RobustnessRow>(),
         Description::of::<FailureRow>(),
@@ -190,6 +208,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     of(Chapter::Paper, paper)
         .chain(of(Chapter::Methods, methods))
         .chain(of(Chapter::Study, study))
+        .chain(of(Chapter::Stress, stress))
         .chain(of(Chapter::Robustness, robustness))
         .chain(of(Chapter::Accuracy, accuracy))
         .chain(of(Chapter::Spaces, spaces))

@@ -21,7 +21,6 @@ mod nitsche;
 mod patch;
 mod penetration;
 mod published;
-mod random_scenes;
 mod robust;
 mod skips;
 mod spaces;

@@ -19,8 +19,8 @@ use stickslip::studies::paper::converged_reactions::SequenceRow;
 use stickslip::studies::paper::plate_series::{PenaltyRow, RefinementRow};
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
+use stickslip::studies::robustness::summary::FailureRow;
 use stickslip::studies::spaces::patch::{Loaded, PatchRow, State};
-use stickslip::studies::stress::robustness::FailureRow;
 use stickslip::studies::sweep::statistics::Timing;
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Status,

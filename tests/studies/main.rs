@@ -9,6 +9,7 @@ mod infsup;
 mod interchange;
 mod measure;
 mod random;
+mod robustness;
 mod stress;
 mod sweep;
 mod timings;

@@ -8,7 +8,7 @@ use stickslip::run::record::Results;
 use stickslip::run::registry::methods;
 use stickslip::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::stress::random::{Kind, Specimen, Stream};
+use stickslip::studies::robustness::random::{Kind, Specimen, Stream};
 
 const SETTINGS: Settings = Settings {
     tier: None,

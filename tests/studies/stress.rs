@@ -1,263 +1,221 @@
-//! The random robustness study: the same on any number of threads, complete, and every problem can be run again alone.
+//! The stress suite: scenes are right, causes are told, what is broken is found, made small, and not examined twice.
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::common::*;
-use stickslip::report::table::readable;
-use stickslip::report::{Provenance, robustness};
-use stickslip::run::record::RunKey;
-use stickslip::run::registry::methods;
 use stickslip::run::run_case::Quiet;
-use stickslip::run::verdict::Verdict;
-use stickslip::studies::stress::robustness as summed;
-use stickslip::studies::stress::{self, StressPlan, Trial};
-use stickslip_methods::{Status, Tier};
+use stickslip::studies::stress::conduct::{Conduct, FILE, Suite, conduct};
+use stickslip::studies::stress::examine::{DEFAULT, examine};
+use stickslip::studies::stress::finding::{Cause, Finding};
+use stickslip::studies::stress::{Family, Scene, scene, summary};
 
-const FRICTION: [f64; 3] = [0.0, 0.6, 5.0];
+/// Seed of the scenes here; those of reports are others.
+const SEED: u64 = 20_261_122;
 
-fn study() -> StressPlan {
-    StressPlan {
-        seed: 7,
-        dims: vec![2, 3],
-        problems: 6,
-        only: None,
-        friction: FRICTION.to_vec(),
-        tier: Tier::High,
-        jobs: 2,
-    }
+/// Findings on the first scenes of a family, in their order.
+fn found(family: Family, count: u64) -> Vec<Finding> {
+    let (next, findings) = (AtomicU64::new(0), Mutex::new(Vec::new()));
+    // Threads of their own: a worker of rayon that waits would begin another scene in the middle of one.
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            // Enough for the recursion of the reader of TOML in unoptimised frames.
+            let thread = std::thread::Builder::new().stack_size(16 << 20);
+            let work = || loop {
+                let k = next.fetch_add(1, Ordering::Relaxed);
+                if k >= count {
+                    break;
+                }
+                let finding = examine(&scene(family, SEED, k));
+                findings.lock().unwrap().push(finding);
+            };
+            thread.spawn_scoped(scope, work).expect("a thread");
+        }
+    });
+    let mut findings = findings.into_inner().unwrap();
+    findings.sort_by_key(|f| f.number);
+    findings
 }
 
-fn trials(study: &StressPlan, methods: &[&str]) -> Vec<Trial> {
-    stress::run(study, &choices(methods), &Quiet).unwrap_or_else(|e| panic!("{e}"))
+/// No fault, few refusals, and the default method solves what has one answer.
+#[track_caller]
+fn hold(findings: &[Finding]) {
+    let told: Vec<String> = (findings.iter())
+        .filter_map(|f| Some(format!("{} {} {}", f.number, f.cause?, f.reason)))
+        .collect();
+    let count = |cause: Cause| findings.iter().filter(|f| f.cause == Some(cause)).count();
+    assert!(summary::as_expected(findings), "{told:#?}");
+    assert!(20 * count(Cause::Refused) <= findings.len(), "{told:#?}");
 }
 
-/// Times are NaN, which is unequal to itself.
-fn shown(trials: &[Trial]) -> Vec<String> {
-    trials.iter().map(|t| format!("{t:?}")).collect()
-}
-
-/// Goal: no method claims what does not hold, and every run is counted once.
+/// Source: uniform stress. Goal: what is solved is right, in whatever units, wherever the body lies, and errors name a place
+/// in the file. Tolerance: 1e-9 of the largest stress, displacement and of the energy, far above rounding and far below a
+/// fault.
 #[test]
-fn every_run_of_every_method_is_counted_and_no_claim_is_false() {
-    let names: Vec<&str> = methods().iter().map(|m| m.name).collect();
-    let study = study();
-    let trials = trials(&study, &names);
-    assert_eq!(trials.len(), 2 * 6 * FRICTION.len() * names.len());
-    let wrong: Vec<&Trial> = trials.iter().filter(|t| t.is_wrong()).collect();
-    assert!(
-        wrong.is_empty() && stress::as_expected(&trials),
-        "{wrong:#?}"
-    );
-    let rows = summed::rows(&study, &trials);
-    assert_eq!(rows.len(), 2 * FRICTION.len() * names.len());
-    for row in &rows {
-        let approximate = row.approximate.iter().sum::<usize>();
-        let ends = row.solved + approximate + row.gave_up + row.refused;
-        assert_eq!((row.problems, ends), (6, 6), "{row:?}");
-        assert_eq!(row.gave_up_by.iter().sum::<usize>(), row.gave_up, "{row:?}");
+fn random_plane_bodies_in_uniform_stress_are_solved_as_the_closed_form_says() {
+    hold(&found(Family::Patch2d, 36));
+}
+
+/// As in 2D.
+#[test]
+fn random_solids_in_uniform_stress_are_solved_as_the_closed_form_says() {
+    hold(&found(Family::Patch3d, 3));
+}
+
+/// Goal: with friction the energy identity holds, exact methods agree, and nothing depends on units and place.
+#[test]
+fn random_plane_bodies_with_friction_keep_their_energy() {
+    hold(&found(Family::Slip2d, 18));
+}
+
+/// Goal: a scene can be made again alone, to the last bit, and every category has its turn.
+#[test]
+fn scenes_are_reproducible_and_take_turns() {
+    for family in Family::ALL {
+        let kinds = if family.dim() == 2 { 18 } else { 11 };
+        let mut categories = Vec::new();
+        for k in 0..kinds {
+            let [first, again] = [0, 1].map(|_| scene(family, 7, k));
+            assert_eq!(first, again);
+            assert_ne!(first.text, scene(family, 8, k).text);
+            categories.push(first.category);
+        }
+        categories.sort();
+        categories.dedup();
+        assert_eq!(categories.len() as u64, kinds);
     }
-    // The problems must be worth solving: closed and open points, stick and slip.
-    let b_newton = trials
+}
+
+/// A scene of cracks that end inside, with branch functions or not: right as it is.
+fn sound() -> Scene {
+    scene(Family::Patch2d, SEED, 0)
+}
+
+fn changed(from: &str, to: &str) -> Finding {
+    let scene = sound();
+    assert!(scene.text.contains(from), "{}", scene.text);
+    let text = scene.text.replace(from, to);
+    examine(&Scene { text, ..scene })
+}
+
+/// Goal: the suite itself sees a wrong answer, an error without a place, a refusal and a body that nothing holds, each with
+/// its cause: what is planted in the case stands for a fault of the program.
+#[test]
+fn what_is_planted_is_found_with_its_cause() {
+    assert_eq!(examine(&sound()).cause, None);
+    // Friction that does not stick: the closed form of sticking cracks is missed.
+    let text = sound().text;
+    let line = text.lines().find(|l| l.starts_with("friction")).unwrap();
+    let slippery = changed(line, "friction = 0.0");
+    assert_eq!(
+        slippery.cause,
+        Some(Cause::WrongPatch),
+        "{}",
+        slippery.reason
+    );
+    let refused = changed("[material]", "[colour]\n[material]");
+    assert_eq!(refused.cause, Some(Cause::Refused), "{}", refused.reason);
+    assert!(
+        refused.reason.starts_with("scene.toml:"),
+        "{}",
+        refused.reason
+    );
+    let beyond = Scene {
+        beyond: true,
+        text: text.replace("[material]", "[colour]\n[material]"),
+        ..sound()
+    };
+    assert_eq!(examine(&beyond).cause, Some(Cause::Beyond));
+}
+
+/// Goal: every method is tried on every scene, and the default one is first.
+#[test]
+fn every_method_has_its_trial() {
+    let finding = examine(&sound());
+    assert_eq!(finding.trials[0].method, DEFAULT);
+    let known: Vec<&str> = stickslip::run::registry::methods()
         .iter()
-        .filter(|t| t.method == METHOD && t.friction == 0.6);
-    let mixed = b_newton.fold([0; 3], |sum: [usize; 3], t| {
-        std::array::from_fn(|k| sum[k] + t.statuses[k])
-    });
+        .map(|m| m.name)
+        .collect();
+    assert_eq!(finding.trials.len(), known.len());
     assert!(
-        mixed.iter().all(|&n| 20 * n > mixed.iter().sum()),
-        "{mixed:?}"
+        finding
+            .trials
+            .iter()
+            .all(|t| known.contains(&t.method.as_str()))
     );
-    let failed = trials.iter().filter(|t| t.verdict.is_failure()).count();
-    assert_eq!(summed::failures(&study, &trials).len(), failed);
+    assert!(finding.invariance.iter().any(|c| !c.exact) && finding.invariance.len() >= 9);
 }
 
-/// Goal: a failure found in a study is found again by its number alone, and in its case file by `stickslip run`, also by a
-/// method that asks for more of a body than the others.
+/// Goal: a run of the program ends in its files; what was examined is not examined again; a finding that was changed by
+/// hand, or of another seed, is refused.
 #[test]
-fn a_problem_taken_alone_gives_the_same_bits() {
-    for methods in [&["b-newton", "penalty"][..], &["nitsche"]] {
-        let (whole, problem) = (study(), 5);
-        let mut expected = trials(&whole, methods);
-        expected.retain(|t| t.problem == problem);
-        let alone = StressPlan {
-            only: Some(problem),
-            problems: 1,
-            ..study()
+fn findings_are_kept_sealed_and_gone_on_with() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let (program, stop) = (
+        assert_cmd::cargo::cargo_bin("stickslip"),
+        AtomicBool::new(false),
+    );
+    let run = |seed: u64, scenes: u64| {
+        let suite = Suite {
+            seed,
+            scenes: BTreeMap::from([(Family::Patch2d, scenes)]),
         };
-        // Nitsche's method counts the factorisation of its constant with the problem that comes first.
-        if methods.len() > 1 {
-            assert_eq!(shown(&trials(&alone, methods)), shown(&expected));
-        }
-        for dim in [2, 3] {
-            let text = stress::case_of(&whole, &choices(methods), dim, problem).unwrap();
-            let results = run(&parse(&text), methods);
-            let own: Vec<&Trial> = expected.iter().filter(|t| t.dim == dim).collect();
-            assert_eq!(results.runs.len(), own.len());
-            for trial in own {
-                let same =
-                    |key: &RunKey| key.method == trial.method && key.friction == trial.friction;
-                let row = results.runs.iter().find(|r| same(&r.key)).unwrap();
-                let found = (row.natural_map, row.iterations, row.points, &row.verdict);
-                let alone = (
-                    trial.natural_map,
-                    trial.iterations,
-                    trial.points,
-                    &trial.verdict,
-                );
-                assert_eq!(found, alone);
-            }
-        }
-    }
+        let how = Conduct {
+            program: &program,
+            jobs: 2,
+            shard: (1, 1),
+            stop: &stop,
+        };
+        conduct(&suite, &out, how, &Quiet)
+    };
+    let two = run(3, 2).unwrap();
+    let three = run(3, 3).unwrap();
+    // Also the time it took: it was not examined again.
+    assert_eq!(two[..], three[..2]);
+    assert!(run(4, 1).unwrap_err().to_string().contains("another seed"));
+    let file = out.join(FILE);
+    let text = std::fs::read_to_string(&file).unwrap();
+    let forged = text.replacen("\"category\":\"", "\"category\":\"x", 1);
+    assert_ne!(text, forged);
+    std::fs::write(&file, forged).unwrap();
+    let error = run(3, 3).unwrap_err().to_string();
+    assert!(
+        error.contains("line 2: not what was written there"),
+        "{error}"
+    );
+    // A line that was cut off is examined again.
+    std::fs::write(&file, &text[..text.len() - 20]).unwrap();
+    let again = run(3, 3).unwrap();
+    assert_eq!(again.len(), 3);
+    assert_eq!(again[0], three[0]);
 }
 
-/// Goal: any number of threads writes the same bytes, apart from the times.
+/// Goal: a case that fails is made smaller as long as it fails for the same cause, and stands in the report.
 #[test]
-fn the_program_writes_the_same_files_whatever_the_threads() {
+fn a_failing_scene_is_made_small() {
     let dir = tempfile::tempdir().unwrap();
-    let [one, two, three] = ["1", "2", "3"].map(|jobs| {
-        let study = [
-            "stress",
-            "--problems",
-            "5",
-            "--seed",
-            "3",
-            "--friction",
-            "0.3,5",
+    let (out, _) = {
+        let arguments = [
+            "stress", "--family", "patch-2d", "--scenes", "12", "--seed", "5", "--jobs", "2",
         ];
-        let methods = ["--method", "b-newton", "--method", "penalty:normal=1e3"];
-        let arguments = [&study[..], &methods, &["--jobs", jobs, "--out", jobs]].concat();
-        assert!(ends_with(0, &arguments, dir.path()).1.is_empty());
-        let text = |(name, bytes)| (name, String::from_utf8(bytes).unwrap());
-        let files = files(&dir.path().join(jobs)).into_iter();
-        files.map(text).collect::<BTreeMap<_, _>>()
-    });
-    for file in [
-        "robustness.csv",
-        "failures.csv",
-        "robustness.md",
-        "robustness.tex",
-        "figures/robustness.svg",
-    ] {
-        assert_eq!(two[file], three[file], "{file}");
-        assert!(file == "robustness.csv" || two[file] == one[file], "{file}");
-    }
-    let records = |files: &BTreeMap<String, String>| csv_rows(&files["robustness.csv"]);
-    for (mut one, mut two) in records(&one).into_iter().zip(records(&two)) {
-        let [alone, beside] = [&mut one, &mut two].map(|row| row.remove("solve_s_median").unwrap());
-        assert!(alone.parse::<f64>().unwrap() > 0.0 && beside == "NaN");
-        assert_eq!(one, two);
-    }
-    assert!(one["robustness.csv"].contains("penalty[normal=1e3]"));
-    assert!(one["figures/robustness.svg"].contains("own laws kept [%]"));
-}
-
-#[test]
-fn a_problem_run_alone_comes_with_its_case_file() {
-    let dir = tempfile::tempdir().unwrap();
-    let problem = ["stress", "--only", "9", "--dim", "2", "--friction", "0.3"];
-    let arguments = [&problem[..], &["--method", "b-newton"]].concat();
-    ends_with(0, &arguments, dir.path());
-    let case = std::fs::read_to_string(dir.path().join("results/problem-2d-9.toml")).unwrap();
-    assert_eq!(parse(&case).sweep.friction, [0.3]);
-}
-
-#[test]
-fn bad_arguments_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    for bad in [
-        ["--friction", "-1"],
-        ["--friction", "nan"],
-        ["--dim", "4"],
-        ["--problems", "0"],
-        ["--method", "nobody"],
-        ["--tier", "perfect"],
-    ] {
-        let (shown, complaints) = ends_with(2, &["stress", bad[0], bad[1]], dir.path());
-        assert!(shown.is_empty() && !complaints.is_empty(), "{bad:?}");
-    }
-    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
-}
-
-/// Goal: the exit code tells a wrong claim and an error from giving up.
-#[test]
-fn false_claims_and_crashes_are_failures_and_giving_up_is_a_result() {
-    let mut trial = trials(
-        &StressPlan {
-            problems: 1,
-            dims: vec![2],
-            ..study()
-        },
-        &[METHOD],
-    )
-    .swap_remove(0);
-    for (verdict, expected) in [
-        (Verdict::Solved, true),
-        (Verdict::GaveUp(Status::Stalled), true),
-        (Verdict::Refused("no".into()), true),
-        (Verdict::FalseClaim, false),
-        (Verdict::Crashed("oh".into()), false),
-        // Nobody limits a trial.
-        (Verdict::OutOfMemory, false),
-    ] {
-        trial.verdict = verdict;
-        assert_eq!(stress::as_expected(std::slice::from_ref(&trial)), expected);
-    }
-}
-
-/// Goal: problems that a method declines are neither successes nor failures, and a study of refusals only is still written.
-#[test]
-fn refused_problems_have_no_rate() {
-    let study = StressPlan {
-        problems: 1,
-        dims: vec![2],
-        friction: vec![0.3],
-        ..study()
+        let (_, shown, complaints) = stickslip(&arguments, dir.path());
+        (shown, complaints)
     };
-    let mut trials = trials(&study, &[METHOD]);
-    trials[0].verdict = Verdict::Refused("no".into());
-    let rows = summed::rows(&study, &trials);
-    assert_eq!((rows.len(), rows[0].refused), (1, 1));
-    assert!(rows[0].success.iter().all(|rate| rate.is_nan()));
-    assert!(summed::failures(&study, &trials).is_empty());
-    let bundle = robustness::bundle(&study, &trials, &rows, &Provenance::collect(1)).unwrap();
-    assert!(bundle.get("robustness.csv").is_some());
-    assert!(bundle.get("figures/robustness.svg").is_none());
-}
-
-/// Goal: laws of a method's own do not count as the contact laws, and what they are worth shows.
-#[test]
-fn exact_methods_are_rated_by_solutions_and_approximate_ones_by_kept_claims() {
-    let study = StressPlan {
-        problems: 6,
-        dims: vec![2],
-        friction: vec![0.3],
-        ..study()
-    };
-    let verdicts = [
-        Verdict::Solved,
-        Verdict::Approximate(Some(Tier::Mid)),
-        Verdict::Approximate(Some(Tier::Low)),
-        Verdict::Approximate(None),
-        Verdict::Approximate(None),
-        Verdict::GaveUp(Status::Stalled),
-    ];
-    let mut rows = Vec::new();
-    for method in [METHOD, "penalty"] {
-        let mut trials = trials(&study, &[method]);
-        assert_eq!(trials.len(), verdicts.len());
-        for (trial, verdict) in trials.iter_mut().zip(&verdicts) {
-            trial.verdict = verdict.clone();
-        }
-        rows.extend(summed::rows(&study, &trials));
-    }
-    for (row, kept) in rows.iter().zip([1, 5]) {
-        assert_eq!((row.solved, row.approximate), (1, [0, 1, 1, 2]), "{row:?}");
-        assert_eq!(row.success[0], kept as f64 / 6.0, "{row:?}");
-    }
-    let table = readable(&rows, "");
-    let place = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
-    let places = ["rate of", "success", "laws to no tier"].map(place);
-    let read = |row: usize| places.map(|column| table.rows[row][column].clone());
-    assert_eq!(read(0), ["solved", "16.7", "2"]);
-    assert_eq!(read(1), ["kept", "83.3", "2"]);
+    assert!(out.contains("12 of 12 scenes"), "{out}");
+    let results = dir.path().join("results");
+    let rows = csv_rows(&std::fs::read_to_string(results.join("stress_scenes.csv")).unwrap());
+    let refused = rows
+        .iter()
+        .find(|r| r["cause"] == "beyond the mesh")
+        .unwrap();
+    let small = std::fs::read_to_string(results.join(&refused["minimal"])).unwrap();
+    let number: u64 = refused["number"].parse().unwrap();
+    assert!(small.len() < scene(Family::Patch2d, 5, number).text.len() + 400);
+    // It is a case like any other.
+    let file = results.join(&refused["minimal"]).display().to_string();
+    let (_, told) = ends_with(2, &["check", &file], dir.path());
+    assert!(told.contains("error: "), "{told}");
 }

@@ -60,11 +60,16 @@ pub struct Enrichment {
 }
 
 impl Enrichment {
-    /// Enriches the nodes around the given arms; none of them may run along cell facets.
+    /// Enriches the nodes around the given arms; none of them may run along cell facets. `beside`: places next to nodes on a
+    /// crack, on the side of it whose piece is the node's own; by default that is side 1.
     ///
     /// # Errors
     /// A crack wholly outside, along cell facets in part, or one that leaves a cell no clean parts.
-    pub fn new(mesh: &Mesh, cracks: &[Crack]) -> Result<Self, EnrichmentError> {
+    pub fn new(
+        mesh: &Mesh,
+        cracks: &[Crack],
+        beside: &BTreeMap<u32, Point>,
+    ) -> Result<Self, EnrichmentError> {
         let trace = Trace::new(mesh, cracks).map_err(|e| match e {
             TraceError::AlongEdge(arm, at) => EnrichmentError::Mixed {
                 crack: cracks[arm].number,
@@ -97,7 +102,7 @@ impl Enrichment {
                 });
             }
         }
-        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions);
+        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions, beside);
         let standard = mesh.nodes.len();
         let plain = (0..standard as u32).map(|node| Function {
             node,

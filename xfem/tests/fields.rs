@@ -31,7 +31,7 @@ impl Body {
         let lines = corner.iter().zip(cells).map(line).collect();
         let mesh = box_mesh(&GridSpec::new(lines)).unwrap();
         let cracks = vec![Crack::new(0, shape, tip, &mesh)];
-        let enrichment = Enrichment::new(&mesh, &cracks).unwrap();
+        let enrichment = Enrichment::new(&mesh, &cracks, &Default::default()).unwrap();
         Body {
             mesh,
             cracks,

@@ -5,7 +5,7 @@ use super::runs::distinct;
 use crate::report::number::{fixed, value};
 use crate::report::plot::{Cell, HeatMap, is_exact, italic, plain, rank};
 use crate::report::{Bundle, ReportError};
-use crate::studies::stress::robustness::RobustnessRow;
+use crate::studies::robustness::summary::RobustnessRow;
 
 /// What it is.
 pub static KIND: Kind = Kind {

@@ -1,80 +1,108 @@
-//! The random robustness study: success rates with their confidence intervals, and every failure.
+//! The stress suite: causes, invariances, methods, scenes.
 
 use super::words::*;
-use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::stress::robustness::{FailureRow, RobustnessRow};
+use crate::report::table::{Column, Row, columns};
+use crate::studies::stress::finding::Cause;
+use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 
-impl Row for RobustnessRow {
-    const NAME: &'static str = "robustness";
-    const TITLE: &'static str =
-        "Random problems: success rate of every method by dimension and friction coefficient";
-    const QUESTION: &'static str = "Which method fails where, how often, and how?";
-    const NOTES: &'static str = "Problems are the same for every method and friction coefficient; every one starts from rest. A run of an exact method succeeds if it is `solved`; a run of an approximate method (penalty, barrier, Nitsche) if it keeps its claim, `solved` or `approximate`: how well the contact laws hold then stands in the columns `approximate_…`. Medians, quantiles and shares of points are those of the successful runs.";
+const FAMILY: &str = "`patch-2d`, `patch-3d`: uniform compression, all cracks stick, the answer is known; `slip-2d`, `slip-3d`: pushed and sheared with friction";
+const CAUSE: &str = "`right`, or the worst that was found";
+const MINIMAL: &str =
+    "smallest case found that fails for the same cause, as a file beside this table";
+
+fn name(cause: Option<Cause>) -> String {
+    cause.map_or("right", Cause::name).into()
+}
+
+impl Row for CauseRow {
+    const NAME: &'static str = "stress_causes";
+    const TITLE: &'static str = "Random scenes by what became of them";
+    const QUESTION: &'static str = "How often does the program fail, and why?";
+    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells).";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "family" "" .key() = r.family.name(), FAMILY;
+            "cause" "" .key() = name(r.cause), CAUSE;
+            "scenes" "" .shown() = r.scenes, "how many";
+            "share" "–" .significant(4).percent(2) = r.share, "of all scenes of the family";
+            "example" "" .shown() = r.example, "number of one of them: `stickslip stress --family FAMILY --only NUMBER` runs it again";
+            "minimal" "" .shown() = r.minimal.clone().unwrap_or_default(), MINIMAL;
+        }
+    }
+}
+
+impl Row for InvarianceRow {
+    const NAME: &'static str = "stress_invariances";
+    const TITLE: &'static str = "What leaves the answer as it is, and to how many digits";
+    const QUESTION: &'static str =
+        "Does the answer depend on units, place, or on what sides and faces are called?";
+    const NOTES: &'static str = "Digits: change of pressure and shear at the contact points, over the largest force, of scenes that are right and have one answer. Rounded coordinates and other names of sides, faces and axes may make the program choose other contact points, or the other of two cells that share a tip: such answers differ by the error of the mesh, which the change of energy measures.";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "dimension" "" .key().named("dim") = r.dimension, DIMENSION;
+            "transformation" "" .key() = r.transformation.clone(), "what was done to the case";
+            "exact" "" .shown() = if r.exact { "exact" } else { "rounds or renames" }, "`exact`: every number of the case is what it was, or a power of two times that; the others round coordinates, of which a crack 1e-14 of a cell beside a node keeps little, or give sides, faces and axes other names";
+            "scenes" "" .shown() = r.scenes, "scenes it was tried on";
+            "same_points" "" .shown() = r.same, "of these, with contact points in the same places";
+            "kept" "" .shown().named("9 digits") = r.kept, "of these, with at least 9 digits kept";
+            "digits_median" "–" .shown().significant(3).named("digits, median") = r.median, "digits that half of the scenes with the same points kept at least";
+            "digits_fewest" "–" .shown().significant(3).named("fewest") = r.fewest, "digits kept by the worst of them";
+            "energy" "–" .shown().significant(2).power(2) = r.energy, "largest change of strain energy and dissipation of any scene, over their sum";
+            "worst" "" .shown() = r.worst.clone(), "that scene";
+        }
+    }
+}
+
+impl Row for MethodRow {
+    const NAME: &'static str = "stress_methods";
+    const TITLE: &'static str = "Random scenes: every method, and why it lost";
+    const QUESTION: &'static str = "Which method fails on which kind of body, and for what cause?";
+    const NOTES: &'static str = "An exact method is done where its answer is `solved` to the tier `high`, asked for at 1e-12; an approximate one where it keeps its claim. Scenes are those with an answer; those that a method declines are left out.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
             "dimension" "" .key().named("dim") = r.dimension, DIMENSION;
             "method" "" .key() = r.method.clone(), METHOD;
-            "friction" "–" .key().named("μ") = r.friction, FRICTION;
-            "tier" "" = r.tier.to_string(), TIER;
-            "problems" "" .shown() = r.problems, "problems posed";
-            "solved" "" = r.solved, "the contact laws hold as claimed";
-            "approximate_high" "" = r.approximate[0], "the method's own laws hold as claimed, and the contact laws to the tier `high`";
-            "approximate_mid" "" = r.approximate[1], "the same for `mid`";
-            "approximate_low" "" = r.approximate[2], "the same for `low`";
-            "approximate_none" "" .named("laws to no tier") = r.approximate[3], "the method's own laws hold as claimed, the contact laws to no tier";
-            "gave_up" "" .shown() = r.gave_up, "ended without a claim; the next five columns tell why";
-            "max_iterations" "" = r.gave_up_by[0], "of these, at the limit of iterations";
-            "stalled" "" = r.gave_up_by[1], "without progress";
-            "singular_tangent" "" = r.gave_up_by[2], "at a matrix that cannot be factored";
-            "mechanism" "" = r.gave_up_by[3], "at a body that is held by nothing";
-            "diverged" "" = r.gave_up_by[4], "with numbers that grew without bound";
-            "false_claims" "" .shown() = r.false_claims, "claims that the judge refuted";
-            "crashed" "" .shown() = r.crashed, "failed with an error, `out-of-memory` among them";
-            "refused" "" .shown() = r.refused, "problems the method declines; left out of the rate";
-            "success" "" .named("rate of") = if r.exact { "solved" } else { "kept" }, "what the rate counts: `solved`, or for approximate methods claims `kept`, which are those solved and all approximate ones";
-            "success_rate" "–" .significant(4).named("success").percent(1) = r.success[0], "successes / (problems − refused)";
-            "success_low" "–" .significant(4).named("from").percent(1) = r.success[1], "lower end of Wilson's 95 % confidence interval of the rate";
-            "success_high" "–" .significant(4).named("to").percent(1) = r.success[2], "upper end";
-            "iterations_median" "" .named("iterations, median") = r.iterations[0], "median of the iterations of the successful runs";
-            "iterations_p90" "" = r.iterations[1], "90 % of the runs need no more";
-            "iterations_max" "" = r.iterations[2], "largest number";
-            "factorisations_median" "" = r.factorisations, "factorisations inside the iteration, dense or sparse";
-            "solve_s_median" "s" .time() = r.solve_s, "time of the method on the condensed problem; `NaN` with `--jobs` above 1";
-            "natural_map_median" "–" .residual() = r.natural_map, NATURAL_MAP;
-            "unique_share" "–" .significant(4) = r.unique_share, "share of the problems with min (W_nn − μ |W_nt|) > 0 over the contact points: each point alone has exactly one solution. Below 1 several solutions may exist";
-            "open_share" "–" .significant(4) = r.shares[0], "share of open points";
-            "stick_share" "–" .significant(4) = r.shares[1], "share of sticking points";
-            "slip_share" "–" .significant(4) = r.shares[2], "share of slipping points, without friction of all closed ones";
+            "kind" "" .shown() = if r.exact { "exact" } else { "approximate" }, "whether the method's limit are the contact laws";
+            "scenes" "" .shown() = r.scenes, "scenes tried";
+            "done" "" .shown() = r.done, "of these, done what the method is for";
+            "false_claims" "" .shown() = r.losses[0], "claims that the judge refuted";
+            "factorisation" "" .shown() = r.losses[1], "a factorisation failed with an error";
+            "several_solutions" "" .shown() = r.losses[2], "lost where two exact methods found different answers that both hold";
+            "singular_tangent" "" .shown() = r.losses[3], "a matrix of the method cannot be factored";
+            "cycling" "" .shown() = r.losses[4], "the violation of the contact laws repeats, with a period of up to 12 iterations";
+            "diverged" "" .shown() = r.losses[5], "the numbers grew without bound";
+            "floor" "" .shown() = r.losses[6], "came to rest within 1000 times the tolerance asked for, 1e-12";
+            "slow" "" .shown() = r.losses[7], "still converges at the limit of iterations: the violation halved over their last half";
+            "stalled" "" .shown() = r.losses[8], "stopped for no cause named here";
+            "iterations_median" "" .shown().named("iterations, median") = r.iterations[0], "median where done";
+            "iterations_max" "" .shown().named("largest") = r.iterations[1], "largest number where done";
+            "friction_max" "–" .shown().significant(3).named("largest μ") = r.friction, "largest friction coefficient at which it was done";
+            "sway_max" "–" .shown().significant(2).named("largest sway") = r.sway, "largest condition, as `sway` of `runs.csv`, at which it was done";
         }
     }
 }
 
-impl Row for FailureRow {
-    const NAME: &'static str = "failures";
-    const TITLE: &'static str = "Runs of the robustness study that did not succeed";
-    const QUESTION: &'static str =
-        "Which problem defeats which method, and how can it be run again?";
-    const NOTES: &'static str = "`stickslip stress --seed SEED --dim DIMENSION --only PROBLEM` runs the problem again and writes it as a case file `problem-….toml`, which `stickslip run` solves too.";
+impl Row for SceneRow {
+    const NAME: &'static str = "stress_scenes";
+    const TITLE: &'static str = "Scenes that are not right";
+    const QUESTION: &'static str = "What remains broken, and how can it be run again?";
+    const NOTES: &'static str = "`stickslip stress --seed SEED --family FAMILY --only NUMBER` runs the scene again and writes its case file.";
     const READABLE: bool = false;
-    const ORDER: Order<Self> = Order::By(|a, b| {
-        (a.dimension, a.problem)
-            .cmp(&(b.dimension, b.problem))
-            .then(a.friction.total_cmp(&b.friction))
-            .then_with(|| a.method.cmp(&b.method))
-    });
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "seed" "" = r.seed, "seed of the study";
-            "dimension" "" .shown() = r.dimension, DIMENSION;
-            "problem" "" .shown() = r.problem, "number of the problem, from 0";
-            "friction" "–" .shown() = r.friction, FRICTION;
-            "method" "" .shown() = r.method.clone(), METHOD;
-            "verdict" "" .shown() = &r.verdict, VERDICT;
-            "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
-            "unique" "" = r.unique, "`true` if each contact point alone has exactly one solution";
-            "points" "" .shown() = r.points, POINTS;
+            "seed" "" = r.seed, "seed of the suite";
+            "family" "" .shown() = r.family.name(), FAMILY;
+            "number" "" .shown() = r.number, "number in the family, from 0";
+            "category" "" .shown() = r.category.clone(), "how its cracks lie";
+            "cause" "" .shown() = r.cause.name(), CAUSE;
+            "reason" "" .shown() = r.reason.clone(), "in one line";
+            "error" "–" .residual() = r.error, "largest error of the default method against the closed form, or of the energy identity";
+            "seconds" "s" .time() = r.seconds, "time of the scene with all methods and transformations";
+            "minimal" "" .shown() = r.minimal.clone().unwrap_or_default(), MINIMAL;
         }
     }
 }

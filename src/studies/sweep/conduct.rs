@@ -4,14 +4,47 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use serde::{Deserialize, Serialize};
+
 use super::analysis::is_honest;
-use super::measure::Repeats;
+use super::cell::Cell;
+use super::measure::{Bench, Repeats, measure};
 use super::plan::Task;
 use super::record::{Found, Limits, Origin, Record, SCHEMA};
 use super::store::{Store, StoreError};
-use super::worker::{Answer, Request, Worker, WorkerError};
 use crate::run::choice::Choice;
 use crate::run::run_case::Progress;
+use crate::run::verdict::Verdict;
+use crate::studies::worker::{Worker, WorkerError};
+
+/// What makes the program a worker that measures cells.
+const WORK: &[&str] = &["work"];
+
+/// One cell to measure.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Request {
+    /// The cell.
+    pub cell: Cell,
+    /// Its case file.
+    pub text: String,
+    /// How often to repeat it.
+    pub repeats: Repeats,
+}
+
+/// The worker's side: measures a cell. The verdict tells that the case, its discretisation or its method cannot be used.
+///
+/// # Errors
+/// As a verdict.
+pub fn answer(bench: &mut Bench, request: &Request) -> Result<Box<Record>, Verdict> {
+    let Request {
+        cell,
+        text,
+        repeats,
+    } = request;
+    let choice = Choice::parse(&cell.method).map_err(Into::into);
+    let measured = choice.and_then(|choice| measure(bench, cell, text, &choice, *repeats));
+    measured.map(Box::new).map_err(Into::into)
+}
 
 /// How the cells are measured.
 #[derive(Debug, Clone, Copy)]
@@ -133,7 +166,7 @@ pub fn conduct(
     std::thread::scope(|scope| {
         for _ in 0..how.jobs {
             scope.spawn(|| {
-                let mut worker = Worker::new(how.program, how.limits);
+                let mut worker = Worker::new(how.program, WORK, how.limits);
                 while !how.stop.load(Ordering::SeqCst) && !failed() {
                     let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
                         break;
@@ -179,9 +212,10 @@ fn one(
         text: task.text.to_string(),
         repeats,
     };
-    let mut record = match worker.ask(&request)? {
-        Answer::Measured(record) => *record,
-        Answer::Ended(verdict) => {
+    let answer = worker.ask::<_, Result<Box<Record>, Verdict>>(&request)?;
+    let mut record = match answer.and_then(|answer| answer) {
+        Ok(record) => *record,
+        Err(verdict) => {
             let choice = Choice::parse(&task.cell.method).ok();
             let label = choice.as_ref().map_or(&task.cell.method, |c| &c.label);
             let exact = choice.as_ref().is_some_and(|c| c.method.exact);

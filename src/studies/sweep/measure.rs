@@ -15,7 +15,6 @@ use std::time::Instant;
 use stickslip_methods::{ContactState, Increment, Load, PointStatus};
 
 use super::cell::Cell;
-use super::memory;
 use super::record::{Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent};
 use super::statistics::Timing;
 use crate::model::field_mesh::field_step;
@@ -26,6 +25,7 @@ use crate::run::load_path::{LoadPathRun, PathEnd};
 use crate::run::record::RunRow;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::convergence::{closed_form, followed};
+use crate::studies::memory;
 use reference::solver_error;
 use scene::Scene;
 

@@ -32,7 +32,7 @@ use crate::case::{self, Case, ContactSpace};
 use crate::model::body::Needs;
 use crate::run::choice::Choice;
 use crate::run::run_case::friction_values;
-use crate::studies::stress::{StressError, case_numbered};
+use crate::studies::robustness::{RobustnessError, case_numbered};
 
 /// A sweep: its cells, sorted by id.
 #[derive(Debug, Clone)]
@@ -64,7 +64,7 @@ pub enum PlanError {
     File(#[from] CaseError),
     /// Random problems.
     #[error(transparent)]
-    Random(#[from] StressError),
+    Random(#[from] RobustnessError),
 }
 
 impl Plan {

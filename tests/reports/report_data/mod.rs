@@ -9,7 +9,7 @@ use stickslip::model::field_mesh::*;
 use stickslip::model::quantities::{PointState, Quantity};
 use stickslip::run::record::*;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::stress::robustness::RobustnessRow;
+use stickslip::studies::robustness::summary::RobustnessRow;
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];

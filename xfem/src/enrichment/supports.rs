@@ -30,12 +30,13 @@ pub type Pieces = BTreeMap<u32, Vec<Vec<Place>>>;
 /// Nodes of a facet in rising order; the last repeated on an edge.
 type FacetKey = [u32; 4];
 
-/// Finds the pieces of the supports of all nodes of divided cells.
+/// Finds the pieces of the supports of all nodes of divided cells. `beside`: as in [`Enrichment::new`](super::Enrichment::new).
 pub fn support_pieces(
     mesh: &Mesh,
     cracks: &[Crack],
     trace: &Trace,
     partitions: &BTreeMap<usize, Partition>,
+    beside: &BTreeMap<u32, Point>,
 ) -> Pieces {
     let mut touched = vec![false; mesh.nodes.len()];
     for &cell in partitions.keys() {
@@ -64,6 +65,7 @@ pub fn support_pieces(
         cracks,
         trace,
         partitions,
+        beside,
     };
     let mut joins: BTreeMap<u32, Vec<[Place; 2]>> = BTreeMap::new();
     for (facet, cells) in &facets {
@@ -99,6 +101,7 @@ struct Joiner<'a> {
     cracks: &'a [Crack],
     trace: &'a Trace,
     partitions: &'a BTreeMap<usize, Partition>,
+    beside: &'a BTreeMap<u32, Point>,
 }
 
 impl Joiner<'_> {
@@ -213,7 +216,8 @@ impl Joiner<'_> {
         pieces.into_values().collect()
     }
 
-    /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of the first that runs there.
+    /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of the first that runs there, or
+    /// on the side that was asked for.
     fn own(&self, node: u32, places: &[Place]) -> usize {
         let x = &self.mesh.nodes[node as usize];
         let at_node = |&(cell, region): &Place| match self.partitions.get(&cell) {
@@ -224,12 +228,14 @@ impl Joiner<'_> {
             }
         };
         let crack = self.cracks.iter().find(|c| c.phi[node as usize] == 0.0);
+        let wanted = self.beside.get(&node).zip(crack);
+        let below = wanted.is_some_and(|(x, crack)| crack.distance(x) < 0.0);
         let above = |&(cell, region): &Place| {
             let middle = match self.partitions.get(&cell) {
                 None => self.mesh.centre(cell),
                 Some(partition) => partition.parts[region].middle(),
             };
-            crack.is_none_or(|c| c.distance(&middle) > 0.0)
+            crack.is_none_or(|c| (c.distance(&middle) > 0.0) != below)
         };
         let mut best = 0;
         let mut found = 0;

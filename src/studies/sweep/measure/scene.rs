@@ -10,8 +10,8 @@ use crate::model::loading::Loading;
 use crate::run::choice::ChoiceError;
 use crate::run::run_case::{RunError, warm_up};
 use crate::run::verdict::Verdict;
+use crate::studies::memory;
 use crate::studies::sweep::cell::Cell;
-use crate::studies::sweep::memory;
 
 /// Why a cell could not be measured; what a method does wrong is a verdict.
 #[derive(Debug, thiserror::Error)]

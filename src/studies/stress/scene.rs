@@ -1,16 +1,18 @@
-//! Random bodies in uniform stress: box, mesh, material, supports and loads as the text of a case, and its closed form.
+//! Random bodies: box, mesh, material, cracks, supports and loads as the text of a case.
 //!
-//! ```text
-//!   σ = diag(σx, σy[, σz]), all < 0     ε_a = (σ_a − ν (Σσ − σ_a)) / E     u_a = ε_a (x_a − min_a)
-//!   W = ½ σ : ε V                       P = −w σ n on side 1, in space     all cracks stick, no jump
-//! ```
-//!
-//! Nothing here knows how a body is discretised: a scene is a text, and numbers that hold for every discretisation.
+//! Positions cluster where discretisations break: as good as on nodes, edges, sides, corners and other cracks, at distances
+//! from 1e-14 of a cell. Nothing here knows how a body is discretised. Scene k of a seed can be made again alone.
 
+pub mod flat;
+pub mod solid;
+
+use serde::{Deserialize, Serialize};
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::flat::{self, Flat};
-use super::solid::{self, Flaw};
+use self::flat::Flat;
+use self::solid::Flaw;
+use super::uniform::{Uniform, sides};
+use crate::case::CrackShape;
 
 /// Share of the scenes with a mesh whose inner points are moved, where the cracks are not placed by grid points.
 const MOVED: f64 = 0.2;
@@ -22,79 +24,31 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// That of a case.
+    pub fn of(shape: &CrackShape) -> Self {
+        match shape {
+            CrackShape::Polyline(points) => Shape::Flat(Flat::Chain(points.clone())),
+            CrackShape::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => Shape::Flat(Flat::Arc {
+                centre: *centre,
+                radius: *radius,
+                ends: [from.to_degrees(), to.to_degrees()],
+            }),
+            CrackShape::Plane { point, normal } => Shape::Solid(Flaw::plane(*point, *normal)),
+            CrackShape::Ellipse(e) => Shape::Solid(Flaw::plane(e.centre, e.normal)),
+        }
+    }
+
     /// Length in a body, in a solid the smaller width of the whole crack [m].
-    fn length_in(&self, body: &Exact) -> f64 {
+    fn length_in(&self, body: &Uniform) -> f64 {
         match self {
             Shape::Flat(f) => f.length_in(&body.min, &body.max),
             Shape::Solid(f) => f.width(),
         }
-    }
-}
-
-/// A random case with the answer to it.
-pub struct Scene {
-    /// Number in its series; with the seed it makes the scene again alone.
-    pub number: u64,
-    pub category: &'static str,
-    /// The case, as TOML.
-    pub text: String,
-    /// Methods that are asked.
-    pub methods: &'static [&'static str],
-    pub cracks: Vec<Shape>,
-    pub exact: Exact,
-    /// Whether no mesh of such cells can carry it: two cracks within 1e-6 of a cell along each other, or a crack without tip
-    /// functions that is shorter than two cells.
-    pub beyond: bool,
-}
-
-/// Uniform stress in a box.
-pub struct Exact {
-    pub dim: usize,
-    pub min: [f64; 3],
-    pub max: [f64; 3],
-    /// Principal stresses along the axes [Pa]; that along z is 0 in 2D: it has no part in anything that is compared.
-    pub stress: [f64; 3],
-    pub strain: [f64; 3],
-    /// Diagonal of the largest cell [m].
-    pub cell: f64,
-}
-
-impl Exact {
-    /// Displacement at a place [m].
-    pub fn displacement(&self, x: &[f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|a| self.strain[a] * (x[a] - self.min[a]))
-    }
-
-    /// Largest displacement in the body [m].
-    pub fn largest(&self) -> f64 {
-        let corner = self.displacement(&self.max);
-        corner.iter().map(|u| u * u).sum::<f64>().sqrt()
-    }
-
-    /// Largest stress [Pa].
-    pub fn size(&self) -> f64 {
-        self.stress.iter().fold(0.0, |m: f64, s| m.max(s.abs()))
-    }
-
-    /// ½ σ : ε V [J, in 2D J/m].
-    pub fn energy(&self) -> f64 {
-        let density: f64 = (0..self.dim).map(|a| self.stress[a] * self.strain[a]).sum();
-        let volume: f64 = (0..self.dim).map(|a| self.max[a] - self.min[a]).product();
-        0.5 * density * volume
-    }
-
-    /// Traction −σ n that side 1 feels [Pa].
-    pub fn traction(&self, n: &[f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|a| -self.stress[a] * n[a])
-    }
-
-    /// |τ| / p on a plane: the friction it needs to stick.
-    pub fn steepness(&self, n: &[f64; 3]) -> f64 {
-        let t = self.traction(n);
-        let pressure: f64 = (0..3).map(|a| t[a] * n[a]).sum();
-        // Not as the root of a difference of squares, of which hydrostatic stress leaves rounding.
-        let shear = [0, 1, 2].map(|a| t[a] - pressure * n[a]);
-        shear.iter().map(|v| v * v).sum::<f64>().sqrt() / pressure
     }
 }
 
@@ -185,8 +139,67 @@ pub fn list(values: &[f64]) -> String {
     format!("{values:?}")
 }
 
-/// The scene with a number among those of a seed.
-pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
+/// Kinds of scenes: what is known of the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Family {
+    /// Plane bodies in uniform compression whose cracks stick: the closed form.
+    Patch2d,
+    /// Solids, the same.
+    Patch3d,
+    /// Plane bodies pushed and sheared, with friction: energy, agreement, invariance.
+    Slip2d,
+    /// Solids, the same.
+    Slip3d,
+}
+
+impl Family {
+    /// All, in the order of reports.
+    pub const ALL: [Self; 4] = [Self::Patch2d, Self::Patch3d, Self::Slip2d, Self::Slip3d];
+
+    /// As on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Patch2d => "patch-2d",
+            Self::Patch3d => "patch-3d",
+            Self::Slip2d => "slip-2d",
+            Self::Slip3d => "slip-3d",
+        }
+    }
+
+    /// Space dimension.
+    pub fn dim(self) -> usize {
+        match self {
+            Self::Patch2d | Self::Slip2d => 2,
+            Self::Patch3d | Self::Slip3d => 3,
+        }
+    }
+
+    /// Whether all cracks stick in uniform stress.
+    pub fn sticks(self) -> bool {
+        matches!(self, Self::Patch2d | Self::Patch3d)
+    }
+}
+
+/// A random case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Its family.
+    pub family: Family,
+    /// Number in its series; with family and seed it makes the scene again alone.
+    pub number: u64,
+    /// How its cracks lie.
+    pub category: String,
+    /// The case, as TOML.
+    pub text: String,
+    /// Whether no mesh of such cells can carry it: two cracks within 1e-6 of a cell along each other, or a crack without tip
+    /// functions that is shorter than two cells.
+    pub beyond: bool,
+}
+
+/// The scene with a number among those of a family and a seed.
+pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
+    let dim = family.dim();
     let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);
     let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
     let kind = (number % kinds.len() as u64) as usize;
@@ -224,6 +237,8 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
             .map(Shape::Solid)
             .collect()
     };
+    // What the other family draws more leaves these as they are.
+    let mut own = Stream::numbered(seed ^ 0x5eed, number);
     let mut beyond = category == "parallel" && flat::apart(&cracks) < 1e-6 * grid.h();
     // Without friction a part that a crack cuts off, or a ring around a disc, would move freely.
     let held = ["inner", "short", "disc", "ellipse"].contains(&category) && cracks.len() == 1;
@@ -234,7 +249,11 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
         };
         let needed = needed.into_iter().fold(0.0, f64::max);
         let smooth = hydrostatic && held && s.chance(0.3);
-        let friction = if smooth { 0.0 } else { 2.0 * needed + 0.1 };
+        let friction = match family.sticks() {
+            true if smooth => 0.0,
+            true => 2.0 * needed + 0.1,
+            false => decades(&mut own, -1.3, 0.3),
+        };
         let (place, ends) = match crack {
             Shape::Flat(f) => (f.text(), !f.is_closed()),
             Shape::Solid(f) => (f.text(), f.has_front()),
@@ -261,21 +280,16 @@ pub fn scene(dim: usize, seed: u64, number: u64) -> Scene {
             _ => "",
         };
     }
-    text += &held_and_loaded(&exact, s.chance(0.5));
-    // The same number of draws whatever came before.
-    let mut last = Stream::numbered(seed ^ 0x5eed, number);
-    let methods: &[&str] = if last.chance(0.2) {
-        &["b-newton", "newton-ac"]
+    text += &if family.sticks() {
+        held_and_loaded(&exact, s.chance(0.5))
     } else {
-        &["b-newton"]
+        pushed(&exact, &mut own)
     };
     Scene {
+        family,
         number,
-        category,
+        category: category.into(),
         text,
-        methods,
-        cracks,
-        exact,
         beyond,
     }
 }
@@ -355,7 +369,7 @@ fn stressed(
     hydrostatic: bool,
     grid: &Grid,
     s: &mut Stream,
-) -> (&'static str, String, Exact) {
+) -> (&'static str, String, Uniform) {
     let young = decades(s, -3.0, 12.0);
     let poisson = if s.chance(0.1) {
         0.0
@@ -388,7 +402,7 @@ fn stressed(
         _ => "plane-strain",
     };
     let corner = |f: &dyn Fn(usize) -> f64| [0, 1, 2].map(|a| if a < dim { f(a) } else { 0.0 });
-    let exact = Exact {
+    let exact = Uniform {
         dim,
         min: corner(&|a| grid.min(a)),
         max: corner(&|a| grid.max(a)),
@@ -401,14 +415,9 @@ fn stressed(
 }
 
 /// Rollers on the lower sides; on the upper ones the pressure or the displacement of the closed form.
-fn held_and_loaded(exact: &Exact, moved: bool) -> String {
-    let sides: &[[&str; 2]] = if exact.dim == 2 {
-        &[["left", "right"], ["bottom", "top"]]
-    } else {
-        &[["left", "right"], ["front", "back"], ["bottom", "top"]]
-    };
+fn held_and_loaded(exact: &Uniform, moved: bool) -> String {
     let mut text = String::new();
-    for (a, [low, high]) in sides.iter().enumerate() {
+    for (a, [low, high]) in sides(exact.dim).iter().enumerate() {
         let mut roller = |side: &str, value: f64| {
             let entry = |b| {
                 if b == a {
@@ -428,6 +437,32 @@ fn held_and_loaded(exact: &Exact, moved: bool) -> String {
             let pressure = -exact.stress[a];
             text += &format!("[[load]]\non = \"{high}\"\npressure_pa = {pressure:?}\n");
         }
+    }
+    text
+}
+
+/// The bottom held, the top pushed and sheared; a side pressed at times.
+fn pushed(exact: &Uniform, s: &mut Stream) -> String {
+    let dim = exact.dim;
+    let up = dim - 1;
+    let size = (exact.max[up] - exact.min[up]) * decades(s, -6.0, -2.0);
+    let top: Vec<f64> = (0..dim)
+        .map(|a| {
+            size * if a == up {
+                -s.between(0.2, 1.0)
+            } else {
+                s.between(-1.0, 1.0)
+            }
+        })
+        .collect();
+    let mut text = format!(
+        "[[support]]\non = \"bottom\"\ndisplacement_m = {}\n[[support]]\non = \"top\"\ndisplacement_m = {}\n",
+        list(&vec![0.0; dim]),
+        list(&top)
+    );
+    if s.chance(0.5) {
+        let pressure = exact.size() * s.between(0.0, 1.0);
+        text += &format!("[[load]]\non = \"right\"\npressure_pa = {pressure:?}\n");
     }
     text
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::generator::{Grid, Shape, decades, list, offset};
+use super::{Grid, Shape, decades, list, offset};
 
 type Place = [f64; 2];
 

@@ -3,7 +3,7 @@
 use stickslip_methods::Tier;
 
 use crate::run::verdict::{GIVE_UPS, Verdict};
-use crate::studies::stress::{StressPlan, Trial};
+use crate::studies::robustness::{RobustnessPlan, Trial};
 use crate::studies::sweep::statistics::wilson;
 
 /// Tiers that contact laws held to beside an approximate method's own laws; none comes last.
@@ -151,7 +151,7 @@ impl RobustnessRow {
 }
 
 /// Sums the study up: rows by dimension, method and friction.
-pub fn rows(plan: &StressPlan, trials: &[Trial]) -> Vec<RobustnessRow> {
+pub fn rows(plan: &RobustnessPlan, trials: &[Trial]) -> Vec<RobustnessRow> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     let key = |t: &Trial| (t.dim, t.method.clone());
     sorted.sort_by(|a, b| key(a).cmp(&key(b)).then(a.friction.total_cmp(&b.friction)));
@@ -162,7 +162,7 @@ pub fn rows(plan: &StressPlan, trials: &[Trial]) -> Vec<RobustnessRow> {
 }
 
 /// Everything that was neither solved nor declined.
-pub fn failures(plan: &StressPlan, trials: &[Trial]) -> Vec<FailureRow> {
+pub fn failures(plan: &RobustnessPlan, trials: &[Trial]) -> Vec<FailureRow> {
     let failed = trials.iter().filter(|t| t.verdict.is_failure());
     failed
         .map(|t| FailureRow {

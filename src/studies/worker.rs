@@ -1,8 +1,8 @@
-//! Cells in a process of their own, so that a time limit can end them and a memory limit costs nothing but them.
+//! Work in a process of its own, so that a time limit can end it and a memory limit costs nothing but it.
 //!
-//! The conductor starts `stickslip work`, writes a [`Request`] per line to its standard input and reads an [`Answer`] per line
-//! from its standard output. A worker that does not answer in time is killed; one that dies is read as the verdict on its
-//! cell. Either way the next cell gets a new worker.
+//! The conductor starts `stickslip work`, writes a request per line to its standard input and reads an answer per line from
+//! its standard output. A worker that does not answer in time is killed; one that dies is read as the verdict on its request.
+//! Either way the next one gets a new worker.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -10,38 +10,16 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use super::cell::Cell;
-use super::measure::{Bench, Repeats, measure};
 use super::memory;
-use super::record::{Limits, Record};
-use crate::run::choice::Choice;
+use super::sweep::record::Limits;
 use crate::run::verdict::Verdict;
 
 /// What a process says that an allocation ended: the runtime, and libraries that panic. Errors are told by type, but a dead
 /// worker left words only.
 const DENIED: [&str; 3] = ["memory allocation of", "out of memory", "OutOfMemory"];
-
-/// One cell to measure.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Request {
-    /// The cell.
-    pub cell: Cell,
-    /// Its case file.
-    pub text: String,
-    /// How often to repeat it.
-    pub repeats: Repeats,
-}
-
-/// What became of a request.
-#[derive(Debug, Serialize, Deserialize)]
-pub enum Answer {
-    /// The cell was measured.
-    Measured(Box<Record>),
-    /// The case, its discretisation or its method cannot be used, or the worker died.
-    Ended(Verdict),
-}
 
 /// A worker that does not start.
 #[derive(Debug, thiserror::Error)]
@@ -53,14 +31,15 @@ pub struct WorkerError {
     source: std::io::Error,
 }
 
-/// The worker's side: measures what it is asked for until its input ends.
+/// The worker's side: answers what it is asked until its input ends.
 ///
 /// # Errors
 /// Input or output that breaks, a memory limit the system refuses.
-pub fn serve(
+pub fn serve<Q: DeserializeOwned, A: Serialize>(
     input: impl BufRead,
     mut output: impl Write,
     memory_mb: Option<u64>,
+    mut answer: impl FnMut(Q) -> A,
 ) -> std::io::Result<()> {
     if let Some(megabytes) = memory_mb {
         memory::bound(megabytes)?;
@@ -74,21 +53,8 @@ pub fn serve(
         let text: Vec<&str> = payload.lines().collect();
         let _nobody_listens = writeln!(std::io::stderr(), "panic: {}", text.join(" "));
     }));
-    let mut bench = Bench::default();
     for line in input.lines() {
-        let Request {
-            cell,
-            text,
-            repeats,
-        } = serde_json::from_str(&line?)?;
-        let measured = Choice::parse(&cell.method)
-            .map_err(Into::into)
-            .and_then(|choice| measure(&mut bench, &cell, &text, &choice, repeats));
-        let reply = match measured {
-            Ok(record) => Answer::Measured(Box::new(record)),
-            Err(error) => Answer::Ended(error.into()),
-        };
-        let mut json = serde_json::to_vec(&reply)?;
+        let mut json = serde_json::to_vec(&answer(serde_json::from_str(&line?)?))?;
         json.push(b'\n');
         output.write_all(&json)?;
         output.flush()?;
@@ -99,6 +65,7 @@ pub fn serve(
 /// The conductor's side: a worker that is started when it is first needed, and again after it was lost.
 pub struct Worker<'a> {
     program: &'a Path,
+    arguments: &'a [&'a str],
     limits: Limits,
     running: Option<Running>,
 }
@@ -111,20 +78,24 @@ struct Running {
 }
 
 impl<'a> Worker<'a> {
-    /// A worker of that program, which has the verb `work`.
-    pub fn new(program: &'a Path, limits: Limits) -> Self {
+    /// A worker of that program, whose arguments make it [`serve`].
+    pub fn new(program: &'a Path, arguments: &'a [&'a str], limits: Limits) -> Self {
         Self {
             program,
+            arguments,
             limits,
             running: None,
         }
     }
 
-    /// Has one cell measured.
+    /// Has one request answered; where the worker dies of it, by the verdict on that.
     ///
     /// # Errors
-    /// [`WorkerError`]; whatever the cell itself does is an [`Answer`].
-    pub fn ask(&mut self, request: &Request) -> Result<Answer, WorkerError> {
+    /// [`WorkerError`].
+    pub fn ask<Q: Serialize, A: DeserializeOwned>(
+        &mut self,
+        request: &Q,
+    ) -> Result<Result<A, Verdict>, WorkerError> {
         let mut running = match self.running.take() {
             Some(running) => running,
             None => self.start()?,
@@ -141,7 +112,7 @@ impl<'a> Worker<'a> {
             Ok(line) => match serde_json::from_str(&line) {
                 Ok(answer) => {
                     self.running = Some(running);
-                    return Ok(answer);
+                    return Ok(Ok(answer));
                 }
                 Err(_) => {
                     running.kill();
@@ -154,7 +125,7 @@ impl<'a> Worker<'a> {
             }
             Err(RecvTimeoutError::Disconnected) => running.post_mortem(),
         };
-        Ok(Answer::Ended(verdict))
+        Ok(Err(verdict))
     }
 
     fn start(&self) -> Result<Running, WorkerError> {
@@ -163,7 +134,7 @@ impl<'a> Worker<'a> {
             source,
         };
         let mut command = Command::new(self.program);
-        command.arg("work");
+        command.args(self.arguments);
         if let Some(megabytes) = self.limits.memory_mb {
             command.arg("--memory-mb").arg(megabytes.to_string());
         }

@@ -1,28 +1,13 @@
-//! The referee: hands the text of a scene to what `stickslip run` calls, and holds what comes back to the closed form.
+//! The referee: holds what a run leaves behind to the closed form of uniform stress.
 //!
-//! It reads what every user can read: verdict, `quantities.csv`, `points.csv` and the fields of the pictures.
-//!
-//! | outcome | |
-//! |---|---|
-//! | right | solved, and as the closed form says |
-//! | wrong | solved, and not as the closed form says |
-//! | suspect | the verdict itself doubts the answer |
-//! | failed | the method gave up, declined, or was caught by the judge |
-//! | refused | an error that names file, line and column |
-//! | broken | a panic, a crash, or an error without a place |
+//! It reads what every user can read: `quantities.csv`, `points.csv` and the fields of the pictures.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::Instant;
-
-use stickslip::case;
-use stickslip::model::quantities::PointState;
-use stickslip::run::choice::Choice;
-use stickslip::run::record::Results;
-use stickslip::run::registry::method;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
-
-use super::flat::{Flat, distance};
-use super::generator::{Exact, Scene, Shape};
+use super::scene::Shape;
+use super::scene::flat::{Flat, distance};
+use super::uniform::Uniform;
+use crate::case::Case;
+use crate::model::quantities::PointState;
+use crate::run::record::Results;
 
 /// Relative error that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -31,127 +16,21 @@ const ROUNDING: f64 = 1e-9;
 /// than 1e-3 of a cell are held to this.
 const FLOOR: f64 = 1e-12;
 
-/// Name of the file, as errors tell it.
-const FILE: &str = "scene.toml";
-
-/// `beyond`: refused, and by construction more than the mesh can carry.
-pub const OUTCOMES: [&str; 8] = [
-    "right", "wrong", "suspect", "failed", "refused", "beyond", "broken", "other",
-];
-
-/// What became of a scene.
-#[derive(Debug, Clone)]
-pub struct Report {
-    pub number: u64,
-    pub category: &'static str,
-    /// One of [`OUTCOMES`].
-    pub outcome: String,
-    /// In one line; empty for a right one without remarks.
-    pub reason: String,
-    pub seconds: f64,
-    /// Largest error of a solved scene, relative to what is compared; NaN for others.
-    pub error: f64,
+/// A case in uniform stress: what its answer is held to.
+pub struct Patch {
+    exact: Uniform,
+    cracks: Vec<Shape>,
 }
 
-/// Runs a scene and judges it; the worst of its methods counts.
-pub fn judge(scene: &Scene) -> Report {
-    let clock = Instant::now();
-    let mut worst: Option<(String, String, f64)> = None;
-    for name in scene.methods {
-        let found = judge_method(scene, name);
-        let rank = |o: &str| match o {
-            "right" => 0,
-            "refused" => 1,
-            "failed" => 2,
-            "suspect" => 3,
-            "other" => 4,
-            "broken" => 5,
-            _ => 6,
-        };
-        if worst.as_ref().is_none_or(|w| rank(&found.0) > rank(&w.0)) {
-            worst = Some(found);
-        }
+impl Patch {
+    /// Of a case that has such an answer.
+    pub fn of(case: &Case) -> Option<Self> {
+        let cracks = case.cracks.iter().map(|crack| Shape::of(&crack.geometry));
+        Some(Patch {
+            exact: Uniform::of(&case.source)?,
+            cracks: cracks.collect(),
+        })
     }
-    let (outcome, reason, error) = worst.unwrap_or_default();
-    Report {
-        number: scene.number,
-        category: scene.category,
-        outcome,
-        reason,
-        seconds: clock.elapsed().as_secs_f64(),
-        error,
-    }
-}
-
-fn judge_method(scene: &Scene, name: &str) -> (String, String, f64) {
-    let of = |outcome: &str, reason: String| (outcome.to_owned(), one_line(&reason), f64::NAN);
-    let run = || -> Result<Results, String> {
-        let case = case::parse(FILE, scene.text.as_str()).map_err(|e| e.to_string())?;
-        let chosen = method(name).expect("registered");
-        let choice = Choice::new(chosen, &[]).map_err(|e| e.to_string())?;
-        let settings = Settings {
-            tier: None,
-            jobs: 1,
-            fields: Fields::All,
-        };
-        run_case(&case, &[choice], settings, &Quiet).map_err(|e| e.to_string())
-    };
-    let results = match catch_unwind(AssertUnwindSafe(run)) {
-        Err(panic) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str);
-            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-            return of("broken", format!("panic: {}", text.unwrap_or("?")));
-        }
-        Ok(Err(error)) if has_place(&error) => return of("refused", error),
-        Ok(Err(error)) => return of("broken", format!("no place: {error}")),
-        Ok(Ok(results)) => results,
-    };
-    let Some(run) = results.runs.last() else {
-        return of("broken", "no run".into());
-    };
-    let verdict = run.verdict.to_string();
-    let starts = |heads: &[&str]| heads.iter().any(|head| verdict.starts_with(head));
-    let told = format!("{name}: {verdict}");
-    if verdict.contains("suspect") {
-        return of("suspect", told);
-    }
-    if starts(&[
-        "gave-up",
-        "false-claim",
-        "refused",
-        "timed-out",
-        "approximate",
-    ]) {
-        let map = run.natural_map;
-        return of("failed", format!("{told} (natural map {map:.0e})"));
-    }
-    if starts(&["crashed", "out-of-memory"]) {
-        return of("broken", told);
-    }
-    if verdict != "solved" {
-        return of("other", told);
-    }
-    let (faults, error) = compare(scene, &results);
-    match faults.is_empty() {
-        true => ("right".into(), uncovered(scene, &results), error),
-        false => (
-            "wrong".into(),
-            format!("{name}: {}", faults.join("; ")),
-            error,
-        ),
-    }
-}
-
-/// Whether an error says `file:line:column:`.
-fn has_place(error: &str) -> bool {
-    let mut parts = error.split(':').map(str::trim);
-    let number = |part: Option<&str>| part.is_some_and(|p| p.parse::<usize>().is_ok_and(|n| n > 0));
-    parts.next() == Some(FILE) && number(parts.next()) && number(parts.next())
-}
-
-fn one_line(text: &str) -> String {
-    let line = text.lines().next().unwrap_or_default();
-    line.chars().take(300).collect()
 }
 
 /// The largest of some errors, and where; a NaN is the largest.
@@ -167,8 +46,8 @@ impl Worst {
 }
 
 /// What differs from the closed form, and the largest relative error.
-fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
-    let exact = &scene.exact;
+pub fn compare(patch: &Patch, results: &Results) -> (Vec<String>, f64) {
+    let exact = &patch.exact;
     let mut found: Vec<(&str, Worst)> = Vec::new();
     let quantity = |name: &str| {
         let mut rows = results.quantities.iter().map(|row| &row.quantity);
@@ -187,7 +66,7 @@ fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
     let points: Vec<&PointState> = results.points.iter().map(|row| &row.point).collect();
     let mut traction = Worst::default();
     for p in &points {
-        let error = match &scene.cracks[p.crack - 1] {
+        let error = match &patch.cracks[p.crack - 1] {
             Shape::Flat(flat) => flat_error(exact, flat, p),
             Shape::Solid(flaw) => solid_error(exact, &flaw.normal(), p),
         };
@@ -202,9 +81,9 @@ fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
     }
     found.push(("traction", traction));
     if exact.dim == 3 {
-        found.push(("traction in space", directions(scene, results)));
+        found.push(("traction in space", directions(patch, results)));
     } else {
-        found.push(("surface", surface(scene, results)));
+        found.push(("surface", surface(patch, results)));
     }
     let largest = found.iter().fold(
         0.0,
@@ -220,7 +99,7 @@ fn compare(scene: &Scene, results: &Results) -> (Vec<String>, f64) {
 }
 
 /// Displacement of nodes and of both faces of every crack, relative to the largest.
-fn displacement(exact: &Exact, results: &Results) -> Worst {
+fn displacement(exact: &Uniform, results: &Results) -> Worst {
     let mut worst = Worst::default();
     let step = results.fields.last().and_then(|run| run.steps.last());
     let Some(step) = step else {
@@ -241,7 +120,7 @@ fn displacement(exact: &Exact, results: &Results) -> Worst {
 }
 
 /// Error of a traction at a point, relative to the largest stress; a point that stands for next to nothing by its force.
-fn relative(exact: &Exact, error: f64, weight: f64) -> f64 {
+fn relative(exact: &Uniform, error: f64, weight: f64) -> f64 {
     let floor = FLOOR / ROUNDING * exact.cell.powi(exact.dim as i32 - 1);
     error * weight / weight.max(floor) / exact.size()
 }
@@ -250,7 +129,7 @@ fn relative(exact: &Exact, error: f64, weight: f64) -> f64 {
 ///
 /// On one segment the two components are known. Near a kink, and on an arc, a point may be the mean over several
 /// normals: then the length of its traction must lie between those of the means.
-fn flat_error(exact: &Exact, flat: &Flat, p: &PointState) -> f64 {
+fn flat_error(exact: &Uniform, flat: &Flat, p: &PointState) -> f64 {
     let found = [p.p_n / p.weight, p.p_a / p.weight];
     let size = found[0].hypot(found[1]);
     let off = |low: f64, high: f64| {
@@ -314,7 +193,7 @@ fn to_segment(x: &[f64; 2], p: &[f64; 2], q: &[f64; 2]) -> f64 {
 }
 
 /// Error of a contact point in a solid: pressure and size of the shear; its axes are told in space only.
-fn solid_error(exact: &Exact, n: &[f64; 3], p: &PointState) -> f64 {
+fn solid_error(exact: &Uniform, n: &[f64; 3], p: &PointState) -> f64 {
     let t = exact.traction(n);
     let pressure: f64 = (0..3).map(|a| t[a] * n[a]).sum();
     let shear = exact.steepness(n) * pressure;
@@ -326,8 +205,8 @@ fn solid_error(exact: &Exact, n: &[f64; 3], p: &PointState) -> f64 {
 
 /// Tractions in space on the faces of flat cracks: at every corner that of one of the cracks. To 1e-6 of the stress, and
 /// passed on as a thousandth of it: slivers have been seen by their force already.
-fn directions(scene: &Scene, results: &Results) -> Worst {
-    let exact = &scene.exact;
+fn directions(patch: &Patch, results: &Results) -> Worst {
+    let exact = &patch.exact;
     let mut worst = Worst::default();
     let step = results.fields.last().and_then(|run| run.steps.last());
     let Some(step) = step else {
@@ -337,7 +216,7 @@ fn directions(scene: &Scene, results: &Results) -> Worst {
     let Some((_, found)) = vectors.iter().find(|v| v.0 == "contact_traction_pa") else {
         return Worst(f64::NAN, "no field".into());
     };
-    let normals = scene.cracks.iter().filter_map(|crack| match crack {
+    let normals = patch.cracks.iter().filter_map(|crack| match crack {
         Shape::Solid(flaw) => Some(flaw.normal()),
         Shape::Flat(_) => None,
     });
@@ -355,11 +234,11 @@ fn directions(scene: &Scene, results: &Results) -> Worst {
 
 /// Measure that the points of a plane crack stand for, and its length in the body [m].
 fn lengths<'a>(
-    scene: &'a Scene,
+    patch: &'a Patch,
     results: &'a Results,
 ) -> impl Iterator<Item = (usize, f64, f64)> + 'a {
-    let Exact { min, max, .. } = &scene.exact;
-    let flat = scene
+    let Uniform { min, max, .. } = &patch.exact;
+    let flat = patch
         .cracks
         .iter()
         .enumerate()
@@ -377,10 +256,10 @@ fn lengths<'a>(
 
 /// By how much the points of a crack stand for more than its length in the body, in cells. An end that is moved onto a
 /// crack beside it, and the small steps in which an arc is measured, are none of it.
-fn surface(scene: &Scene, results: &Results) -> Worst {
+fn surface(patch: &Patch, results: &Results) -> Worst {
     let mut worst = Worst::default();
-    for (number, total, length) in lengths(scene, results) {
-        let excess = (total - 1.001 * length) / scene.exact.cell - 0.01;
+    for (number, total, length) in lengths(patch, results) {
+        let excess = (total - 1.001 * length) / patch.exact.cell - 0.01;
         worst.see(excess, || format!("crack {number}: {total} of {length} m"));
     }
     worst
@@ -388,11 +267,11 @@ fn surface(scene: &Scene, results: &Results) -> Worst {
 
 /// Cracks of which more is missing than the cells of their ends. No fault in uniform stress, which a crack that is not
 /// there solves as well; and where a support holds the normal jump there is no contact. To be looked at.
-fn uncovered(scene: &Scene, results: &Results) -> String {
+pub fn uncovered(patch: &Patch, results: &Results) -> String {
     let few =
-        |(_, total, length): &(usize, f64, f64)| total + 2.5 * scene.exact.cell < 0.95 * length;
+        |(_, total, length): &(usize, f64, f64)| total + 2.5 * patch.exact.cell < 0.95 * length;
     let told =
         |(number, total, length)| format!("crack {number} acts on {total:.2e} of {length:.2e} m");
-    let all: Vec<String> = lengths(scene, results).filter(few).map(told).collect();
+    let all: Vec<String> = lengths(patch, results).filter(few).map(told).collect();
     all.join("; ")
 }

@@ -2,7 +2,7 @@
 
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::generator::{Grid, list, offset};
+use super::{Grid, list, offset};
 
 type Place = [f64; 3];
 
@@ -30,6 +30,15 @@ pub struct Flaw {
 }
 
 impl Flaw {
+    /// A plane through a point.
+    pub fn plane(centre: Place, normal: Place) -> Self {
+        Flaw {
+            centre,
+            normal,
+            front: None,
+        }
+    }
+
     pub fn text(&self) -> String {
         let (at, n) = (list(&self.centre), list(&self.normal));
         match &self.front {
