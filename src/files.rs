@@ -2,3 +2,4 @@
 
 pub mod bundle;
 pub mod interchange;
+pub(crate) mod regular;

@@ -12,7 +12,11 @@ use std::path::Path;
 use super::error::InterchangeError;
 use super::fclib_global::GlobalProblem;
 use super::fclib_local::LocalProblem;
-use super::hdf5::Tree;
+use super::hdf5::{Tree, is_signed};
+use crate::files::regular;
+
+/// Largest file read [bytes]; those of the FCLIB collection have some hundred megabytes.
+const MAX_BYTES: u64 = 4 << 30;
 
 /// A problem file.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,11 +32,23 @@ pub enum Problem {
 /// # Errors
 /// [`InterchangeError`], naming file, dataset, index, value and what is allowed.
 pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
-    let bytes = std::fs::read(path).map_err(|source| InterchangeError::Io {
+    let unreadable = |source| InterchangeError::Io {
         path: path.into(),
         source,
-    })?;
-    from_bytes(path, bytes)
+    };
+    let (mut file, len) = regular::open(path).map_err(unreadable)?;
+    // A large file of something else is not worth the memory.
+    if !is_signed(&mut file, len).map_err(unreadable)? {
+        return Err(InterchangeError::unexpected(
+            path,
+            "it does not begin like HDF5",
+            "an FCLIB file",
+        ));
+    }
+    from_bytes(
+        path,
+        regular::rest(file, len, MAX_BYTES).map_err(unreadable)?,
+    )
 }
 
 /// Reads the bytes of a file of either kind; `path` is only for messages.
