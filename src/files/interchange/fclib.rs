@@ -8,6 +8,7 @@
 //! ```
 
 use std::path::Path;
+use std::thread;
 
 use super::error::InterchangeError;
 use super::fclib_global::GlobalProblem;
@@ -17,6 +18,10 @@ use crate::files::regular;
 
 /// Largest file read [bytes]; those of the FCLIB collection have some hundred megabytes.
 const MAX_BYTES: u64 = 4 << 30;
+
+/// Stack for decoding [bytes], taken only as far as it is used. Types of HDF5 nest up to eight thousand deep, as many as a
+/// header of 64 kB holds, and the library recurses into each.
+const STACK: usize = 256 << 20;
 
 /// A problem file.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +61,20 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
 /// # Errors
 /// Those of [`read`].
 pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
+    let failed = || InterchangeError::refused(path, "the decoder of HDF5 broke down on it");
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().stack_size(STACK);
+        let decoding = thread.spawn_scoped(scope, move || decode(path, bytes));
+        let decoding = decoding.map_err(|source| InterchangeError::Io {
+            path: path.into(),
+            source,
+        })?;
+        // No bytes are known on which the library panics; with such it would not take the program along.
+        decoding.join().unwrap_or_else(|_| Err(failed()))
+    })
+}
+
+fn decode(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
     let tree = Tree::open(path, bytes)?;
     let none = |found| {
         let allowed = "one of the groups /fclib_local and /fclib_global";

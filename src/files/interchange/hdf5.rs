@@ -14,6 +14,10 @@ use hdf5_pure::{
 };
 
 use super::error::InterchangeError;
+use crate::files::visible::excerpt;
+
+/// Longest text shown of what the file says of itself: types of HDF5 nest by the thousand, and their parts have names.
+const SHOWN: usize = 200;
 
 /// Bytes that one byte of a deflate stream can stand for, rounded up.
 const DEFLATE_RATIO: u64 = 1100;
@@ -178,7 +182,7 @@ impl Tree {
         if fits(&found) {
             return Ok((dataset, extent));
         }
-        let found = format!("{name} holds {found}");
+        let found = format!("{name} holds {}", excerpt(&found.to_string(), SHOWN));
         Err(InterchangeError::unexpected(&self.path, found, allowed))
     }
 
@@ -200,7 +204,7 @@ impl Tree {
 }
 
 fn unreadable(path: &Path, dataset: &str, error: &Error) -> InterchangeError {
-    let mut reason = error.to_string();
+    let mut reason = excerpt(&error.to_string(), SHOWN);
     let newer = matches!(
         error,
         Error::Format(

@@ -9,6 +9,7 @@ use std::path::Path;
 use super::error::InterchangeError;
 use super::sparse::SparseMatrix;
 use crate::files::regular;
+use crate::files::visible::excerpt;
 
 const BANNER: &str = "%%MatrixMarket matrix";
 
@@ -152,14 +153,6 @@ fn index(word: &str, size: usize) -> Option<usize> {
     (1..=size).contains(&index).then(|| index - 1)
 }
 
-/// A character for a message; what a matrix has no use for may command the terminal.
-fn shown(c: char) -> char {
-    match c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() {
-        true => c,
-        false => char::REPLACEMENT_CHARACTER,
-    }
-}
-
 fn is_content(line: &str) -> bool {
     !line.trim().is_empty() && !line.starts_with('%')
 }
@@ -205,7 +198,7 @@ impl<'a> Lines<'a> {
         InterchangeError::Line {
             path: self.path.into(),
             line: self.last,
-            found: found.chars().take(80).map(shown).collect(),
+            found: excerpt(found, 80),
             allowed: allowed.into(),
         }
     }

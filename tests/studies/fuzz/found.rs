@@ -1,8 +1,9 @@
 //! What fuzzing has found, in its smallest form.
 
 use std::path::Path;
+use std::thread;
 
-use hdf5_pure::FileBuilder;
+use hdf5_pure::{Datatype, FileBuilder};
 use stickslip::files::interchange::{fclib, matrix_market};
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::plan::Outline;
@@ -133,4 +134,37 @@ fn a_title_of_several_texts_is_refused() {
         message.contains("info/title has 2 entries, expected 1"),
         "{message}"
     );
+}
+
+/// A file whose first dataset holds sequences of sequences of …
+fn nested(depth: usize) -> Vec<u8> {
+    let build = move || {
+        let mut datatype = hdf5_pure::make_f64_type();
+        for _ in 0..depth {
+            datatype = Datatype::VariableLength {
+                is_string: false,
+                padding: None,
+                charset: None,
+                base_type: Box::new(datatype),
+            };
+        }
+        let mut file = FileBuilder::new();
+        let mut root = file.create_group("fclib_local");
+        let dataset = root.create_dataset("spacedim");
+        dataset.with_raw_data(datatype, vec![0; 16], 1);
+        file.add_group(root.finish());
+        file.finish().unwrap()
+    };
+    // The library that writes it recurses as well.
+    let thread = thread::Builder::new().stack_size(1 << 30);
+    thread.spawn(build).unwrap().join().unwrap()
+}
+
+/// The library that reads HDF5 recurses into them without a bound, and a stack that overflows ends the program.
+#[test]
+fn types_nested_as_deeply_as_a_header_holds_are_refused() {
+    for depth in [1, 100, 8000] {
+        let error = fclib::from_bytes(Path::new("a.hdf5"), nested(depth)).unwrap_err();
+        assert_clear(&error.to_string(), "`a.hdf5`", 1);
+    }
 }
