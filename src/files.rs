@@ -3,3 +3,4 @@
 pub mod bundle;
 pub mod interchange;
 pub(crate) mod regular;
+pub(crate) mod visible;

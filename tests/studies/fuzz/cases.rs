@@ -1,6 +1,7 @@
 //! Case files.
 
 use stickslip::case;
+use stickslip::model::body::{Body, Needs};
 
 use super::bytes::{Kind, changed};
 use super::{assert_clear, campaign, files_ending};
@@ -37,5 +38,40 @@ fn any_bytes_are_a_case_or_refused_at_line_and_column() {
         );
         false
     };
-    campaign::run("case", 1000, draw, read);
+    campaign::run("case", 600, draw, read);
+}
+
+/// Goal: what the reader takes is discretised or refused, whatever its numbers.
+#[test]
+fn an_accepted_case_is_discretised_or_refused() {
+    let mut seeds = files_ending("cases", "toml");
+    seeds.extend(files_ending("tests/data/geometry", "toml"));
+    let draw = move |stream: &mut _| changed(&seeds, Kind::Text, stream);
+    let read = move |bytes: &[u8]| {
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            return false;
+        };
+        let Ok(case) = case::parse("fuzz.toml", text) else {
+            return false;
+        };
+        let cells: usize = case
+            .mesh
+            .grid
+            .lines
+            .iter()
+            .map(|line| line.len() - 1)
+            .product();
+        // Many cells take their time, and are none of the reader's affairs.
+        if cells > 300 {
+            return false;
+        }
+        match Body::new(&case, 1, Needs::default()) {
+            Ok(_) => true,
+            Err(error) => {
+                assert_clear(&error.to_string(), "", 3);
+                false
+            }
+        }
+    };
+    campaign::run("body", 100, draw, read);
 }

@@ -4,6 +4,10 @@ use std::path::Path;
 
 use hdf5_pure::{FileBuilder, GroupBuilder};
 use stickslip::files::interchange::{Problem, fclib};
+use stickslip::run::choice::Choice;
+use stickslip::run::run_case::Quiet;
+use stickslip::studies::exchange::problem_file::ProblemFile;
+use stickslip_methods::Tier;
 use stickslip_xfem::mesh::stream::Stream;
 
 use super::bytes::{Kind, changed};
@@ -34,7 +38,7 @@ fn read(bytes: &[u8]) -> bool {
 fn any_bytes_are_a_problem_or_refused_by_name() {
     let seeds = files_ending("tests/data/fclib", "hdf5");
     let draw = move |stream: &mut _| changed(&seeds, Kind::Binary, stream);
-    campaign::run("FCLIB bytes", 2000, draw, read);
+    campaign::run("FCLIB bytes", 1500, draw, read);
 }
 
 /// Small numbers mostly, sometimes one that no file can mean.
@@ -210,4 +214,32 @@ fn problem(stream: &mut Stream) -> Vec<u8> {
 #[test]
 fn any_numbers_in_whole_datasets_are_a_problem_or_refused() {
     campaign::run("FCLIB datasets", 500, problem, read);
+}
+
+/// Goal: what the reader takes becomes a system that methods solve or give up on, or is refused.
+#[test]
+fn an_accepted_problem_is_run_or_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("fuzz.hdf5");
+    let choices = [
+        Choice::parse("b-newton").unwrap(),
+        Choice::parse("nsgs").unwrap(),
+    ];
+    let read = move |bytes: &[u8]| {
+        std::fs::write(&file, bytes).unwrap();
+        match ProblemFile::read(&file) {
+            Ok(problem) => {
+                assert_eq!(
+                    problem.run(&choices, Tier::Low, &Quiet).results.runs.len(),
+                    2
+                );
+                true
+            }
+            Err(error) => {
+                assert_clear(&error.to_string(), "`", 1);
+                false
+            }
+        }
+    };
+    campaign::run("FCLIB runs", 100, problem, read);
 }

@@ -4,11 +4,14 @@ use std::path::Path;
 use std::thread;
 
 use hdf5_pure::{Datatype, FileBuilder};
-use stickslip::files::interchange::{fclib, matrix_market};
+use stickslip::files::interchange::{
+    Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib, matrix_market,
+};
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::plan::Outline;
 
 use super::assert_clear;
+use crate::common::ends_with;
 
 fn matrix_refused(text: &str) -> String {
     let error = matrix_market::parse(Path::new("a.mtx"), text).unwrap_err();
@@ -167,4 +170,28 @@ fn types_nested_as_deeply_as_a_header_holds_are_refused() {
         let error = fclib::from_bytes(Path::new("a.hdf5"), nested(depth)).unwrap_err();
         assert_clear(&error.to_string(), "`a.hdf5`", 1);
     }
+}
+
+/// A V without columns took the solution of no equations for one, which the library of matrices does not.
+#[test]
+fn a_problem_with_no_rigid_motions_in_its_v_is_solved() {
+    let dir = tempfile::tempdir().unwrap();
+    let empty = |rows| SparseMatrix::from_triplets(rows, 0, []).unwrap();
+    let problem = Problem::Local(LocalProblem {
+        dim: 2,
+        w: SparseMatrix::from_triplets(2, 2, [(0, 0, 1.0), (1, 1, 1.0)]).unwrap(),
+        q: vec![-1.0, 0.1],
+        mu: vec![0.3],
+        equality: Some(LocalEquality {
+            v: empty(2),
+            r: empty(0),
+            s: Vec::new(),
+        }),
+        info: Info::default(),
+        solution: None,
+        guesses: Vec::new(),
+    });
+    let file = dir.path().join("p.hdf5");
+    std::fs::write(&file, problem.to_bytes().unwrap()).unwrap();
+    ends_with(0, &["solve", "p.hdf5", "-m", "b-newton"], dir.path());
 }

@@ -72,7 +72,7 @@ fn no_changed_byte_of_a_record_is_believed() {
         fs::write(&files[file], &originals[file]).unwrap();
         taken
     };
-    campaign::run("records", 400, draw, read);
+    campaign::run("records", 250, draw, read);
 }
 
 #[test]
@@ -89,5 +89,5 @@ fn what_is_sealed_again_is_a_record_or_refused() {
         fs::write(&files[file], &originals[file]).unwrap();
         taken
     };
-    campaign::run("records sealed again", 400, draw, read);
+    campaign::run("records sealed again", 250, draw, read);
 }

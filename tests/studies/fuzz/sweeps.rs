@@ -51,5 +51,5 @@ fn any_bytes_are_a_sweep_or_refused_at_line_and_column() {
             }
         }
     };
-    campaign::run("sweep", 400, draw, read);
+    campaign::run("sweep", 250, draw, read);
 }
