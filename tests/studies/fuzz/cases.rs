@@ -38,7 +38,7 @@ fn any_bytes_are_a_case_or_refused_at_line_and_column() {
         );
         false
     };
-    campaign::run("case", 600, draw, read);
+    campaign::run("case", 400, draw, read);
 }
 
 /// Goal: what the reader takes is discretised or refused, whatever its numbers.
