@@ -44,11 +44,11 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
     let (mut file, len) = regular::open(path).map_err(unreadable)?;
     // A large file of something else is not worth the memory.
     if !is_signed(&mut file, len).map_err(unreadable)? {
-        return Err(InterchangeError::unexpected(
-            path,
-            "it does not begin like HDF5",
-            "an FCLIB file",
-        ));
+        return Err(InterchangeError::Hdf5 {
+            path: path.into(),
+            dataset: String::new(),
+            reason: "it does not begin like HDF5".into(),
+        });
     }
     from_bytes(
         path,
