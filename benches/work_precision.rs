@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let out = scratch.path().join("results/bench");
         (&PROBLEMS[4..], scratch.path().join("criterion"), out)
     };
-    prepare_output(&out)?;
+    let _claim = prepare_output(&out)?;
 
     let mut bundle = Bundle::new();
     add_timings(&mut bundle, &home, problems)?;

@@ -2,3 +2,5 @@
 
 pub mod bundle;
 pub mod interchange;
+pub(crate) mod regular;
+pub(crate) mod visible;

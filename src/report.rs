@@ -23,7 +23,7 @@ pub mod tables;
 pub mod timings;
 pub mod vtu;
 
-pub use crate::files::bundle::{Bundle, prepare_output};
+pub use crate::files::bundle::{Bundle, Claim, prepare_output, prepare_shared_output};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
 

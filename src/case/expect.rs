@@ -1,5 +1,7 @@
 //! `[[probe]]` and `[[expect]]` of a case file, checked against what the case runs.
 
+use std::collections::BTreeSet;
+
 use super::crack::friction;
 use super::error::{CaseError, Span};
 use super::load::side_names;
@@ -83,6 +85,8 @@ pub(super) struct Runs {
     refine: Vec<usize>,
     increments: usize,
     places: Vec<String>,
+    /// The places again: with as many probes as a file holds a search through all takes seconds.
+    known: BTreeSet<String>,
 }
 
 impl Runs {
@@ -94,13 +98,14 @@ impl Runs {
         } else {
             &sweep.friction
         };
+        let cracks = (1..=cracks.len()).map(|i| format!("crack-{i}"));
+        let places: Vec<String> = sides.chain(cracks).collect();
         Runs {
             frictions: frictions.to_vec(),
             refine: sweep.refine.clone(),
             increments: path.increments,
-            places: sides
-                .chain((1..=cracks.len()).map(|i| format!("crack-{i}")))
-                .collect(),
+            known: places.iter().cloned().collect(),
+            places,
         }
     }
 
@@ -109,7 +114,7 @@ impl Runs {
         let table = value.table(&["name", "point_m"])?;
         let given = table.required("name")?;
         let name = given.label()?;
-        if self.places.contains(&name) {
+        if !self.known.insert(name.clone()) {
             let allowed = format!("a name other than {}", self.places.join(", "));
             return Err(given.refuse(allowed, "name already taken"));
         }
@@ -186,7 +191,7 @@ impl Runs {
     /// `at`: a side, a crack or a probe; empty for the whole body.
     fn place(&self, value: Value<'_>) -> Result<String, CaseError> {
         let place = value.string()?;
-        if !place.is_empty() && !self.places.iter().any(|p| p == place) {
+        if !place.is_empty() && !self.known.contains(place) {
             return Err(value.refuse(self.places.join(", "), "unknown place"));
         }
         Ok(place.to_string())

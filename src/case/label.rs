@@ -7,6 +7,8 @@
 
 use std::borrow::Cow;
 
+pub(crate) use crate::files::visible::is_visible;
+
 /// What a label may be.
 pub(crate) const ALLOWED: &str =
     "one line of visible text that does not begin like a formula, with =, +, - or @";
@@ -34,12 +36,6 @@ pub fn cell(text: &str) -> Cow<'_, str> {
         true => format!("'{text}").into(),
         false => text.into(),
     }
-}
-
-/// No control character, no line separator, no mark of the writing direction.
-pub(crate) fn is_visible(c: char) -> bool {
-    let marks = matches!(c, '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}');
-    !c.is_control() && !marks
 }
 
 /// Whether a spreadsheet computes what it finds in such a cell. Numbers and lone signs are what they are.

@@ -1,5 +1,7 @@
 //! `[mesh]` and `[sweep]` of a case file: grid lines, the line they follow, refinement.
 
+use std::collections::BTreeSet;
+
 use stickslip_xfem::mesh::box_mesh::{GridSpec, Motion};
 use stickslip_xfem::mesh::grid_motion::{Distort, Follow, Twist};
 
@@ -288,23 +290,27 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
         }
         Ok(factor)
     };
-    let frictions = table.optional("friction", |v| distinct(v, friction))?;
-    let refine = table.optional("refine", |v| distinct(v, factor))?;
+    let frictions = table.optional("friction", |v| {
+        // Adding 0 makes -0 the 0 that it equals.
+        distinct(v, friction, |mu| (mu + 0.0).to_bits())
+    })?;
+    let refine = table.optional("refine", |v| distinct(v, factor, |factor| *factor))?;
     Ok(Sweep {
         friction: frictions.unwrap_or_default(),
         refine: refine.unwrap_or_else(|| vec![1]),
     })
 }
 
-/// A non-empty list without repetitions.
-fn distinct<T: PartialEq>(
+/// A non-empty list without repetitions, which equal keys are.
+fn distinct<T, K: Ord>(
     value: Value<'_>,
     read: impl Fn(Value<'_>) -> Result<T, CaseError>,
+    key: impl Fn(&T) -> K,
 ) -> Result<Vec<T>, CaseError> {
-    let mut found = Vec::new();
+    let (mut found, mut keys) = (Vec::new(), BTreeSet::new());
     for entry in value.list()? {
         let item = read(entry)?;
-        if found.contains(&item) {
+        if !keys.insert(key(&item)) {
             return Err(entry.refuse("each value once", "repeated value"));
         }
         found.push(item);

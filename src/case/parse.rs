@@ -1,8 +1,6 @@
 //! From a file to a checked [`Case`].
 
 use std::fmt::Display;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use stickslip_methods::Tier;
@@ -20,6 +18,7 @@ use super::load::{LoadSpec, Scene, SupportSpec, load, support};
 use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
 use super::settings::{self, MethodSpec, PathSpec};
+use crate::files::regular;
 
 /// One checked case file.
 #[derive(Debug, Clone)]
@@ -107,6 +106,9 @@ impl Case {
 /// Largest case file read [bytes]; the largest of this project has 8 kB.
 const MAX_BYTES: u64 = 1 << 20;
 
+/// Longest name of a case [bytes]: files of its results have longer ones, and file systems take 255.
+const MAX_NAME: usize = 120;
+
 /// Keys of the document itself.
 const KEYS: [&str; 16] = [
     "title",
@@ -142,27 +144,11 @@ pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
     let unreadable = |e: std::io::Error| {
         CaseError::unreadable(path, e, "a readable TOML file", "cannot be read")
     };
-    let file = File::open(path).map_err(unreadable)?;
-    let described = file.metadata().map_err(unreadable)?;
-    if described.is_dir() {
-        return Err(CaseError::unreadable(
-            path,
-            "a directory",
-            "a readable TOML file",
-            "cannot be read",
-        ));
+    let (file, len) = regular::open(path).map_err(unreadable)?;
+    if len > MAX_BYTES {
+        return Err(too_large(path, &format!("{len} bytes")));
     }
-    if described.len() > MAX_BYTES {
-        return Err(too_large(path, &format!("{} bytes", described.len())));
-    }
-    // The length of a pipe is not known beforehand.
-    let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(too_large(path, &format!("more than {MAX_BYTES} bytes")));
-    }
+    let bytes = regular::rest(file, len, MAX_BYTES).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(e.as_bytes());
@@ -211,10 +197,17 @@ pub fn parse_with(
         return Err(too_large(&file, &format!("{} bytes", text.len())));
     }
     let document = document(&file, &text, &KEYS, |root| read_document(root, solutions))?;
-    let name = file
-        .file_stem()
-        .map(|s| visible(&s.to_string_lossy()))
-        .unwrap_or_default();
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    if stem.len() > MAX_NAME {
+        let source = Source {
+            file: &file,
+            text: "",
+        };
+        let size = format!("{} bytes", stem.len());
+        let allowed = format!("at most {MAX_NAME} bytes");
+        return Err(source.error(&(0..0), size, allowed, "file name too long for a case"));
+    }
+    let name = visible(&stem);
     Ok(Case {
         name,
         file,

@@ -78,7 +78,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         tips: given(arguments.tips),
         choice,
     };
-    prepare_output(&arguments.out)?;
+    let _claim = prepare_output(&arguments.out)?;
     let bar = Bar::new();
     let mut samples = Vec::new();
     for case in &cases {

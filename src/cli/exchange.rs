@@ -81,7 +81,7 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
         refine: args.refine.map(usize::from),
         choice: Choice::parse(&args.method)?,
     };
-    prepare_output(&args.out)?;
+    let _claim = prepare_output(&args.out)?;
     let exported = export(&case, &request)?;
     let (problem, increment) = (problem_name(&exported.key), exported.key.increment);
     let name = format!("{problem}.increment-{increment}");
@@ -106,7 +106,7 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
         "problem",
         problems.iter().map(|problem| problem.name.as_str()),
     )?;
-    prepare_output(&args.out)?;
+    let _claim = prepare_output(&args.out)?;
     let bar = Bar::new();
     bar.plan(problems.len() * chosen.len());
     let settings = Settings {

@@ -37,7 +37,7 @@ impl Default for Arguments {
 
 /// Prints the paper's tables, runs everything, writes the report and prints what it found.
 pub fn run(Arguments { out, jobs, full }: Arguments) -> Result<bool, CliError> {
-    prepare_output(&out)?;
+    let _claim = prepare_output(&out)?;
     let settings = Settings {
         tier: None,
         jobs: usize::from(jobs),

@@ -73,7 +73,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         tier: arguments.tier,
         jobs: usize::from(arguments.jobs),
     };
-    prepare_output(&arguments.out)?;
+    let _claim = prepare_output(&arguments.out)?;
     let bar = Bar::new();
     let trials = robustness::run(&plan, &choices, &bar)?;
     bar.finish();

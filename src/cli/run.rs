@@ -85,7 +85,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
         expect::check(case)?;
     }
-    prepare_output(out)?;
+    let _claim = prepare_output(out)?;
     let bar = Bar::new();
     let mut results = Results::default();
     for case in &cases {

@@ -34,7 +34,7 @@ fn most_meshes() -> usize {
 
 /// Runs the study; false if `star`, which is stable by construction, is not found to be.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    prepare_output(&arguments.out)?;
+    let _claim = prepare_output(&arguments.out)?;
     let bar = Bar::new();
     let meshes = usize::from(arguments.meshes);
     let cells = |scene: &Scene| scene.cells.iter().copied().take(meshes).collect();

@@ -72,7 +72,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if let Some(Part::Methods(methods)) = arguments.part {
         return robustness::run(methods);
     }
-    prepare_output(&arguments.out)?;
+    let _claim = prepare_output(&arguments.out)?;
     if let (Some(number), Some(&family)) = (arguments.only, arguments.family.first()) {
         return one(&arguments, family, number);
     }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::{Provenance, page, prepare_output, sweep};
+use crate::report::{Provenance, page, prepare_output, prepare_shared_output, sweep};
 use crate::studies::stress;
 use crate::studies::sweep::compare::compare;
 use crate::studies::sweep::conduct::{self, Conduct, Request, Shard, conduct};
@@ -131,7 +131,11 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let baseline = arguments.baseline.as_deref().map(Store::open);
     let before = baseline.transpose()?.map(|store| store.records());
     let before = before.transpose()?;
-    prepare_output(&arguments.out)?;
+    // Shards measure different cells, so they may fill one folder.
+    let _claim = match arguments.shard {
+        None => prepare_output(&arguments.out)?,
+        Some(_) => prepare_shared_output(&arguments.out)?,
+    };
     let store = Store::create(&arguments.out, plan.contents())?;
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
@@ -171,9 +175,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
 
 /// Runs the verb `compare`; false if a verdict got worse.
 pub fn run_compare(arguments: &CompareArguments) -> Result<bool, CliError> {
-    if let Some(out) = &arguments.out {
-        prepare_output(out)?;
-    }
+    let _claim = arguments.out.as_deref().map(prepare_output).transpose()?;
     let [a, b] = [&arguments.a, &arguments.b].map(|dir| Store::open(dir)?.records());
     changes(&a?, &b?, arguments.out.as_deref())
 }
@@ -208,7 +210,7 @@ pub fn watch_for_interruption() -> Result<(), CliError> {
 
 /// Runs the verb `merge`; false if cells are missing. What the cells say is in the report.
 pub fn run_merge(arguments: MergeArguments) -> Result<bool, CliError> {
-    prepare_output(&arguments.out)?;
+    let _claim = prepare_output(&arguments.out)?;
     let merged = merge(&arguments.folders, &arguments.out, arguments.force)?;
     let total = merged.store.contents().cells.len();
     say(format_args!("{} of {total} cells", merged.records.len()));

@@ -23,6 +23,12 @@ pub enum FolderError {
         /// Why.
         source: std::io::Error,
     },
+    /// Another process writes there.
+    #[error("another run is writing into `{}`: wait for it, or choose another folder", path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Two outputs were given the same file name.
     #[error("two outputs are named `{path}`")]
     Duplicate {
@@ -147,21 +153,69 @@ impl Bundle {
     }
 }
 
-/// Proves that files can be written into `dir`, which need not exist yet, and leaves nothing behind; to be called before
-/// any computing.
+/// Proves that files can be written into `dir`, which need not exist yet, and keeps other runs out of it until the claim
+/// is dropped; to be called before any computing. Folders that stay empty go with the claim.
 ///
 /// # Errors
-/// [`FolderError::Io`] naming the path.
-pub fn prepare_output(dir: &Path) -> Result<(), FolderError> {
-    // A folder that is still to be made takes its rights from the nearest one that exists.
-    let existing = dir.ancestors().find(|path| path.exists());
-    let folder = existing.unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        let source = std::io::Error::from(std::io::ErrorKind::NotADirectory);
-        return Err(FolderError::io("create folder", dir, source));
+/// [`FolderError::Io`] naming the path, [`FolderError::Busy`] where another run has a claim.
+pub fn prepare_output(dir: &Path) -> Result<Claim, FolderError> {
+    Claim::new(dir, fs::File::try_lock)
+}
+
+/// As [`prepare_output`], beside others that share the folder with care, such as the shards of a sweep.
+///
+/// # Errors
+/// Those of [`prepare_output`].
+pub fn prepare_shared_output(dir: &Path) -> Result<Claim, FolderError> {
+    Claim::new(dir, fs::File::try_lock_shared)
+}
+
+/// The right to write into a folder. Two runs that wrote into one folder would leave some files of each.
+#[must_use]
+#[derive(Debug)]
+pub struct Claim {
+    /// Holds the lock; the system takes it back also from a process that was killed. None where it knows no locks of folders.
+    _lock: Option<fs::File>,
+    /// Folders that were made for it, outer ones first.
+    made: Vec<PathBuf>,
+}
+
+impl Claim {
+    fn new(
+        dir: &Path,
+        lock: impl Fn(&fs::File) -> Result<(), fs::TryLockError>,
+    ) -> Result<Self, FolderError> {
+        let missing = dir.ancestors().take_while(|path| !path.exists());
+        let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
+        // The parent of a lone name is nothing, which is the folder we are in.
+        made.retain(|path| !path.as_os_str().is_empty());
+        made.reverse();
+        let mut claim = Self { _lock: None, made };
+        create_dir(dir)?;
+        if let Ok(folder) = fs::File::open(dir) {
+            match lock(&folder) {
+                Ok(()) => claim._lock = Some(folder),
+                Err(fs::TryLockError::WouldBlock) => {
+                    let path = dir.to_path_buf();
+                    return Err(FolderError::Busy { path });
+                }
+                // Some file systems know no locks.
+                Err(fs::TryLockError::Error(_)) => {}
+            }
+        }
+        let staging = Staging::create(dir)?;
+        write(&staging.new_files().join("probe"), b"probe")?;
+        drop(staging);
+        Ok(claim)
     }
-    let staging = Staging::create(folder)?;
-    write(&staging.new_files().join("probe"), b"probe")
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // Only empty folders can be removed so.
+        let removed = self.made.iter().rev().map(fs::remove_dir);
+        let _ = removed.collect::<Result<(), _>>();
+    }
 }
 
 /// Working folder inside the output folder, removed when dropped.

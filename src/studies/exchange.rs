@@ -114,14 +114,16 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     let rows = problem.q.len();
     let w = problem.w.symmetric_part()?;
     let (mut modes, mut force) = (Vec::new(), vec![0.0; rows]);
-    if let Some(equality) = &problem.equality {
+    // V may have no columns: then it says nothing.
+    let equality = (problem.equality.as_ref()).filter(|equality| equality.v.cols() > 0);
+    if let Some(equality) = equality {
         modes = (0..equality.v.cols())
             .map(|j| equality.v.column(j))
             .collect();
     }
     let mut offset = problem.q.clone();
     let elastic = Elastic::from_delassus(problem.dim, w, modes.clone())?;
-    if let Some(equality) = &problem.equality {
+    if let Some(equality) = equality {
         // Independent columns, which the body has just checked: Vᵀ V is regular.
         let v = DMatrix::from_fn(rows, modes.len(), |i, j| modes[j][i]);
         let y = (v.transpose() * &v)

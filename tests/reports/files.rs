@@ -65,7 +65,7 @@ fn folders_that_cannot_be_written_are_named_before_anything_is_computed() {
     }
     assert_eq!(fs::read_to_string(&file).expect("the file"), "in the way");
     let fresh = dir.path().join("a/b");
-    prepare_output(&fresh).expect("a new folder");
+    drop(prepare_output(&fresh).expect("a new folder"));
     let names: Vec<_> = fs::read_dir(dir.path())
         .expect("a folder")
         .flatten()

@@ -256,14 +256,18 @@ fn reactions_of_other_programs_are_judged() {
     // More entries than a number can count.
     let huge = "%%MatrixMarket matrix coordinate real general\n18446744073709551615 2 0\n";
     std::fs::write(dir.path().join("huge.mtx"), huge).unwrap();
-    let shape = format!("18446744073709551615 × 2, expected {} × 1", reaction.len());
+    let sizes = "line 2: `18446744073709551615 2 0`, expected sizes that the file can hold";
+    let wide = "%%MatrixMarket matrix coordinate real general\n4000000 2 0\n";
+    std::fs::write(dir.path().join("wide.mtx"), wide).unwrap();
+    let shape = format!("4000000 × 2, expected {} × 1", reaction.len());
     for (arguments, code, words) in [
         (&["good.mtx"][..], 0, ""),
         (&["good.mtx", "zero.mtx"], 1, ""),
         (&["rough.mtx"], 1, ""),
         (&["rough.mtx", "--tier", "low"], 0, ""),
         (&["short.mtx"], 2, ""),
-        (&["huge.mtx"], 2, &shape),
+        (&["huge.mtx"], 2, sizes),
+        (&["wide.mtx"], 2, &shape),
         (&["nowhere.mtx"], 2, ""),
     ] {
         let arguments = [&["judge", &*file], arguments].concat();

@@ -5,6 +5,7 @@ mod common;
 
 mod converge;
 mod fclib;
+mod fuzz;
 mod infsup;
 mod interchange;
 mod measure;

@@ -8,11 +8,20 @@
 //! ```
 
 use std::path::Path;
+use std::thread;
 
 use super::error::InterchangeError;
 use super::fclib_global::GlobalProblem;
 use super::fclib_local::LocalProblem;
-use super::hdf5::Tree;
+use super::hdf5::{Tree, is_signed};
+use crate::files::regular;
+
+/// Largest file read [bytes]; those of the FCLIB collection have some hundred megabytes.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Stack for decoding [bytes], taken only as far as it is used. Types of HDF5 nest up to eight thousand deep, as many as a
+/// header of 64 kB holds, and the library recurses into each.
+const STACK: usize = 256 << 20;
 
 /// A problem file.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,11 +37,23 @@ pub enum Problem {
 /// # Errors
 /// [`InterchangeError`], naming file, dataset, index, value and what is allowed.
 pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
-    let bytes = std::fs::read(path).map_err(|source| InterchangeError::Io {
+    let unreadable = |source| InterchangeError::Io {
         path: path.into(),
         source,
-    })?;
-    from_bytes(path, bytes)
+    };
+    let (mut file, len) = regular::open(path).map_err(unreadable)?;
+    // A large file of something else is not worth the memory.
+    if !is_signed(&mut file, len).map_err(unreadable)? {
+        return Err(InterchangeError::Hdf5 {
+            path: path.into(),
+            dataset: String::new(),
+            reason: "it does not begin like HDF5".into(),
+        });
+    }
+    from_bytes(
+        path,
+        regular::rest(file, len, MAX_BYTES).map_err(unreadable)?,
+    )
 }
 
 /// Reads the bytes of a file of either kind; `path` is only for messages.
@@ -40,6 +61,20 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
 /// # Errors
 /// Those of [`read`].
 pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
+    let failed = || InterchangeError::refused(path, "the decoder of HDF5 broke down on it");
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().stack_size(STACK);
+        let decoding = thread.spawn_scoped(scope, move || decode(path, bytes));
+        let decoding = decoding.map_err(|source| InterchangeError::Io {
+            path: path.into(),
+            source,
+        })?;
+        // No bytes are known on which the library panics; with such it would not take the program along.
+        decoding.join().unwrap_or_else(|_| Err(failed()))
+    })
+}
+
+fn decode(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
     let tree = Tree::open(path, bytes)?;
     let none = |found| {
         let allowed = "one of the groups /fclib_local and /fclib_global";

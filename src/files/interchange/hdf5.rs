@@ -1,8 +1,11 @@
 //! The HDF5 tree of a problem file: named datasets of integers, reals and text.
 //!
 //! Nothing is allocated for a dataset before its extent was compared with the size of the file, so a few wrong bytes
-//! cannot ask for all memory.
+//! cannot ask for all memory. Many names of one dataset cannot either: what all together ask for is bounded alike.
 
+use std::cell::Cell;
+use std::fs::File as Disk;
+use std::io::{Read, Result as IoResult, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use hdf5_pure::{
@@ -11,15 +14,42 @@ use hdf5_pure::{
 };
 
 use super::error::InterchangeError;
+use crate::files::visible::excerpt;
+
+/// Longest text shown of what the file says of itself: types of HDF5 nest by the thousand, and their parts have names.
+const SHOWN: usize = 200;
 
 /// Bytes that one byte of a deflate stream can stand for, rounded up.
 const DEFLATE_RATIO: u64 = 1100;
+
+/// How an HDF5 file begins, at byte 0, 512, 1024, … behind a block of the user.
+const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
+
+/// Whether an open file of a length has the signature of HDF5; leaves it at its beginning.
+pub(super) fn is_signed(file: &mut Disk, len: u64) -> IoResult<bool> {
+    let blocks = std::iter::successors(Some(512u64), |at| at.checked_mul(2));
+    let places = std::iter::once(0).chain(blocks);
+    let mut signed = false;
+    for at in places.take_while(|at| at.saturating_add(8) <= len) {
+        let mut found = [0; 8];
+        file.seek(SeekFrom::Start(at))?;
+        file.read_exact(&mut found)?;
+        signed = found == SIGNATURE;
+        if signed {
+            break;
+        }
+    }
+    file.rewind()?;
+    Ok(signed)
+}
 
 /// A file being read.
 pub(super) struct Tree {
     file: File,
     path: PathBuf,
     size: u64,
+    /// Bytes of the file that the datasets read so far must take.
+    taken: Cell<u64>,
 }
 
 impl Tree {
@@ -31,6 +61,7 @@ impl Tree {
             file,
             path: path.into(),
             size,
+            taken: Cell::new(0),
         })
     }
 
@@ -90,13 +121,16 @@ impl Tree {
         };
         let largest = self.size.saturating_mul(ratio) / element;
         let extent = (shape.iter()).try_fold(1u64, |n, &extent| n.checked_mul(extent));
-        match extent {
-            Some(extent) if extent <= largest => Ok(extent),
-            _ => {
-                let allowed = format!("at most {largest}, which is what the file can hold");
-                Err(self.length(name, extent.unwrap_or(u64::MAX), allowed))
-            }
+        let Some(extent) = extent.filter(|&extent| extent <= largest) else {
+            let allowed = format!("at most {largest}, which is what the file can hold");
+            return Err(self.length(name, extent.unwrap_or(u64::MAX), allowed));
+        };
+        self.taken.set(self.taken.get() + extent * element / ratio);
+        if self.taken.get() > self.size {
+            let what = format!("{name}: the datasets up to this one need more than the file holds");
+            return Err(InterchangeError::refused(&self.path, what));
         }
+        Ok(extent)
     }
 
     /// One integer.
@@ -111,7 +145,7 @@ impl Tree {
     /// Integers of any width.
     pub fn integers(&self, name: &str) -> Result<Vec<i64>, InterchangeError> {
         use DType::{I8, I16, I32, I64, U8, U16, U32, U64};
-        let dataset = self.typed(name, "integers", |t| {
+        let (dataset, _) = self.typed(name, "integers", |t| {
             matches!(t, I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64)
         })?;
         (dataset.read_i64()).map_err(|e| unreadable(&self.path, name, &e))
@@ -128,7 +162,7 @@ impl Tree {
 
     /// Finite reals, as many as there are.
     pub fn all_reals(&self, name: &str) -> Result<Vec<f64>, InterchangeError> {
-        let dataset = self.typed(name, "reals", |t| matches!(t, DType::F32 | DType::F64))?;
+        let (dataset, _) = self.typed(name, "reals", |t| matches!(t, DType::F32 | DType::F64))?;
         let values = (dataset.read_f64()).map_err(|e| unreadable(&self.path, name, &e))?;
         match values.iter().position(|v| !v.is_finite()) {
             None => Ok(values),
@@ -141,14 +175,14 @@ impl Tree {
         name: &str,
         allowed: &'static str,
         fits: impl Fn(&DType) -> bool,
-    ) -> Result<Dataset, InterchangeError> {
+    ) -> Result<(Dataset, u64), InterchangeError> {
         let dataset = self.dataset(name)?.ok_or_else(|| self.missing(name))?;
-        self.extent(name, &dataset)?;
+        let extent = self.extent(name, &dataset)?;
         let found = (dataset.dtype()).map_err(|e| unreadable(&self.path, name, &e))?;
         if fits(&found) {
-            return Ok(dataset);
+            return Ok((dataset, extent));
         }
-        let found = format!("{name} holds {found}");
+        let found = format!("{name} holds {}", excerpt(&found.to_string(), SHOWN));
         Err(InterchangeError::unexpected(&self.path, found, allowed))
     }
 
@@ -157,16 +191,20 @@ impl Tree {
         if self.dataset(name)?.is_none() {
             return Ok(None);
         }
-        let dataset = self.typed(name, "text", |t| {
+        let (dataset, extent) = self.typed(name, "text", |t| {
             matches!(t, DType::String | DType::VariableLengthString)
         })?;
+        // Texts of variable length may all be the same bytes of the file, which the extent does not bound.
+        if extent > 1 {
+            return Err(self.length(name, extent, "1"));
+        }
         let texts = (dataset.read_string()).map_err(|e| unreadable(&self.path, name, &e))?;
         Ok(texts.into_iter().next())
     }
 }
 
 fn unreadable(path: &Path, dataset: &str, error: &Error) -> InterchangeError {
-    let mut reason = error.to_string();
+    let mut reason = excerpt(&error.to_string(), SHOWN);
     let newer = matches!(
         error,
         Error::Format(
@@ -248,4 +286,23 @@ pub(super) fn put_text(group: &mut GroupBuilder, name: &str, text: &str) {
     };
     let dataset = group.create_dataset(name);
     dataset.with_shape(&[]).with_raw_data(datatype, bytes, 1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: memory is bounded by the size of the file also where many names stand for the same bytes of it.
+    #[test]
+    fn one_dataset_under_many_names_is_read_once() {
+        let mut file = Writer::new();
+        file.group("g", |group| put_reals(group, "x", &[0.5; 10_000]));
+        let tree = Tree::open(Path::new("a.hdf5"), file.finish().unwrap()).unwrap();
+        assert_eq!(tree.all_reals("g/x").unwrap().len(), 10_000);
+        let error = tree.all_reals("g/x").unwrap_err().to_string();
+        assert!(
+            error.contains("g/x") && error.contains("more than the file holds"),
+            "{error}"
+        );
+    }
 }

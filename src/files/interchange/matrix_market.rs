@@ -8,6 +8,8 @@ use std::path::Path;
 
 use super::error::InterchangeError;
 use super::sparse::SparseMatrix;
+use crate::files::regular;
+use crate::files::visible::excerpt;
 
 const BANNER: &str = "%%MatrixMarket matrix";
 
@@ -44,6 +46,21 @@ pub fn vector(values: &[f64]) -> String {
     text
 }
 
+/// Most rows of a matrix: those without entries take no line, but memory as soon as the matrix is transposed.
+const MOST_ROWS: usize = 1 << 22;
+
+/// Reads a file of at most `most` bytes, see [`parse`].
+///
+/// # Errors
+/// Those of [`parse`], and a file that is larger or no regular file.
+pub fn read(path: &Path, most: u64) -> Result<SparseMatrix, InterchangeError> {
+    let text = regular::read_text(path, most).map_err(|source| InterchangeError::Io {
+        path: path.into(),
+        source,
+    })?;
+    parse(path, &text)
+}
+
 /// Reads what this module writes: a `coordinate` or `array` matrix of reals, `general` or `symmetric`. `path` is only
 /// for messages.
 ///
@@ -78,16 +95,16 @@ pub fn parse(path: &Path, text: &str) -> Result<SparseMatrix, InterchangeError> 
         }
     };
     let header = lines.content("the sizes")?;
-    let sizes: Vec<usize> = (header.split_whitespace())
-        .map_while(|word| word.parse().ok())
-        .collect();
+    let sizes = (header.split_whitespace()).map(|word| word.parse().ok());
+    let sizes: Vec<usize> = sizes.collect::<Option<_>>().unwrap_or_default();
     let (rows, cols, count) = match (array, &sizes[..]) {
         (true, &[rows, cols]) => (rows, cols, rows.saturating_mul(cols)),
         (false, &[rows, cols, count]) => (rows, cols, count),
         _ => return Err(lines.error(header, "rows, columns and, for coordinates, entries")),
     };
+    let line_of_sizes = lines.last;
     // Every entry takes a line, and a column without entries only a pointer.
-    if count > text.len() || cols > text.len() {
+    if count > text.len() || cols > text.len() || rows > text.len().max(MOST_ROWS) {
         return Err(lines.error(header, "sizes that the file can hold"));
     }
     let mut triplets = Vec::with_capacity(count);
@@ -114,13 +131,30 @@ pub fn parse(path: &Path, text: &str) -> Result<SparseMatrix, InterchangeError> 
             triplets.push((j, i, value));
         }
     }
+    if let Some(line) = lines.content_or_end() {
+        return Err(lines.error(line, "the end of the file, all entries are read"));
+    }
+    lines.last = line_of_sizes;
     let sizes = || lines.error(header, "a square matrix, because it is symmetric");
-    SparseMatrix::from_triplets(rows, cols, triplets).ok_or_else(sizes)
+    let matrix = SparseMatrix::from_triplets(rows, cols, triplets).ok_or_else(sizes)?;
+    let overflow = matrix.entries().find(|e| !e.2.is_finite());
+    match overflow {
+        None => Ok(matrix),
+        Some((i, j, _)) => {
+            let (i, j) = (i + 1, j + 1);
+            let allowed = format!("finite sums; entry ({i}, {j}) stands there more than once");
+            Err(lines.error(header, allowed))
+        }
+    }
 }
 
 fn index(word: &str, size: usize) -> Option<usize> {
     let index: usize = word.parse().ok()?;
     (1..=size).contains(&index).then(|| index - 1)
+}
+
+fn is_content(line: &str) -> bool {
+    !line.trim().is_empty() && !line.starts_with('%')
 }
 
 struct Lines<'a> {
@@ -147,17 +181,24 @@ impl<'a> Lines<'a> {
     fn content(&mut self, wanted: &str) -> Result<&'a str, InterchangeError> {
         loop {
             let line = self.next(wanted)?;
-            if !line.trim().is_empty() && !line.starts_with('%') {
+            if is_content(line) {
                 return Ok(line);
             }
         }
+    }
+
+    /// The same where the file may end.
+    fn content_or_end(&mut self) -> Option<&'a str> {
+        let (number, line) = self.lines.find(|(_, line)| is_content(line))?;
+        self.last = number + 1;
+        Some(line)
     }
 
     fn error(&self, found: &str, allowed: impl Into<String>) -> InterchangeError {
         InterchangeError::Line {
             path: self.path.into(),
             line: self.last,
-            found: found.chars().take(80).collect(),
+            found: excerpt(found, 80),
             allowed: allowed.into(),
         }
     }

@@ -21,6 +21,13 @@ use crate::studies::exchange::{System, global_system, local_system, local_veloci
 /// bound an empty V would take memory that grows with the square of the file.
 const MOST_MOTIONS: usize = 60;
 
+/// Longest name of a problem [bytes]: files of its solutions have longer ones, and file systems take 255.
+const MAX_NAME: usize = 200;
+
+/// Bytes of comments that a file of reactions may have, and of a line with one number.
+const COMMENTS: u64 = 1 << 20;
+const LINE: u64 = 128;
+
 /// A problem read and turned into a system.
 pub struct ProblemFile {
     /// File name without `.hdf5`: the case of its runs.
@@ -90,6 +97,14 @@ impl ProblemFile {
     /// [`ProblemFileError`], naming the file.
     pub fn read(path: &Path) -> Result<Self, ProblemFileError> {
         let clock = Instant::now();
+        let name = name(path);
+        if name.len() > MAX_NAME {
+            let what = format!(
+                "its name has {} bytes, at most {MAX_NAME} are taken",
+                name.len()
+            );
+            return Err(InterchangeError::refused(path, what).into());
+        }
         let problem = fclib::read(path)?;
         refuse_unsupported(path, &problem)?;
         let failed = |source| match source {
@@ -118,7 +133,7 @@ impl ProblemFile {
         let shared = system.elastic().timings();
         let factor_s = shared.analysis_s + shared.factorisation_s;
         Ok(Self {
-            name: name(path),
+            name,
             path: path.into(),
             kind,
             rest: Load::zero(system.elastic()),
@@ -149,12 +164,9 @@ impl ProblemFile {
     /// # Errors
     /// A file that is no such vector; a floating body, whose rigid motion no reaction tells.
     pub fn judge(&self, reaction: &Path) -> Result<Residuals, ProblemFileError> {
-        let text = std::fs::read_to_string(reaction).map_err(|source| InterchangeError::Io {
-            path: reaction.into(),
-            source,
-        })?;
-        let vector = matrix_market::parse(reaction, &text)?;
         let rows = self.load.offset.len();
+        let most = COMMENTS + LINE * rows as u64;
+        let vector = matrix_market::read(reaction, most)?;
         if (vector.rows(), vector.cols()) != (rows, 1) {
             let found = format!("a matrix of {} × {}", vector.rows(), vector.cols());
             let allowed = format!("{rows} × 1");

@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+/// Longest id: with the ending of a file that is being written it is the name of a file.
+const MAX_ID: usize = 200;
+
 /// One cell of a sweep. Everything that decides about its numbers is in here, and nothing else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
@@ -36,11 +39,9 @@ impl Cell {
         let how = format!("{}.tol-{:e}", self.method, self.tolerance);
         let readable = format!("{case}.r{}.{space}.mu-{mu}.{how}", self.refine);
         let exact = format!("{readable} {} {:?}", self.digest, self.friction);
-        let safe = |c: char| match c {
-            'a'..='z' | 'A'..='Z' | '0'..='9' | '.' | '-' | '_' | '=' => c,
-            _ => '-',
-        };
-        let name: String = readable.chars().map(safe).collect();
+        let safe = |c: char| if is_safe(c) { c } else { '-' };
+        // The digest tells apart what is cut off.
+        let name: String = readable.chars().map(safe).take(MAX_ID - 9).collect();
         format!("{name}.{}", &hexadecimal(&exact)[..8])
     }
 
@@ -54,6 +55,15 @@ impl Cell {
             friction: self.friction.clone(),
         }
     }
+}
+
+/// Whether a text may be an id, and so the name of a file in the folder of the records and nowhere else.
+pub(super) fn is_id(text: &str) -> bool {
+    (1..=MAX_ID).contains(&text.len()) && text.chars().all(is_safe)
+}
+
+fn is_safe(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "._-=".contains(c)
 }
 
 /// What several cells solve.

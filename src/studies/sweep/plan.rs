@@ -34,6 +34,15 @@ use crate::run::choice::Choice;
 use crate::run::run_case::friction_values;
 use crate::studies::robustness::{RobustnessError, case_numbered};
 
+/// Largest number of cells of a sweep; each is a file, and a line in the tables.
+const MAX_CELLS: usize = 100_000;
+
+/// Largest number of cases that a sweep names; all are read before anything is measured.
+const MAX_CASES: usize = 1000;
+
+/// Largest number of random problems of a block; all are drawn before anything is measured.
+const MAX_PROBLEMS: usize = 10_000;
+
 /// A sweep: its cells, sorted by id.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -67,12 +76,19 @@ pub enum PlanError {
     Random(#[from] RobustnessError),
 }
 
-impl Plan {
+/// A sweep file as read: what is left to do is to draw the random problems it asks for.
+pub struct Outline {
+    title: String,
+    repeats: Repeats,
+    blocks: Vec<(Block, Option<Random>)>,
+}
+
+impl Outline {
     /// Reads a sweep file.
     ///
     /// # Errors
     /// The first fault, with its place.
-    pub fn read(path: &Path) -> Result<Self, PlanError> {
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
         Self::parse(path, &read_text(path)?)
     }
 
@@ -80,21 +96,44 @@ impl Plan {
     ///
     /// # Errors
     /// The first fault, with its place.
-    pub fn parse(file: &Path, text: &str) -> Result<Self, PlanError> {
+    pub fn parse(file: &Path, text: &str) -> Result<Self, CaseError> {
         let keys = ["title", "repeats", "cells"];
         let folder = file.parent().unwrap_or(Path::new(""));
-        let (title, repeats, blocks) = document(file, text, &keys, |root| {
+        document(file, text, &keys, |root| {
             let title = root.required("title")?.label()?;
             let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
             let blocks = root.tables("cells")?;
             if blocks.is_empty() {
                 return Err(root.missing("`[[cells]]`"));
             }
-            let blocks = blocks.into_iter().map(|value| block(value, folder));
-            Ok((title, repeats, blocks.collect::<Result<Vec<_>, _>>()?))
-        })?;
+            let mut room = Room {
+                cells: MAX_CELLS,
+                cases: MAX_CASES,
+            };
+            let blocks = blocks
+                .into_iter()
+                .map(|value| block(value, folder, &mut room));
+            Ok(Self {
+                title,
+                repeats,
+                blocks: blocks.collect::<Result<_, _>>()?,
+            })
+        })
+    }
+
+    /// How many random problems are to be drawn.
+    pub fn problems(&self) -> usize {
+        let drawn = self.blocks.iter().filter_map(|(_, drawn)| drawn.as_ref());
+        drawn.map(|random| random.problems).sum()
+    }
+
+    /// Draws the random problems.
+    ///
+    /// # Errors
+    /// Those of the random problems.
+    pub fn draw(self) -> Result<Plan, PlanError> {
         let mut tasks = Vec::new();
-        for (mut block, drawn) in blocks {
+        for (mut block, drawn) in self.blocks {
             if let Some(random) = drawn {
                 block.cases = random.cases(block.friction.as_deref())?;
             }
@@ -104,11 +143,29 @@ impl Plan {
         tasks.sort_by(|a: &Task, b: &Task| a.id.cmp(&b.id));
         // Blocks may overlap.
         tasks.dedup_by(|a, b| a.id == b.id);
-        Ok(Self {
-            title,
-            repeats,
+        Ok(Plan {
+            title: self.title,
+            repeats: self.repeats,
             tasks,
         })
+    }
+}
+
+impl Plan {
+    /// Reads a sweep file and draws its random problems.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn read(path: &Path) -> Result<Self, PlanError> {
+        Outline::read(path)?.draw()
+    }
+
+    /// The same for the text of a sweep file; cases are looked for beside `file`.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn parse(file: &Path, text: &str) -> Result<Self, PlanError> {
+        Outline::parse(file, text)?.draw()
     }
 
     /// What a folder with the records of the sweep holds.
@@ -130,6 +187,29 @@ struct Block {
     friction: Option<Vec<f64>>,
     methods: Vec<String>,
     tolerances: Vec<f64>,
+}
+
+/// What further blocks may still ask for.
+struct Room {
+    cells: usize,
+    cases: usize,
+}
+
+/// Takes from what is left, or refuses the value that asks for more.
+fn take(
+    left: &mut usize,
+    count: usize,
+    most: usize,
+    value: Value<'_>,
+    what: &str,
+) -> Result<(), CaseError> {
+    let Some(rest) = left.checked_sub(count) else {
+        let asked = (most - *left).saturating_add(count);
+        let allowed = format!("at most {most} {what} in all blocks");
+        return Err(value.refuse(allowed, format_args!("{asked} {what} so far")));
+    };
+    *left = rest;
+    Ok(())
 }
 
 /// Random problems that a block asks for.
@@ -161,6 +241,22 @@ impl Random {
 }
 
 impl Block {
+    /// Cells of one case, or of some random problems.
+    fn count(&self, case: Option<&Case>, problems: usize) -> usize {
+        let own = |list: fn(&Case) -> usize| case.map_or(1, list);
+        let refine = (self.refine.as_ref()).map_or_else(|| own(|c| c.sweep.refine.len()), Vec::len);
+        let friction =
+            (self.friction.as_ref()).map_or_else(|| own(|c| friction_values(c).len()), Vec::len);
+        let lists = [
+            refine,
+            friction,
+            self.contact.len(),
+            self.methods.len(),
+            self.tolerances.len(),
+        ];
+        lists.into_iter().fold(problems, usize::saturating_mul)
+    }
+
     fn tasks_of(&self, name: &str, case: &Case) -> Vec<Task> {
         let text: Arc<str> = Arc::from(case.source.as_str());
         let digest = digest(&case.source);
@@ -202,7 +298,11 @@ fn product<'a, A, B>(a: &'a [A], b: &'a [B]) -> impl Iterator<Item = (&'a A, &'a
 }
 
 /// A block, with the random problems that are still to be drawn.
-fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), CaseError> {
+fn block(
+    value: Value<'_>,
+    folder: &Path,
+    room: &mut Room,
+) -> Result<(Block, Option<Random>), CaseError> {
     let table = value.table(&[
         "cases",
         "random",
@@ -215,6 +315,8 @@ fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), Cas
     let (mut cases, mut drawn) = (Vec::new(), None);
     match table.exactly_one(&["cases", "random"])? {
         ("cases", list) => {
+            let count = list.list()?.len();
+            take(&mut room.cases, count, MAX_CASES, list, "cases")?;
             let found = entries(list, |v| find_case(v, folder))?;
             cases.extend(found.into_iter().map(|case| (case.name.clone(), case)));
         }
@@ -224,7 +326,7 @@ fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), Cas
             drawn = Some(Random {
                 dim: table.required("dimension")?.integer(2..=3)?,
                 seed: seed.map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64,
-                problems: table.required("problems")?.integer(1..=1_000_000)?,
+                problems: table.required("problems")?.integer(1..=MAX_PROBLEMS)?,
             });
         }
     }
@@ -247,6 +349,15 @@ fn block(value: Value<'_>, folder: &Path) -> Result<(Block, Option<Random>), Cas
             .unwrap_or_else(methods),
         tolerances: tolerances.unwrap_or_else(|| Tier::ALL.map(Tier::tolerance).to_vec()),
     };
+    let drawn_cells = drawn
+        .as_ref()
+        .map(|random| block.count(None, random.problems));
+    let own = block
+        .cases
+        .iter()
+        .map(|(_, case)| block.count(Some(case), 1));
+    let cells = own.chain(drawn_cells).fold(0, usize::saturating_add);
+    take(&mut room.cells, cells, MAX_CELLS, value, "cells")?;
     Ok((block, drawn))
 }
 
@@ -272,7 +383,11 @@ fn find_case(value: Value<'_>, folder: &Path) -> Result<Case, CaseError> {
         let allowed = format!("a file.toml, or one of {}", known.join(", "));
         return Err(value.refuse(allowed, "unknown case"));
     }
-    case::read(folder.join(name))
+    // What is wrong in the case stands there; that there is none is wrong here.
+    case::read(folder.join(name)).map_err(|e| match e.line() {
+        0 => value.refuse(e.allowed(), format_args!("{}: {}", e.message(), e.value())),
+        _ => e,
+    })
 }
 
 fn method(value: Value<'_>) -> Result<String, CaseError> {

@@ -7,16 +7,23 @@
 //! The second line of both is a digest of all other lines: what a disk or a hand has changed is refused, not believed.
 //! Several processes may fill one folder, as long as they measure different cells.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::cell::digest;
+use super::cell::{digest, is_id};
 use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
+use crate::case::error::clip;
+use crate::case::label::{is_label, is_visible};
 use crate::files::bundle::{FolderError, unique};
+use crate::files::regular;
+
+/// Largest file read [bytes]: a list of a hundred thousand ids has a tenth of it.
+const MAX_BYTES: u64 = 64 << 20;
 
 /// Ending of a file that is being written.
 const PARTIAL: &str = "partial";
@@ -48,12 +55,22 @@ pub enum StoreError {
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// A file that is not what its name says.
-    #[error("`{}`: {source}", path.display())]
+    #[error("`{}`: {what}", path.display())]
     Broken {
         /// Which file.
         path: PathBuf,
         /// What is wrong, with line and column.
-        source: serde_json::Error,
+        what: String,
+    },
+    /// A text that would command a terminal or a spreadsheet, or leave the folder.
+    #[error("`{}`: `{found}` is no {what}", path.display())]
+    Content {
+        /// Which file.
+        path: PathBuf,
+        /// The text.
+        found: String,
+        /// What it should be.
+        what: &'static str,
     },
     /// A file whose text is not the one that was written.
     #[error(
@@ -168,10 +185,17 @@ impl Store {
     /// A folder without a sweep, or with one of another schema.
     pub fn open(dir: &Path) -> Result<Self, StoreError> {
         let dir = dir.to_path_buf();
-        match read(&dir.join("sweep.json"))? {
-            Some(contents) => Ok(Self { dir, contents }),
-            None => Err(StoreError::NoSweep { dir }),
+        let path = dir.join("sweep.json");
+        let Some(contents) = read::<Contents>(&path)? else {
+            return Err(StoreError::NoSweep { dir });
+        };
+        if !is_label(&contents.title) {
+            return Err(content(path, &contents.title, "title of a sweep"));
         }
+        if let Some(id) = contents.cells.iter().find(|id| !is_id(id)) {
+            return Err(content(path, id, "id of a cell"));
+        }
+        Ok(Self { dir, contents })
     }
 
     /// What the folder is to hold.
@@ -196,8 +220,11 @@ impl Store {
         if record.id != id || record.cell.id() != id {
             return Err(StoreError::Misnamed {
                 path,
-                found: record.id,
+                found: clip(&record.id),
             });
+        }
+        if let Some(text) = record.labels().find(|t| !t.chars().all(is_visible)) {
+            return Err(content(path, text, "visible text"));
         }
         Ok(Some(record))
     }
@@ -236,19 +263,20 @@ impl Store {
             Some((what, there, here)) => Err(StoreError::Origin {
                 path: self.path(&record.id),
                 what,
-                there,
+                there: clip(&there),
                 here,
                 remedy,
             }),
         }
     }
 
-    /// Removes what a killed process left of some cells. Only for cells nobody else measures.
+    /// Removes what a killed process left of some cells, not what another one is writing.
     ///
     /// # Errors
     /// The file system.
     pub fn clear_partial(&self, ids: &[String]) -> Result<(), StoreError> {
         let cells = self.cells();
+        let ids: BTreeSet<&str> = ids.iter().map(String::as_str).collect();
         let entries = fs::read_dir(&cells).map_err(|e| FolderError::io("list", &cells, e))?;
         for entry in entries {
             let path = entry
@@ -258,8 +286,13 @@ impl Store {
             let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
             // Name of a partial file: <id>.json.<unique>.partial.
             let id = stem.rsplit_once(".json.").map(|(id, _)| id);
-            if partial && id.is_some_and(|id| ids.iter().any(|own| own == id)) {
-                fs::remove_file(&path).map_err(|e| FolderError::io("remove", &path, e))?;
+            if partial && id.is_some_and(|id| ids.contains(id)) && !is_being_written(&path) {
+                match fs::remove_file(&path) {
+                    Err(e) if e.kind() != ErrorKind::NotFound => {
+                        return Err(FolderError::io("remove", &path, e).into());
+                    }
+                    _ => {}
+                }
             }
         }
         Ok(())
@@ -277,11 +310,13 @@ impl Store {
     pub(super) fn other(&self, found: &Store) -> StoreError {
         let dir = found.dir.clone();
         let found = &found.contents;
-        let only =
-            |a: &Contents, b: &Contents| a.cells.iter().filter(|id| !b.cells.contains(id)).count();
+        let only = |a: &Contents, b: &Contents| {
+            let known: BTreeSet<&String> = b.cells.iter().collect();
+            a.cells.iter().filter(|id| !known.contains(id)).count()
+        };
         StoreError::OtherSweep {
             dir,
-            title: found.title.clone(),
+            title: clip(&found.title),
             missing: only(found, &self.contents),
             total: found.cells.len(),
             new: only(&self.contents, found),
@@ -295,7 +330,7 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError
     struct Version {
         schema: u32,
     }
-    let text = match fs::read_to_string(path) {
+    let text = match regular::read_text(path, MAX_BYTES) {
         Ok(text) => text,
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(FolderError::io("read", path, e).into()),
@@ -312,7 +347,7 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError
     if seal != found {
         return Err(StoreError::Changed {
             path: path.to_path_buf(),
-            expected: seal.trim().to_owned(),
+            expected: clip(seal.trim()),
             found: found.trim().to_owned(),
         });
     }
@@ -349,10 +384,35 @@ fn unseal(text: &str) -> (&str, String) {
 }
 
 fn broken(path: &Path, source: serde_json::Error) -> StoreError {
+    let whole = source.to_string();
+    let shown = clip(&whole);
+    // What was cut off ends with the place.
+    let what = match shown.ends_with('…') {
+        true => format!(
+            "{shown} at line {} column {}",
+            source.line(),
+            source.column()
+        ),
+        false => shown,
+    };
     StoreError::Broken {
         path: path.to_path_buf(),
-        source,
+        what,
     }
+}
+
+fn content(path: PathBuf, found: &str, what: &'static str) -> StoreError {
+    StoreError::Content {
+        path,
+        found: clip(found),
+        what,
+    }
+}
+
+/// Whether a process that still runs holds a file that is being written; one that is gone has left its lock.
+fn is_being_written(path: &Path) -> bool {
+    let file = fs::File::open(path);
+    file.is_ok_and(|file| matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)))
 }
 
 /// Writes a file under another name and renames it.
@@ -364,6 +424,8 @@ fn write_whole<T: Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
     let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
     let written = fs::File::create_new(&partial)
         .and_then(|mut file| {
+            // For others to see that somebody writes; where a file system knows no locks they cannot.
+            let _ = file.try_lock();
             file.write_all(json.as_bytes())?;
             // A full disk may tell only now; the rename must not come before the contents.
             file.sync_all()
