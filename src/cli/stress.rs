@@ -17,9 +17,9 @@ use crate::studies::sweep::conduct::Shard;
 
 /// Scenes of every family by default, and with `--full`: about 10 minutes, and a night, on two cores.
 const SCENES: [(Family, u64, u64); 4] = [
-    (Family::Patch2d, 720, 11_000),
+    (Family::Patch2d, 360, 11_000),
     (Family::Patch3d, 44, 1000),
-    (Family::Slip2d, 540, 7000),
+    (Family::Slip2d, 270, 7000),
     (Family::Slip3d, 33, 1000),
 ];
 

@@ -58,7 +58,8 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
         [-3.0, 0.2],
         [-3.0, -0.3],
         [-3.0, 0.5 - 3.5 * 0.13],
-        [-3.0, -3.0],
+        // Not through a corner: the piece that a support holds in a point is free, and moves far.
+        [-3.0, 4.0],
     ];
     let tips = [[0.5, 0.2], [0.5, 0.12], [0.5, 0.5], [0.5, 0.5]];
     for (p, q) in starts.into_iter().zip(tips) {
@@ -141,4 +142,29 @@ fn parallel_cracks_share_the_load_and_their_order_does_not_matter() {
         .flat_map(|r| other.p()[r].to_vec())
         .collect();
     assert!(relative_difference(&moved, found.p()) < 1e-10);
+}
+
+/// Goal: where a crack runs into a corner of a support, the piece whose facets the support holds is held, and the one that
+/// touches it in a point is not, whichever way the crack runs and whichever side of it is called the first.
+#[test]
+fn a_crack_into_the_corner_of_a_support_is_the_same_both_ways() {
+    for (p, q) in [
+        ([-2.0, -2.0], [2.0, 2.0]),
+        ([-3.0, -3.0], [0.6, 0.6]),
+        ([2.0, -2.0], [-2.0, 2.0]),
+    ] {
+        let solved = |p: [f64; 2], q: [f64; 2]| {
+            let s = solve_with(&sheared(&crack(p, q, 0.3, "none")), METHOD, 1e-12);
+            let own = |f: u32| s.body.enrichment.functions[f as usize].node;
+            // Corners of the box, where the support of the bottom ends.
+            let held = (0..s.body.numbers.len() as u32 / 2).filter(|&f| {
+                let x = s.body.mesh.nodes[own(f) as usize];
+                x[0].abs() == 2.0 && x[1] == -2.0 && s.body.numbers[2 * f as usize].is_none()
+            });
+            ([s.reaction("top", 0), s.reaction("top", 1)], held.count())
+        };
+        let (one, other) = (solved(p, q), solved(q, p));
+        assert_below(relative_difference(&one.0, &other.0), 1e-9, (p, q));
+        assert_eq!((one.1, other.1), (2, 2), "{p:?} {q:?}");
+    }
 }

@@ -117,6 +117,7 @@ fn the_program_writes_the_same_files_whatever_the_threads() {
     let [one, two, three] = ["1", "2", "3"].map(|jobs| {
         let study = [
             "stress",
+            "methods",
             "--problems",
             "5",
             "--seed",
@@ -154,7 +155,16 @@ fn the_program_writes_the_same_files_whatever_the_threads() {
 #[test]
 fn a_problem_run_alone_comes_with_its_case_file() {
     let dir = tempfile::tempdir().unwrap();
-    let problem = ["stress", "--only", "9", "--dim", "2", "--friction", "0.3"];
+    let problem = [
+        "stress",
+        "methods",
+        "--only",
+        "9",
+        "--dim",
+        "2",
+        "--friction",
+        "0.3",
+    ];
     let arguments = [&problem[..], &["--method", "b-newton"]].concat();
     ends_with(0, &arguments, dir.path());
     let case = std::fs::read_to_string(dir.path().join("results/problem-2d-9.toml")).unwrap();
@@ -172,7 +182,7 @@ fn bad_arguments_are_refused() {
         ["--method", "nobody"],
         ["--tier", "perfect"],
     ] {
-        let (shown, complaints) = ends_with(2, &["stress", bad[0], bad[1]], dir.path());
+        let (shown, complaints) = ends_with(2, &["stress", "methods", bad[0], bad[1]], dir.path());
         assert!(shown.is_empty() && !complaints.is_empty(), "{bad:?}");
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);

@@ -28,7 +28,7 @@
 //!
 //! # Guarantees
 //! Those of the sweeps: convergence without friction. Near a regular solution, quadratic. With friction there is no proof,
-//! only several methods that would all have to fail on the same problem. `stickslip stress` with seed 1, 200 problems for
+//! only several methods that would all have to fail on the same problem. `stickslip stress methods` with seed 1, 200 problems for
 //! each of seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 8 to 13 iterations in the median.
 //!
 //! # Failure modes

@@ -101,7 +101,7 @@ impl Row for SceneRow {
             "cause" "" .shown() = r.cause.name(), CAUSE;
             "reason" "" .shown() = r.reason.clone(), "in one line";
             "error" "–" .residual() = r.error, "largest error of the default method against the closed form, or of the energy identity";
-            "seconds" "s" .time() = r.seconds, "time of the scene with all methods and transformations";
+            "scene_s" "s" .time() = r.seconds, "time of the scene with all methods and transformations";
             "minimal" "" .shown() = r.minimal.clone().unwrap_or_default(), MINIMAL;
         }
     }

@@ -6,7 +6,7 @@
 //!
 //! [[cells]]                                    # every combination of what follows; blocks are joined
 //! cases = ["plate_mesh1", "my_case.toml"]      # shipped cases, or files beside this one
-//! # random = { dimension = 2, seed = 1, problems = 20 }     instead: problems of `stickslip stress`
+//! # random = { dimension = 2, seed = 1, problems = 20 }     instead: problems of `stickslip stress methods`
 //! refine = [1, 2]                              # the case's own by default
 //! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
 //! friction = [0.1, 0.8]                        # of all cracks; the case's own by default

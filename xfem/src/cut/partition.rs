@@ -8,7 +8,7 @@
 //! In 2D parts are simple polygons cut along chains of segments ([`super::flat`]); in 3D tetrahedra clipped by planes, crack
 //! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
-use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, snapped};
+use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, rounding, snapped};
 use crate::geometry::{Point, cross, dot, mean, norm, polygon, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
@@ -107,7 +107,7 @@ impl Partition {
             let node = map.iter().position(|c| c == x);
             node.map_or_else(|| crack.distance(x), |i| phi[i])
         };
-        let size = map.diagonal();
+        let small = (1e-14 * map.diagonal()).max(rounding(map.iter()));
         let mut halves: Vec<Option<usize>> = vec![None; self.parts.len()];
         for host in 0..self.parts.len() {
             if !lives(crack, &self.parts[host]) {
@@ -115,7 +115,7 @@ impl Partition {
             }
             let mut sides = [Vec::new(), Vec::new()];
             for t in &self.parts[host].tetrahedra {
-                let values = t.map(|x| snapped(level(&x), 1e-14 * size));
+                let values = t.map(|x| snapped(level(&x), small));
                 for (part, side) in sides.iter_mut().zip([1.0, -1.0]) {
                     clip_tetrahedron(t, &values, side, part);
                 }
@@ -190,7 +190,8 @@ fn lives(crack: &Crack, part: &Part) -> bool {
 fn clip_face(corners: &[FaceCorner], level: impl Fn(&Point) -> f64, side: Side) -> Vec<FaceCorner> {
     let from_first = corners.iter().map(|c| norm(&sub(&c.0, &corners[0].0)));
     let size = from_first.fold(0.0, f64::max);
-    let levels = corners.iter().map(|c| snapped(level(&c.0), 1e-13 * size));
+    let small = (1e-13 * size).max(rounding(corners.iter().map(|c| &c.0)));
+    let levels = corners.iter().map(|c| snapped(level(&c.0), small));
     let levels: Vec<f64> = levels.collect();
     if !levels.iter().any(|v| v * side > 0.0) {
         return Vec::new();

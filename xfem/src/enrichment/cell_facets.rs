@@ -3,7 +3,7 @@
 use crate::cut::crack::Crack;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
-use crate::geometry::clip::{Side, clip, snapped};
+use crate::geometry::clip::{Side, clip, rounding, snapped};
 use crate::geometry::polygon::{border_distance, contains};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::Mesh;
@@ -52,13 +52,14 @@ pub fn clipped(
 ) -> Vec<Point> {
     let at = |node: u32| &mesh.nodes[node as usize];
     let size = norm(&sub(at(nodes[2]), at(nodes[0])));
+    let small = (1e-14 * size).max(rounding(nodes.iter().map(|&n| at(n))));
     for &(crack, side) in &part.sides {
         let crack = &cracks[crack];
         // The nodes' own values, so that a node on the crack stays on it.
         let level = |x: &Point| {
             let node = nodes.iter().find(|&&n| at(n) == x);
             let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi[n as usize]);
-            snapped(value, 1e-14 * size)
+            snapped(value, small)
         };
         let levels: Vec<f64> = polygon.iter().map(level).collect();
         if !levels.iter().any(|v| v * side > 0.0) {

@@ -10,6 +10,13 @@ pub fn snapped(level: f64, tolerance: f64) -> f64 {
     if level.abs() <= tolerance { 0.0 } else { level }
 }
 
+/// What the distance of a place from a plane carries of the rounding of coordinates [m]: far from the origin a cut closer than
+/// this to a corner is one through it, and what two cuts leave between them is nothing.
+pub fn rounding<'a>(corners: impl IntoIterator<Item = &'a Point>) -> f64 {
+    let all = corners.into_iter().flatten();
+    8.0 * f64::EPSILON * all.fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
 /// Crossing of an edge: x on the edge from `p` (φ = `f`) to `q` (φ = `g`) with φ = 0, for f g < 0.
 pub fn crossing(p: &Point, f: f64, q: &Point, g: f64) -> Point {
     // From the end with the smaller |φ|: the crossing then keeps its distance to that end in full relative accuracy.

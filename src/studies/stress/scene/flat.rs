@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::{Grid, Shape, decades, list, offset};
+use super::grid::{Grid, decades, list, offset};
 
 type Place = [f64; 2];
 
@@ -273,9 +273,9 @@ fn any_order(mut cracks: Vec<Flat>, s: &mut Stream) -> Vec<Flat> {
     cracks
 }
 
-/// Distance of two parallel cracks; none of others [m].
-pub fn apart(cracks: &[Shape]) -> f64 {
-    let [Shape::Flat(Flat::Chain(one)), Shape::Flat(Flat::Chain(two))] = cracks else {
+/// Distance of two parallel chains; none of others [m].
+pub fn apart(one: &Flat, two: &Flat) -> f64 {
+    let (Flat::Chain(one), Flat::Chain(two)) = (one, two) else {
         return f64::INFINITY;
     };
     let n = normal(&one[0], &one[1]);

@@ -2,7 +2,7 @@
 
 use stickslip_xfem::mesh::stream::Stream;
 
-use super::{Grid, list, offset};
+use super::grid::{Grid, list, offset};
 
 type Place = [f64; 3];
 
