@@ -49,6 +49,7 @@ for part in $parts; do
             keep accuracy orders.csv orders.md 'partial_slip.*.energy.error.svg'
             keep spaces infsup_by_space patch_by_space infsup.svg
             keep stress stress_causes stress_invariances stress_methods stress_scenes.csv
+            cp -r results/stress/cases reports/stress/
             keep robustness robustness failures.csv robustness.svg
             keep study recommendations ranking success study.csv cells.csv fastest.svg profile.time.svg \
                 'work_precision.plate_mesh1*.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'

@@ -154,6 +154,7 @@ fn the_committed_report_makes_one_page() {
         "paper",
         "methods",
         "study",
+        "stress",
         "robustness",
         "accuracy",
         "spaces",
