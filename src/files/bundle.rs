@@ -196,6 +196,8 @@ impl Claim {
             match lock(&folder) {
                 Ok(()) => claim._lock = Some(folder),
                 Err(fs::TryLockError::WouldBlock) => {
+                    // The folders are the other run's, which may have made nothing in them yet.
+                    claim.made.clear();
                     let path = dir.to_path_buf();
                     return Err(FolderError::Busy { path });
                 }
