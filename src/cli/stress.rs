@@ -10,7 +10,7 @@ use super::sweep::{STOP, shard, watch_for_interruption};
 use crate::report::table::readable;
 use crate::report::{Provenance, page, prepare_output, stress as report};
 use crate::studies::stress::conduct::{Conduct, Suite, conduct};
-use crate::studies::stress::examine::examine;
+use crate::studies::stress::examine::{Effort, examine};
 use crate::studies::stress::summary;
 use crate::studies::stress::{Family, scene};
 use crate::studies::sweep::conduct::Shard;
@@ -133,7 +133,7 @@ fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliEr
     let file = format!("{}-{number}.toml", family.name());
     bundle.add(file.clone(), scene.text.clone())?;
     bundle.commit(&arguments.out)?;
-    let finding = examine(&scene);
+    let finding = examine(&scene, Effort::All);
     for trial in &finding.trials {
         let cause = trial.cause.map_or("", |c| c.name());
         let (method, verdict) = (&trial.method, trial.verdict.to_string());

@@ -7,6 +7,8 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -60,6 +62,41 @@ pub fn serve<Q: DeserializeOwned, A: Serialize>(
         output.flush()?;
     }
     Ok(())
+}
+
+/// Shares tasks among some workers at a time. After the first error, or when told to stop, what has begun is ended and nothing
+/// else is begun.
+///
+/// # Errors
+/// The first error of a task.
+pub fn share<'a, T: Sync, E: Send>(
+    tasks: &[T],
+    jobs: usize,
+    stop: &AtomicBool,
+    worker: impl Fn() -> Worker<'a> + Sync,
+    task: impl Fn(&mut Worker<'a>, &T) -> Result<(), E> + Sync,
+) -> Result<(), E> {
+    let next = AtomicUsize::new(0);
+    let failure: Mutex<Option<E>> = Mutex::new(None);
+    let failed = || failure.lock().map_or(true, |f| f.is_some());
+    std::thread::scope(|scope| {
+        for _ in 0..jobs {
+            scope.spawn(|| {
+                let mut worker = worker();
+                while !stop.load(Ordering::SeqCst) && !failed() {
+                    let Some(own) = tasks.get(next.fetch_add(1, Ordering::SeqCst)) else {
+                        break;
+                    };
+                    if let Err(error) = task(&mut worker, own)
+                        && let Ok(mut failure) = failure.lock()
+                    {
+                        failure.get_or_insert(error);
+                    }
+                }
+            });
+        }
+    });
+    failure.into_inner().ok().flatten().map_or(Ok(()), Err)
 }
 
 /// The conductor's side: a worker that is started when it is first needed, and again after it was lost.

@@ -6,15 +6,15 @@
 //! What is in the file is not examined again, so that a run can be interrupted and gone on with.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use super::examine::{ended, examine};
+use super::examine::{Effort, ended, examine};
 use super::finding::{Cause, Finding};
 use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
@@ -22,7 +22,7 @@ use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::sweep::cell::digest;
 use crate::studies::sweep::record::{Limits, Origin};
-use crate::studies::worker::{Worker, WorkerError};
+use crate::studies::worker::{Worker, WorkerError, share};
 
 /// Name of the file of findings.
 pub const FILE: &str = "scenes.jsonl";
@@ -141,58 +141,29 @@ pub fn conduct(
     // A line that was being written when the program was ended is written again.
     let mut file = File::create(&path).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
-    drop(file);
-    let file = OpenOptions::new()
-        .append(true)
-        .open(&path)
-        .map_err(failed)?;
     let kept = Mutex::new((file, findings));
-    let failure: Mutex<Option<ConductError>> = Mutex::new(None);
-    let next = AtomicUsize::new(0);
     let shrunk: Mutex<BTreeMap<(Family, String, Cause), usize>> = Mutex::default();
-    std::thread::scope(|scope| {
-        for _ in 0..how.jobs {
-            scope.spawn(|| {
-                let mut worker = Worker::new(how.program, WORK, LIMITS);
-                while !how.stop.load(Ordering::SeqCst) && failure.lock().is_ok_and(|f| f.is_none())
-                {
-                    let Some(&(family, number)) = left.get(next.fetch_add(1, Ordering::SeqCst))
-                    else {
-                        break;
-                    };
-                    let scene = scene(family, suite.seed, number);
-                    let mut one = || -> Result<(), ConductError> {
-                        let mut finding = ask(&mut worker, &scene)?;
-                        let again = finding.cause.is_some_and(|cause| {
-                            let key = (family, scene.category.clone(), cause);
-                            let mut shrunk = shrunk.lock().unwrap_or_else(|e| e.into_inner());
-                            let count = shrunk.entry(key).or_default();
-                            *count += 1;
-                            *count <= SHRUNK
-                        });
-                        if again {
-                            finding.minimal = shrink(&mut worker, &scene, &finding)?;
-                        }
-                        let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());
-                        kept.0
-                            .write_all(line(&finding).as_bytes())
-                            .map_err(failed)?;
-                        progress.done(&told(&finding));
-                        kept.1.push(finding);
-                        Ok(())
-                    };
-                    if let Err(error) = one()
-                        && let Ok(mut failure) = failure.lock()
-                    {
-                        failure.get_or_insert(error);
-                    }
-                }
-            });
+    let is_new = |finding: &Finding, cause: Cause| {
+        let key = (finding.family, finding.category.clone(), cause);
+        let mut shrunk = shrunk.lock().unwrap_or_else(|e| e.into_inner());
+        let count = shrunk.entry(key).or_default();
+        *count += 1;
+        *count <= SHRUNK
+    };
+    let worker = || Worker::new(how.program, WORK, LIMITS);
+    share(&left, how.jobs, how.stop, worker, |worker, own| {
+        let scene = scene(own.0, suite.seed, own.1);
+        let mut finding = ask(worker, &scene)?;
+        if finding.cause.is_some_and(|cause| is_new(&finding, cause)) {
+            finding.minimal = Some(shrink(worker, &scene, &finding)?);
         }
-    });
-    if let Some(error) = failure.into_inner().ok().flatten() {
-        return Err(error);
-    }
+        let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());
+        let line = line(&finding);
+        kept.0.write_all(line.as_bytes()).map_err(failed)?;
+        progress.done(&told(&finding));
+        kept.1.push(finding);
+        Ok::<(), ConductError>(())
+    })?;
     let mut findings = kept.into_inner().unwrap_or_else(|e| e.into_inner()).1;
     findings.sort_by_key(|f| (f.family, f.number));
     Ok(findings)
@@ -266,7 +237,7 @@ fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
 
 /// The worker's side.
 pub fn answer(scene: Scene) -> Finding {
-    examine(&scene)
+    examine(&scene, Effort::All)
 }
 
 /// The smallest case found that fails for the same cause.
@@ -274,21 +245,20 @@ fn shrink(
     worker: &mut Worker<'_>,
     scene: &Scene,
     finding: &Finding,
-) -> Result<Option<String>, WorkerError> {
+) -> Result<String, WorkerError> {
+    // What takes long or hangs is not tried often.
+    let mut left = if finding.seconds > 5.0 {
+        ATTEMPTS / 8
+    } else {
+        ATTEMPTS
+    };
     let mut best = scene.clone();
-    let mut attempts = 0;
     'smaller: loop {
         for text in smaller(&best.text) {
-            attempts += 1;
-            // What takes long or hangs is not tried often.
-            let patience = if finding.seconds > 5.0 {
-                ATTEMPTS / 8
-            } else {
-                ATTEMPTS
-            };
-            if attempts > patience {
+            if left == 0 {
                 break 'smaller;
             }
+            left -= 1;
             let candidate = Scene {
                 text,
                 ..scene.clone()
@@ -300,7 +270,7 @@ fn shrink(
         }
         break;
     }
-    Ok(Some(best.text))
+    Ok(best.text)
 }
 
 /// One line on a scene.

@@ -31,6 +31,9 @@ pub const INVARIANT: f64 = 1e-9;
 /// Change of energy that the error of the mesh may make.
 const CHOSEN: f64 = 0.02;
 
+/// Quantities whose change measures how far two answers are apart.
+const ENERGIES: [&str; 2] = ["strain_energy", "dissipation"];
+
 /// Two answers that differ by more are two.
 const DIFFERENT: f64 = 1e-6;
 
@@ -40,10 +43,19 @@ const FLOOR: f64 = 1e3;
 /// How many transformations a solid is put through: its set-up takes a second.
 const OF_SOLIDS: usize = 2;
 
-/// A scene with what is known of it beforehand.
-pub fn examine(scene: &Scene) -> Finding {
+/// How much is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Every method and the transformations.
+    All,
+    /// The default method on the scene as it is.
+    Default,
+}
+
+/// Runs a scene and judges it.
+pub fn examine(scene: &Scene, effort: Effort) -> Finding {
     let clock = Instant::now();
-    let caught = catch_unwind(AssertUnwindSafe(|| look(scene)));
+    let caught = catch_unwind(AssertUnwindSafe(|| look(scene, effort)));
     let mut finding = caught.unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
@@ -77,6 +89,10 @@ pub fn ended(scene: &Scene, cause: Cause, reason: &str) -> Finding {
     }
 }
 
+fn default_method() -> Vec<Choice> {
+    Choice::parse(DEFAULT).into_iter().collect()
+}
+
 /// All methods, the default one first: its fields are looked at.
 fn all_methods() -> Vec<Choice> {
     let others = methods()
@@ -96,11 +112,15 @@ fn run(case: &Case, choices: &[Choice]) -> Result<Results, RunError> {
     run_case(case, choices, settings, &Quiet)
 }
 
-fn look(scene: &Scene) -> Finding {
+fn look(scene: &Scene, effort: Effort) -> Finding {
+    let choices = match effort {
+        Effort::All => all_methods(),
+        Effort::Default => default_method(),
+    };
     let parsed = case::parse(FILE, scene.text.as_str());
     let solved = parsed
         .map_err(RunError::from)
-        .and_then(|case| Ok((run(&case, &all_methods())?, case)));
+        .and_then(|case| Ok((run(&case, &choices)?, case)));
     let (results, case) = match solved {
         Ok(found) => found,
         Err(error) => return refused(scene, &error.to_string()),
@@ -175,8 +195,9 @@ fn look(scene: &Scene) -> Finding {
         }
     }
     // A different answer of several is no change by the transformation.
-    if solved && seen.is_empty() && disagreement.is_none_or(|d| d <= DIFFERENT) {
-        let energies = ["strain_energy", "dissipation"].map(|name| quantity(name).unwrap_or(0.0));
+    let one = disagreement.is_none_or(|d| d <= DIFFERENT);
+    if effort == Effort::All && solved && seen.is_empty() && one {
+        let energies = ENERGIES.map(|name| quantity(name).unwrap_or(0.0));
         finding.invariance = invariance(scene, &case, &base, energies);
         for change in finding.invariance.iter().filter(|c| !kept(c)) {
             let (name, energy) = (&change.transformation, change.energy);
@@ -336,7 +357,7 @@ fn invariance(scene: &Scene, case: &Case, base: &[PointState], energies: [f64; 2
             .map(|k| all[(first + k) % all.len()])
             .collect()
     };
-    let default: Vec<Choice> = Choice::parse(DEFAULT).into_iter().collect();
+    let default = default_method();
     let mut found = Vec::new();
     for transform in chosen {
         let Some(text) = transform.apply(&scene.text) else {
@@ -362,9 +383,8 @@ fn invariance(scene: &Scene, case: &Case, base: &[PointState], energies: [f64; 2
                 let after = own.find(|q| q.name == name && q.at.is_empty());
                 after.map_or(f64::MAX, |q| (q.value / factor - before).abs())
             };
-            let names = ["strain_energy", "dissipation"].into_iter();
             let total = energies[0].abs() + energies[1].abs();
-            energy = names.zip(energies).map(away).sum::<f64>() / total;
+            energy = ENERGIES.into_iter().zip(energies).map(away).sum::<f64>() / total;
             let other: Vec<PointState> = results.points.into_iter().map(|row| row.point).collect();
             force = change(&transform, scene, case.cracks.len(), base, &other);
         }
@@ -396,11 +416,12 @@ fn change(
     if size == 0.0 {
         return Some(other.iter().map(magnitude).fold(0.0, f64::max).min(1.0));
     }
+    let places = transform.places(&scene.text)?;
     let shear = |p: &PointState| p.p_a.hypot(p.p_b);
     let mut largest: f64 = 0.0;
     for p in base {
-        let place = transform.place(&scene.text, [p.x_m, p.y_m, p.z_m], p.crack, cracks);
-        let (x, crack) = place?;
+        let x = places.point([p.x_m, p.y_m, p.z_m]);
+        let crack = transform.crack(p.crack, cracks);
         let away = |q: &&PointState| {
             let d = [q.x_m - x[0], q.y_m - x[1], q.z_m - x[2]];
             d.iter().map(|v| v * v).sum::<f64>().sqrt()

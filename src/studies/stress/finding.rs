@@ -54,30 +54,6 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All, the worst first.
-    pub const ALL: [Self; 20] = [
-        Self::Panic,
-        Self::Memory,
-        Self::Time,
-        Self::WrongPatch,
-        Self::WrongEnergy,
-        Self::FalseClaim,
-        Self::NotInvariant,
-        Self::NoPlace,
-        Self::Factorisation,
-        Self::SuspectMesh,
-        Self::Refused,
-        Self::Beyond,
-        Self::SeveralSolutions,
-        Self::SingularTangent,
-        Self::Cycling,
-        Self::Diverged,
-        Self::Floor,
-        Self::Slow,
-        Self::Stalled,
-        Self::Declined,
-    ];
-
     /// As tables name it.
     pub fn name(self) -> &'static str {
         match self {

@@ -275,3 +275,38 @@ pub fn uncovered(patch: &Patch, results: &Results) -> String {
     let all: Vec<String> = lengths(patch, results).filter(few).map(told).collect();
     all.join("; ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case;
+    use crate::run::choice::Choice;
+    use crate::run::run_case::{Fields, Quiet, Settings, run_case};
+    use crate::studies::stress::scene::{Family, scene};
+
+    /// The referee itself: it must see a traction, a displacement and an energy that are off by 1e-6.
+    #[test]
+    fn errors_that_are_put_in_are_seen() {
+        let case = case::parse("scene.toml", scene(Family::Patch2d, 20_261_122, 0).text).unwrap();
+        let settings = Settings {
+            tier: None,
+            jobs: 1,
+            fields: Fields::All,
+        };
+        let choice = Choice::parse("b-newton").unwrap();
+        let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
+        let found = |change: &dyn Fn(&mut Uniform)| {
+            let mut patch = Patch::of(&case).unwrap();
+            change(&mut patch.exact);
+            compare(&patch, &results).0.join("; ")
+        };
+        assert_eq!(found(&|_| ()), "");
+        for a in 0..2 {
+            let reason = found(&|exact| exact.stress[a] *= 1.0 + 1e-6);
+            assert!(reason.contains("traction"), "{reason}");
+            let reason = found(&|exact| exact.strain[a] *= 1.0 + 1e-6);
+            assert!(reason.contains("displacement"), "{reason}");
+            assert!(reason.contains("energy"), "{reason}");
+        }
+    }
+}

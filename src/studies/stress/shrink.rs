@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::uniform::{lines, number};
+use super::uniform::{lines, number, set_lines};
 
 /// What a case could be made to, the largest steps first. In uniform stress cracks must stick: friction and the ratio of the
 /// stresses are left alone.
@@ -90,8 +90,7 @@ fn coarser(case: &mut Table, axis: usize) -> Option<()> {
         kept.push(own[last]);
     }
     *own = kept;
-    mesh.remove("box");
-    mesh.insert("lines_m".into(), Value::from(lines));
+    set_lines(mesh, lines);
     Some(())
 }
 

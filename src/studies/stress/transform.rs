@@ -4,7 +4,7 @@
 
 use toml::{Table, Value};
 
-use super::uniform::{lines, number, numbers, sides};
+use super::uniform::{lines, number, numbers, set_lines, sides};
 
 /// A change of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,27 +94,17 @@ impl Transform {
         toml::to_string(&case).ok()
     }
 
-    /// Where a point of a case is after the change, and the number of its crack among `cracks`, from 1.
-    pub fn place(
-        &self,
-        text: &str,
-        x: [f64; 3],
-        crack: usize,
-        cracks: usize,
-    ) -> Option<([f64; 3], usize)> {
-        let case: Table = text.parse().ok()?;
-        let number = match self {
-            Self::Order => cracks + 1 - crack,
-            _ => crack,
-        };
-        let map = Map::of(self, &case)?;
-        let mut place = x.to_vec();
-        place.truncate(map.dim);
-        let place = map.place(&place);
-        Some((
-            [0, 1, 2].map(|a| place.get(a).copied().unwrap_or(0.0)),
-            number,
-        ))
+    /// Where the points of a case are after the change.
+    pub fn places(&self, text: &str) -> Option<Map> {
+        Map::of(self, &text.parse().ok()?)
+    }
+
+    /// Number of a crack after the change, from 1, of so many.
+    pub fn crack(&self, number: usize, cracks: usize) -> usize {
+        match self {
+            Self::Order => cracks + 1 - number,
+            _ => number,
+        }
     }
 
     /// Whether every number of the case is what it was, or a power of two times that. The others round coordinates, of which
@@ -159,7 +149,7 @@ fn times(factor: f64) -> String {
 }
 
 /// x' = factor R x + shift, R a reflection.
-struct Map {
+pub struct Map {
     dim: usize,
     factor: f64,
     shift: f64,
@@ -182,6 +172,13 @@ impl Map {
             mirror: *transform == Transform::Mirror,
             swap: *transform == Transform::Swap,
         })
+    }
+
+    /// Where a contact point is; z is 0 in 2D.
+    pub fn point(&self, x: [f64; 3]) -> [f64; 3] {
+        let mut found = [0.0; 3];
+        found[..self.dim].copy_from_slice(&self.place(&x[..self.dim]));
+        found
     }
 
     fn place(&self, x: &[f64]) -> Vec<f64> {
@@ -212,8 +209,7 @@ impl Map {
         }
         let places = lines.iter_mut().flatten();
         places.for_each(|x| *x = *x * self.factor + self.shift);
-        mesh.remove("box");
-        mesh.insert("lines_m".into(), Value::from(lines));
+        set_lines(mesh, lines);
         // A reflection turns the other way round.
         if let Some(angle) = mesh.get_mut("twist").and_then(|t| t.get_mut("angle_deg"))
             && (self.mirror || self.swap)

@@ -156,6 +156,12 @@ pub fn numbers(value: &Value) -> Option<Vec<f64>> {
     value.as_array()?.iter().map(number).collect()
 }
 
+/// Gives `[mesh]` grid lines, in place of a box too.
+pub fn set_lines(mesh: &mut Table, lines: Vec<Vec<f64>>) {
+    mesh.remove("box");
+    mesh.insert("lines_m".into(), Value::from(lines));
+}
+
 /// Grid lines of `[mesh]`, given themselves or as a box.
 pub fn lines(mesh: &Table) -> Option<Vec<Vec<f64>>> {
     if let Some(lines) = mesh.get("lines_m") {

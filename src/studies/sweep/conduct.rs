@@ -1,7 +1,6 @@
 //! Has the cells of a sweep measured, some at a time, and keeps every record as soon as it is there.
 
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
@@ -15,7 +14,7 @@ use super::store::{Store, StoreError};
 use crate::run::choice::Choice;
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
-use crate::studies::worker::{Worker, WorkerError};
+use crate::studies::worker::{Worker, WorkerError, share};
 
 /// What makes the program a worker that measures cells.
 const WORK: &[&str] = &["work"];
@@ -160,37 +159,15 @@ pub fn conduct(
     store.clear_partial(&ids)?;
     progress.plan(left.len());
 
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let failure: Mutex<Option<ConductError>> = Mutex::new(None);
-    let failed = || failure.lock().map_or(true, |f| f.is_some());
-    std::thread::scope(|scope| {
-        for _ in 0..how.jobs {
-            scope.spawn(|| {
-                let mut worker = Worker::new(how.program, WORK, how.limits);
-                while !how.stop.load(Ordering::SeqCst) && !failed() {
-                    let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
-                        break;
-                    };
-                    let kept = one(task, repeats, how.limits, &mut worker, &origin)
-                        .and_then(|record| Ok(store.put(&record).map(|()| record)?));
-                    match kept {
-                        Ok(record) => {
-                            done.fetch_add(1, Ordering::SeqCst);
-                            progress.done(&line(&record));
-                        }
-                        Err(error) => {
-                            if let Ok(mut failure) = failure.lock() {
-                                failure.get_or_insert(error);
-                            }
-                        }
-                    }
-                }
-            });
-        }
-    });
-    if let Some(error) = failure.into_inner().ok().flatten() {
-        return Err(error);
-    }
+    let done = AtomicUsize::new(0);
+    let worker = || Worker::new(how.program, WORK, how.limits);
+    share(&left, how.jobs, how.stop, worker, |worker, task| {
+        let record = one(task, repeats, how.limits, worker, &origin)?;
+        store.put(&record)?;
+        done.fetch_add(1, Ordering::SeqCst);
+        progress.done(&line(&record));
+        Ok::<(), ConductError>(())
+    })?;
     Ok(Conducted {
         cells: own.len(),
         before: own.len() - left.len(),
