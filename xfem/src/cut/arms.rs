@@ -18,7 +18,7 @@ const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// digits.
 const ON_OTHER: f64 = 1e-4;
 
-/// Places of one crack closer than this are one, in the same units; what is shorter is no arm.
+/// Places where one crack meets others closer than this are one, in the same units; no arm between them is shorter.
 const SAME_PLACE: f64 = 10.0 * ON_OTHER;
 
 /// Cracks closer than this run along each other, in the same units: what lies between them is lost in rounding.
@@ -233,11 +233,13 @@ fn parted(crack: &Crack, mut cuts: Vec<PathVertex>, shortest: f64) -> Vec<Crack>
     cuts.sort_by(|a, b| a.s.total_cmp(&b.s));
     cuts.dedup_by(|b, a| b.s - a.s <= shortest);
     let mut bounds: Vec<(PathVertex, End)> = cuts.into_iter().map(|c| (c, End::Meeting)).collect();
-    let far = |bounds: &[(PathVertex, End)], s: f64| {
-        bounds.iter().all(|(b, _)| (b.s - s).abs() > shortest)
+    // Vertices closer than this are one.
+    let small = 1e-6 * shortest;
+    let far = |bounds: &[(PathVertex, End)], s: f64, least: f64| {
+        bounds.iter().all(|(b, _)| (b.s - s).abs() > least)
     };
     for (end, vertex) in crack.ends.into_iter().zip([first, last]) {
-        if far(&bounds, vertex.s) {
+        if far(&bounds, vertex.s, shortest) {
             bounds.push((*vertex, end));
         }
     }
@@ -245,7 +247,8 @@ fn parted(crack: &Crack, mut cuts: Vec<PathVertex>, shortest: f64) -> Vec<Crack>
         let [a, b] = [0, 1].map(|i| unit(&sub(&w[i + 1].x, &w[i].x)));
         let sine = cross(&a, &b)[2];
         let turn = sine.atan2(crate::geometry::dot(&a, &b));
-        if turn.abs() > BEND && far(&bounds, w[1].s) {
+        // However short: the faces between a bend and a crossing have a normal of their own.
+        if turn.abs() > BEND && far(&bounds, w[1].s, small) {
             bounds.push((w[1], End::Bend));
         }
     }
@@ -253,7 +256,6 @@ fn parted(crack: &Crack, mut cuts: Vec<PathVertex>, shortest: f64) -> Vec<Crack>
     let arm = |w: &[(PathVertex, End)]| {
         let (from, to) = (w[0].0, w[1].0);
         let inner = crack.path.iter().copied();
-        let small = 1e-6 * shortest;
         let inner = inner.filter(|v| v.s > from.s + small && v.s < to.s - small);
         Crack {
             range: [from.s, to.s],
