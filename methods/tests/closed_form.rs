@@ -84,6 +84,7 @@ fn free_floating_block_sticks_below_the_friction_limit_and_is_a_mechanism_above(
         assert_near(p[1] + p[3], -2.0, m.accuracy, m.name);
         assert_near(p[0] + p[2], n, m.accuracy, m.name);
         assert_near(a * (p[2] - p[0]), h * 2.0, m.accuracy, m.name);
+        assert!(!balanced_by_nothing(&s, &top(2.0, -n)));
 
         let limit = [("max_iterations", 300.0), ("max_outer", 20.0)].into_iter();
         let has = |name: &str| m.options.iter().any(|o| o.name() == name);
@@ -93,8 +94,37 @@ fn free_floating_block_sticks_below_the_friction_limit_and_is_a_mechanism_above(
             assert_ne!(lost.status, Status::Converged, "{}", m.name);
             let mut numbers = lost.state.u.iter().chain(&lost.state.p);
             assert!(numbers.all(|x| x.is_finite()), "{}", m.name);
+            assert!(balanced_by_nothing(&s, &load));
         }
     }
+}
+
+/// Whether no force within the cones balances a load, proved.
+fn balanced_by_nothing(s: &ContactSystem, load: &Load) -> bool {
+    let (start, rest) = (ContactState::zero(s), force(s, &[0.0; 6]));
+    conic::unbalanced(&increment(s, load, &rest, &start, 1e-9)).unwrap()
+}
+
+/// The same block: friction balances F <= μ N and no more, and no force what pulls it off.
+#[test]
+fn what_no_force_balances_is_proved() {
+    let (n, mu) = (10.0, 0.3);
+    let s = system(&block(1.0, 0.8, 50.0, 0.0), mu);
+    let top = |x: f64, y: f64| force(&s, &[0.0, 0.0, 0.0, 0.0, x, y]);
+    for (share, none) in [
+        (0.999, false),
+        (1.001, true),
+        (-0.999, false),
+        (-1.001, true),
+    ] {
+        assert_eq!(
+            balanced_by_nothing(&s, &top(share * mu * n, -n)),
+            none,
+            "{share}"
+        );
+    }
+    assert!(balanced_by_nothing(&s, &top(0.0, 1e-3 * n)));
+    assert!(!balanced_by_nothing(&s, &top(0.0, 0.0)));
 }
 
 #[test]

@@ -11,16 +11,16 @@ use crate::report::table::readable;
 use crate::report::{Provenance, page, prepare_output, stress as report};
 use crate::studies::stress::conduct::{Conduct, Suite, conduct};
 use crate::studies::stress::examine::{Effort, examine};
-use crate::studies::stress::summary;
-use crate::studies::stress::{Family, scene};
+use crate::studies::stress::{Family, ladder, rungs, scene, summary};
 use crate::studies::sweep::conduct::Shard;
 
 /// Scenes of every family by default, and with `--full`: about 10 minutes, and a night, on two cores.
-const SCENES: [(Family, u64, u64); 4] = [
+const SCENES: [(Family, u64, u64); 5] = [
     (Family::Patch2d, 360, 11_000),
     (Family::Patch3d, 44, 1000),
     (Family::Slip2d, 270, 7000),
     (Family::Slip3d, 33, 1000),
+    (Family::Ladder, u64::MAX, u64::MAX),
 ];
 
 /// Arguments of the verb.
@@ -32,7 +32,7 @@ pub struct Arguments {
     /// Seed: the same scenes on every machine
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only scenes of this family: patch-2d, patch-3d, slip-2d, slip-3d; may be repeated
+    /// Only scenes of this family: patch-2d, patch-3d, slip-2d, slip-3d, ladder; may be repeated
     #[arg(long, value_parser = family)]
     family: Vec<Family>,
     /// Scenes per family, instead of the numbers of the suite
@@ -81,10 +81,19 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         let own = if arguments.full { many } else { few };
         arguments.scenes.unwrap_or(own)
     };
+    let of = |f: Family, n: u64| {
+        if f.is_random() {
+            n
+        } else {
+            n.min(ladder::count())
+        }
+    };
     let own = SCENES.into_iter().filter(|(f, ..)| wanted(f));
     let suite = Suite {
         seed: arguments.seed,
-        scenes: own.map(|(f, few, many)| (f, count(few, many))).collect(),
+        scenes: own
+            .map(|(f, few, many)| (f, of(f, count(few, many))))
+            .collect(),
     };
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
@@ -109,6 +118,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     say(format_args!("{}", readable(&invariances, "").terminal()));
     let methods = summary::methods(&findings);
     say(format_args!("{}", readable(&methods, "").terminal()));
+    let ladders = rungs::of_scenes(&findings);
+    say(format_args!("{}", readable(&ladders, "").terminal()));
+    let options = rungs::of_options(&findings);
+    say(format_args!("{}", readable(&options, "").terminal()));
     let total: u64 = suite.scenes.values().sum();
     say(format_args!(
         "{} of {total} scenes. Results: {}",

@@ -12,6 +12,7 @@ pub mod fields;
 pub mod friction_loop;
 pub mod infsup;
 mod kind;
+pub mod ladders;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
@@ -27,7 +28,7 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 17] = [
+pub static CATALOGUE: [(Chapter, &Kind); 19] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
     (Chapter::Methods, &cost::KIND),
@@ -36,6 +37,8 @@ pub static CATALOGUE: [(Chapter, &Kind); 17] = [
     (Chapter::Study, &time_to_accuracy::KIND),
     (Chapter::Study, &performance::KIND),
     (Chapter::Study, &stages::KIND),
+    (Chapter::Stress, &ladders::OPTIONS),
+    (Chapter::Stress, &ladders::ITERATIONS),
     (Chapter::Robustness, &robustness::KIND),
     (Chapter::Accuracy, &error::KIND),
     (Chapter::Spaces, &infsup::KIND),

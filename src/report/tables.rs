@@ -21,6 +21,7 @@ use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
 use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
 use crate::studies::spaces::patch::PatchRow;
+use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::success::SuccessRow;
@@ -177,6 +178,9 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<CauseRow>(),
         Description::of::<InvarianceRow>(),
         Description::of::<MethodRow>(),
+        Description::of::<LadderRow>(),
+        Description::of::<OptionRow>(),
+        Description::of::<RungRow>(),
         Description::of::<SceneRow>(),
     ];
     let robustness = vec![

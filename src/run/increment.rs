@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
-    consistency, point_status, residuals_of,
+    Status, conic::unbalanced, consistency, point_status, residuals_of,
 };
 
 use crate::model::body::Setup;
@@ -85,7 +85,11 @@ impl<'a> Solver<'a> {
     /// Solves an increment and judges the outcome against the violation accepted.
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
         let (solved, solve_s) = self.solve(increment);
-        let judged = solved.and_then(|outcome| {
+        let judged = solved.and_then(|mut outcome| {
+            // What nothing can balance is no fault of the method.
+            if outcome.status != Status::Converged && unbalanced(increment)? {
+                outcome.status = Status::NoEquilibrium;
+            }
             Ok(Judged {
                 found: residuals_of(increment, &outcome.state, outcome.claim)?,
                 status: point_status(increment, &outcome.state)?,

@@ -7,11 +7,15 @@
 pub mod conduct;
 pub mod examine;
 pub mod finding;
+mod invariance;
+pub mod ladder;
 mod referee;
+pub mod rungs;
 mod scene;
 mod shrink;
 pub mod summary;
 mod transform;
+mod trial;
 mod uniform;
 
-pub use scene::{Family, Scene, scene};
+pub use scene::{Family, Scene, Truth, scene};

@@ -9,7 +9,7 @@ use stickslip::run::run_case::Quiet;
 use stickslip::studies::stress::conduct::{Conduct, FILE, Suite, conduct};
 use stickslip::studies::stress::examine::{DEFAULT, Effort, examine};
 use stickslip::studies::stress::finding::{Cause, Finding};
-use stickslip::studies::stress::{Family, Scene, scene, summary};
+use stickslip::studies::stress::{Family, Scene, Truth, ladder, scene, summary};
 
 /// Seed of the scenes here; those of reports are others.
 const SEED: u64 = 20_261_122;
@@ -74,8 +74,8 @@ fn random_plane_bodies_with_friction_keep_their_energy() {
 /// Goal: a scene can be made again alone, to the last bit, and every category has its turn.
 #[test]
 fn scenes_are_reproducible_and_take_turns() {
-    for family in Family::ALL {
-        let kinds = if family.dim() == 2 { 18 } else { 11 };
+    for family in Family::ALL.into_iter().filter(|f| f.is_random()) {
+        let kinds = if scene(family, 7, 0).dim == 2 { 18 } else { 11 };
         let mut categories = Vec::new();
         for k in 0..kinds {
             let [first, again] = [0, 1].map(|_| scene(family, 7, k));
@@ -87,6 +87,35 @@ fn scenes_are_reproducible_and_take_turns() {
         categories.dedup();
         assert_eq!(categories.len() as u64, kinds);
     }
+}
+
+/// Goal: what a plain crack does in uniform stress depends neither on what it lies beside, nor on units and place: every rung
+/// of these ladders is right, but for three cracks that nearly meet, of which the judge of the mesh says so, and what is
+/// refused with a place.
+#[test]
+fn ladders_of_plain_cracks_are_right_at_every_rung() {
+    let mut others = Vec::new();
+    for number in (0..ladder::count()).filter(|&k| ladder::rung(k).ladder.method.is_none()) {
+        let scene = scene(Family::Ladder, 0, number);
+        if scene.dim == 3 || scene.truth != Truth::Uniform {
+            continue;
+        }
+        let finding = examine(&scene, Effort::Default);
+        let value = ladder::rung(number).value;
+        let allowed = match finding.category.as_str() {
+            "three cracks beside a point" => Some(Cause::SuspectMesh),
+            "mesh twisted" if value.abs() > 110.0 => Some(Cause::Refused),
+            "unit of stress" if value < 1e-23 => Some(Cause::Refused),
+            _ => None,
+        };
+        if finding.cause.is_some() && finding.cause != allowed {
+            others.push(format!(
+                "{} {value:e}: {}",
+                finding.category, finding.reason
+            ));
+        }
+    }
+    assert!(others.is_empty(), "{others:#?}");
 }
 
 /// A scene of cracks that end inside, with branch functions or not: right as it is.
@@ -147,7 +176,19 @@ fn every_method_has_its_trial() {
             .iter()
             .all(|t| known.contains(&t.method.as_str()))
     );
-    assert!(finding.invariance.iter().any(|c| !c.exact) && finding.invariance.len() >= 9);
+    // Four transformations a scene, of eleven: neighbours of one number have them all.
+    assert_eq!(finding.invariance.len(), 4);
+    let next = |k: u64| {
+        let scene = Scene {
+            number: k,
+            ..sound()
+        };
+        examine(&scene, Effort::All).invariance
+    };
+    let names = (0..3).flat_map(next).map(|c| c.transformation);
+    let names: std::collections::BTreeSet<String> = names.collect();
+    // One crack has one order.
+    assert!(names.len() >= 10, "{names:?}");
 }
 
 /// Goal: a run of the program ends in its files; what was examined is not examined again; a finding that was changed by

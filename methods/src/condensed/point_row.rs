@@ -63,6 +63,27 @@ pub(crate) struct Bordered {
 impl Bordered {
     /// Assembles and factors it on the active rows, in increasing order; `None` if it is singular.
     pub fn new(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
+        Self::on_spring(problem, active, law, 0.0)
+    }
+
+    /// The same; where the rows leave a piece loose, Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good
+    /// a place as any; with one it moves until something is in its way.
+    pub fn held(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
+        /// ε. Answers do not depend on it; of 1e-10 … 1, all end after as many steps.
+        const SPRING: f64 = 1e-3;
+        let free = Self::new(problem, active, law);
+        free.or_else(|| match problem.modes() {
+            0 => None,
+            _ => Self::on_spring(problem, active, law, SPRING),
+        })
+    }
+
+    fn on_spring(
+        problem: &ContactProblem<'_>,
+        active: &[usize],
+        law: &Law<'_>,
+        spring: f64,
+    ) -> Option<Self> {
         let (w, q, rho) = (
             &*problem.operator.w,
             &problem.operator.modes.q,
@@ -86,6 +107,7 @@ impl Bordered {
             }
         }
         for (j, q) in q.iter().enumerate() {
+            J[(n + j, n + j)] = -spring;
             for (b, (k, own)) in active.iter().enumerate() {
                 let (k, own) = (*k, own.clone());
                 match law {

@@ -51,6 +51,19 @@ impl Limits {
     }
 }
 
+/// r·f; nothing where the parts cancel to rounding, so that what is loose may stay without forces.
+fn resultant(r: &[f64], f: &[f64]) -> f64 {
+    /// Of the sum of |r_i f_i|.
+    const ROUNDING: f64 = 1e-14;
+    let size: f64 = r.iter().zip(f).map(|(r, f)| (r * f).abs()).sum();
+    let sum = dot(r, f);
+    if sum.abs() > ROUNDING * size {
+        sum
+    } else {
+        0.0
+    }
+}
+
 /// What becomes of an iterate that was checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
@@ -149,10 +162,9 @@ impl<'a> ContactProblem<'a> {
             }));
         }
         let rows = system.row_set();
-        let resultant: Vec<f64> = elastic
-            .floating()
-            .iter()
-            .map(|r| -dot(r, &increment.load.force))
+        let force = &increment.load.force;
+        let resultant: Vec<f64> = (elastic.floating().iter())
+            .map(|r| -resultant(r, force))
             .collect();
         let balance = operator.modes.balance(&resultant);
         Ok(Begin::Contact(Box::new(ContactProblem {

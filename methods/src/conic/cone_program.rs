@@ -15,6 +15,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
+use crate::algebra::dense::norm;
 use crate::algebra::factor::kernel;
 use crate::{ContactProblem, MethodError};
 
@@ -62,6 +63,9 @@ pub(crate) struct Solution {
     pub factorisations: usize,
 }
 
+/// A rigid motion β that no force within the cones opposes and the load drives, as clarabel has it.
+pub(crate) struct Certificate(pub Vec<f64>);
+
 /// Constraints s = right − A P in their cones.
 struct Constraints {
     A: CscMatrix<f64>,
@@ -105,6 +109,32 @@ impl ConeProgram {
             entry: constraints.entry,
             rigid: modes.components(&problem.q),
         })
+    }
+
+    /// Looks for forces within Coulomb's cones that balance the load alone; a certificate if there are none.
+    ///
+    /// # Errors
+    /// Data clarabel refuses.
+    pub fn unbalanced(problem: &ContactProblem<'_>) -> Result<Option<Certificate>, MethodError> {
+        let load = norm(&problem.balance);
+        if load == 0.0 {
+            return Ok(None);
+        }
+        let constraints = Constraints::new(problem, Law::Cone, load);
+        let n = problem.len();
+        let mut solver = DefaultSolver::new(
+            &CscMatrix::zeros((n, n)),
+            &vec![0.0; n],
+            &constraints.A,
+            &constraints.right,
+            &constraints.cones,
+            settings(TIGHTEST)?,
+        )
+        .map_err(refused)?;
+        solver.solve();
+        let proved = solver.solution.status == SolverStatus::PrimalInfeasible;
+        let beta = || solver.solution.z[..problem.modes()].to_vec();
+        Ok(proved.then(|| Certificate(beta())))
     }
 
     /// Solves it for one parameter a per point.

@@ -127,6 +127,10 @@ impl CondensedMethod for FixedPoint {
             let solution = program.solve(&a, accuracy.next(violation))?;
             problem.counters.factorisations += solution.factorisations;
             let Some((p, beta)) = solution.forces else {
+                // On a loose piece without load the cones have no interior.
+                if self.settings.polish && violation <= POLISH {
+                    return self.polished(problem, x, monitor);
+                }
                 let status = problem.singular();
                 return Ok(End { status, at: x });
             };

@@ -33,7 +33,7 @@ pub struct Residuals {
     /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
     pub slip_direction: f64,
     /// |e| / P_ref with e = P − proj(P − ρ̂ ṽ) the natural map with De Saxcé's correction: zero if and only if all
-    /// contact laws hold.
+    /// contact laws hold. For μ > 1 at every point the smaller of this and the same in (μ P_n, P_t) and (g/μ, d).
     pub natural_map: f64,
     /// η: the largest of natural map, penetration, adhesion, complementarity and cone. Tiers and verdicts refer to it.
     ///

@@ -117,15 +117,30 @@ pub fn return_map_derivative(mu: f64, z: &[f64], branch: Branch) -> [[f64; 3]; 3
 }
 
 /// |e|² of the natural map at one point; `v` = (g, d).
+///
+/// For μ > 1 the smaller of two: with (P_n, P_t) and (g, d), and with (μ P_n, P_t) and (g/μ, d), which obey the same laws with
+/// μ = 1. The first multiplies the rounding of a slip that ought to be nothing by μ, the second that of P_n where there is
+/// slip.
 pub fn natural_map_squared(mu: f64, rho: f64, p: &[f64], v: &[f64]) -> f64 {
+    let plain = scaled_map_squared(mu, 1.0, rho, p, v);
+    match mu > 1.0 {
+        true => plain.min(scaled_map_squared(1.0, mu, rho, p, v)),
+        false => plain,
+    }
+}
+
+/// With `scale` P_n and g/`scale`.
+fn scaled_map_squared(mu: f64, scale: f64, rho: f64, p: &[f64], v: &[f64]) -> f64 {
+    let normal = scale * p[0];
     let mut z = [0.0; 3];
     let z = &mut z[..p.len()];
-    z[0] = p[0] - rho * (v[0] + mu * tangential_norm(v));
+    z[0] = normal - rho * (v[0] / scale + mu * tangential_norm(v));
     for k in 1..p.len() {
         z[k] = p[k] - rho * v[k];
     }
     project_cone(mu, z);
-    p.iter().zip(z.iter()).map(|(p, z)| (p - z).powi(2)).sum()
+    let tangential = p[1..].iter().zip(&z[1..]).map(|(p, z)| (p - z).powi(2));
+    (normal - z[0]).powi(2) + tangential.sum::<f64>()
 }
 
 #[cfg(test)]

@@ -58,6 +58,9 @@ statuses! {
     SingularTangent = "singular-tangent",
     /// A floating piece is not held by the contact: it can move rigidly, or its load cannot be balanced.
     Mechanism = "mechanism",
+    /// No contact force within the cones of friction balances the load on floating pieces; see
+    /// [`unbalanced`](crate::conic::unbalanced). Said by the judge, in place of what a method ended with.
+    NoEquilibrium = "no-equilibrium",
     /// Numbers left the finite range.
     Diverged = "diverged",
     /// The monitor asked to stop.

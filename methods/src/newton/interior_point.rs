@@ -217,7 +217,7 @@ impl PathStep {
             }
         }
         let all: Vec<usize> = (0..n).collect();
-        let system = Bordered::new(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        let system = Bordered::held(problem, &all, &Law::Rows { a: &a, c: &c })?;
         Some(Self { system, c, scale })
     }
 

@@ -5,7 +5,8 @@
 //! ```
 //! What H and V are is the [`Scheme`]. Full steps are tried first; the non-monotone line search on the energy-scaled
 //! merit Σ H²/r steps in only after a rise above the last five merits. A singular V is regularised once by 1e-10/ρ on
-//! the diagonal of W: redundant points make W singular, and this picks one of the possible P.
+//! the diagonal of W: redundant points make W singular, and this picks one of the possible P. Where V leaves a floating piece
+//! loose it is moved on by a few local and global stages, and after that held by a spring.
 
 #![allow(non_snake_case)]
 
@@ -129,19 +130,24 @@ impl<S: Scheme> Newton<S> {
             }
 
             let stuck = self.rescue && problem.stagnates();
-            let direction = match stuck {
+            let mut direction = match stuck {
                 true => None,
-                false => self.direction(problem, &r, &x, &v, &pieces)?,
+                false => self.direction(problem, &r, &x, &v, &pieces, false)?,
             };
+            if direction.is_none()
+                && self.rescue
+                && problem.rescue_left()
+                && let Some(pair) = rescue(problem)?
+            {
+                x = pair.into();
+                before = pieces;
+                continue;
+            }
+            if direction.is_none() && !stuck {
+                direction = self.direction(problem, &r, &x, &v, &pieces, true)?;
+            }
             before = pieces;
             let Some(step) = direction else {
-                if self.rescue
-                    && problem.rescue_left()
-                    && let Some(pair) = rescue(problem)?
-                {
-                    x = pair.into();
-                    continue;
-                }
                 let status = match stuck {
                     true => Status::Stalled,
                     false => problem.singular(),
@@ -168,11 +174,13 @@ impl<S: Scheme> Newton<S> {
         x: &Forces,
         v: &[f64],
         pieces: &[S::Piece],
+        hold: bool,
     ) -> Result<Option<Forces>, MethodError> {
         let tangent = &mut self.tangent;
         let mut at = At {
             problem,
             tangent,
+            hold,
             r,
             x,
             v,
@@ -227,6 +235,8 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
 pub(crate) struct At<'p, 'i> {
     pub problem: &'p mut ContactProblem<'i>,
     pub tangent: &'p mut Tangent,
+    /// Loose pieces are held by springs.
+    pub hold: bool,
     /// Scale by row that turns jumps into forces.
     pub r: &'p [f64],
     pub x: &'p Forces,
@@ -241,7 +251,10 @@ impl At<'_, '_> {
         pieces: &[S::Piece],
     ) -> Result<Option<Forces>, MethodError> {
         let mut rows = self.rows(scheme, pieces);
-        if let Some(step) = self.tangent.solve(self.problem, self.x, &mut rows)? {
+        if let Some(step) = self
+            .tangent
+            .solve(self.problem, self.x, &mut rows, self.hold)?
+        {
             return Ok(Some(step));
         }
         let mut rows = self.rows(scheme, pieces);
@@ -251,7 +264,8 @@ impl At<'_, '_> {
                 row.a[l] += ridge * row.c[l];
             }
         }
-        self.tangent.solve(self.problem, self.x, &mut rows)
+        self.tangent
+            .solve(self.problem, self.x, &mut rows, self.hold)
     }
 
     fn rows<S: Scheme + ?Sized>(&self, scheme: &S, pieces: &[S::Piece]) -> Vec<[PointRow; 3]> {

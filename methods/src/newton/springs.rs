@@ -149,22 +149,26 @@ impl Springs<'_> {
             if iteration == max_iterations {
                 break;
             }
-            let step = match tangent {
+            let coupled = self.coupled.as_ref();
+            let mut step = match tangent {
                 Tangent::Condensed => {
-                    let coupled = self.coupled.as_ref();
-                    direction(problem, coupled, &r, &c, &at, &mismatch)
+                    direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::new)
                 }
                 Tangent::Monolithic(body) => {
                     whole_direction(body, problem, &r, &c, &at, &mismatch)?
                 }
             };
+            if step.is_none()
+                && problem.rescue_left()
+                && let Some(pair) = rescue(problem)?
+            {
+                at = self.predict(problem, pair.into());
+                continue;
+            }
+            if step.is_none() && matches!(tangent, Tangent::Condensed) {
+                step = direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::held);
+            }
             let Some((dz, dbeta)) = step else {
-                if problem.rescue_left()
-                    && let Some(pair) = rescue(problem)?
-                {
-                    at = self.predict(problem, pair.into());
-                    continue;
-                }
                 return Ok((problem.singular(), at));
             };
             search.record(merit(problem, &r, &at, &mismatch));
@@ -198,6 +202,9 @@ fn merit(problem: &ContactProblem<'_>, r: &[f64], at: &Point, mismatch: &[f64]) 
     missing + mismatch.iter().zip(r).map(|(f, r)| r * f * f).sum::<f64>()
 }
 
+/// With loose pieces held or not.
+type Factored = fn(&ContactProblem<'_>, &[usize], &Law<'_>) -> Option<Bordered>;
+
 /// (δz, δβ).
 type SpringStep = (Vec<f64>, Vec<f64>);
 
@@ -211,6 +218,7 @@ fn direction(
     c: &[f64],
     at: &Point,
     mismatch: &[f64],
+    factored: Factored,
 ) -> Option<SpringStep> {
     problem.counters.factorisations += 1;
     let n = problem.len();
@@ -235,7 +243,7 @@ fn direction(
         series: coupled.map(|c| c.compliance),
     };
     let f: Vec<f64> = active.iter().map(|&k| -mismatch[k]).collect();
-    let system = Bordered::new(problem, &active, &law)?;
+    let system = factored(problem, &active, &law)?;
     let (solution, dbeta) = system.solve(&f, &problem.missing(&at.p))?;
 
     let mut y = vec![0.0; n];

@@ -60,17 +60,18 @@ impl Tangent {
         }
     }
 
-    /// (δP, δβ); `None` if the tangent is singular.
+    /// (δP, δβ); `None` if the tangent is singular. `hold`: loose pieces by springs, where W is at hand.
     pub fn solve(
         &mut self,
         problem: &mut ContactProblem<'_>,
         x: &Forces,
         rows: &mut [[PointRow; 3]],
+        hold: bool,
     ) -> Result<Option<Forces>, MethodError> {
         match self {
             Tangent::Condensed => {
                 problem.counters.factorisations += 1;
-                Ok(condensed_step(problem, x, rows))
+                Ok(condensed_step(problem, x, rows, hold))
             }
             Tangent::Monolithic(body) => {
                 let Pair { p, beta, .. } =
@@ -105,6 +106,7 @@ fn condensed_step(
     problem: &ContactProblem<'_>,
     x: &Forces,
     rows: &[[PointRow; 3]],
+    hold: bool,
 ) -> Option<Forces> {
     let mut p = vec![0.0; problem.len()];
     let (mut a, mut c) = (vec![[0.0; 3]; p.len()], vec![[0.0; 3]; p.len()]);
@@ -124,7 +126,8 @@ fn condensed_step(
     }
     let mut known = vec![0.0; p.len()];
     problem.operator.w.apply_add(&p, &mut known);
-    let system = Bordered::new(problem, &active, &Law::Rows { a: &a, c: &c })?;
+    let factored = if hold { Bordered::held } else { Bordered::new };
+    let system = factored(problem, &active, &Law::Rows { a: &a, c: &c })?;
 
     let mut f = Vec::with_capacity(active.len());
     let mut next = active.iter().peekable();

@@ -52,12 +52,13 @@ impl Row for SuccessRow {
             "stalled" "" .shown() = r.failures[3], "ended without progress";
             "singular_tangent" "" = r.failures[4], "ended at a matrix that cannot be factored";
             "mechanism" "" = r.failures[5], "ended at a body that is held by nothing";
-            "diverged" "" = r.failures[6], "ended with numbers that grew without bound";
-            "stopped" "" = r.failures[7], "was stopped";
-            "refused" "" .shown() = r.failures[8], "declined";
-            "crashed" "" .shown() = r.failures[9], "failed with an error";
-            "timed_out" "" = r.failures[10], "stopped at the time limit";
-            "out_of_memory" "" = r.failures[11], "denied memory, by the limit or by the system";
+            "no_equilibrium" "" = r.failures[6], "no contact force within the cones of friction balances the load";
+            "diverged" "" = r.failures[7], "ended with numbers that grew without bound";
+            "stopped" "" = r.failures[8], "was stopped";
+            "refused" "" .shown() = r.failures[9], "declined";
+            "crashed" "" .shown() = r.failures[10], "failed with an error";
+            "timed_out" "" = r.failures[11], "stopped at the time limit";
+            "out_of_memory" "" = r.failures[12], "denied memory, by the limit or by the system";
         }
     }
 }

@@ -23,12 +23,13 @@ impl Row for RobustnessRow {
             "approximate_mid" "" = r.approximate[1], "the same for `mid`";
             "approximate_low" "" = r.approximate[2], "the same for `low`";
             "approximate_none" "" .named("laws to no tier") = r.approximate[3], "the method's own laws hold as claimed, the contact laws to no tier";
-            "gave_up" "" .shown() = r.gave_up, "ended without a claim; the next five columns tell why";
+            "gave_up" "" .shown() = r.gave_up, "ended without a claim; the next six columns tell why";
             "max_iterations" "" = r.gave_up_by[0], "of these, at the limit of iterations";
             "stalled" "" = r.gave_up_by[1], "without progress";
             "singular_tangent" "" = r.gave_up_by[2], "at a matrix that cannot be factored";
             "mechanism" "" = r.gave_up_by[3], "at a body that is held by nothing";
-            "diverged" "" = r.gave_up_by[4], "with numbers that grew without bound";
+            "no_equilibrium" "" = r.gave_up_by[4], "where no contact force within the cones of friction balances the load";
+            "diverged" "" = r.gave_up_by[5], "with numbers that grew without bound";
             "false_claims" "" .shown() = r.false_claims, "claims that the judge refuted";
             "crashed" "" .shown() = r.crashed, "failed with an error, `out-of-memory` among them";
             "refused" "" .shown() = r.refused, "problems the method declines; left out of the rate";

@@ -3,6 +3,7 @@
 use super::words::*;
 use crate::report::table::{Column, Row, columns};
 use crate::studies::stress::finding::Cause;
+use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 
 const FAMILY: &str = "`patch-2d`, `patch-3d`: uniform compression, all cracks stick, the answer is known; `slip-2d`, `slip-3d`: pushed and sheared with friction";
@@ -18,7 +19,7 @@ impl Row for CauseRow {
     const NAME: &'static str = "stress_causes";
     const TITLE: &'static str = "Random scenes by what became of them";
     const QUESTION: &'static str = "How often does the program fail, and why?";
-    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells).";
+    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells). `no equilibrium`: no force within the cones of friction balances the load on a floating piece, as a certificate proves.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -59,7 +60,7 @@ impl Row for MethodRow {
     const NAME: &'static str = "stress_methods";
     const TITLE: &'static str = "Random scenes: every method, and why it lost";
     const QUESTION: &'static str = "Which method fails on which kind of body, and for what cause?";
-    const NOTES: &'static str = "An exact method is done where its answer is `solved` to the tier `high`, asked for at 1e-12; an approximate one where it keeps its claim. Scenes are those with an answer; those that a method declines are left out.";
+    const NOTES: &'static str = "An exact method is done where its answer is `solved` to the tier `high`, asked for at 1e-12; an approximate one where it keeps its claim. Scenes are those with an answer: without those that a method declines, and without those where no force within the cones of friction balances the load.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -81,6 +82,75 @@ impl Row for MethodRow {
             "iterations_max" "" .shown().named("largest") = r.iterations[1], "largest number where done";
             "friction_max" "–" .shown().significant(3).named("largest μ") = r.friction, "largest friction coefficient at which it was done";
             "sway_max" "–" .shown().significant(2).named("largest sway") = r.sway, "largest condition, as `sway` of `runs.csv`, at which it was done";
+        }
+    }
+}
+
+impl Row for LadderRow {
+    const NAME: &'static str = "stress_ladders";
+    const TITLE: &'static str = "One parameter at a time";
+    const QUESTION: &'static str = "How far can a parameter go before digits or methods are lost?";
+    const NOTES: &'static str = "Plates and cubes with plain cracks. Where all cracks stick in uniform compression the error is that against the closed form; where they slip it is the error of the energy identity; on the ladder of loads it is the change of contact forces, and over the change of the load it is their Lipschitz constant. Every value: `stress_rungs.csv`.";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "ladder" "" .key() = r.ladder.clone(), "name";
+            "parameter" "" .shown() = r.parameter.clone(), "what changes, with its unit";
+            "least" "" .shown().significant(3) = r.range[0], "least value, in the unit of the parameter";
+            "largest" "" .shown().significant(3) = r.range[1], "largest value";
+            "values" "" .shown() = r.rungs, "values tried";
+            "right" "" .shown() = r.right, "values at which the default method's answer was right";
+            "others" "" .shown() = r.others.clone(), "the other values with their causes";
+            "error" "–" .shown().residual() = r.error, "largest error where it was right";
+            "iterations" "" .shown() = r.iterations, "most iterations of the default method where it was right";
+            "lost" "" .shown() = r.lost.clone(), "methods that did not do what they are for, each with the number of values";
+        }
+    }
+}
+
+impl Row for OptionRow {
+    const NAME: &'static str = "stress_options";
+    const TITLE: &'static str = "Safe windows of the options of the methods";
+    const QUESTION: &'static str = "How wrong may a parameter of a method be?";
+    const NOTES: &'static str = "A sheared plate with two cracks of friction 0.3; from a 10 000th to 10 000 times the default, as far as an option is allowed. Limits of iterations are left out.";
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "method" "" .key() = r.method, METHOD;
+            "option" "" .key() = r.option.clone(), "name of the option";
+            "default" "" .shown().significant(3) = r.default, "its default";
+            "safe_from" "" .shown().significant(3).named("safe from") = r.safe[0], "least value, next to each other about the default, at which the method did what it is for";
+            "safe_to" "" .shown().significant(3).named("to") = r.safe[1], "largest such value";
+            "tried_from" "" .shown().significant(3).named("tried from") = r.tried[0], "least value tried";
+            "tried_to" "" .shown().significant(3).named("tried to") = r.tried[1], "largest value tried";
+            "iterations" "" .shown() = r.iterations, "at the default";
+            "fewest" "" .shown() = r.fewest.0, "fewest of all values tried";
+            "fewest_at" "" .shown().significant(3).named("at") = r.fewest.1, "the value that took them";
+        }
+    }
+}
+
+impl Row for RungRow {
+    const NAME: &'static str = "stress_rungs";
+    const TITLE: &'static str = "Every value of every parameter";
+    const QUESTION: &'static str = "At which value does what happen?";
+    const NOTES: &'static str = "See `stress_ladders` and `stress_options`.";
+    const READABLE: bool = false;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "ladder" "" .key() = r.ladder.clone(), "name; of an option its method and name";
+            "parameter" "" = r.parameter.clone(), "what changes, with its unit";
+            "value" "" .key() = r.value, "the value";
+            "cause" "" = name(r.cause), CAUSE;
+            "reason" "" = r.reason.clone(), "in one line";
+            "error" "–" .residual() = r.error, "against the closed form, or of the energy identity; of the ladder of loads the change of contact forces";
+            "iterations" "" = r.iterations, "of the default method, or of the method whose option it is";
+            "done" "" = r.done[0], "methods that did what they are for";
+            "tried" "" = r.done[1], "methods tried";
+            "lost" "" = r.lost.join("; "), "the others, with causes";
+            "sway" "–" .residual() = r.sway, "condition, as in `runs.csv`";
+            "overlap" "–" .residual() = r.overlap, "deepest overlap of the faces over the largest jump or displacement";
         }
     }
 }

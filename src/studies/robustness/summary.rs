@@ -31,7 +31,7 @@ pub struct RobustnessRow {
     /// Ended without a claim.
     pub gave_up: usize,
     /// Those of them with each of [`GIVE_UPS`] but the last: nobody stops a trial.
-    pub gave_up_by: [usize; 5],
+    pub gave_up_by: [usize; 6],
     /// Claims the judge refuted.
     pub false_claims: usize,
     /// Errors, out of memory among them.
@@ -102,7 +102,7 @@ impl RobustnessRow {
     fn of(trials: &[&Trial], tier: Tier) -> Option<Self> {
         let first = trials.first()?;
         let (mut solved, mut refused, mut false_claims, mut crashed) = (0, 0, 0, 0);
-        let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; 5], 0);
+        let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; 6], 0);
         for trial in trials {
             match &trial.verdict {
                 Verdict::Solved => solved += 1,

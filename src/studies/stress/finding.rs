@@ -35,6 +35,8 @@ pub enum Cause {
     Refused,
     /// Refused, and by construction more than a mesh of such cells can carry.
     Beyond,
+    /// No contact force within the cones of friction balances the load on a floating piece, as a certificate proves.
+    NoEquilibrium,
     /// Two exact methods found different answers that both hold: there are several.
     SeveralSolutions,
     /// A matrix of the method cannot be factored: its tangent is singular.
@@ -69,6 +71,7 @@ impl Cause {
             Self::SuspectMesh => "suspect mesh",
             Self::Refused => "refused",
             Self::Beyond => "beyond the mesh",
+            Self::NoEquilibrium => "no equilibrium",
             Self::SeveralSolutions => "several solutions",
             Self::SingularTangent => "singular tangent",
             Self::Cycling => "cycling",
@@ -129,8 +132,10 @@ pub struct Finding {
     pub family: Family,
     /// Number in the family.
     pub number: u64,
-    /// How its cracks lie.
+    /// How its cracks lie; of a ladder its name.
     pub category: String,
+    /// Space dimension.
+    pub dimension: usize,
     /// The worst that was found; none if all is right.
     pub cause: Option<Cause>,
     /// In one line.

@@ -91,9 +91,10 @@ pub fn compare(patch: &Patch, results: &Results) -> (Vec<String>, f64) {
             if w.0.is_nan() { w.0 } else { m.max(w.0) }
         },
     );
+    let rounding = ROUNDING.max(exact.place());
     let wrong = found
         .into_iter()
-        .filter(|(_, w)| w.0.is_nan() || w.0 > ROUNDING);
+        .filter(|(_, w)| w.0.is_nan() || w.0 > rounding);
     let told = wrong.map(|(what, Worst(error, place))| format!("{what} {error:.1e} {place}"));
     (told.collect(), largest)
 }

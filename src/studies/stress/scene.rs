@@ -13,6 +13,7 @@ use stickslip_xfem::mesh::stream::Stream;
 use self::flat::Flat;
 use self::grid::{Grid, decades, list};
 use self::solid::Flaw;
+use super::ladder;
 use super::uniform::{Uniform, sides};
 use crate::case::CrackShape;
 
@@ -66,11 +67,30 @@ pub enum Family {
     Slip2d,
     /// Solids, the same.
     Slip3d,
+    /// One parameter at a time through its decades; see [`ladder`](super::ladder).
+    Ladder,
+}
+
+/// What the answer of a scene is held to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Truth {
+    /// The closed form of uniform stress: all cracks stick.
+    Uniform,
+    /// The work done: strain energy and friction.
+    Energy,
+    /// The contact forces of another case, which has the same contact points.
+    Case(String),
 }
 
 impl Family {
     /// All, in the order of reports.
-    pub const ALL: [Self; 4] = [Self::Patch2d, Self::Patch3d, Self::Slip2d, Self::Slip3d];
+    pub const ALL: [Self; 5] = [
+        Self::Patch2d,
+        Self::Patch3d,
+        Self::Slip2d,
+        Self::Slip3d,
+        Self::Ladder,
+    ];
 
     /// As on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -79,34 +99,34 @@ impl Family {
             Self::Patch3d => "patch-3d",
             Self::Slip2d => "slip-2d",
             Self::Slip3d => "slip-3d",
+            Self::Ladder => "ladder",
         }
     }
 
-    /// Space dimension.
-    pub fn dim(self) -> usize {
-        match self {
-            Self::Patch2d | Self::Slip2d => 2,
-            Self::Patch3d | Self::Slip3d => 3,
-        }
-    }
-
-    /// Whether all cracks stick in uniform stress.
-    pub fn sticks(self) -> bool {
-        matches!(self, Self::Patch2d | Self::Patch3d)
+    /// Whether its scenes are drawn: the others are the same for every seed.
+    pub fn is_random(self) -> bool {
+        self != Self::Ladder
     }
 }
 
-/// A random case.
+/// A case to be examined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// Its family.
     pub family: Family,
     /// Number in its series; with family and seed it makes the scene again alone.
     pub number: u64,
-    /// How its cracks lie.
+    /// How its cracks lie; of a ladder its name.
     pub category: String,
+    /// Space dimension.
+    pub dim: usize,
     /// The case, as TOML.
     pub text: String,
+    /// What its answer is held to.
+    pub truth: Truth,
+    /// Methods with options as on the command line; all with their defaults if there are none. The default method runs first
+    /// in any case.
+    pub methods: Vec<String>,
     /// Whether no mesh of such cells can carry it: two cracks within 1e-6 of a cell along each other, or a crack without tip
     /// functions that is shorter than two cells.
     pub beyond: bool,
@@ -114,7 +134,14 @@ pub struct Scene {
 
 /// The scene with a number among those of a family and a seed.
 pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
-    let dim = family.dim();
+    let (dim, truth) = match family {
+        Family::Patch2d => (2, Truth::Uniform),
+        Family::Patch3d => (3, Truth::Uniform),
+        Family::Slip2d => (2, Truth::Energy),
+        Family::Slip3d => (3, Truth::Energy),
+        Family::Ladder => return ladder::scene(number),
+    };
+    let sticks = truth == Truth::Uniform;
     let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);
     let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
     let kind = (number % kinds.len() as u64) as usize;
@@ -169,7 +196,7 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
         };
         let needed = needed.into_iter().fold(0.0, f64::max);
         let smooth = hydrostatic && held && s.chance(0.3);
-        let friction = match family.sticks() {
+        let friction = match sticks {
             true if smooth => 0.0,
             true => 2.0 * needed + 0.1,
             false => decades(&mut own, -1.3, 0.3),
@@ -200,7 +227,7 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
             _ => "",
         };
     }
-    text += &if family.sticks() {
+    text += &if sticks {
         held_and_loaded(&exact, s.chance(0.5))
     } else {
         pushed(&exact, &mut own)
@@ -209,7 +236,10 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
         family,
         number,
         category: category.into(),
+        dim,
         text,
+        truth,
+        methods: Vec::new(),
         beyond,
     }
 }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::conduct::Suite;
-use super::examine::INVARIANT;
 use super::finding::{Cause, Change, Finding, Trial};
+use super::invariance::INVARIANT;
 use super::scene::Family;
 use crate::run::verdict::Verdict;
 
@@ -149,7 +149,7 @@ pub fn invariances(findings: &[Finding]) -> Vec<InvarianceRow> {
     let mut groups: BTreeMap<Key<'_>, Vec<(&Change, &Finding)>> = BTreeMap::new();
     for finding in findings {
         for change in &finding.invariance {
-            let dimension = finding.family.dim();
+            let dimension = finding.dimension;
             let key = (dimension, !change.exact, change.transformation.as_str());
             groups.entry(key).or_default().push((change, finding));
         }
@@ -179,15 +179,16 @@ pub fn invariances(findings: &[Finding]) -> Vec<InvarianceRow> {
 /// Every method, by dimension; the scenes are those that have an answer.
 pub fn methods(findings: &[Finding]) -> Vec<MethodRow> {
     let mut groups: BTreeMap<(usize, &str), Vec<(&Finding, &Trial)>> = BTreeMap::new();
-    for finding in findings {
+    for finding in findings.iter().filter(|f| f.family.is_random()) {
         for trial in &finding.trials {
-            let key = (finding.family.dim(), trial.method.as_str());
+            let key = (finding.dimension, trial.method.as_str());
             groups.entry(key).or_default().push((finding, trial));
         }
     }
     let row = |((dimension, method), own): ((usize, &str), Vec<(&Finding, &Trial)>)| {
-        let declined = |(_, t): &&(&Finding, &Trial)| t.cause != Some(Cause::Declined);
-        let own: Vec<_> = own.iter().filter(declined).collect();
+        let none = [Some(Cause::Declined), Some(Cause::NoEquilibrium)];
+        let tried = |(_, t): &&(&Finding, &Trial)| !none.contains(&t.cause);
+        let own: Vec<_> = own.iter().filter(tried).collect();
         let done: Vec<_> = own.iter().filter(|(_, t)| t.cause.is_none()).collect();
         let largest =
             |of: &dyn Fn(&Finding) -> f64| done.iter().map(|(f, _)| of(f)).fold(0.0, f64::max);

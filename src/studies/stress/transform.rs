@@ -141,6 +141,19 @@ impl Transform {
     }
 }
 
+/// The case with every cell halved along every axis.
+pub fn finer(text: &str) -> Option<String> {
+    let mut case: Table = text.parse().ok()?;
+    let mesh = case.get_mut("mesh")?.as_table_mut()?;
+    let mut lines = lines(mesh)?;
+    for axis in &mut lines {
+        let halves = axis.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]);
+        *axis = halves.chain(axis.last().copied()).collect();
+    }
+    set_lines(mesh, lines);
+    toml::to_string(&case).ok()
+}
+
 fn times(factor: f64) -> String {
     match factor.log2() {
         power if power.fract() == 0.0 => format!("2^{power}"),

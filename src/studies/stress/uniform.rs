@@ -134,6 +134,16 @@ impl Uniform {
         [0, 1, 2].map(|a| -self.stress[a] * n[a])
     }
 
+    /// Rounding of coordinates and their differences in cells [-]: far from the origin a cell holds no more digits.
+    pub fn place(&self) -> f64 {
+        let largest = self
+            .min
+            .iter()
+            .chain(&self.max)
+            .fold(0.0, |m: f64, x| m.max(x.abs()));
+        4.0 * f64::EPSILON * largest / self.cell
+    }
+
     /// |τ| / p on a plane: the friction it needs to stick.
     pub fn steepness(&self, n: &[f64; 3]) -> f64 {
         let t = self.traction(n);
@@ -170,10 +180,14 @@ pub fn lines(mesh: &Table) -> Option<Vec<Vec<f64>>> {
     let grid = mesh.get("box")?.as_table()?;
     let [min, max, cells] = ["min_m", "max_m", "cells"].map(|key| numbers(grid.get(key)?));
     let (min, max, cells) = (min?, max?, cells?);
+    // As the reader of cases rounds them: another last digit may choose other contact points.
     let axis = |a: usize| {
-        let n = cells[a] as usize;
-        (0..=n)
-            .map(|i| min[a] + (max[a] - min[a]) * i as f64 / n as f64)
+        let n = cells[a];
+        let inner = (1..n as usize).map(|k| k as f64);
+        let inner = inner.map(|k| (min[a] * (n - k) + max[a] * k) / n);
+        std::iter::once(min[a])
+            .chain(inner)
+            .chain([max[a]])
             .collect()
     };
     Some((0..min.len()).map(axis).collect())

@@ -165,7 +165,7 @@ pub fn rates() -> Vec<RobustnessRow> {
                     solved: 7,
                     approximate: [0; 4],
                     gave_up: 1,
-                    gave_up_by: [1, 0, 0, 0, 0],
+                    gave_up_by: [1, 0, 0, 0, 0, 0],
                     false_claims: 0,
                     crashed: 0,
                     refused: 0,

@@ -44,6 +44,9 @@ impl Zone {
     }
 }
 
+/// Cells longer than this times their width take no branch functions by themselves.
+const SLENDER: f64 = 30.0;
+
 /// An arm shorter than this, in diagonals of the cell of its tip, is none: its functions drown in the rounding of the others.
 const SHORTEST: f64 = 0.01;
 
@@ -342,7 +345,13 @@ impl Search<'_> {
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let size = self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
-        parted && alone && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
+        // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.
+        let slender = self.arms[tip.arm].tip == Tip::Auto
+            && tip
+                .cells
+                .iter()
+                .any(|&cell| self.mesh.map(cell).aspect() > SLENDER);
+        parted && alone && !slender && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
     }
 
     /// Whether only one arm lies in a divided cell.

@@ -63,10 +63,7 @@ pub fn comparison_points(
             chord: None,
         };
         let effort = [Effort::WORKING, Effort::REFERENCE][usize::from(n > 4)];
-        near.points(
-            |crack| integrator.cracks[crack].cell_phi(mesh, cell),
-            effort,
-        )
+        near.points(|crack| integrator.plane(cell, crack), effort)
     };
     let located = |(p, number): (WeightedPoint, usize)| {
         let none = || CellError::new(p.x, "a point of a sub-cell has no reference position");

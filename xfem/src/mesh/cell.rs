@@ -224,6 +224,14 @@ impl CellMap {
         lengths.fold(0.0, f64::max)
     }
 
+    /// Longest over shortest edge.
+    pub fn aspect(&self) -> f64 {
+        let edges = self.kind.edges().iter();
+        let lengths = edges.map(|&[i, j]| norm(&sub(&self[i], &self[j])));
+        let shortest = lengths.fold(f64::INFINITY, f64::min);
+        self.longest_edge() / shortest
+    }
+
     /// Mean of the corners [m].
     pub fn centre(&self) -> Point {
         let count = self.len() as f64;

@@ -108,9 +108,6 @@ pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
     if !phi.iter().any(|f| f * side > 0.0) {
         return Vec::new();
     }
-    let [a, b] = piece.chord;
-    let along = unit(&sub(&b, &a));
-    let ahead = cross(&piece.normal, &along);
     // Vertices of the part.
     let inside = (0..map.len()).filter(|&i| phi[i] * side >= 0.0);
     let mut vertices: Vec<Point> = inside.map(|i| map[i]).collect();
@@ -119,9 +116,25 @@ pub fn front_cell_points<F: Fn(&Point) -> Option<Point>>(
             vertices.push(crossing(&map[i], phi[i], &map[j], phi[j]));
         }
     }
-    // Half spaces n · (x − p) <= 0 of the part: the faces and the crack.
+    let crack = (piece.chord[0], piece.normal.map(|n| -side * n));
+    front_part_points(map, &[crack], &vertices, piece, rule)
+}
+
+/// Points of the part of a 3D cell with planar faces inside further walls, each a point of it and its outward normal;
+/// `vertices`: those of the part [m].
+pub fn front_part_points<F: Fn(&Point) -> Option<Point>>(
+    map: &CellMap,
+    cracks: &[(Point, Point)],
+    vertices: &[Point],
+    piece: &FrontPiece<F>,
+    rule: FrontRule,
+) -> Vec<WeightedPoint> {
+    let [a, b] = piece.chord;
+    let along = unit(&sub(&b, &a));
+    let ahead = cross(&piece.normal, &along);
+    // Half spaces n · (x − p) <= 0 of the part: the faces and the cracks.
     let mut walls = walls(map);
-    walls.push((a, piece.normal.map(|n| -side * n)));
+    walls.extend(cracks);
     let from_front = map.iter().map(|x| norm(&sub(x, &a)));
     let size = from_front.fold(0.0, f64::max);
 

@@ -22,7 +22,7 @@ use crate::geometry::clip::Side;
 use crate::geometry::{Point, polygon};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
-use crate::mesh::cell::CellMap;
+use crate::mesh::cell::{CellMap, Nodal};
 use crate::quadrature::graded::graded_points;
 use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
 
@@ -242,6 +242,13 @@ impl<'a> CellIntegrator<'a> {
         own.map(|&(_, tip)| tip)
     }
 
+    /// Signed distances of the corners of a cell to the plane of a crack [m], and its normal.
+    pub fn plane(&self, cell: usize, crack: usize) -> (Nodal<f64>, Point) {
+        let crack = &self.cracks[crack];
+        let phi = crack.cell_phi(self.mesh, cell);
+        (phi, crack.frame(&self.mesh.map(cell)[0])[0])
+    }
+
     /// Points of a 3D cell with branch functions.
     pub fn near_front_points(
         &self,
@@ -261,7 +268,7 @@ impl<'a> CellIntegrator<'a> {
                 cuts.next().map(|cut| cut.chord)
             }),
         };
-        let mut points = near.points(|crack| self.cracks[crack].cell_phi(self.mesh, cell), effort);
+        let mut points = near.points(|crack| self.plane(cell, crack), effort);
         fill(parts, &mut points);
         self.located(cell, points, 1e-6)
     }

@@ -3,7 +3,7 @@
 //! ```text
 //!   the front in the cell, or nearer than REACH cells      slices perpendicular to the front      [`super::front`]
 //!   farther away, not cut                                  boxes halved towards the front         [`super::graded`]
-//!   farther away, or cut by several cracks                 tetrahedra halved towards the front    [`super::graded`]
+//!   farther away, cut                                      tetrahedra halved towards the front    [`super::graded`]
 //! ```
 //!
 //! Halving resolves a front at a distance d of the cell with about 1/d parts, slices with as many at any distance.
@@ -11,22 +11,17 @@
 use crate::cut::part::Part;
 use crate::enrichment::basis::Region;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, cross, dot, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
-use crate::quadrature::front::{FrontPiece, FrontRule, front_cell_points};
+use crate::quadrature::front::{FrontPiece, FrontRule, front_cell_points, front_part_points};
 use crate::quadrature::graded::{graded_cell, graded_tetrahedra, nearest_in_box};
 use crate::quadrature::{FanRule, WeightedPoint};
 
 /// Distances in edges of the cell within which a front is resolved by slices: in whole cells, in cut ones.
 const REACH: [f64; 2] = [0.15, 1.0];
 
-/// Halvings of what is not sliced. Only cells cut by several cracks come nearer to a front than [`REACH`]; their parts have
-/// dozens of tetrahedra, small beside the cell, and are halved once less.
-const DEPTH: [usize; 2] = [4, 3];
-
-/// Distances in cells cut by several cracks, times this: the price of a bounded number of points. In cells of one crack 2 puts
-/// entries off by three hundredths of their diagonals.
-const BETWEEN: f64 = 1.5;
+/// Halvings of what is not sliced: no front is nearer than [`REACH`].
+const DEPTH: usize = 4;
 
 /// How finely.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,10 +69,10 @@ pub struct NearFront<'a> {
 }
 
 impl NearFront<'_> {
-    /// Points with the part they lie in; `phi`: signed distances of the corners to a crack [m].
+    /// Points with the part they lie in; `crack`: signed distances of the corners to the plane of a crack [m], and its normal.
     pub fn points(
         &self,
-        phi: impl Fn(usize) -> Nodal<f64>,
+        crack: impl Fn(usize) -> (Nodal<f64>, Point),
         effort: Effort,
     ) -> Vec<(WeightedPoint, Region)> {
         let distance = |x: &Point| {
@@ -86,16 +81,10 @@ impl NearFront<'_> {
         };
         let nearer = |x: &Point| effort.nearer * distance(x);
         if let Some((front, nearest)) = self.sliced(&distance) {
-            let phi = phi(front.crack);
-            return self.slices(front, &nearest, &phi, effort.slices);
+            return self.slices(front, &nearest, crack, effort.slices);
         }
-        let mut cracks = self.parts.iter().flat_map(|part| &part.sides).map(|s| s.0);
-        let first = cracks.next();
-        let several = cracks.any(|crack| Some(crack) != first);
-        let stretch = if several { BETWEEN } else { 1.0 };
-        let between = |x: &Point| stretch * nearer(x);
         match self.parts {
-            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH[0])
+            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH)
                 .into_iter()
                 .map(|p| (p, 0))
                 .collect(),
@@ -103,8 +92,7 @@ impl NearFront<'_> {
                 .iter()
                 .enumerate()
                 .flat_map(|(region, part)| {
-                    let points =
-                        graded_tetrahedra(&part.tetrahedra, between, DEPTH[usize::from(several)]);
+                    let points = graded_tetrahedra(&part.tetrahedra, nearer, DEPTH);
                     points.into_iter().map(move |p| (p, region))
                 })
                 .collect(),
@@ -120,12 +108,9 @@ impl NearFront<'_> {
             return None;
         }
         let place = nearest.0;
-        let front = self
-            .fronts
-            .iter()
-            .min_by(|f, g| f.distance(&place).total_cmp(&g.distance(&place)))?;
-        let own = |part: &Part| part.sides.iter().all(|s| s.0 == front.crack);
-        self.parts.iter().all(own).then_some((front, place))
+        let fronts = self.fronts.iter();
+        let front = fronts.min_by(|f, g| f.distance(&place).total_cmp(&g.distance(&place)))?;
+        Some((front, place))
     }
 
     /// Slices perpendicular to the chord of the front, or to its tangent next to the cell.
@@ -133,7 +118,7 @@ impl NearFront<'_> {
         &self,
         front: &TipFrame,
         place: &Point,
-        phi: &[f64],
+        crack: impl Fn(usize) -> (Nodal<f64>, Point),
         rule: FrontRule,
     ) -> Vec<(WeightedPoint, Region)> {
         let chord = self.chord.unwrap_or_else(|| {
@@ -157,15 +142,47 @@ impl NearFront<'_> {
             },
         };
         let mut points = Vec::new();
+        let mut push = |region: Region, own: Vec<WeightedPoint>| {
+            points.extend(own.into_iter().map(|p| (p, region)));
+        };
         for (region, part) in self.parts.iter().enumerate() {
-            let own = part.side(front.crack);
+            if part.sides.iter().any(|s| s.0 != front.crack) {
+                let walls: Vec<(Point, Point)> = (part.sides.iter())
+                    .map(|&(other, side)| {
+                        let (phi, normal) = crack(other);
+                        let on_it = add_scaled(&self.map[0], -phi[0], &normal);
+                        (on_it, normal.map(|n| -side * n))
+                    })
+                    .collect();
+                let vertices = self.vertices(part);
+                push(
+                    region,
+                    front_part_points(self.map, &walls, &vertices, &piece, rule),
+                );
+                continue;
+            }
+            let (own, (phi, _)) = (part.side(front.crack), crack(front.crack));
             for side in [1.0, -1.0] {
                 if own.is_none_or(|s| s == side) {
-                    let half = front_cell_points(self.map, phi, side, &piece, rule);
-                    points.extend(half.into_iter().map(|p| (p, region)));
+                    push(
+                        region,
+                        front_cell_points(self.map, &phi, side, &piece, rule),
+                    );
                 }
             }
         }
         points
+    }
+
+    /// Corners of the tetrahedra of a part.
+    fn vertices(&self, part: &Part) -> Vec<Point> {
+        let same = 1e-12 * self.map.diagonal();
+        let mut found: Vec<Point> = Vec::new();
+        for x in part.tetrahedra.iter().flatten() {
+            if found.iter().all(|y| norm(&sub(x, y)) > same) {
+                found.push(*x);
+            }
+        }
+        found
     }
 }

@@ -10,13 +10,14 @@ use crate::studies::sweep::record::Record;
 use crate::studies::sweep::statistics::wilson;
 
 /// How a cell missed the tier: in the order of [`FAILURES`].
-pub const FAILURES: [&str; 12] = [
+pub const FAILURES: [&str; 13] = [
     "inaccurate",
     "false_claim",
     "max_iterations",
     "stalled",
     "singular_tangent",
     "mechanism",
+    "no_equilibrium",
     "diverged",
     "stopped",
     "refused",
@@ -26,7 +27,7 @@ pub const FAILURES: [&str; 12] = [
 ];
 
 /// Place of what was stopped in [`FAILURES`].
-const STOPPED: usize = 7;
+const STOPPED: usize = 8;
 
 /// One method at one tier.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,7 +149,7 @@ mod tests {
             panic!("one method at one tier: {rows:?}");
         };
         assert_eq!((row.cells, row.claimed, row.correct), (8, 2, 1));
-        let expected = [0, 1, 1, 0, 1, 0, 0, 0, 1, 1, 1, 1];
+        let expected = [0, 1, 1, 0, 1, 0, 0, 0, 0, 1, 1, 1, 1];
         assert_eq!(row.failures, expected);
         assert_eq!(row.failures.iter().sum::<usize>() + row.correct, row.cells);
     }
