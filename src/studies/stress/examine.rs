@@ -168,6 +168,7 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
     if let Some(cause) = trials[0].cause.filter(|c| *c > Cause::Beyond) {
         seen.push((cause, format!("{DEFAULT}: {}", main.verdict)));
     }
+    let answer = Base::new(scene, &case, &base, quantity, main.reference_jump_m);
     match &scene.truth {
         _ if !solved => {}
         Truth::Uniform => {
@@ -177,6 +178,7 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
                 seen.push((Cause::WrongPatch, faults.join("; ")));
             }
         }
+        Truth::Energy if !answer.has_energy() => {}
         Truth::Energy => {
             let error = quantity("energy_identity").unwrap_or(f64::NAN).abs();
             finding.error = Some(error);
@@ -190,9 +192,8 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
     // A different answer of several is no change by the transformation.
     let one = disagreement.is_none_or(|d| d <= DIFFERENT);
     if effort == Effort::All && scene.family.is_random() && solved && seen.is_empty() && one {
-        let base = Base::new(scene, &case, &base, quantity, main.reference_jump_m);
-        finding.invariance = base.changes();
-        if let Some(reason) = base.not_kept(&finding.invariance) {
+        finding.invariance = answer.changes();
+        if let Some(reason) = answer.not_kept(&finding.invariance) {
             seen.push((Cause::NotInvariant, reason));
         }
     }

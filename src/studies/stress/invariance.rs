@@ -47,11 +47,11 @@ impl<'a> Base<'a> {
         jump: f64,
     ) -> Self {
         let energies = ENERGIES.map(|name| quantity(name).unwrap_or(0.0));
-        let total = energies.iter().map(|e| e.abs()).sum::<f64>();
         // A piece that only moves has no energy but rounding: E u² L^(dim−2) is that of one as large that is deformed.
         let area: f64 = points.iter().map(|p| p.weight).sum();
         let length = if scene.dim == 3 { area.sqrt() } else { 1.0 };
         let deformed = case.material.young * jump.powi(2) * length;
+        let total = energies.iter().map(|e| e.abs()).sum::<f64>();
         let scale = total.max(STILL * deformed);
         Base {
             scene,
@@ -60,6 +60,11 @@ impl<'a> Base<'a> {
             energies,
             scale,
         }
+    }
+
+    /// Whether the body has an energy: one whose pieces only move has none but rounding.
+    pub fn has_energy(&self) -> bool {
+        self.energies.iter().map(|e| e.abs()).sum::<f64>() >= self.scale
     }
 
     /// Change by the transformations of the scene that apply to it.
