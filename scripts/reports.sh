@@ -49,7 +49,7 @@ for part in $parts; do
             keep accuracy orders.csv orders.md 'partial_slip.*.energy.error.svg'
             keep spaces infsup_by_space patch_by_space infsup.svg
             keep stress stress_causes stress_invariances stress_methods stress_ladders stress_options stress_scenes.csv \
-                stress_rungs.csv stress_options.svg stress_iterations.svg
+                stress_options.svg stress_iterations.svg
             cp -r results/stress/cases reports/stress/
             keep robustness robustness failures.csv robustness.svg
             keep study recommendations ranking success study.csv cells.csv fastest.svg profile.time.svg \

@@ -202,7 +202,15 @@ impl Body {
             floating: motions.modes,
             frictionless: needs.frictionless,
             traction: needs.traction.then(|| rows(&traction)).transpose()?,
-        })?;
+        });
+        let elastic = match elastic {
+            // Pieces are found by what cracks leave whole: their motions are rigid unless a crack was bent.
+            Err(MethodError::NotRigid { .. }) if !cracks.is_empty() => {
+                let crack = cracks.iter().map(|c| c.number).max().unwrap_or(0);
+                return Err(crack_error(case, &EnrichmentError::Bent { crack }).into());
+            }
+            other => other?,
+        };
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks, lame.dilatation);
         let mut body = Body {

@@ -77,6 +77,10 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
         EnrichmentError::Undetermined { crack } => (*crack, "a finer mesh, or longer pieces"),
         EnrichmentError::Loose { crack } => (*crack, "a finer mesh, or supports on the piece"),
+        EnrichmentError::Bent { crack } => (
+            *crack,
+            "cracks that meet in one place, or farther apart than a thousandth of a cell",
+        ),
         EnrichmentError::Overlap(overlap) => (overlap.cracks[1], "cracks that cross or lie apart"),
         EnrichmentError::Lost { crack, .. } => {
             (*crack, "a mesh that the crack crosses from cell to cell")

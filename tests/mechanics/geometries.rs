@@ -86,3 +86,15 @@ fn a_piece_held_by_contact_alone_carries_the_load() {
     // Both cracks carry all of it.
     assert_near(total / pressed, 2.0, 1e-9, total);
 }
+
+/// Goal: where three cracks meet within a thousandth of a cell, but not in one point, and a piece between them is loose, it has
+/// no rigid motion: refused at a crack, with the remedy.
+#[test]
+fn cracks_that_nearly_meet_in_one_place_are_refused_there() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/nearly_one_place.toml");
+    let text = fs::read_to_string(path).unwrap();
+    let error = try_body(&text).map(|_| ()).unwrap_err().to_string();
+    for part in ["points_m", "nearly one place", "thousandth of a cell"] {
+        assert!(error.contains(part), "{error}");
+    }
+}

@@ -9,7 +9,6 @@ mod fuzz;
 mod infsup;
 mod interchange;
 mod measure;
-mod planted;
 mod random;
 mod robustness;
 mod stress;

@@ -168,7 +168,10 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
     if let Some(cause) = trials[0].cause.filter(|c| *c > Cause::Beyond) {
         seen.push((cause, format!("{DEFAULT}: {}", main.verdict)));
     }
-    let answer = Base::new(scene, &case, &base, quantity, main.reference_jump_m);
+    let jump = main
+        .reference_jump_m
+        .max(quantity("max_gap").unwrap_or(0.0));
+    let answer = Base::new(scene, &case, &base, quantity, jump);
     match &scene.truth {
         _ if !solved => {}
         Truth::Uniform => {

@@ -31,6 +31,12 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
+    /// Places where it meets others that lie too close to be told apart were made one, and a piece was bent by it.
+    #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", crack + 1)]
+    Bent {
+        /// Crack number, from 0.
+        crack: usize,
+    },
     /// Two cracks in one place.
     #[error(transparent)]
     Overlap(#[from] Overlap),
