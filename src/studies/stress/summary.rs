@@ -38,7 +38,7 @@ pub struct InvarianceRow {
     pub scenes: usize,
     /// Of these, those whose contact points stayed where they were.
     pub same: usize,
-    /// Of these, those that kept at least as many digits as [`INVARIANT`] asks for.
+    /// Of these, those that kept at least nine digits.
     pub kept: usize,
     /// Digits that half of the scenes with the same points kept at least.
     pub median: f64,
