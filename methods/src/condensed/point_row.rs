@@ -69,7 +69,7 @@ impl Bordered {
     /// The same; where the rows leave a piece loose, Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good
     /// a place as any; with one it moves until something is in its way.
     pub fn held(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
-        /// ε. Answers do not depend on it; of 1e-10 … 1, all end after as many steps.
+        /// ε. Answers do not depend on it; with 1e-10 … 1e-3 Newton methods take as many steps, with 1 more.
         const SPRING: f64 = 1e-3;
         let free = Self::new(problem, active, law);
         free.or_else(|| match problem.modes() {
