@@ -24,7 +24,7 @@ pub use error::{CaseError, Span};
 pub use exact::ExactSpec;
 pub use expect::{Expect, ExpectKind, ProbeSpec, Tolerance};
 pub use load::{Amount, CrackSide, History, Linear, LoadKind, LoadSpec, Region, SupportSpec};
-pub use mesh::{MeshSpec, Sweep};
+pub use mesh::{MeshSpec, Sweep, even_lines};
 pub(crate) use named::named;
 pub use parse::{Case, parse, parse_with, read};
 pub use settings::{MethodSpec, PathSpec};

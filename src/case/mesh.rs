@@ -143,18 +143,16 @@ fn box_lines(value: Value<'_>, dim: usize) -> Result<Vec<Vec<f64>>, CaseError> {
             format_args!("axis {} has cells without width", axis + 1),
         ));
     }
-    let line = |i: usize| {
-        let n = cells[i] as f64;
-        // Weighted from both ends: a box symmetric about zero gets grid lines that are.
-        let inner = (1..cells[i])
-            .map(|k| k as f64)
-            .map(|k| (min[i] * (n - k) + max[i] * k) / n);
-        std::iter::once(min[i])
-            .chain(inner)
-            .chain(std::iter::once(max[i]))
-            .collect()
-    };
+    let line = |i: usize| even_lines(min[i], max[i], cells[i]);
     Ok((0..dim).map(line).collect())
+}
+
+/// Grid lines of so many even cells. Weighted from both ends: a box symmetric about zero gets grid lines that are.
+pub fn even_lines(min: f64, max: f64, cells: usize) -> Vec<f64> {
+    let n = cells as f64;
+    let inner = (1..cells).map(|k| k as f64);
+    let inner = inner.map(|k| (min * (n - k) + max * k) / n);
+    std::iter::once(min).chain(inner).chain([max]).collect()
 }
 
 /// `lines_m`: grid lines one by one.

@@ -95,13 +95,13 @@ fn scenes_are_reproducible_and_take_turns() {
 #[test]
 fn ladders_of_plain_cracks_are_right_at_every_rung() {
     let mut others = Vec::new();
-    for number in (0..ladder::count()).filter(|&k| ladder::rung(k).ladder.method.is_none()) {
+    for number in (0..ladder::count()).filter(|&k| ladder::rung(k).0.option.is_none()) {
         let scene = scene(Family::Ladder, 0, number);
         if scene.dim == 3 || scene.truth != Truth::Uniform {
             continue;
         }
         let finding = examine(&scene, Effort::Default);
-        let value = ladder::rung(number).value;
+        let value = ladder::rung(number).1;
         let allowed = match finding.category.as_str() {
             "three cracks beside a point" => Some(Cause::SuspectMesh),
             "mesh twisted" if value.abs() > 110.0 => Some(Cause::Refused),

@@ -8,7 +8,7 @@
 use crate::algebra::dense::minus;
 use crate::condensed::forces::Forces;
 use crate::condensed::problem::{Check, ContactProblem};
-use crate::contract::judge::slip_from;
+use crate::contract::judge::{imbalance, slip_from};
 use crate::contract::state::{ContactState, Status};
 use crate::error::MethodError;
 
@@ -94,13 +94,12 @@ impl ContactProblem<'_> {
 
     /// Backward error of equilibrium, as the judge measures it.
     fn imbalance(&self, state: &ContactState) -> f64 {
-        let elastic = self.increment.system.elastic();
-        let mut contact = vec![0.0; state.u.len()];
-        elastic.jump().mul_transpose_add(&state.p, &mut contact);
-        for (sum, force) in contact.iter_mut().zip(&self.further) {
-            *sum += force;
-        }
-        elastic.imbalance(&state.u, &[&self.increment.load.force, &contact])
+        let none = vec![0.0; state.u.len()];
+        let further = match self.further.is_empty() {
+            true => &none,
+            false => &self.further,
+        };
+        imbalance(self.increment, state, further)
     }
 
     /// Puts the anchor to an iterate whose violation no longer falls because slender parts sway: what is left of it is

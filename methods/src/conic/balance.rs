@@ -9,7 +9,7 @@
 
 use crate::algebra::dense::{dot, norm};
 use crate::condensed::problem::{Begin, ContactProblem};
-use crate::conic::cone_program::{Certificate, ConeProgram};
+use crate::conic::cone_program::ConeProgram;
 use crate::contract::law::tangential_norm;
 use crate::{Claim, DelassusForm, Increment, MethodError};
 
@@ -33,7 +33,7 @@ pub fn unbalanced(increment: &Increment<'_>) -> Result<bool, MethodError> {
     let Begin::Contact(problem) = begin else {
         return Ok(false);
     };
-    let Some(Certificate(beta)) = ConeProgram::unbalanced(&problem)? else {
+    let Some(beta) = ConeProgram::unbalanced(&problem)? else {
         return Ok(false);
     };
     let modes = &problem.operator.modes;

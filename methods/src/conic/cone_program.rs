@@ -63,9 +63,6 @@ pub(crate) struct Solution {
     pub factorisations: usize,
 }
 
-/// A rigid motion β that no force within the cones opposes and the load drives, as clarabel has it.
-pub(crate) struct Certificate(pub Vec<f64>);
-
 /// Constraints s = right − A P in their cones.
 struct Constraints {
     A: CscMatrix<f64>,
@@ -111,11 +108,12 @@ impl ConeProgram {
         })
     }
 
-    /// Looks for forces within Coulomb's cones that balance the load alone; a certificate if there are none.
+    /// Looks for forces within Coulomb's cones that balance the load alone; if there are none, a rigid motion β that none of them
+    /// opposes and the load drives, as clarabel has it.
     ///
     /// # Errors
     /// Data clarabel refuses.
-    pub fn unbalanced(problem: &ContactProblem<'_>) -> Result<Option<Certificate>, MethodError> {
+    pub fn unbalanced(problem: &ContactProblem<'_>) -> Result<Option<Vec<f64>>, MethodError> {
         let load = norm(&problem.balance);
         if load == 0.0 {
             return Ok(None);
@@ -133,8 +131,7 @@ impl ConeProgram {
         .map_err(refused)?;
         solver.solve();
         let proved = solver.solution.status == SolverStatus::PrimalInfeasible;
-        let beta = || solver.solution.z[..problem.modes()].to_vec();
-        Ok(proved.then(|| Certificate(beta())))
+        Ok(proved.then(|| solver.solution.z[..problem.modes()].to_vec()))
     }
 
     /// Solves it for one parameter a per point.

@@ -218,14 +218,19 @@ pub fn consistency(
 
 /// Backward error of equilibrium between all forces of the claim.
 fn equilibrium(i: &Increment<'_>, s: &ContactState, claim: Claim) -> Result<f64, MethodError> {
+    let mut further = vec![0.0; s.u.len()];
+    if let (Some(y), Some(traction)) = (consistency(i, s, claim)?, i.system.elastic().traction()) {
+        traction.mul_transpose_add(&y, &mut further);
+    }
+    Ok(imbalance(i, s, &further))
+}
+
+/// Backward error of equilibrium between the load, the contact forces and further ones.
+pub(crate) fn imbalance(i: &Increment<'_>, s: &ContactState, further: &[f64]) -> f64 {
     let elastic = i.system.elastic();
     let mut contact = vec![0.0; s.u.len()];
     elastic.jump().mul_transpose_add(&s.p, &mut contact);
-    let mut further = vec![0.0; s.u.len()];
-    if let (Some(y), Some(traction)) = (consistency(i, s, claim)?, elastic.traction()) {
-        traction.mul_transpose_add(&y, &mut further);
-    }
-    Ok(elastic.imbalance(&s.u, &[&i.load.force, &contact, &further]))
+    elastic.imbalance(&s.u, &[&i.load.force, &contact, further])
 }
 
 /// Rows (g, d): normal gap, and tangential jump since the start of the increment.

@@ -7,7 +7,7 @@ use crate::report::plot::{
 };
 use crate::report::{Bundle, ReportError};
 use crate::studies::stress::finding::Finding;
-use crate::studies::stress::rungs::{Curve, Window, curves, windows};
+use crate::studies::stress::rungs::{Curve, OptionRow, curves, of_options};
 
 /// The options.
 pub static OPTIONS: Kind = Kind {
@@ -25,7 +25,7 @@ pub static ITERATIONS: Kind = Kind {
             method did not solve the scene.",
 };
 
-/// Ladders with a panel, and whether their values are shown on a logarithmic scale, measured from what.
+/// Ladders with a panel: name, label of the x axis, and what values are taken off from; 0: shown as they are.
 const PANELS: [(&str, &str, f64); 4] = [
     ("Poisson's ratio", "½ − ν [-]", 0.5),
     ("friction", "μ [-]", 0.0),
@@ -38,51 +38,40 @@ const PANELS: [(&str, &str, f64); 4] = [
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, findings: &[Finding]) -> Result<(), ReportError> {
-    OPTIONS.add(bundle, "", options(&windows(findings))?)?;
+    OPTIONS.add(bundle, "", options(&of_options(findings))?)?;
     ITERATIONS.add(bundle, "", iterations(&curves(findings))?)
 }
 
-fn options(windows: &[Window]) -> Result<Option<String>, ReportError> {
+fn options(rows: &[OptionRow]) -> Result<Option<String>, ReportError> {
     let factors: Vec<f64> = (-4..=4).map(|k| 10f64.powi(k)).collect();
-    let cell = |window: &Window, factor: f64| {
-        let at = |v: f64| (v / window.default / factor - 1.0).abs() < 1e-6;
-        match window.steps.iter().find(|(v, _)| at(*v)) {
-            None => Cell {
-                tint: f64::NAN,
-                text: String::new(),
-                below: String::new(),
-            },
-            Some((_, None)) => Cell {
-                tint: 1.0,
-                text: "–".into(),
-                below: String::new(),
-            },
-            Some((_, Some(n))) => Cell {
-                tint: (*n as f64 / window.iterations.max(1) as f64).log10() / 3.0,
-                text: n.to_string(),
-                below: String::new(),
-            },
-        }
+    let cell = |row: &OptionRow, factor: f64| {
+        let at = |v: f64| (v / row.default / factor - 1.0).abs() < 1e-6;
+        let (tint, text) = match row.steps.iter().find(|(v, _)| at(*v)) {
+            None => (f64::NAN, String::new()),
+            Some((_, None)) => (1.0, "–".into()),
+            Some((_, Some(n))) => {
+                let times = *n as f64 / row.iterations.max(1) as f64;
+                (times.log10() / 3.0, n.to_string())
+            }
+        };
+        let below = String::new();
+        Cell { tint, text, below }
     };
-    let mut sorted: Vec<&Window> = windows.iter().collect();
+    let mut sorted: Vec<&OptionRow> = rows.iter().collect();
     sorted.sort_by_key(|w| (rank(w.method), w.method));
-    let rows = sorted.iter().map(|window| {
+    let lines = sorted.iter().map(|window| {
         let cells = factors.iter().map(|&factor| cell(window, factor));
         let sign = if is_exact(window.method) { "" } else { "≈ " };
         let name = format!(
             "{sign}{} {} = {}",
             plain(window.method),
-            plain(&window.option),
+            plain(window.option),
             value(window.default)
         );
         (name, cells.collect())
     });
-    let lost = |w: &&Window| w.steps.iter().any(|s| s.1.is_none());
-    let narrow: Vec<String> = windows
-        .iter()
-        .filter(lost)
-        .map(|w| plain(w.method))
-        .collect();
+    let lost = |w: &&OptionRow| w.steps.iter().any(|s| s.1.is_none());
+    let narrow: Vec<String> = rows.iter().filter(lost).map(|w| plain(w.method)).collect();
     let title = match narrow.is_empty() {
         true => "No option that is off by four decades costs a method its answer".to_owned(),
         false => format!(
@@ -95,7 +84,7 @@ fn options(windows: &[Window]) -> Result<Option<String>, ReportError> {
         caption: "iterations with an option at a multiple of its default (behind its name); –: lost; grey: not allowed".into(),
         groups: Vec::new(),
         columns: factors.iter().map(|f| format!("{}×", value(*f))).collect(),
-        rows: rows.collect(),
+        rows: lines.collect(),
     }
     .svg()
 }

@@ -117,7 +117,7 @@ impl Row for OptionRow {
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
             "method" "" .key() = r.method, METHOD;
-            "option" "" .key() = r.option.clone(), "name of the option";
+            "option" "" .key() = r.option, "name of the option";
             "default" "" .shown().significant(3) = r.default, "its default";
             "safe_from" "" .shown().significant(3).named("safe from") = r.safe[0], "least value, next to each other about the default, at which the method did what it is for";
             "safe_to" "" .shown().significant(3).named("to") = r.safe[1], "largest such value";

@@ -79,21 +79,11 @@ pub(super) fn default_method() -> Vec<Choice> {
     Choice::parse(DEFAULT).into_iter().collect()
 }
 
-/// All methods, the default one first: its fields are looked at.
-fn all_methods() -> Vec<Choice> {
-    let others = methods()
-        .iter()
-        .map(|m| m.name)
-        .filter(|name| *name != DEFAULT);
-    let all = std::iter::once(DEFAULT).chain(others);
-    all.filter_map(|name| Choice::parse(name).ok()).collect()
-}
-
-/// The default method, and those of some labels.
-fn given_methods(labels: &[String]) -> Vec<Choice> {
+/// The default method first, whose fields are looked at, and those of some labels.
+fn and_others<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<Choice> {
     let mut all = default_method();
-    let given = labels.iter().filter_map(|label| Choice::parse(label).ok());
-    all.extend(given.filter(|choice| choice.label != DEFAULT));
+    let others = labels.filter_map(|label| Choice::parse(label).ok());
+    all.extend(others.filter(|choice| choice.label != DEFAULT));
     all
 }
 
@@ -108,8 +98,8 @@ pub(super) fn run(case: &Case, choices: &[Choice]) -> Result<Results, RunError> 
 
 fn look(scene: &Scene, effort: Effort) -> Finding {
     let choices = match effort {
-        Effort::All if scene.methods.is_empty() => all_methods(),
-        Effort::All => given_methods(&scene.methods),
+        Effort::All if scene.methods.is_empty() => and_others(methods().iter().map(|m| m.name)),
+        Effort::All => and_others(scene.methods.iter().map(String::as_str)),
         Effort::Default => default_method(),
     };
     let parsed = case::parse(FILE, scene.text.as_str());
@@ -120,7 +110,6 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         Ok(found) => found,
         Err(error) => return refused(scene, &error.to_string()),
     };
-    let points = |method: &str| -> Vec<PointState> { points_of(&results, method) };
     let quantity = |name: &str| {
         let own = results.quantities.iter();
         let mut own = own.filter(|q| q.key.method == DEFAULT && q.quantity.at.is_empty());
@@ -135,8 +124,8 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         return ended(scene, Cause::NoPlace, "no run of the default method");
     };
     let mut trials: Vec<Trial> = rows.iter().map(|row| trial(row, &results)).collect();
-    let base = points(DEFAULT);
-    let disagreement = disagreement(&trials, &base, points);
+    let base = points_of(&results, DEFAULT);
+    let disagreement = disagreement(&trials, &base, &results);
     if disagreement.is_some_and(|d| d > DIFFERENT) {
         // Where several answers hold a method may find another one, or none.
         for trial in trials.iter_mut().filter(|t| t.cause > Some(Cause::Beyond)) {
@@ -260,15 +249,11 @@ fn of_default<T: Clone>(rows: &[T], method: impl Fn(&T) -> &String) -> Vec<T> {
 }
 
 /// Largest difference of contact forces between exact methods that solved the scene.
-fn disagreement(
-    trials: &[Trial],
-    base: &[PointState],
-    points: impl Fn(&str) -> Vec<PointState>,
-) -> Option<f64> {
+fn disagreement(trials: &[Trial], base: &[PointState], results: &Results) -> Option<f64> {
     let solved = trials
         .iter()
         .filter(|t| t.exact && t.verdict == Verdict::Solved && t.method != DEFAULT);
-    let of = |t: &Trial| difference(base, &points(&t.method));
+    let of = |t: &Trial| difference(base, &points_of(results, &t.method));
     solved.map(of).reduce(f64::max)
 }
 

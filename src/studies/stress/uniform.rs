@@ -7,6 +7,8 @@
 
 use toml::{Table, Value};
 
+use crate::case::even_lines;
+
 /// Low and high side of every axis, in 2D and in 3D.
 const SIDES: [&[[&str; 2]]; 2] = [
     &[["left", "right"], ["bottom", "top"]],
@@ -181,14 +183,6 @@ pub fn lines(mesh: &Table) -> Option<Vec<Vec<f64>>> {
     let [min, max, cells] = ["min_m", "max_m", "cells"].map(|key| numbers(grid.get(key)?));
     let (min, max, cells) = (min?, max?, cells?);
     // As the reader of cases rounds them: another last digit may choose other contact points.
-    let axis = |a: usize| {
-        let n = cells[a];
-        let inner = (1..n as usize).map(|k| k as f64);
-        let inner = inner.map(|k| (min[a] * (n - k) + max[a] * k) / n);
-        std::iter::once(min[a])
-            .chain(inner)
-            .chain([max[a]])
-            .collect()
-    };
+    let axis = |a: usize| even_lines(min[a], max[a], cells[a] as usize);
     Some((0..min.len()).map(axis).collect())
 }
