@@ -16,6 +16,8 @@ mod shrink;
 pub mod summary;
 mod transform;
 mod trial;
+mod truth;
 mod uniform;
 
-pub use scene::{Family, Scene, Truth, scene};
+pub use scene::{Family, Scene, scene};
+pub use truth::Truth;

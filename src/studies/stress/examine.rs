@@ -6,8 +6,10 @@ use std::time::Instant;
 use super::finding::{Cause, Finding, Trial};
 use super::invariance::Base;
 use super::referee::{Patch, compare, uncovered};
-use super::scene::{Scene, Truth};
+use super::scene::Scene;
+use super::transform::Transform;
 use super::trial::trial;
+use super::truth::Truth;
 use crate::case::{self, Case};
 use crate::model::quantities::PointState;
 use crate::run::choice::Choice;
@@ -167,7 +169,11 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
             let (faults, error, remark) = held(&case, &results);
             (finding.error, finding.reason) = (Some(error), remark);
             if !faults.is_empty() {
-                seen.push((Cause::WrongPatch, faults.join("; ")));
+                let cause = match is_rounding(scene, error) {
+                    true => Cause::Floor,
+                    false => Cause::WrongPatch,
+                };
+                seen.push((cause, faults.join("; ")));
             }
         }
         Truth::Energy if !answer.has_energy() => {}
@@ -243,6 +249,27 @@ fn held(case: &Case, results: &Results) -> (Vec<String>, f64, String) {
     (faults, error, uncovered(&patch, &own))
 }
 
+/// Whether an error is rounding that the body amplifies: small, and another one in other units. One of the program stays
+/// as it is, whatever the last digits of the case.
+fn is_rounding(scene: &Scene, error: f64) -> bool {
+    /// Largest error of answers that hold six digits.
+    const SMALL: f64 = 1e-6;
+    /// Part of an error by which it differs if it is rounding.
+    const APART: f64 = 0.1;
+    let in_unit = |factor: f64| {
+        let text = Transform::Length(factor).apply(&scene.text)?;
+        let case = case::parse(FILE, text).ok()?;
+        Some(held(&case, &run(&case, &default_method()).ok()?).1)
+    };
+    let others: Option<Vec<f64>> = [39.37, 0.3048, 7.0].into_iter().map(in_unit).collect();
+    others.is_some_and(|mut errors| {
+        errors.push(error);
+        errors.sort_by(f64::total_cmp);
+        let (least, largest) = (errors[0], errors[errors.len() - 1]);
+        largest <= SMALL && largest - least > APART * largest
+    })
+}
+
 fn of_default<T: Clone>(rows: &[T], method: impl Fn(&T) -> &String) -> Vec<T> {
     let own = rows.iter().filter(|row| method(row) == DEFAULT);
     own.cloned().collect()
@@ -276,4 +303,48 @@ pub(super) fn magnitude(p: &PointState) -> f64 {
 fn cells_of(label: &str) -> usize {
     let axes = label.split('x').map(|n| n.parse::<usize>().unwrap_or(0));
     axes.product()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studies::stress::scene::Family;
+
+    /// Source: Coulomb. A crack whose friction is a ten-millionth below what sticking asks for slips by as little: an error
+    /// of 1e-9 to 1e-6 that is the same in every unit, and no rounding.
+    #[test]
+    fn a_small_error_that_no_unit_changes_is_not_taken_for_rounding() {
+        let [p, q] = [2.0_f64, 1.0];
+        // n = (−3, 4)/5 on a crack along (4, 3): |τ| / σ_n.
+        let (n, t) = ([-0.6, 0.8], [0.8, 0.6]);
+        let (pressure, shear) = (
+            p * n[0] * n[0] + q * n[1] * n[1],
+            p * n[0] * t[0] + q * n[1] * t[1],
+        );
+        let friction = (shear / pressure).abs() * (1.0 - 1e-7);
+        let text = format!(
+            "title = \"t\"\nmodel = \"plane-strain\"\ntolerance = 1e-12\n\
+             material = {{ young_pa = 1000, poisson = 0.3 }}\n\
+             mesh = {{ box = {{ min_m = [0, 0], max_m = [4, 4], cells = [9, 9] }} }}\n\
+             [[crack]]\npoints_m = [[1, 1.1], [3, 2.6]]\nfriction = {friction:?}\ntip = \"none\"\n\
+             [[support]]\non = \"left\"\ndisplacement_m = [0, \"free\"]\n\
+             [[support]]\non = \"bottom\"\ndisplacement_m = [\"free\", 0]\n\
+             [[load]]\non = \"right\"\npressure_pa = {p:?}\n\
+             [[load]]\non = \"top\"\npressure_pa = {q:?}\n"
+        );
+        let scene = Scene {
+            family: Family::Patch2d,
+            number: 0,
+            category: "planted".into(),
+            dim: 2,
+            text,
+            truth: Truth::Uniform,
+            methods: Vec::new(),
+            beyond: false,
+        };
+        let found = examine(&scene, Effort::Default);
+        let error = found.error.unwrap();
+        assert!((1e-9..1e-6).contains(&error), "{error:e}");
+        assert_eq!(found.cause, Some(Cause::WrongPatch), "{}", found.reason);
+    }
 }

@@ -1,7 +1,8 @@
 //! What came of the ladders, as rows of tables.
 
 use super::finding::{Cause, Finding, Trial};
-use super::ladder::{Ladder, ladders, rung};
+use super::ladder::rung::Ladder;
+use super::ladder::{ladders, rung};
 use super::scene::Family;
 
 /// One value of one parameter.

@@ -14,6 +14,7 @@ use self::flat::Flat;
 use self::grid::{Grid, decades, list};
 use self::solid::Flaw;
 use super::ladder;
+use super::truth::Truth;
 use super::uniform::{Uniform, sides};
 use crate::case::CrackShape;
 
@@ -71,17 +72,6 @@ pub enum Family {
     Ladder,
 }
 
-/// What the answer of a scene is held to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Truth {
-    /// The closed form of uniform stress: all cracks stick.
-    Uniform,
-    /// The work done: strain energy and friction.
-    Energy,
-    /// The contact forces of another case, which has the same contact points.
-    Case(String),
-}
-
 impl Family {
     /// All, in the order of reports.
     pub const ALL: [Self; 5] = [
@@ -132,6 +122,21 @@ pub struct Scene {
     pub beyond: bool,
 }
 
+/// The rung of a ladder, by its number.
+fn rung(number: u64) -> Scene {
+    let (ladder, content) = ladder::case(number);
+    Scene {
+        family: Family::Ladder,
+        number,
+        category: ladder.name.clone(),
+        dim: content.dim,
+        text: content.text.clone(),
+        truth: content.truth.clone(),
+        methods: content.method.clone().into_iter().collect(),
+        beyond: false,
+    }
+}
+
 /// The scene with a number among those of a family and a seed.
 pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
     let (dim, truth) = match family {
@@ -139,7 +144,7 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
         Family::Patch3d => (3, Truth::Uniform),
         Family::Slip2d => (2, Truth::Energy),
         Family::Slip3d => (3, Truth::Energy),
-        Family::Ladder => return ladder::scene(number),
+        Family::Ladder => return rung(number),
     };
     let sticks = truth == Truth::Uniform;
     let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);

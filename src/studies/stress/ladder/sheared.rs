@@ -2,9 +2,9 @@
 
 use stickslip_methods::OptionSpec;
 
-use super::{Content, Ladder, decades};
+use super::rung::{Content, Ladder, decades};
 use crate::run::registry::methods;
-use crate::studies::stress::scene::Truth;
+use crate::studies::stress::truth::Truth;
 
 /// A plate of 4 × 3 whose bottom is held, its top pushed and sheared: a crack inside slips in part, a second one at its side.
 #[derive(Clone)]

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{Content, Ladder, decades, from_both_sides};
-use crate::studies::stress::scene::Truth;
+use super::rung::{Content, Ladder, decades, from_both_sides};
+use crate::studies::stress::truth::Truth;
 use crate::studies::stress::uniform::sides;
 
 /// A plate of 4 × 3 in 16 × 12 cells, lengths in a unit, in uniform compression between rollers and pressures.
