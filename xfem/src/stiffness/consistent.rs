@@ -41,8 +41,8 @@ pub struct EvaluatedPoint {
 const BRANCH_EDGE: usize = 10;
 const EDGE_DEPTH: usize = 40;
 
-/// A smaller part of a cell keeps the gradients of its rule.
-const SLIVER: f64 = 1e-4;
+/// A smaller part of a distorted cell keeps the gradients of its rule.
+const SLIVER: f64 = 1e-8;
 
 /// Points per direction on a part of a face no longer than its distance from the front, and halvings: an error of 1e-5 of a
 /// face that the front enters.
@@ -144,7 +144,10 @@ impl CellIntegrator<'_> {
         }
         let kinds: Vec<bool> = functions.are_branches();
         // On a sliver the difference of border integrals is rounding, and what its rule misses is nothing to the cell.
-        let least = SLIVER * measure.iter().sum::<f64>();
+        let least = match map.is_affine() {
+            true => 0.0,
+            false => SLIVER * measure.iter().sum::<f64>(),
+        };
         for p in points.iter_mut().filter(|p| measure[p.at.region] > least) {
             let steps: Vec<(usize, f64)> = functions.steps(p.at.region).collect();
             for ((g, (local, step)), branch) in p.gradients.iter_mut().zip(steps).zip(&kinds) {
