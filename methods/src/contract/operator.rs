@@ -36,8 +36,8 @@ pub struct ContactOperator {
     pub(crate) modes: ModeJumps,
     /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
     pub rho: f64,
-    /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: ρ, but at least rows / (100 Σ_i |B_i|² / max_j K_jj). Where
-    /// slender parts sway, overlap that is nothing beside their motion can be all there is of the answer elsewhere.
+    /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: rows / (Σ_i |B_i|² / max_j K_jj) where slender parts sway
+    /// (`sway` > 100), else ρ. Overlap that is nothing beside their motion can be all there is of the answer elsewhere.
     pub sharp: f64,
     /// trace(W⊥) / (Σ_i |B_i|² / max_j K_jj): how far contact forces move the body beside what they press into its
     /// stiffest unknowns. Displacements carry the rounding of K times this.
@@ -73,7 +73,11 @@ impl ContactOperator {
             w,
             modes,
             rho: scale(compliance),
-            sharp: scale(compliance.min(SWAYING * stiffest)),
+            sharp: scale(if compliance > SWAYING * stiffest {
+                stiffest
+            } else {
+                compliance
+            }),
             sway: compliance / stiffest,
         })
     }
