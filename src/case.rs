@@ -9,6 +9,7 @@ mod crack;
 pub(crate) mod error;
 mod exact;
 mod expect;
+mod frame;
 pub mod label;
 mod load;
 mod mesh;

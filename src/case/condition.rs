@@ -35,6 +35,8 @@ enum Rule {
         axis: usize,
         relation: Relation,
         number: f64,
+        /// δ [m].
+        tolerance: f64,
     },
 }
 
@@ -59,6 +61,14 @@ impl Condition {
     /// Whether the place `x` [m] fulfils the condition; in 2D the third coordinate is not looked at.
     pub fn holds(&self, x: &[f64; 3]) -> bool {
         self.rule.holds(x)
+    }
+
+    /// The same on coordinates that are larger by `by`.
+    pub(super) fn moved(&self, by: &[f64; 3]) -> Self {
+        Condition {
+            text: self.text.clone(),
+            rule: self.rule.moved(by),
+        }
     }
 
     /// Reads a condition for a problem of `dim` dimensions.
@@ -91,17 +101,36 @@ impl Rule {
                 axis,
                 relation,
                 number,
+                tolerance: delta,
             } => {
-                let delta = TOLERANCE * number.abs().max(1.0);
                 let difference = x[*axis] - number;
                 match relation {
-                    Relation::AtMost => difference <= delta,
+                    Relation::AtMost => difference <= *delta,
                     Relation::AtLeast => difference >= -delta,
                     Relation::Below => difference < -delta,
-                    Relation::Above => difference > delta,
-                    Relation::Equal => difference.abs() <= delta,
+                    Relation::Above => difference > *delta,
+                    Relation::Equal => difference.abs() <= *delta,
                 }
             }
+        }
+    }
+
+    fn moved(&self, by: &[f64; 3]) -> Self {
+        let all = |rules: &[Rule]| rules.iter().map(|r| r.moved(by)).collect();
+        match self {
+            Rule::Any(rules) => Rule::Any(all(rules)),
+            Rule::All(rules) => Rule::All(all(rules)),
+            &Rule::Compare {
+                axis,
+                relation,
+                number,
+                tolerance,
+            } => Rule::Compare {
+                axis,
+                relation,
+                number: number + by[axis],
+                tolerance,
+            },
         }
     }
 }
@@ -192,6 +221,7 @@ impl<'a> Parser<'a> {
                     axis,
                     relation,
                     number,
+                    tolerance: TOLERANCE * number.abs().max(1.0),
                 })
             }
             _ => Err(self.unexpected(word, "a finite number")),

@@ -100,7 +100,7 @@ pub enum LoadKind {
     InitialStress([[f64; 3]; 3]),
 }
 
-/// A number that varies linearly in space: at_origin + gradient · x, x the place in the undeformed body.
+/// A number that varies linearly in space: at_origin + gradient · x, x the place in the undeformed body, in its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Linear {
     /// Value at x = 0 [Pa].
@@ -114,6 +114,14 @@ impl Linear {
     pub fn at(&self, x: &[f64; 3]) -> f64 {
         let slope: f64 = self.gradient.iter().zip(x).map(|(g, x)| g * x).sum();
         self.at_origin + slope
+    }
+
+    /// The same over coordinates with their zero at `origin`.
+    pub(super) fn moved(&self, origin: &[f64; 3]) -> Self {
+        Linear {
+            at_origin: self.at(origin),
+            ..*self
+        }
     }
 }
 

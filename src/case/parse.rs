@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_methods::Tier;
 use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
+use stickslip_xfem::geometry::Point;
 use stickslip_xfem::material::{Dilatation, Lame, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
 use toml::de::DeTable;
@@ -37,6 +38,8 @@ pub struct Case {
     pub material: Material,
     /// The dilatation that the file forces.
     pub dilatation: Option<Dilatation>,
+    /// Origin of the frame of the body in the coordinates of the file [m]: mesh, cracks, loads and probes are in this frame.
+    pub origin: Point,
     /// Structured mesh.
     pub mesh: MeshSpec,
     /// Cracks, in file order.
@@ -265,7 +268,7 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         exact: exact.is_some(),
     };
     let probes = each(root, "probe", |v| runs.probe(v, dim))?;
-    Ok(Case {
+    let case = Case {
         name: String::new(),
         file: PathBuf::new(),
         source: String::new(),
@@ -273,6 +276,7 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         model,
         material,
         dilatation,
+        origin: [0.0; 3],
         mesh,
         cracks,
         supports: each(root, "support", |v| support(v, &scene))?,
@@ -286,7 +290,8 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         tolerance,
         probes,
         expects: each(root, "expect", |v| runs.expect(v))?,
-    })
+    };
+    Ok(case.in_frame())
 }
 
 /// Tables of an array of tables, in file order.

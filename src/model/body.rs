@@ -14,6 +14,7 @@ use stickslip_xfem::cut::arms::arms;
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
+use stickslip_xfem::geometry::Point;
 use stickslip_xfem::material::{Dilatation, Lame};
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
@@ -32,6 +33,8 @@ use crate::model::refusals::{cell_error, check_probes, check_supports, crack_err
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
+    /// Origin of all coordinates here in those of the case file: [`Case::origin`].
+    pub origin: Point,
     /// Mesh, with doubled nodes where a crack runs along cell facets.
     pub mesh: Mesh,
     /// Cracks through cells.
@@ -107,7 +110,8 @@ impl Body {
             .map(|l| (l.len() - 1).to_string())
             .collect();
         let label = cells.join("x");
-        let mut mesh = box_mesh(&spec).map_err(|fold| {
+        let mut mesh = box_mesh(&spec).map_err(|mut fold| {
+            fold.centre = case.place(&fold.centre);
             let allowed = "a motion of the grid points that keeps all cells convex";
             case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
@@ -214,6 +218,7 @@ impl Body {
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks, lame.dilatation);
         let mut body = Body {
+            origin: case.origin,
             quadrature: case.quadrature,
             lame,
             points,

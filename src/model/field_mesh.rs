@@ -79,6 +79,11 @@ pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
     }
 }
 
+/// Places as the case file has them [m].
+fn in_file<'a>(body: &Body, places: impl Iterator<Item = &'a Point>) -> Vec<Point> {
+    places.map(|x| add_scaled(x, 1.0, &body.origin)).collect()
+}
+
 /// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
 fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
@@ -120,7 +125,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     }
     FieldMesh {
         dim,
-        points: vertices.points,
+        points: in_file(body, vertices.points.iter()),
         cells,
         point_vectors: vec![("displacement_m".into(), vertices.displacement)],
         point_scalars: Vec::new(),
@@ -344,7 +349,7 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         .collect();
     FieldMesh {
         dim,
-        points: corners.iter().map(|corner| corner.x).collect(),
+        points: in_file(body, corners.iter().map(|corner| &corner.x)),
         cells,
         point_vectors: vec![
             ("jump_m".into(), in_space(&|i, c| now.jump[i * dim + c])),

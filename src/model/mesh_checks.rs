@@ -31,7 +31,7 @@ const SWAY: f64 = 1e8;
 pub struct MeshChecks {
     /// Residual of uniform stress [-].
     pub uniform: f64,
-    /// Where it is largest: the node of the function [m].
+    /// Where it is largest: the node of the function, in the coordinates of the case file [m].
     pub at: Point,
     /// Rounding of the coordinates in shortest edges: far from the origin a cell holds no more digits.
     pub rounding: f64,
@@ -110,9 +110,10 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
     };
     let worst: Vec<(f64, usize)> = strains.par_iter().map(of_strain).collect();
     let (uniform, function) = worst.into_iter().fold((0.0, 0), worse);
+    let node = body.enrichment.functions[function].node as usize;
     MeshChecks {
         uniform,
-        at: mesh.nodes[body.enrichment.functions[function].node as usize],
+        at: add_scaled(&mesh.nodes[node], 1.0, &body.origin),
         rounding: mesh.rounding() / mesh.smallest_edge(),
     }
 }

@@ -2,6 +2,7 @@
 
 use stickslip_methods::{ContactState, PointStatus};
 use stickslip_xfem::contact::surface_point::max_penetration;
+use stickslip_xfem::geometry::add_scaled;
 
 use crate::case::Case;
 use crate::model::body::Body;
@@ -337,12 +338,13 @@ pub fn point_states(body: &Body, now: &Snapshot) -> Vec<PointState> {
                 &now.jump[i * dim..(i + 1) * dim],
                 &now.p[i * dim..(i + 1) * dim],
             );
+            let [x_m, y_m, z_m] = add_scaled(&point.x, 1.0, &body.origin);
             PointState {
                 crack: point.crack + 1,
                 number,
-                x_m: point.x[0],
-                y_m: point.x[1],
-                z_m: point.x[2],
+                x_m,
+                y_m,
+                z_m,
                 s_m: point.s,
                 weight: point.weight,
                 gap_m: jump[0],

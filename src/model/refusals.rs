@@ -72,6 +72,7 @@ pub fn check_probes(case: &Case, mesh: &Mesh, enrichment: &Enrichment) -> Result
 
 /// The error of a crack, at its geometry or its `tip`.
 pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
+    let error = &error.clone().moved(&case.origin);
     let (crack, allowed) = match error {
         EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
         EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
@@ -116,6 +117,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
 pub fn cell_error(case: &Case, cracks: &[Crack], error: CellError) -> BodyError {
     let away = |crack: &&Crack| crack.distance(&error.at).abs();
     let nearest = cracks.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    let error = in_file(case, error);
     match nearest {
         Some(crack) => {
             let allowed = "another number of cells, or a crack moved by a hundredth of a cell";
@@ -123,6 +125,14 @@ pub fn cell_error(case: &Case, cracks: &[Crack], error: CellError) -> BodyError 
             case.refuse(span, allowed, error).into()
         }
         None => error.into(),
+    }
+}
+
+/// The error of a cell with its place as the file has it.
+fn in_file(case: &Case, error: CellError) -> CellError {
+    CellError {
+        at: case.place(&error.at),
+        ..error
     }
 }
 
@@ -169,7 +179,7 @@ pub fn motion_error(
 /// The error of a load, at its region.
 pub fn load_error(case: &Case, kind: &LoadKind, span: &Span, error: LoadError) -> BodyError {
     match error {
-        LoadError::Cell(e) => e.into(),
+        LoadError::Cell(e) => in_file(case, e).into(),
         LoadError::Empty(_) => {
             let span = match kind {
                 LoadKind::Traction(region, _)

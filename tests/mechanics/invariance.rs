@@ -272,3 +272,62 @@ fn jobs_change_nothing_but_the_times() {
     let untimed = |r: &RunRow| r.solve_s.is_nan() && r.setup_s.is_nan();
     assert!(two.runs.iter().all(untimed));
 }
+
+/// Source: translation; numbers that are multiples of 1/16, moved by powers of two, are exact. Goal: a million sizes from zero
+/// a body gives every bit it gives near it: loads that vary in space, conditions, probes, cracks and twisted lines go along,
+/// and tables and fields have the coordinates of the file.
+#[test]
+fn a_body_far_from_zero_gives_the_same_bits() {
+    let far = [1048576.0, 2097152.0];
+    let case = |by: [f64; 2]| {
+        let at = |x: f64, y: f64| [x + by[0], y + by[1]];
+        let cracks = crack(at(0.3125, 0.25), at(1.0, 0.4375), 0.4, "branch")
+            + &crack(at(-0.25, 0.875), at(1.75, 0.8125), 0.2, "none");
+        let gradient = [0.0, -0.25];
+        let at_origin = 0.5 - gradient[0] * by[0] - gradient[1] * by[1];
+        let [edge, height] = at(0.75, 0.5625);
+        let rest = format!(
+            "{cracks}[mesh.twist]\nangle_deg = 5\n\
+             [[support]]\non = \"bottom\"\ndisplacement_m = [0, 0]\n\
+             [[support]]\non = \"right\"\nwhere = \"y >= {height} or x < {edge}\"\ndisplacement_m = [-0.0625, 0]\n\
+             [[load]]\non = \"top\"\nwhere = \"x <= {edge}\"\n\
+             pressure_pa = {{ at_origin_pa = {at_origin}, gradient_pa_per_m = {gradient:?} }}\n\
+             [[probe]]\nname = \"corner\"\npoint_m = {:?}\n",
+            at(0.0, 1.25)
+        );
+        let text = plane(at(0.0, 0.0), at(1.5, 1.25), [12, 10], &rest);
+        let text = text
+            .replace("mesh = { box", "[mesh]\nbox")
+            .replace("] } }\n", "] }\n");
+        // Tables follow the keys of the root.
+        let (head, mesh) = text.split_once("[mesh]").unwrap();
+        stickslip::case::parse("far.toml", format!("{head}[mesh]{mesh}")).unwrap()
+    };
+    let results = |by| {
+        let settings = Settings {
+            tier: None,
+            jobs: 1,
+            fields: Fields::All,
+        };
+        run_case(&case(by), &choices(&["hybrid"]), settings, &Quiet).unwrap()
+    };
+    let (near, away) = (results([0.0; 2]), results(far));
+    assert_eq!(near.runs[0].verdict.to_string(), "solved");
+    assert!(near.points.len() > 10);
+    for (p, q) in near.points.iter().zip(&away.points) {
+        let forces = |r: &stickslip::model::quantities::PointState| {
+            [r.p_n, r.p_a, r.gap_m, r.slip_a_m, r.weight].map(f64::to_bits)
+        };
+        assert_eq!(forces(&p.point), forces(&q.point));
+        assert_near(p.point.x_m + far[0], q.point.x_m, 1e-9, "x");
+        assert_near(p.point.y_m + far[1], q.point.y_m, 1e-9, "y");
+    }
+    assert_eq!(near.points.len(), away.points.len());
+    for (a, b) in near.quantities.iter().zip(&away.quantities) {
+        assert_eq!(a.quantity, b.quantity);
+    }
+    let corners = |r: &Results| r.fields[0].steps[0].body.points.clone();
+    for (x, y) in corners(&near).iter().zip(corners(&away)) {
+        assert_near(x[0] + far[0], y[0], 1e-9, "field");
+    }
+}

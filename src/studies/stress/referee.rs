@@ -25,7 +25,7 @@ pub struct Patch {
 impl Patch {
     /// Of a case that has such an answer.
     pub fn of(case: &Case) -> Option<Self> {
-        let cracks = case.cracks.iter().map(|crack| Shape::of(&crack.geometry));
+        let cracks = (0..case.cracks.len()).map(|k| Shape::of(&case.crack_in_file(k)));
         Some(Patch {
             exact: Uniform::of(&case.source)?,
             cracks: cracks.collect(),

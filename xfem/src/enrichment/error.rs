@@ -2,7 +2,7 @@
 
 use crate::cut::arms::Overlap;
 use crate::cut::partition::PartitionError;
-use crate::geometry::Point;
+use crate::geometry::{Point, add_scaled};
 
 /// What is wrong with a crack in a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -72,4 +72,23 @@ pub enum EnrichmentError {
         /// Crack number, from 0.
         crack: usize,
     },
+}
+
+impl EnrichmentError {
+    /// The same with its place in other coordinates, larger by `by` [m].
+    pub fn moved(mut self, by: &Point) -> Self {
+        match &mut self {
+            Self::Overlap(Overlap { at, .. })
+            | Self::Lost { at, .. }
+            | Self::Partition { at, .. }
+            | Self::Mixed { at, .. } => *at = add_scaled(at, 1.0, by),
+            Self::Outside { .. }
+            | Self::TooShort { .. }
+            | Self::Undetermined { .. }
+            | Self::Loose { .. }
+            | Self::Bent { .. }
+            | Self::ConformingTip { .. } => {}
+        }
+        self
+    }
 }

@@ -42,6 +42,27 @@ impl CrackShape {
         }
     }
 
+    /// The same shape elsewhere [m].
+    pub fn moved(&self, by: &Point) -> Self {
+        let flat = |x: &[f64; 2]| [x[0] + by[0], x[1] + by[1]];
+        match self {
+            CrackShape::Polyline(points) => CrackShape::Polyline(points.iter().map(flat).collect()),
+            &CrackShape::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => CrackShape::arc(flat(&centre), radius, [from, to]),
+            CrackShape::Ellipse(ellipse) => CrackShape::Ellipse(Ellipse {
+                centre: add_scaled(&ellipse.centre, 1.0, by),
+                ..*ellipse
+            }),
+            CrackShape::Plane { point, normal } => {
+                CrackShape::plane(add_scaled(point, 1.0, by), *normal)
+            }
+        }
+    }
+
     /// A plane through a point with a unit normal.
     pub fn plane(point: Point, normal: Point) -> Self {
         CrackShape::Plane { point, normal }
