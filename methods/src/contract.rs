@@ -15,7 +15,7 @@ pub(crate) mod tractions;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
 pub use judge::{Residuals, consistency, residuals, residuals_of};
-pub use operator::{ContactOperator, DelassusForm};
+pub use operator::{ContactOperator, DelassusForm, SWAYING};
 pub(crate) use options::options;
 pub use options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};
 pub use point_status::{PointStatus, point_status};

@@ -9,6 +9,7 @@ mod fuzz;
 mod infsup;
 mod interchange;
 mod measure;
+mod planted;
 mod random;
 mod robustness;
 mod stress;

@@ -16,7 +16,7 @@ const NO_TRACE: f64 = 1e-10;
 
 /// Above this multiple of the compliance on the stiffest unknowns the trace of W is that of a few swaying motions; of a
 /// plate, a beam, an inner crack it is 3 to 20.
-const SWAYING: f64 = 100.0;
+pub const SWAYING: f64 = 100.0;
 
 /// How a method works with the Delassus operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

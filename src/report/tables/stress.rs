@@ -77,7 +77,9 @@ impl Row for MethodRow {
             "diverged" "" .shown() = r.losses[5], "the numbers grew without bound";
             "floor" "" .shown() = r.losses[6], "came to rest within 1000 times the tolerance asked for, 1e-12";
             "slow" "" .shown() = r.losses[7], "still converges at the limit of iterations: the violation halved over their last half";
-            "stalled" "" .shown() = r.losses[8], "stopped for no cause named here";
+            "swaying" "" .shown() = r.losses[8], "stopped where slender parts sway more than 100 times as far as cells deform";
+            "wandering" "" .shown() = r.losses[9], "its iterates neither settle nor repeat";
+            "stalled" "" .shown() = r.losses[10], "came to rest for no cause named here";
             "iterations_median" "" .shown().named("iterations, median") = r.iterations[0], "median where done";
             "iterations_max" "" .shown().named("largest") = r.iterations[1], "largest number where done";
             "friction_max" "–" .shown().significant(3).named("largest μ") = r.friction, "largest friction coefficient at which it was done";

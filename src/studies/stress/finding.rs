@@ -3,6 +3,8 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+#[cfg(doc)]
+use stickslip_methods::SWAYING;
 
 use super::scene::Family;
 use crate::run::verdict::Verdict;
@@ -49,7 +51,12 @@ pub enum Cause {
     Floor,
     /// It converges, too slowly for the limit of iterations.
     Slow,
-    /// It stopped far from a solution, without any of the causes above.
+    /// It stopped on a body whose slender parts sway more than [`SWAYING`] times as far as cells deform: W is as badly
+    /// conditioned, and answers are held to the stiffest unknowns.
+    Swaying,
+    /// Its iterates neither settle nor repeat.
+    Wandering,
+    /// It came to rest far from a solution, without any of the causes above.
     Stalled,
     /// The method declines such a system.
     Declined,
@@ -78,6 +85,8 @@ impl Cause {
             Self::Diverged => "diverged",
             Self::Floor => "floor of the arithmetic",
             Self::Slow => "slow",
+            Self::Swaying => "swaying",
+            Self::Wandering => "wandering",
             Self::Stalled => "stalled",
             Self::Declined => "declined",
         }

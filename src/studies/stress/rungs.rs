@@ -143,7 +143,7 @@ pub fn of_scenes(findings: &[Finding]) -> Vec<LadderRow> {
     let row = |ladder: &Ladder| {
         let own: Vec<(f64, &Finding)> = of_ladder(findings, ladder).collect();
         let others = own.iter();
-        let others = others.filter_map(|(v, f)| Some(format!("{v:e}: {}", f.cause?)));
+        let others = others.filter_map(|(v, f)| Some(format!("at {v:e}: {}", f.cause?)));
         let right: Vec<&Finding> = (own.iter().map(|own| own.1))
             .filter(|f| f.cause.is_none())
             .collect();

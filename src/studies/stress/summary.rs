@@ -74,7 +74,7 @@ pub struct MethodRow {
 }
 
 /// Why methods lose, with a column each.
-pub const LOSSES: [Cause; 9] = [
+pub const LOSSES: [Cause; 11] = [
     Cause::FalseClaim,
     Cause::Factorisation,
     Cause::SeveralSolutions,
@@ -83,6 +83,8 @@ pub const LOSSES: [Cause; 9] = [
     Cause::Diverged,
     Cause::Floor,
     Cause::Slow,
+    Cause::Swaying,
+    Cause::Wandering,
     Cause::Stalled,
 ];
 

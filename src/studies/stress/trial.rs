@@ -4,7 +4,7 @@ use super::finding::{Cause, Trial};
 use crate::run::record::{Results, RunRow};
 use crate::run::registry::methods;
 use crate::run::verdict::Verdict;
-use stickslip_methods::Status;
+use stickslip_methods::{SWAYING, Status};
 
 /// A method that stopped within this many times its tolerance stopped at rounding.
 const FLOOR: f64 = 1e3;
@@ -51,6 +51,8 @@ fn gave_up(row: &RunRow, history: &[f64]) -> Cause {
         _ if row.violation <= FLOOR * ASKED => Cause::Floor,
         _ if period(history).is_some() => Cause::Cycling,
         _ if still_falls(history) => Cause::Slow,
+        _ if row.sway > SWAYING => Cause::Swaying,
+        _ if wanders(history) => Cause::Wandering,
         _ => Cause::Stalled,
     }
 }
@@ -72,4 +74,11 @@ fn period(history: &[f64]) -> Option<usize> {
 fn still_falls(history: &[f64]) -> bool {
     let n = history.len();
     n >= 4 && history[n - 1] < 0.5 * history[n / 2]
+}
+
+/// Whether the violation changes by more than a hundredth in most of the last steps.
+fn wanders(history: &[f64]) -> bool {
+    let last = &history[history.len() / 2..];
+    let moves = last.windows(2).filter(|w| (w[1] / w[0] - 1.0).abs() > 0.01);
+    2 * moves.count() > last.len()
 }
