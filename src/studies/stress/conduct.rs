@@ -154,7 +154,9 @@ pub fn conduct(
     share(&left, how.jobs, how.stop, worker, |worker, own| {
         let scene = scene(own.0, suite.seed, own.1);
         let mut finding = ask(worker, &scene)?;
-        if finding.cause.is_some_and(|cause| is_new(&finding, cause)) {
+        // Beyond any mesh of such cells: nothing failed.
+        let broken = finding.cause.filter(|&cause| cause != Cause::Beyond);
+        if broken.is_some_and(|cause| is_new(&finding, cause)) {
             finding.minimal = Some(shrink(worker, &scene, &finding)?);
         }
         let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());

@@ -178,10 +178,18 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         }
         Truth::Energy if !answer.has_energy() => {}
         Truth::Energy => {
-            let error = quantity("energy_identity").unwrap_or(f64::NAN).abs();
+            let identity = quantity("energy_identity").unwrap_or(f64::NAN).abs();
+            let dissipation = quantity("dissipation").unwrap_or(f64::NAN);
+            let friction = answer.relative(dissipation - friction_work(&results));
+            // NaN is the larger.
+            let error = if identity >= friction || identity.is_nan() {
+                identity
+            } else {
+                friction
+            };
             finding.error = Some(error);
             if error.is_nan() || error > ENERGY {
-                let reason = format!("energy identity off by {error:.1e}");
+                let reason = format!("energy identity or friction off by {error:.1e}");
                 seen.push((Cause::WrongEnergy, reason));
             }
         }
@@ -200,6 +208,22 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         (finding.cause, finding.reason) = (Some(cause), reason);
     }
     finding
+}
+
+/// −Σ P_t · Δd over all increments and contact points of the default method: what friction took.
+fn friction_work(results: &Results) -> f64 {
+    let own = results.points.iter().filter(|p| p.key.method == DEFAULT);
+    let own: Vec<_> = own.map(|row| (row.key.increment, &row.point)).collect();
+    let mut before = vec![[0.0; 2]; own.len()];
+    let mut work = 0.0;
+    for points in own.chunk_by(|a, b| a.0 == b.0) {
+        for ((_, p), start) in points.iter().zip(&mut before) {
+            let slip = [p.slip_a_m, p.slip_b_m];
+            work -= p.p_a * (slip[0] - start[0]) + p.p_b * (slip[1] - start[1]);
+            *start = slip;
+        }
+    }
+    work
 }
 
 /// Contact points of a method at the end.

@@ -67,6 +67,11 @@ impl<'a> Base<'a> {
         self.energies.iter().map(|e| e.abs()).sum::<f64>() >= self.scale
     }
 
+    /// An energy over those of the body [-].
+    pub fn relative(&self, energy: f64) -> f64 {
+        energy.abs() / self.scale
+    }
+
     /// Change by the transformations of the scene that apply to it.
     pub fn changes(&self) -> Vec<Change> {
         let many = TRANSFORMED[self.scene.dim - 2];

@@ -251,7 +251,13 @@ fn lengths<'a>(
         let points = results.points.iter().map(|row| &row.point);
         let own = points.filter(|p| p.crack == number);
         let total = own.map(|p| p.weight).sum();
-        (number, total, flat.length_in(min, max))
+        // Chords may stay inside where the arc leaves the body by less than their height c²/8R.
+        let height = match flat {
+            Flat::Arc { radius, .. } => patch.exact.cell.powi(2) / (8.0 * radius),
+            Flat::Chain(_) => 0.0,
+        };
+        let [low, high] = [(min, -height), (max, height)].map(|(x, d)| x.map(|x| x + d));
+        (number, total, flat.length_in(&low, &high))
     })
 }
 
