@@ -67,7 +67,7 @@ impl Row for RunRow {
             "adhesion" "–" .residual() = r.adhesion, "largest tension at a contact point relative to P_ref, found by the judge";
             "complementarity" "–" .residual() = r.complementarity, "largest product of gap and pressure at a contact point relative to u_ref P_ref, found by the judge";
             "cone" "–" .residual() = r.cone, "largest excess over the friction bound at a contact point relative to P_ref, found by the judge";
-            "sway" "–" .significant(2) = r.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e8 the mesh is suspect";
+            "sway" "–" .significant(2) = r.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e7 the mesh is suspect";
             "uniform_stress" "–" .residual() = r.uniform_stress, "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
             "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
             "reference_force" "N or N/m" = r.reference_force, "P_ref: the larger of all contact forces and of those that would close the jump without contact; 0 where no point closes";
