@@ -18,10 +18,6 @@ const NO_TRACE: f64 = 1e-10;
 /// plate, a beam, an inner crack it is 3 to 20.
 pub const SWAYING: f64 = 100.0;
 
-/// More than so many times ρ is asked for only to come within 100 times the stiffest unknowns: the rounding of W, 1e-16, times
-/// it leaves a natural map of 1e-12.
-const SHARPEST: f64 = 3e4;
-
 /// How a method works with the Delassus operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DelassusForm {
@@ -40,9 +36,8 @@ pub struct ContactOperator {
     pub(crate) modes: ModeJumps,
     /// ρ = rows / trace(W⊥) in N/m, W⊥ = (I − Q Qᵀ) W (I − Q Qᵀ), which no choice of pins changes.
     pub rho: f64,
-    /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: ρ, but where slender parts sway (`sway` > 100) rows / (c Σ_i |B_i|² /
-    /// max_j K_jj), c = 1 up to a sway of 3e4 and 100 from 3e6 on. Overlap that is nothing beside their motion can be all
-    /// there is of the answer elsewhere.
+    /// ρ̂ ≥ ρ \[N/m\] of the natural map and of overlap: ρ, but at least rows / (100 Σ_i |B_i|² / max_j K_jj). Where
+    /// slender parts sway, overlap that is nothing beside their motion can be all there is of the answer elsewhere.
     pub sharp: f64,
     /// trace(W⊥) / (Σ_i |B_i|² / max_j K_jj): how far contact forces move the body beside what they press into its
     /// stiffest unknowns. Displacements carry the rounding of K times this.
@@ -78,11 +73,7 @@ impl ContactOperator {
             w,
             modes,
             rho: scale(compliance),
-            sharp: scale(if compliance > SWAYING * stiffest {
-                (compliance / SHARPEST).clamp(stiffest, SWAYING * stiffest)
-            } else {
-                compliance
-            }),
+            sharp: scale(compliance.min(SWAYING * stiffest)),
             sway: compliance / stiffest,
         })
     }
