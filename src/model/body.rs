@@ -14,7 +14,7 @@ use stickslip_xfem::cut::arms::arms;
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
-use stickslip_xfem::geometry::Point;
+use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::material::{Dilatation, Lame};
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
@@ -278,6 +278,11 @@ impl Body {
     /// traction operator.
     pub fn traction(&self, all: &[f64]) -> Vec<f64> {
         products(&self.traction_rows, all)
+    }
+
+    /// A place as the case file has it [m].
+    pub fn place(&self, x: &Point) -> Point {
+        add_scaled(x, 1.0, &self.origin)
     }
 
     /// Nodes of a region of the case.

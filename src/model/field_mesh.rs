@@ -79,11 +79,6 @@ pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
     }
 }
 
-/// Places as the case file has them [m].
-fn in_file<'a>(body: &Body, places: impl Iterator<Item = &'a Point>) -> Vec<Point> {
-    places.map(|x| add_scaled(x, 1.0, &body.origin)).collect()
-}
-
 /// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
 fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
@@ -125,7 +120,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     }
     FieldMesh {
         dim,
-        points: in_file(body, vertices.points.iter()),
+        points: vertices.points.iter().map(|x| body.place(x)).collect(),
         cells,
         point_vectors: vec![("displacement_m".into(), vertices.displacement)],
         point_scalars: Vec::new(),
@@ -349,7 +344,7 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         .collect();
     FieldMesh {
         dim,
-        points: in_file(body, corners.iter().map(|corner| &corner.x)),
+        points: corners.iter().map(|corner| body.place(&corner.x)).collect(),
         cells,
         point_vectors: vec![
             ("jump_m".into(), in_space(&|i, c| now.jump[i * dim + c])),

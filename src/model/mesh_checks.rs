@@ -113,7 +113,7 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
     let node = body.enrichment.functions[function].node as usize;
     MeshChecks {
         uniform,
-        at: add_scaled(&mesh.nodes[node], 1.0, &body.origin),
+        at: body.place(&mesh.nodes[node]),
         rounding: mesh.rounding() / mesh.smallest_edge(),
     }
 }

@@ -2,7 +2,6 @@
 
 use stickslip_methods::{ContactState, PointStatus};
 use stickslip_xfem::contact::surface_point::max_penetration;
-use stickslip_xfem::geometry::add_scaled;
 
 use crate::case::Case;
 use crate::model::body::Body;
@@ -338,7 +337,7 @@ pub fn point_states(body: &Body, now: &Snapshot) -> Vec<PointState> {
                 &now.jump[i * dim..(i + 1) * dim],
                 &now.p[i * dim..(i + 1) * dim],
             );
-            let [x_m, y_m, z_m] = add_scaled(&point.x, 1.0, &body.origin);
+            let [x_m, y_m, z_m] = body.place(&point.x);
             PointState {
                 crack: point.crack + 1,
                 number,

@@ -52,7 +52,7 @@ pub enum Cause {
     /// It converges, too slowly for the limit of iterations.
     Slow,
     /// It stopped on a body whose slender parts sway more than [`SWAYING`] times as far as cells deform: W is as badly
-    /// conditioned, and answers are held to the stiffest unknowns.
+    /// conditioned, and answers are held to within 100 times of the stiffest unknowns.
     Swaying,
     /// Its iterates neither settle nor repeat.
     Wandering,
