@@ -13,7 +13,7 @@ pub(crate) mod system;
 pub(crate) mod tier;
 pub(crate) mod tractions;
 
-pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings};
+pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings, in_contact};
 pub use judge::{Residuals, consistency, residuals, residuals_of};
 pub use operator::{ContactOperator, DelassusForm, SWAYING};
 pub(crate) use options::options;

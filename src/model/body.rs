@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix};
+use stickslip_methods::{
+    Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix, in_contact,
+};
 use stickslip_xfem::contact::facet_samples::facet_samples;
 use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use stickslip_xfem::contact::surface_point::SurfacePoint;
@@ -186,7 +188,6 @@ impl Body {
         };
         let mut motions = free_motions(&mesh, &enrichment, &numbers, |mode| products(&jump, mode))
             .map_err(|e| motion_error(case, &integrator, &surface, &e))?;
-        let order = elimination_order(&mesh, &enrichment, &solver_numbers);
         let rows = |rows: &[Vec<(usize, f64)>]| {
             let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
             free_rows(&rows, &solver_numbers, free)
@@ -196,11 +197,14 @@ impl Body {
             let kept = (0..mode.len()).filter(|&i| solver_numbers[i].is_some());
             *mode = kept.map(|i| mode[i]).collect();
         }
+        let jump_of_free = rows(&jump)?;
+        let last = in_contact(&jump_of_free, dim, needs.frictionless);
+        let order = elimination_order(&mesh, &enrichment, &solver_numbers, &last);
         setup_s += clock.elapsed().as_secs_f64();
         let elastic = Elastic::new(ElasticParts {
             dim,
             stiffness: SymmetricMatrix::new(free, col_ptr, row_idx, values)?,
-            jump: rows(&jump)?,
+            jump: jump_of_free,
             weight: points.iter().map(|p| p.weight).collect(),
             order,
             floating: motions.modes,

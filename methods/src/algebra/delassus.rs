@@ -11,20 +11,20 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, Par};
+use rayon::prelude::*;
 
 use crate::MethodError;
 use crate::algebra::dense::mul_add;
-use crate::algebra::factor::Factor;
+use crate::algebra::factor::{Columns, Factor};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::strips::{
+    STRIP, WORTH_THREADS, column_strips, for_all, permute_rows, row_strips,
+};
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
 pub const MAX_CONDENSED_ROWS: usize = 12_000;
-/// Columns of W handled together: wide enough for fast products, narrow enough to skip zeros.
-const PANEL: usize = 128;
-/// Columns of Y solved for together: whether W is formed or only its diagonal is wanted, so that both see the same bits.
-const SOLVED_TOGETHER: usize = 512;
-
 /// The Delassus operator on the contact rows in use, symmetric positive semi-definite, in m/N (2D: m²/N). How it is held
 /// is the business of the implementation alone.
 pub trait Delassus: Send + Sync {
@@ -141,47 +141,96 @@ pub(crate) fn condense(
     check_rows(m)?;
     let half = Half::new(factor, jump, rows);
     let c = half.height();
-    let mut y = Mat::<f64>::zeros(c, m);
-    let squares = half.squares(|begin, panel| {
-        let width = panel.ncols();
-        y.as_mut().subcols_mut(begin, width).copy_from(panel);
-    })?;
-
-    // Wₛ = Yᵀ Y in sorted numbering, lower block triangle.
-    let mut w = Mat::<f64>::zeros(m, m);
-    for begin in (0..m).step_by(PANEL) {
-        let end = (begin + PANEL).min(m);
+    // Y, then W in its place.
+    let mut w = Mat::<f64>::zeros(c.max(m), m);
+    let squares = half.unsorted(&half.solve(0, w.as_mut().subrows_mut(0, c)));
+    // Upper triangle in sorted numbering, Wₛ = Yᵀ Y. The last columns of Y are done with first.
+    let mut strip = Mat::<f64>::zeros(m, STRIP.min(m));
+    for begin in (0..m).step_by(STRIP).rev() {
+        let end = (begin + STRIP).min(m);
         let top = half.first[begin].min(c);
-        matmul(
-            w.as_mut().submatrix_mut(begin, 0, end - begin, end),
-            Accum::Replace,
-            y.as_ref()
-                .submatrix(top, begin, c - top, end - begin)
-                .transpose(),
-            y.as_ref().submatrix(top, 0, c - top, end),
-            1.0,
-            Par::Seq,
-        );
+        let y = w.as_ref().subrows(top, c - top);
+        let own = y.subcols(begin, end - begin);
+        let mut product = strip.as_mut().submatrix_mut(0, 0, end, end - begin);
+        let parts = row_strips(product.rb_mut());
+        let threads = ((c - top) * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
+        for_all(parts, threads, |(row, part)| {
+            let others = y.subcols(row, part.nrows()).transpose();
+            matmul(part, Accum::Replace, others, own, 1.0, Par::Seq);
+        });
+        let mut place = w.as_mut().submatrix_mut(0, begin, end, end - begin);
+        place.copy_from(product);
+    }
+    if c > m {
+        w = w.as_ref().subrows(0, m).to_owned();
     }
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
+    mirror_upper(&mut w);
     let mut position = vec![0; m];
     for (s, &i) in half.sorted.iter().enumerate() {
         position[i] = s;
     }
-    let w = Mat::from_fn(m, m, |i, j| {
-        let (a, b) = (position[i], position[j]);
-        w[(a.max(b), a.min(b))]
-    });
+    permute(&mut w, &position);
     Ok((w, squares))
 }
 
-/// The diagonal of W for the listed rows of B, a panel of Y in memory at a time.
-pub(crate) fn diagonal(
-    factor: &Factor,
-    jump: &JumpOperator,
-    rows: &[usize],
-) -> Result<Vec<f64>, MethodError> {
-    Half::new(factor, jump, rows).squares(|_, _| {})
+/// The diagonal of W for the listed rows of B, strips of Y in memory only.
+pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<f64> {
+    let half = Half::new(factor, jump, rows);
+    let mut squares = Vec::new();
+    let m = rows.len();
+    // As many strips at a time as there are threads.
+    let together = STRIP * rayon::current_num_threads();
+    let mut y = Mat::<f64>::zeros(half.height(), together.min(m));
+    for begin in (0..m).step_by(together) {
+        let width = together.min(m - begin);
+        y.fill(0.0);
+        squares.extend(half.solve(begin, y.as_mut().subcols_mut(0, width)));
+    }
+    half.unsorted(&squares)
+}
+
+/// Lower triangle := upper triangle.
+fn mirror_upper(a: &mut Mat<f64>) {
+    /// Square blocks that fit a cache.
+    const BLOCK: usize = 32;
+    let n = a.nrows();
+    for column in (0..n).step_by(BLOCK) {
+        for row in (column..n).step_by(BLOCK) {
+            for j in column..(column + BLOCK).min(n) {
+                for i in row.max(j + 1)..(row + BLOCK).min(n) {
+                    a[(i, j)] = a[(j, i)];
+                }
+            }
+        }
+    }
+}
+
+/// Row and column k := row and column `position[k]`.
+fn permute(a: &mut Mat<f64>, position: &[usize]) {
+    let threads = a.nrows() > STRIP;
+    for_all(column_strips(a.as_mut()), threads, |(_, strip)| {
+        permute_rows(strip, position);
+    });
+    let mut done = vec![false; position.len()];
+    let mut next = vec![0.0; position.len()];
+    for start in 0..position.len() {
+        if done[start] {
+            continue;
+        }
+        // Along a cycle; its first column is the last to be read.
+        let first = a.col_as_slice(start).to_vec();
+        let mut column = start;
+        while !done[column] {
+            done[column] = true;
+            match position[column] {
+                from if from == start => next.copy_from_slice(&first),
+                from => next.copy_from_slice(a.col_as_slice(from)),
+            }
+            a.col_as_slice_mut(column).copy_from_slice(&next);
+            column = position[column];
+        }
+    }
 }
 
 /// W given as a sparse matrix, full.
@@ -254,99 +303,84 @@ impl<'a> Half<'a> {
         self.factor.scale.len() - self.factor.ordering.contact_begin
     }
 
-    /// |y_k|² by original column, by the same product as W; `each` sees every solved panel with its first sorted column.
-    fn squares(
-        &self,
-        mut each: impl FnMut(usize, faer::MatRef<'_, f64>),
-    ) -> Result<Vec<f64>, MethodError> {
-        let m = self.sorted.len();
-        let mut squares = vec![0.0; m];
-        for begin in (0..m).step_by(SOLVED_TOGETHER) {
-            let columns = begin..(begin + SOLVED_TOGETHER).min(m);
-            let mut y = Mat::<f64>::zeros(self.height(), columns.len());
+    /// The sorted columns of Y from `begin` on, as many as there are in `y`, which holds zeros; their |y_k|².
+    fn solve(&self, begin: usize, y: MatMut<'_, f64>) -> Vec<f64> {
+        let strips = column_strips(y).into_par_iter().map(|(at, mut y)| {
+            let columns = begin + at..begin + at + y.ncols();
             for (k, entries) in self.entries[columns.clone()].iter().enumerate() {
-                entries
-                    .iter()
-                    .for_each(|&(row, value)| y[(row, k)] += value);
+                (entries.iter()).for_each(|&(row, value)| y[(row, k)] += value);
             }
-            forward_solve(self.factor, y.as_mut(), &self.first[columns.clone()])?;
-            for own in (0..columns.len()).step_by(PANEL) {
-                let width = PANEL.min(columns.len() - own);
-                let top = self.first[begin + own].min(y.nrows());
-                let y = y.as_ref().submatrix(top, own, y.nrows() - top, width);
-                let mut block = Mat::<f64>::zeros(width, width);
-                let product = block.as_mut();
-                matmul(product, Accum::Replace, y.transpose(), y, 1.0, Par::Seq);
-                for k in 0..width {
-                    squares[self.sorted[begin + own + k]] = block[(k, k)];
-                }
-            }
-            each(begin, y.as_ref());
-        }
-        Ok(squares)
+            let first = &self.first[columns];
+            forward_solve(self.factor, y.rb_mut(), first);
+            let square = |k: usize| (first[k]..y.nrows()).map(|i| y[(i, k)].powi(2)).sum();
+            (0..y.ncols()).map(square).collect()
+        });
+        let squares: Vec<Vec<f64>> = strips.collect();
+        squares.concat()
+    }
+
+    /// In the order of the rows.
+    fn unsorted(&self, values: &[f64]) -> Vec<f64> {
+        let mut own = vec![0.0; values.len()];
+        (self.sorted.iter().zip(values)).for_each(|(&k, &value)| own[k] = value);
+        own
     }
 }
 
 /// y <- L_cc⁻¹ y, supernode by supernode, in panels; column j is zero above `first[j]` (increasing in j).
-fn forward_solve(
-    factor: &Factor,
-    mut y: MatMut<'_, f64>,
-    first: &[usize],
-) -> Result<(), MethodError> {
-    let l = factor.supernodes()?;
-    let begin = factor.ordering.contact_begin;
-    for s in 0..factor.supernode_count() {
-        let node = l.supernode(s);
-        let (block, start) = (node.val(), node.start());
+fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, first: &[usize]) {
+    for Columns {
+        begin,
+        block,
+        below: pattern,
+    } in factor.of_contact()
+    {
         let own = block.ncols();
-        // A supernode may straddle the boundary: its leading columns belong to eliminated unknowns.
-        let mut a = begin.saturating_sub(start);
-        while a < own {
-            let b = (a + PANEL).min(own);
-            let row = start + a - begin;
-            let columns = first.partition_point(|&f| f < row + (b - a));
-            if columns > 0 {
-                let (top, rest) = y
-                    .as_mut()
-                    .subcols_mut(0, columns)
-                    .split_at_row_mut(row + (b - a));
-                let mut top = top.subrows_mut(row, b - a);
-                solve_lower_triangular_in_place(
-                    block.submatrix(a, a, b - a, b - a),
-                    top.as_mut(),
-                    Par::Seq,
-                );
-                let (mut below, mut far) = rest.split_at_row_mut(own - b);
+        for a in (0..own).step_by(STRIP) {
+            let b = (a + STRIP).min(own);
+            let row = begin + a;
+            let columns = first.partition_point(|&f| f < begin + b);
+            if columns == 0 {
+                continue;
+            }
+            let (top, rest) = y
+                .as_mut()
+                .subcols_mut(0, columns)
+                .split_at_row_mut(begin + b);
+            let mut top = top.subrows_mut(row, b - a);
+            solve_lower_triangular_in_place(
+                block.submatrix(a, a, b - a, b - a),
+                top.as_mut(),
+                Par::Seq,
+            );
+            let (mut below, mut far) = rest.split_at_row_mut(own - b);
+            matmul(
+                below.as_mut(),
+                Accum::Add,
+                block.submatrix(b, a, own - b, b - a),
+                top.as_ref(),
+                -1.0,
+                Par::Seq,
+            );
+            if !pattern.is_empty() {
+                let mut update = Mat::<f64>::zeros(pattern.len(), columns);
                 matmul(
-                    below.as_mut(),
-                    Accum::Add,
-                    block.submatrix(b, a, own - b, b - a),
+                    update.as_mut(),
+                    Accum::Replace,
+                    block.submatrix(own, a, pattern.len(), b - a),
                     top.as_ref(),
-                    -1.0,
+                    1.0,
                     Par::Seq,
                 );
-                let pattern = node.pattern();
-                if !pattern.is_empty() {
-                    let mut update = Mat::<f64>::zeros(pattern.len(), columns);
-                    matmul(
-                        update.as_mut(),
-                        Accum::Replace,
-                        block.submatrix(own, a, pattern.len(), b - a),
-                        top.as_ref(),
-                        1.0,
-                        Par::Seq,
-                    );
-                    for j in 0..columns {
-                        for (k, &i) in pattern.iter().enumerate() {
-                            far[(i - (start + own), j)] -= update[(k, j)];
-                        }
+                let before = factor.ordering.contact_begin + begin + own;
+                for j in 0..columns {
+                    for (k, &i) in pattern.iter().enumerate() {
+                        far[(i as usize - before, j)] -= update[(k, j)];
                     }
                 }
             }
-            a = b;
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]

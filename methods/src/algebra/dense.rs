@@ -1,41 +1,51 @@
 //! Vectors and small dense systems: LU with partial pivoting and a singularity test.
 
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, MatMut};
+use faer::linalg::triangular_solve::{
+    solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::{Mat, MatMut, Par};
+
+use crate::algebra::strips::lu;
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
 
 /// LU factors of a regular matrix.
-pub(crate) struct DenseLu(PartialPivLu<f64>);
+pub(crate) struct DenseLu {
+    factors: Mat<f64>,
+    /// Rows of the matrix in the order of the pivots.
+    rows: Vec<usize>,
+}
 
 impl DenseLu {
     /// `None` if A is singular to working precision.
-    pub fn new(a: &Mat<f64>) -> Option<Self> {
-        let lu = PartialPivLu::new(a.as_ref());
+    pub fn new(mut a: Mat<f64>) -> Option<Self> {
+        let rows = lu(&mut a);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for i in 0..a.nrows() {
-            let pivot = lu.U()[(i, i)].abs();
+            let pivot = a[(i, i)].abs();
             if pivot.is_nan() {
                 return None;
             }
             (least, most) = (least.min(pivot), most.max(pivot));
         }
         let regular = a.nrows() == 0 || least > SINGULAR * a.nrows() as f64 * most;
-        regular.then_some(Self(lu))
+        regular.then_some(Self { factors: a, rows })
     }
 
     /// x with A x = b; `None` if it is not finite.
     pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
-        let (mut x, n) = (b.to_vec(), b.len());
-        self.0
-            .solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
+        let mut x: Vec<f64> = self.rows.iter().map(|&i| b[i]).collect();
+        let (n, factors) = (b.len(), self.factors.as_ref());
+        let mut column = MatMut::from_column_major_slice_mut(&mut x, n, 1);
+        solve_unit_lower_triangular_in_place(factors, column.as_mut(), Par::Seq);
+        solve_upper_triangular_in_place(factors, column, Par::Seq);
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 }
 
 /// Solves A x = b; `None` if A is singular to working precision or the solution is not finite.
-pub(crate) fn solve_dense(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn solve_dense(a: Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
     if b.is_empty() {
         return Some(Vec::new());
     }

@@ -8,22 +8,13 @@ use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::LltError;
-use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::{CreationError, FaerError, SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, Par, Side};
+use faer::sparse::{CreationError, FaerError};
+use faer::{Mat, MatRef};
 
 use crate::algebra::dense::norm;
 use crate::algebra::floating::Balance;
 use crate::algebra::matrix::SymmetricMatrix;
-use crate::algebra::ordering::Ordering;
+use crate::algebra::multifrontal::{Analysis, Cholesky, Fault, Ordering};
 use crate::error::MethodError;
 
 /// Refinement aims at this backward error |K u − f| / (||K| |u|| + |f|), a few units of rounding.
@@ -35,8 +26,7 @@ const MAX_REFINEMENTS: usize = 3;
 
 /// The factor with everything needed to solve.
 pub(crate) struct Factor {
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<f64>,
+    cholesky: Cholesky,
     pub ordering: Ordering,
     /// D by unknown.
     pub scale: Vec<f64>,
@@ -49,100 +39,64 @@ pub(crate) struct Factor {
 }
 
 impl Factor {
+    /// Of K without its pinned rows and columns, eliminated contact unknowns last.
     pub fn new(
         k: &SymmetricMatrix,
-        ordering: Ordering,
+        order: &[usize],
+        in_contact: &[bool],
         pins: Vec<usize>,
         balance: Arc<Balance>,
     ) -> Result<Self, MethodError> {
         let n = k.size();
         let clock = Instant::now();
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, k.col_ptr(), None, k.row_idx());
-        let permutation = PermRef::new_checked(&ordering.forward, &ordering.inverse, n);
-        let symbolic = factorize_symbolic_cholesky(
-            pattern,
-            Side::Lower,
-            SymmetricOrdering::Custom(permutation),
-            CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )
-        .map_err(|e| sparse("symbolic factorisation", e))?;
+        let Analysis {
+            ordering,
+            tree,
+            entries,
+        } = Analysis::new(k, order, in_contact);
         let analysis_s = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / k.diagonal(j).sqrt()).collect();
-        let scaled = scaled_values(k, &scale, &pins);
-        // The largest array of a run: where it does not fit, the run says so.
-        let denied = MethodError::OutOfMemory {
-            what: "sparse factorisation",
+        let values = scaled_values(k, &scale, &pins, &ordering, &entries.begin);
+        let not_positive = |column: usize| MethodError::NotPositiveDefinite {
+            unknown: ordering.forward[column],
+            size: n,
         };
-        let mut values = Vec::new();
-        (values.try_reserve_exact(symbolic.len_val())).map_err(|_| denied.clone())?;
-        values.resize(symbolic.len_val(), 0.0);
-        let req = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut memory = MemBuffer::try_new(req).map_err(|_| denied)?;
-        symbolic
-            .factorize_numeric_llt::<f64>(
-                &mut values,
-                SparseColMatRef::new(pattern, &scaled),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut memory),
-                Default::default(),
-            )
-            .map_err(
-                |LltError::NonPositivePivot { index }| MethodError::NotPositiveDefinite {
-                    unknown: ordering.forward[index.min(n.saturating_sub(1))],
-                    size: n,
-                },
-            )?;
+        let cholesky = Cholesky::new(tree, &entries, &values).map_err(|fault| match fault {
+            Fault::NotPositive(column) => not_positive(column),
+            // The largest array of a run: where it does not fit, the run says so.
+            Fault::OutOfMemory => MethodError::OutOfMemory {
+                what: "sparse factorisation",
+            },
+        })?;
         let factorisation_s = clock.elapsed().as_secs_f64();
-        let factor = Self {
-            symbolic,
-            values,
+        // A singular K can pass by luck, with pivots that are rounding.
+        if let Some(column) = cholesky.pivot_below(SMALLEST_PIVOT) {
+            return Err(not_positive(column));
+        }
+        Ok(Self {
+            cholesky,
             ordering,
             scale,
             pins,
             balance,
             analysis_s,
             factorisation_s,
-        };
-        factor.check_pivots()?;
-        Ok(factor)
-    }
-
-    /// Refuses pivots that are rounding: a singular K can pass Cholesky by luck.
-    fn check_pivots(&self) -> Result<(), MethodError> {
-        let l = self.supernodes()?;
-        for s in 0..self.supernode_count() {
-            let node = l.supernode(s);
-            for k in 0..node.val().ncols() {
-                if node.val()[(k, k)].powi(2) < SMALLEST_PIVOT {
-                    return Err(MethodError::NotPositiveDefinite {
-                        unknown: self.ordering.forward[node.start() + k],
-                        size: self.scale.len(),
-                    });
-                }
-            }
-        }
-        Ok(())
+        })
     }
 
     /// x := G f in place with iterative refinement: solves K x = f if f leaves no rigid motion a resultant.
-    pub fn solve(&self, k: &SymmetricMatrix, x: &mut [f64]) -> Result<(), MethodError> {
+    pub fn solve(&self, k: &SymmetricMatrix, x: &mut [f64]) {
         let n = k.size();
-        let req = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let mut memory = solve_memory(req)?;
+        let mut work = vec![0.0; n];
         let mut f = x.to_vec();
         self.balance.balance(&mut f);
         for &pin in &self.pins {
             f[pin] = 0.0;
         }
         x.copy_from_slice(&f);
-        self.solve_scaled(column(x), &mut memory);
+        self.solve_scaled(x, &mut work);
 
         let (mut residual, mut kx) = (vec![0.0; n], vec![0.0; n]);
         let mut best = f64::INFINITY;
@@ -165,105 +119,94 @@ impl Factor {
                 break;
             }
             best = relative;
-            self.solve_scaled(column(&mut residual), &mut memory);
+            self.solve_scaled(&mut residual, &mut work);
             for j in 0..n {
                 x[j] += residual[j];
             }
         }
         self.balance.take_out(x);
-        Ok(())
     }
 
     /// X := G F in place for all columns together, without refinement.
-    pub fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
-        let req = (self.symbolic).solve_in_place_scratch::<f64>(x.ncols(), Par::Seq);
-        let mut memory = solve_memory(req)?;
+    pub fn solve_columns(&self, x: &mut Mat<f64>) {
+        let mut inner = Mat::<f64>::zeros(x.nrows(), x.ncols());
         for j in 0..x.ncols() {
             let f = x.col_as_slice_mut(j);
             self.balance.balance(f);
             self.pins.iter().for_each(|&pin| f[pin] = 0.0);
+            self.scale_and_permute(f, inner.col_as_slice_mut(j));
         }
-        self.solve_scaled(x.as_mut(), &mut memory);
+        self.cholesky.solve_columns(&mut inner);
         for j in 0..x.ncols() {
-            self.balance.take_out(x.col_as_slice_mut(j));
-        }
-        Ok(())
-    }
-
-    fn solve_scaled(&self, mut x: MatMut<'_, f64>, memory: &mut MemBuffer) {
-        let scale = |x: &mut MatMut<'_, f64>| {
-            for j in 0..x.ncols() {
-                for (i, d) in self.scale.iter().enumerate() {
-                    x[(i, j)] *= d;
-                }
-            }
-        };
-        scale(&mut x);
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            x.as_mut(),
-            Par::Seq,
-            MemStack::new(memory),
-        );
-        scale(&mut x);
-        for &pin in &self.pins {
-            x.as_mut().row_mut(pin).fill(0.0);
+            let x = x.col_as_slice_mut(j);
+            self.permute_back_and_scale(inner.col_as_slice(j), x);
+            self.balance.take_out(x);
         }
     }
 
-    /// The supernodes of L, in permuted numbering.
-    pub fn supernodes(&self) -> Result<SupernodalLltRef<'_, usize, f64>, MethodError> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                Ok(SupernodalLltRef::new(symbolic, &self.values))
-            }
-            // FORCE_SUPERNODAL excludes it; said as an error rather than a panic.
-            SymbolicCholeskyRaw::Simplicial(_) => {
-                Err(kernel("condensation", "factor is not supernodal".into()))
-            }
+    /// x := D (L Lᵀ)⁻¹ D x, 0 for pinned unknowns.
+    fn solve_scaled(&self, x: &mut [f64], work: &mut [f64]) {
+        self.scale_and_permute(x, work);
+        self.cholesky.solve(work);
+        self.permute_back_and_scale(work, x);
+    }
+
+    fn scale_and_permute(&self, from: &[f64], to: &mut [f64]) {
+        for (to, &j) in to.iter_mut().zip(&self.ordering.forward) {
+            *to = from[j] * self.scale[j];
         }
     }
 
-    /// Number of supernodes.
-    pub fn supernode_count(&self) -> usize {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic.n_supernodes(),
-            SymbolicCholeskyRaw::Simplicial(_) => 0,
+    fn permute_back_and_scale(&self, from: &[f64], to: &mut [f64]) {
+        for (from, &j) in from.iter().zip(&self.ordering.forward) {
+            to[j] = from * self.scale[j];
         }
+        self.pins.iter().for_each(|&pin| to[pin] = 0.0);
+    }
+
+    /// The part of L on the contact unknowns, supernode by supernode.
+    pub fn of_contact(&self) -> impl Iterator<Item = Columns<'_>> {
+        let tree = &self.cholesky.tree;
+        (tree.contact..tree.nodes.len()).map(|s| Columns {
+            begin: tree.nodes[s].columns.start - self.ordering.contact_begin,
+            block: self.cholesky.panel(s),
+            below: tree.pattern(s),
+        })
     }
 }
 
-/// Values of D K D with pinned rows and columns replaced by those of the unit matrix.
-fn scaled_values(k: &SymmetricMatrix, scale: &[f64], pins: &[usize]) -> Vec<f64> {
-    let mut pinned = vec![false; k.size()];
-    for &pin in pins {
-        pinned[pin] = true;
-    }
-    let mut values = k.values().to_vec();
+/// Columns of L on contact unknowns, which are counted from the first of them.
+pub(crate) struct Columns<'a> {
+    /// First column.
+    pub begin: usize,
+    /// Their own rows, of which the lower triangle counts, and the rows below.
+    pub block: MatRef<'a, f64>,
+    /// Unknowns of the rows below, counted from the first of all.
+    pub below: &'a [u32],
+}
+
+/// Values of D K D below its diagonal of ones, in the order of L, column `c` from `begin[c]` on; 0 where a pinned unknown
+/// has a part.
+fn scaled_values(
+    k: &SymmetricMatrix,
+    scale: &[f64],
+    pins: &[usize],
+    ordering: &Ordering,
+    begin: &[usize],
+) -> Vec<f64> {
+    let mut scale = scale.to_vec();
+    pins.iter().for_each(|&pin| scale[pin] = 0.0);
+    let mut next = begin.to_vec();
+    let mut values = vec![0.0; begin.last().copied().unwrap_or(0)];
     for j in 0..k.size() {
-        let begin = k.col_ptr()[j];
-        values[begin] = 1.0;
-        for e in begin + 1..k.col_ptr()[j + 1] {
+        for e in k.col_ptr()[j] + 1..k.col_ptr()[j + 1] {
             let i = k.row_idx()[e];
-            values[e] = if pinned[i] || pinned[j] {
-                0.0
-            } else {
-                values[e] * scale[i] * scale[j]
-            };
+            let column = ordering.inverse[i].min(ordering.inverse[j]);
+            values[next[column]] = k.values()[e] * scale[i] * scale[j];
+            next[column] += 1;
         }
     }
     values
-}
-
-fn column(x: &mut [f64]) -> MatMut<'_, f64> {
-    let n = x.len();
-    MatMut::from_column_major_slice_mut(x, n, 1)
-}
-
-/// Memory of a solve.
-fn solve_memory(req: StackReq) -> Result<MemBuffer, MethodError> {
-    let what = "sparse solve";
-    MemBuffer::try_new(req).map_err(|_| MethodError::OutOfMemory { what })
 }
 
 /// An error of a sparse kernel.

@@ -1,7 +1,6 @@
 //! What stands behind the contact points of a body: how displacements follow from forces.
 
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
 use faer::Mat;
 
@@ -11,7 +10,6 @@ use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::Factor;
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
-use crate::algebra::ordering;
 
 /// K behind a factor: factorise, solve, Schur complement on the contact rows. Everything above works through this door.
 pub(crate) trait Stiffness: Send + Sync {
@@ -62,7 +60,7 @@ pub(crate) struct SparseStiffness {
 }
 
 impl SparseStiffness {
-    /// `contact` lists the unknowns that move a contact point; `floating` spans the kernel of K.
+    /// `in_contact` marks the unknowns that move a contact point; `floating` spans the kernel of K.
     ///
     /// # Errors
     /// Motions that are not rigid or depend on each other.
@@ -70,11 +68,9 @@ impl SparseStiffness {
         k: SymmetricMatrix,
         order: Vec<usize>,
         floating: &[Vec<f64>],
-        contact: impl Iterator<Item = usize>,
+        in_contact: Vec<bool>,
     ) -> Result<Self, MethodError> {
         let pins = pins(&k, floating)?;
-        let mut in_contact = vec![false; k.size()];
-        contact.for_each(|j| in_contact[j] = true);
         let balance = Arc::new(Balance::new(&k, floating, &in_contact));
         Ok(Self {
             k,
@@ -89,13 +85,8 @@ impl SparseStiffness {
     /// The factor, computed on first use.
     pub fn factor(&self) -> Result<&Factor, MethodError> {
         let build = || {
-            let clock = Instant::now();
-            let ordering = ordering::contact_last(&self.k, &self.order, &self.in_contact);
-            let ordering_s = clock.elapsed().as_secs_f64();
             let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            let mut factor = Factor::new(&self.k, ordering, pins, balance)?;
-            factor.analysis_s += ordering_s;
-            Ok(factor)
+            Factor::new(&self.k, &self.order, &self.in_contact, pins, balance)
         };
         self.factor
             .get_or_init(build)
@@ -126,11 +117,13 @@ impl Stiffness for SparseStiffness {
     }
 
     fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
-        self.factor()?.solve(&self.k, x)
+        self.factor()?.solve(&self.k, x);
+        Ok(())
     }
 
     fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
-        self.factor()?.solve_columns(x)
+        self.factor()?.solve_columns(x);
+        Ok(())
     }
 
     fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
@@ -138,7 +131,7 @@ impl Stiffness for SparseStiffness {
     }
 
     fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
-        delassus::diagonal(self.factor()?, jump, rows)
+        Ok(delassus::diagonal(self.factor()?, jump, rows))
     }
 
     fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {

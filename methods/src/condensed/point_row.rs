@@ -128,7 +128,7 @@ impl Bordered {
             Law::Columns { .. } => (1.0, rho),
         };
         Some(Self {
-            lu: DenseLu::new(&J)?,
+            lu: DenseLu::new(J)?,
             amplitude,
             balance,
             active: n,

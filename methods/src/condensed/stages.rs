@@ -100,7 +100,7 @@ impl GlobalStage {
             .collect();
         let mut p = apply(&self.factor, rhs);
         let excess: Vec<f64> = problem.missing(&p).iter().map(|c| -c).collect();
-        let k0_beta = solve_dense(&self.schur, &excess)?;
+        let k0_beta = solve_dense(self.schur.clone(), &excess)?;
         for (column, b) in self.border.iter().zip(&k0_beta) {
             p.iter_mut().zip(column).for_each(|(p, c)| *p -= b * c);
         }

@@ -79,7 +79,7 @@ impl Anderson {
             dot(&d[i].0, &d[j].0) + if i == j { RIDGE * trace } else { 0.0 }
         });
         let right: Vec<f64> = d.iter().map(|(df, _)| dot(df, f)).collect();
-        solve_dense(&normal, &right)
+        solve_dense(normal, &right)
     }
 }
 

@@ -111,15 +111,12 @@ impl Elastic {
                 ));
             }
         }
-        let points = parts.weight.len();
         check_contact(parts.dim, n, &parts.jump, &parts.weight, &parts.floating)?;
         if let Some(traction) = &parts.traction {
             check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
             check_len("traction operator columns", traction.cols(), n)?;
         }
-        let rows = condensed_rows(parts.dim, points, parts.frictionless);
-        let entries = rows.source.iter().flat_map(|&i| parts.jump.row(i));
-        let contact = entries.filter(|(_, b)| *b != 0.0).map(|(j, _)| j);
+        let contact = in_contact(&parts.jump, parts.dim, parts.frictionless);
         let stiffness =
             SparseStiffness::new(parts.stiffness, parts.order, &parts.floating, contact)?;
         check_motions(&parts.jump, &parts.floating)?;
@@ -378,6 +375,15 @@ impl Elastic {
 /// All rows of every point, or the normal ones where there will be no friction.
 fn condensed_rows(dim: usize, points: usize, frictionless: bool) -> RowSet {
     RowSet::new(dim, &vec![if frictionless { 1 } else { dim }; points])
+}
+
+/// The unknowns that move a contact point: they are eliminated last whatever the order.
+pub fn in_contact(jump: &JumpOperator, dim: usize, frictionless: bool) -> Vec<bool> {
+    let mut moved = vec![false; jump.cols()];
+    let rows = condensed_rows(dim, jump.rows() / dim, frictionless);
+    let entries = rows.source.iter().flat_map(|&i| jump.row(i));
+    (entries.filter(|(_, b)| *b != 0.0)).for_each(|(j, _)| moved[j] = true);
+    moved
 }
 
 /// What bodies of any kind must fulfil.

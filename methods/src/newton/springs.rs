@@ -21,7 +21,7 @@
 
 use faer::Mat;
 
-use crate::algebra::dense::{along, mul_add, ratio, solve_dense};
+use crate::algebra::dense::{DenseLu, along, mul_add, ratio};
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::stages::rescue;
@@ -285,12 +285,14 @@ fn whole_direction(
         let (size, first) = (own.len(), own.start);
         let unit = |a: usize, b: usize| f64::from(u8::from(a == b));
         // Mᵀ, since the rows of T M⁻¹ are wanted.
-        let m = Mat::from_fn(size, size, |b, a| {
+        let Some(m) = DenseLu::new(Mat::from_fn(size, size, |b, a| {
             (unit(a, b) - t[a][b]) / r[first + a] + c[first + a] * t[a][b]
-        });
+        })) else {
+            return Ok(None);
+        };
         let mut of_point = [0.0; 3].map(PointRow::reading);
         for a in 0..size {
-            let Some(slope) = solve_dense(&m, &t[a][..size]) else {
+            let Some(slope) = m.solve(&t[a][..size]) else {
                 return Ok(None);
             };
             of_point[a].a[a] = 1.0;

@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use stickslip_methods::{Elastic, ElasticParts, SymmetricMatrix};
+use stickslip_methods::{Elastic, ElasticParts, SymmetricMatrix, in_contact};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::fields::mass::mass;
 use stickslip_xfem::stiffness::assembly::elimination_order;
@@ -289,12 +289,14 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
         ptr.push(rows.len());
     }
     let jump: Vec<_> = (body.jump_rows.iter().map(|row| body.basis.row(dim, row))).collect();
+    let jump = free_rows(&jump, &kept, n)?;
+    let last = in_contact(&jump, dim, false);
     let parts = ElasticParts {
         dim,
         stiffness: SymmetricMatrix::new(n, ptr, rows, entries)?,
-        jump: free_rows(&jump, &kept, n)?,
+        jump,
         weight: body.points.iter().map(|p| p.weight).collect(),
-        order: elimination_order(&body.mesh, &body.enrichment, &kept),
+        order: elimination_order(&body.mesh, &body.enrichment, &kept, &last),
         floating: Vec::new(),
         frictionless: false,
         traction: None,

@@ -89,19 +89,24 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// Nested dissection of the nodes, expanded to their unknowns with a number (`None`: prescribed).
+/// Nested dissection of the nodes, expanded to their unknowns with a number (`None`: prescribed). What is eliminated `last`
+/// whatever the order, by number, counts for nothing.
 pub fn elimination_order(
     mesh: &Mesh,
     enrichment: &Enrichment,
     numbers: &[Option<u32>],
+    last: &[bool],
 ) -> Vec<usize> {
     let dim = mesh.dim();
-    let mut order = Vec::new();
-    for node in nested_dissection(&mesh.grid) {
-        for f in std::iter::once(node).chain(enrichment.enriched_of(node)) {
-            let free = (0..dim).filter_map(|a| numbers[f * dim + a]);
-            order.extend(free.map(|n| n as usize));
-        }
-    }
-    order
+    let free = |node: usize| {
+        let functions = std::iter::once(node).chain(enrichment.enriched_of(node));
+        functions.flat_map(|f| (0..dim).filter_map(move |a| numbers[f * dim + a]))
+    };
+    let counted = |node: usize| free(node).filter(|&n| !last[n as usize]).count() as u32;
+    let unknowns: Vec<u32> = (0..mesh.grid.len()).map(counted).collect();
+    let nodes = nested_dissection(&mesh.grid, &unknowns);
+    nodes
+        .into_iter()
+        .flat_map(|node| free(node).map(|n| n as usize))
+        .collect()
 }

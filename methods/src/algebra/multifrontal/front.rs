@@ -1,0 +1,128 @@
+//! One dense front: assembled from K and from the updates of its children, its own columns eliminated.
+//! ```text
+//! [ F₁₁      ]     L₁₁ L₁₁ᵀ = F₁₁,   L₂₁ = F₂₁ L₁₁⁻ᵀ,   U = F₂₂ − L₂₁ L₂₁ᵀ
+//! [ F₂₁  F₂₂ ]
+//! ```
+//! Blocks are cut at the same places whatever the number of threads, so that the bits are the same.
+
+use faer::{MatMut, MatRef};
+
+use crate::algebra::strips::{Failure, STRIP, WORTH_THREADS, cholesky, for_all, subtract_square};
+
+/// U, the lower triangle by strips of columns.
+pub(super) struct Update {
+    size: usize,
+    /// Columns t·STRIP.., rows from the first of these columns on.
+    strips: Vec<Vec<f64>>,
+}
+
+impl Update {
+    fn zeros(size: usize) -> Result<Self, Failure> {
+        let strips = (0..size).step_by(STRIP);
+        let strips = strips.map(|begin| zeros((size - begin) * STRIP.min(size - begin)));
+        Ok(Self {
+            size,
+            strips: strips.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Rows j.. of column j.
+    fn column(&self, j: usize) -> &[f64] {
+        let (strip, begin) = (&self.strips[j / STRIP], j / STRIP * STRIP);
+        let height = self.size - begin;
+        &strip[(j - begin) * height + j - begin..(j - begin + 1) * height]
+    }
+
+    /// Rows j.. of column j.
+    fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        let begin = j / STRIP * STRIP;
+        let height = self.size - begin;
+        &mut self.strips[j / STRIP][(j - begin) * height + j - begin..(j - begin + 1) * height]
+    }
+}
+
+/// A front under assembly, then its columns of L.
+pub(super) struct Front {
+    /// F₁₁ over F₂₁, later L₁₁ over L₂₁, column by column.
+    pub panel: Vec<f64>,
+    pub update: Update,
+    height: usize,
+    columns: usize,
+}
+
+impl Front {
+    /// Zeros.
+    pub fn zeros(columns: usize, height: usize) -> Result<Self, Failure> {
+        Ok(Self {
+            panel: zeros(columns * height)?,
+            update: Update::zeros(height - columns)?,
+            height,
+            columns,
+        })
+    }
+
+    /// Adds the update of a child whose rows stand at `places` here, increasing.
+    pub fn extend_add(&mut self, child: &Update, places: &[u32]) {
+        let runs = runs(places);
+        // The run that the diagonal is in.
+        let mut current = 0;
+        for j in 0..child.size {
+            if j >= runs[current].1 {
+                current += 1;
+            }
+            let (from, at) = (child.column(j), places[j] as usize);
+            let (to, offset) = if at < self.columns {
+                (&mut self.panel[at * self.height..(at + 1) * self.height], 0)
+            } else {
+                (self.update.column_mut(at - self.columns), at)
+            };
+            for &(begin, end) in &runs[current..] {
+                let begin = begin.max(j);
+                let place = places[begin] as usize - offset;
+                let to = &mut to[place..place + end - begin];
+                for (to, from) in to.iter_mut().zip(&from[begin - j..end - j]) {
+                    *to += from;
+                }
+            }
+        }
+    }
+
+    /// Eliminates the own columns.
+    pub fn eliminate(&mut self) -> Result<(), Failure> {
+        let (h, c) = (self.height, self.columns);
+        let threads = (h * h * c) as f64 > WORTH_THREADS;
+        cholesky(MatMut::from_column_major_slice_mut(&mut self.panel, h, c))?;
+        let below = MatRef::from_column_major_slice(&self.panel, h, c).subrows(c, h - c);
+        let strips: Vec<(usize, &mut [f64])> = (self.update.strips.iter_mut().enumerate())
+            .map(|(t, strip)| (t * STRIP, strip.as_mut_slice()))
+            .collect();
+        for_all(strips, threads, |(begin, strip)| {
+            let height = h - c - begin;
+            let strip = MatMut::from_column_major_slice_mut(strip, height, STRIP.min(height));
+            subtract_square(strip, below.subrows(begin, height));
+        });
+        Ok(())
+    }
+}
+
+/// Ranges of places that follow each other.
+fn runs(places: &[u32]) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut begin = 0;
+    for k in 1..=places.len() {
+        if k == places.len() || places[k] != places[k - 1] + 1 {
+            runs.push((begin, k));
+            begin = k;
+        }
+    }
+    runs
+}
+
+fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(len)
+        .map_err(|_| Failure::OutOfMemory)?;
+    values.resize(len, 0.0);
+    Ok(values)
+}

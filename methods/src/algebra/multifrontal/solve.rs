@@ -1,0 +1,157 @@
+//! Forward and back substitution, along the tree for one column and by blocks of columns for many.
+
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::reborrow::ReborrowMut;
+use faer::{Accum, Mat, MatMut, Par};
+use rayon::prelude::*;
+
+use crate::algebra::multifrontal::Cholesky;
+
+/// Entries of L from which threads are worth it.
+const WORTH_THREADS: usize = 1_000_000;
+/// Columns solved for together.
+const TOGETHER: usize = 32;
+/// Sums run in this many lanes.
+const LANES: usize = 8;
+
+impl Cholesky {
+    /// x := (L Lᵀ)⁻¹ x.
+    pub fn solve(&self, x: &mut [f64]) {
+        let tree = &self.tree;
+        let threads = tree.entries() > WORTH_THREADS;
+        // Front by supernode: first the right-hand side with what came from below, then the solution.
+        let parts = self.parts(x);
+        let updates: Vec<OnceLock<Vec<f64>>> = tree.nodes.iter().map(|_| OnceLock::new()).collect();
+        let own = |s: usize| parts[s].lock().unwrap_or_else(PoisonError::into_inner);
+        tree.upwards(threads, |s| {
+            let (node, mut x) = (&tree.nodes[s], own(s));
+            let (columns, height) = (node.columns.len(), node.height());
+            let mut front = vec![0.0; height];
+            front[..columns].copy_from_slice(&x);
+            for &child in &tree.children[s] {
+                let update = updates[child].get().map_or(&[][..], Vec::as_slice);
+                for (&place, value) in tree.places(child).iter().zip(update) {
+                    front[place as usize] += value;
+                }
+            }
+            for (k, column) in self.panels[s].chunks_exact(height).enumerate() {
+                let (done, below) = front.split_at_mut(k + 1);
+                done[k] /= column[k];
+                for (below, l) in below.iter_mut().zip(&column[k + 1..]) {
+                    *below -= l * done[k];
+                }
+            }
+            x.copy_from_slice(&front[..columns]);
+            let _ = updates[s].set(front.split_off(columns));
+        });
+        let fronts: Vec<OnceLock<Vec<f64>>> = tree.nodes.iter().map(|_| OnceLock::new()).collect();
+        tree.downwards(threads, |s| {
+            let (node, mut x) = (&tree.nodes[s], own(s));
+            let (columns, height) = (node.columns.len(), node.height());
+            let mut front = x.to_vec();
+            let above = fronts.get(node.parent).and_then(OnceLock::get);
+            let above = above.map_or(&[][..], Vec::as_slice);
+            front.extend(tree.places(s).iter().map(|&place| above[place as usize]));
+            for (k, column) in self.panels[s].chunks_exact(height).enumerate().rev() {
+                let (own, below) = front.split_at_mut(k + 1);
+                own[k] = (own[k] - dot(&column[k + 1..], below)) / column[k];
+            }
+            x.copy_from_slice(&front[..columns]);
+            let _ = fronts[s].set(front);
+        });
+    }
+
+    /// X := (L Lᵀ)⁻¹ X.
+    pub fn solve_columns(&self, x: &mut Mat<f64>) {
+        let (mut blocks, mut rest) = (Vec::new(), x.as_mut());
+        while rest.ncols() > 0 {
+            let width = rest.ncols().min(TOGETHER);
+            let (block, others) = rest.split_at_col_mut(width);
+            blocks.push(block);
+            rest = others;
+        }
+        blocks
+            .into_par_iter()
+            .for_each(|block| self.solve_block(block));
+    }
+
+    fn solve_block(&self, mut x: MatMut<'_, f64>) {
+        let (tree, width) = (&self.tree, x.ncols());
+        let mut below = Mat::<f64>::zeros(self.tree.highest(), width);
+        for (s, node) in tree.nodes.iter().enumerate() {
+            let (columns, pattern) = (node.columns.len(), tree.pattern(s));
+            let panel = self.panel(s);
+            let mut own = x.rb_mut().subrows_mut(node.columns.start, columns);
+            let triangle = panel.subrows(0, columns);
+            solve_lower_triangular_in_place(triangle, own.rb_mut(), Par::Seq);
+            let mut below = below.as_mut().subrows_mut(0, pattern.len());
+            let low = panel.subrows(columns, pattern.len());
+            matmul(
+                below.rb_mut(),
+                Accum::Replace,
+                low,
+                own.as_ref(),
+                1.0,
+                Par::Seq,
+            );
+            for j in 0..width {
+                for (k, &row) in pattern.iter().enumerate() {
+                    x[(row as usize, j)] -= below[(k, j)];
+                }
+            }
+        }
+        for (s, node) in tree.nodes.iter().enumerate().rev() {
+            let (columns, pattern) = (node.columns.len(), tree.pattern(s));
+            let panel = self.panel(s);
+            let mut below = below.as_mut().subrows_mut(0, pattern.len());
+            for j in 0..width {
+                for (k, &row) in pattern.iter().enumerate() {
+                    below[(k, j)] = x[(row as usize, j)];
+                }
+            }
+            let mut own = x.rb_mut().subrows_mut(node.columns.start, columns);
+            let low = panel.subrows(columns, pattern.len()).transpose();
+            matmul(
+                own.rb_mut(),
+                Accum::Add,
+                low,
+                below.as_ref(),
+                -1.0,
+                Par::Seq,
+            );
+            let triangle = panel.subrows(0, columns).transpose();
+            solve_upper_triangular_in_place(triangle, own, Par::Seq);
+        }
+    }
+
+    /// The part of x of every supernode.
+    fn parts<'x>(&self, x: &'x mut [f64]) -> Vec<Mutex<&'x mut [f64]>> {
+        let mut rest = x;
+        let part = |node: &super::tree::Supernode| {
+            let (own, others) = std::mem::take(&mut rest).split_at_mut(node.columns.len());
+            rest = others;
+            Mutex::new(own)
+        };
+        self.tree.nodes.iter().map(part).collect()
+    }
+}
+
+/// a·b in lanes, the same on every machine.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut lanes, whole) = ([0.0; LANES], a.len() / LANES * LANES);
+    for (a, b) in a[..whole]
+        .chunks_exact(LANES)
+        .zip(b[..whole].chunks_exact(LANES))
+    {
+        for l in 0..LANES {
+            lanes[l] += a[l] * b[l];
+        }
+    }
+    let rest: f64 = a[whole..].iter().zip(&b[whole..]).map(|(a, b)| a * b).sum();
+    lanes.iter().sum::<f64>() + rest
+}

@@ -1,0 +1,241 @@
+//! Dense kernels in strips that threads share. Strips are cut at the same places whatever the number of threads, so that
+//! the bits are the same.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place,
+};
+use faer::reborrow::ReborrowMut;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
+
+/// Columns of a strip.
+pub(crate) const STRIP: usize = 192;
+/// Multiplications from which threads are worth it.
+pub(crate) const WORTH_THREADS: f64 = 2e7;
+
+/// Why there is no factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Failure {
+    /// This column has no positive pivot.
+    NotPositive(usize),
+    OutOfMemory,
+}
+
+/// Calls `act` with all parts, on several threads if that is asked for.
+pub(crate) fn for_all<T: Send>(parts: Vec<T>, threads: bool, act: impl Fn(T) + Sync + Send) {
+    if threads && parts.len() > 1 {
+        parts.into_par_iter().for_each(act);
+    } else {
+        parts.into_iter().for_each(act);
+    }
+}
+
+/// Columns in strips, each with its first column.
+pub(crate) fn column_strips(mut a: MatMut<'_, f64>) -> Vec<(usize, MatMut<'_, f64>)> {
+    let (mut strips, mut begin) = (Vec::new(), 0);
+    while a.ncols() > 0 {
+        let width = a.ncols().min(STRIP);
+        let (strip, rest) = a.split_at_col_mut(width);
+        strips.push((begin, strip));
+        begin += width;
+        a = rest;
+    }
+    strips
+}
+
+/// Rows in strips, each with its first row.
+pub(crate) fn row_strips(mut a: MatMut<'_, f64>) -> Vec<(usize, MatMut<'_, f64>)> {
+    let (mut strips, mut begin) = (Vec::new(), 0);
+    while a.nrows() > 0 {
+        let height = a.nrows().min(2 * STRIP);
+        let (strip, rest) = a.split_at_row_mut(height);
+        strips.push((begin, strip));
+        begin += height;
+        a = rest;
+    }
+    strips
+}
+
+/// A −= X Xᵀ, lower triangle, for the leading columns of A and all rows of X.
+pub(crate) fn subtract_square(a: MatMut<'_, f64>, x: MatRef<'_, f64>) {
+    let (width, full) = (a.ncols(), BlockStructure::Rectangular);
+    let (top, low) = a.split_at_row_mut(width);
+    let (own, far) = x.split_at_row(width);
+    let (lower, right) = (BlockStructure::TriangularLower, own.transpose());
+    triangular::matmul(
+        top,
+        lower,
+        Accum::Add,
+        own,
+        full,
+        right,
+        full,
+        -1.0,
+        Par::Seq,
+    );
+    if far.nrows() > 0 {
+        matmul(low, Accum::Add, far, right, -1.0, Par::Seq);
+    }
+}
+
+/// Columns of L with L Lᵀ = A on the rows and columns of a panel, which has as many rows more as there are below. A block
+/// of columns at a time, the later ones updated at once.
+pub(crate) fn cholesky(mut panel: MatMut<'_, f64>) -> Result<(), Failure> {
+    let (height, columns) = panel.shape();
+    let threads = (height * height * columns) as f64 > WORTH_THREADS;
+    for k in (0..columns).step_by(STRIP) {
+        let width = STRIP.min(columns - k);
+        let (done, later) = panel.rb_mut().split_at_col_mut(k + width);
+        let block = done.submatrix_mut(k, k, height - k, width);
+        let (mut top, mut below) = block.split_at_row_mut(width);
+        cholesky_of_block(top.rb_mut()).map_err(|failure| match failure {
+            Failure::NotPositive(column) => Failure::NotPositive(k + column),
+            Failure::OutOfMemory => Failure::OutOfMemory,
+        })?;
+        let top = top.as_ref();
+        for_all(row_strips(below.rb_mut()), threads, |(_, part)| {
+            solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq);
+        });
+        let below = below.as_ref();
+        let later = later.split_at_row_mut(k + width).1;
+        for_all(column_strips(later), threads, |(begin, strip)| {
+            let own = below.subrows(begin, below.nrows() - begin);
+            subtract_square(strip.split_at_row_mut(begin).1, own);
+        });
+    }
+    Ok(())
+}
+
+fn cholesky_of_block(a: MatMut<'_, f64>) -> Result<(), Failure> {
+    let scratch = cholesky_in_place_scratch::<f64>(a.nrows(), Par::Seq, Default::default());
+    let mut memory = MemBuffer::try_new(scratch).map_err(|_| Failure::OutOfMemory)?;
+    let stack = MemStack::new(&mut memory);
+    match cholesky_in_place(a, Default::default(), Par::Seq, stack, Default::default()) {
+        Ok(_) => Ok(()),
+        Err(LltError::NonPositivePivot { index }) => Err(Failure::NotPositive(index)),
+    }
+}
+
+/// A := L and U with L U = P A, partial pivoting; row k of P A is row `rows[k]` of A.
+pub(crate) fn lu(a: &mut Mat<f64>) -> Vec<usize> {
+    let n = a.nrows();
+    let threads = (n * n) as f64 * n as f64 > WORTH_THREADS;
+    let mut rows: Vec<usize> = (0..n).collect();
+    let (mut to, mut from) = (vec![0usize; n], vec![0usize; n]);
+    for k in (0..n).step_by(STRIP) {
+        let width = STRIP.min(n - k);
+        let (done, later) = a.as_mut().split_at_col_mut(k + width);
+        let (earlier, block) = done.split_at_col_mut(k);
+        let mut block = block.split_at_row_mut(k).1;
+        let (to, from) = (&mut to[..n - k], &mut from[..n - k]);
+        let scratch = lu_in_place_scratch::<usize, f64>(n - k, width, Par::Seq, Default::default());
+        let mut memory = MemBuffer::new(scratch);
+        let stack = MemStack::new(&mut memory);
+        lu_in_place(
+            block.rb_mut(),
+            to,
+            from,
+            Par::Seq,
+            stack,
+            Default::default(),
+        );
+        let order: &[usize] = to;
+        let block = block.as_ref();
+        let moved: Vec<usize> = order.iter().map(|&i| rows[k + i]).collect();
+        rows[k..].copy_from_slice(&moved);
+        for_all(
+            column_strips(earlier.split_at_row_mut(k).1),
+            threads,
+            |(_, strip)| {
+                permute_rows(strip, order);
+            },
+        );
+        for_all(
+            column_strips(later.split_at_row_mut(k).1),
+            threads,
+            |(_, mut strip)| {
+                permute_rows(strip.rb_mut(), order);
+                let (mut top, low) = strip.split_at_row_mut(width);
+                solve_unit_lower_triangular_in_place(
+                    block.subrows(0, width),
+                    top.rb_mut(),
+                    Par::Seq,
+                );
+                let below = block.subrows(width, n - k - width);
+                matmul(low, Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
+            },
+        );
+    }
+    rows
+}
+
+/// Row i := row `order[i]`.
+pub(crate) fn permute_rows(mut a: MatMut<'_, f64>, order: &[usize]) {
+    let mut column = vec![0.0; order.len()];
+    for j in 0..a.ncols() {
+        (column.iter_mut().zip(order)).for_each(|(to, &i)| *to = a[(i, j)]);
+        (column.iter().enumerate()).for_each(|(i, &from)| a[(i, j)] = from);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(n: usize) -> Mat<f64> {
+        Mat::from_fn(n, n, |i, j| {
+            (12.9 * (i + 1) as f64 + 78.2 * ((i * j) as f64).sqrt()).sin()
+        })
+    }
+
+    /// Source: P A = L U itself. Tolerance: rounding, times the size.
+    #[test]
+    fn the_factors_multiply_to_the_matrix_with_its_rows_exchanged() {
+        for n in [1, 5, STRIP, 3 * STRIP + 17] {
+            let a = matrix(n);
+            let mut factors = a.clone();
+            let rows = lu(&mut factors);
+            let (mut l, mut u) = (factors.clone(), factors);
+            for j in 0..n {
+                for i in 0..n {
+                    match i.cmp(&j) {
+                        std::cmp::Ordering::Less => l[(i, j)] = 0.0,
+                        std::cmp::Ordering::Equal => l[(i, j)] = 1.0,
+                        std::cmp::Ordering::Greater => u[(i, j)] = 0.0,
+                    }
+                    assert!(l[(i, j)].abs() <= 1.0, "a pivot is not the largest");
+                }
+            }
+            let product = &l * &u;
+            for j in 0..n {
+                for i in 0..n {
+                    let error = (product[(i, j)] - a[(rows[i], j)]).abs();
+                    assert!(error < 1e-14 * n as f64, "{n}: {i} {j} {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_thread_and_three_give_the_same_bits() {
+        let n = 3 * STRIP + 40;
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| {
+                let a = matrix(n);
+                let mut square = &a * a.transpose();
+                (0..n).for_each(|k| square[(k, k)] += 1.0);
+                cholesky(square.as_mut()).unwrap();
+                let mut general = a;
+                let rows = lu(&mut general);
+                (square, general, rows)
+            })
+        };
+        assert!(run(1) == run(3));
+    }
+}
