@@ -9,7 +9,8 @@
 //! grows like a high power of radius over cell size (1e12 instead of 1e3). Scaled Cholesky factors of the node blocks bring
 //! it back: Béchet, Minnebo, Moës & Burgardt, Int. J. Numer. Meth. Engng 64 (2005) 1033. A function whose part outside the
 //! span of those before it is too small to be told from rounding is dropped. Functions keep their numbers; only what the
-//! solver sees is transformed.
+//! solver sees is transformed. A is divided by that of a standard function, rounded to a power of four: all unknowns of the
+//! solver are displacements then, and residuals compare whatever the units.
 //!
 //! With a ramp the shape functions sum to one over all cells of a straight tip, and the branch functions become exactly
 //! dependent: with x, y ahead and across,
@@ -72,6 +73,7 @@ impl SolverBasis {
         let dim = mesh.dim();
         let mut basis = SolverBasis::default();
         let surplus = surplus(mesh, enrichment, &held);
+        let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
             let kind = |f: usize| enrichment.functions[f].kind;
@@ -85,6 +87,8 @@ impl SolverBasis {
             if basis.block_of.is_empty() {
                 basis.block_of = vec![None; enrichment.functions.len()];
             }
+            let standard = gram(enrichment, dim, node..node + 1, users, &matrix);
+            stiffest = standard[0].max(stiffest);
             let gram = gram(enrichment, dim, own.clone(), users, &matrix);
             for f in own.clone() {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
@@ -96,6 +100,10 @@ impl SolverBasis {
                 free,
             });
         }
+        // A power of two changes no bit of a scaled matrix.
+        let unit = (0.5 * stiffest.log2()).round().exp2();
+        let entries = basis.blocks.iter_mut().flat_map(|block| &mut block.t);
+        entries.for_each(|t| *t *= unit);
         basis
     }
 
