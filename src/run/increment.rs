@@ -36,6 +36,8 @@ pub struct Work {
     pub prepare_s: f64,
     /// What the method took, without what it shares with others [s].
     pub solve_s: f64,
+    /// Whether the traction operator was needed.
+    pub traction: bool,
 }
 
 /// An outcome with what the judge found.
@@ -103,11 +105,8 @@ impl<'a> Solver<'a> {
         };
         let elastic = self.system.elastic();
         let shared = elastic.timings();
-        let traction_s = if self.method.needs().traction {
-            shared.traction_s
-        } else {
-            0.0
-        };
+        let traction = self.method.needs().traction;
+        let traction_s = if traction { shared.traction_s } else { 0.0 };
         JudgedIncrement {
             verdict,
             work: Some(Work {
@@ -116,6 +115,7 @@ impl<'a> Solver<'a> {
                 condensation_s: shared.condensation_s + traction_s,
                 prepare_s: std::mem::take(&mut self.prepare_s),
                 solve_s,
+                traction,
             }),
             judged,
         }
@@ -150,6 +150,8 @@ impl JudgedIncrement {
             |residual: fn(&Residuals) -> f64| judged.map_or(f64::NAN, |j| residual(&j.found));
         let counters = judged.map(|j| j.outcome.counters).unwrap_or_default();
         let time = |of: fn(&Work) -> f64| self.work.as_ref().map_or(f64::NAN, of);
+        let traction = self.work.is_some_and(|work| work.traction);
+        let owed_s = if traction { setup.traction_s } else { 0.0 };
         let mut row = RunRow {
             key: key.clone(),
             tier: accuracy.to_string(),
@@ -162,7 +164,7 @@ impl JudgedIncrement {
             unknowns: system.rows(),
             points: system.points(),
             dofs: system.elastic().unknowns(),
-            setup_s: setup.setup_s,
+            setup_s: setup.setup_s + owed_s,
             assembly_s: setup.assembly_s,
             factorisation_s: time(|work| work.factorisation_s),
             condensation_s: time(|work| work.condensation_s),

@@ -297,6 +297,12 @@ impl<'a> ContactProblem<'a> {
         self.best = (f64::INFINITY, self.counters.iterations);
     }
 
+    /// The same, and forgets where iterates were measured from: the algorithm starts where the increment does.
+    pub(crate) fn begin_again(&mut self) {
+        self.begin_phase();
+        (self.anchor, self.corrections) = (None, 0);
+    }
+
     /// Iterations since the violation last fell.
     pub fn idle(&self) -> usize {
         self.counters.iterations - self.best.1

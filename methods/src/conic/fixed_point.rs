@@ -30,6 +30,8 @@ const POLISH: f64 = 1e-6;
 const CYCLING: f64 = 1e-3;
 /// Steps without progress after which the iteration counts as stalled.
 const PATIENCE: usize = 20;
+/// The same once programs are as accurate as they get, near the solution.
+const FLOOR_PATIENCE: usize = 5;
 /// The same while polishing, counted from the best of the programs.
 const POLISH_PATIENCE: usize = 30;
 
@@ -90,7 +92,6 @@ impl FixedPoint {
 
 impl CondensedMethod for FixedPoint {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
-        let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let mut x = problem.start();
         let mut program = ConeProgram::new(problem, self.law, &x.p)?;
         let mut anderson = Anderson::new(self.settings.anderson);
@@ -100,7 +101,8 @@ impl CondensedMethod for FixedPoint {
         loop {
             let v = problem.jump(&x.p, &x.beta);
             let violation = problem.violation(&x.p, &v);
-            if self.settings.polish && at_floor(problem, violation) {
+            let patience = accuracy.patience(violation);
+            if self.settings.polish && at_floor(problem, violation, patience) {
                 return self.polished(problem, x, monitor);
             }
             if stuck(problem, violation) && !restarted {
@@ -113,6 +115,7 @@ impl CondensedMethod for FixedPoint {
                     continue;
                 }
             }
+            let limits = Limits::new(self.settings.max_iterations, patience);
             let changes = branches.changes(problem, &x.p, &v);
             match problem.check(violation, (&x.p, &x.beta), changes, limits, monitor)? {
                 Check::GoOn => {}
@@ -126,6 +129,7 @@ impl CondensedMethod for FixedPoint {
             let a = anderson.next(self.parameters(problem, &x.p, &v));
             let solution = program.solve(&a, accuracy.next(violation))?;
             problem.counters.factorisations += solution.factorisations;
+            accuracy.reached(solution.tolerance);
             let Some((p, beta)) = solution.forces else {
                 // On a loose piece without load the cones have no interior.
                 if self.settings.polish && violation <= POLISH {
@@ -141,8 +145,9 @@ impl CondensedMethod for FixedPoint {
 }
 
 /// Whether Newton's method should take over: not before the fixed point has done its work, and not if that is enough.
-fn at_floor(problem: &ContactProblem<'_>, violation: f64) -> bool {
-    let at_floor = problem.stagnates() && violation <= CYCLING;
+fn at_floor(problem: &ContactProblem<'_>, violation: f64, patience: usize) -> bool {
+    let idle = problem.stagnates() || problem.idle() >= patience;
+    let at_floor = idle && violation <= CYCLING;
     violation > problem.stop && (violation <= POLISH || at_floor)
 }
 
@@ -154,6 +159,8 @@ fn stuck(problem: &ContactProblem<'_>, violation: f64) -> bool {
 /// How accurately the next program is solved: far from the fixed point its last digits would be thrown away.
 struct Accuracy {
     tolerance: f64,
+    /// The tightest that programs reach.
+    tightest: f64,
     violation: f64,
 }
 
@@ -163,6 +170,7 @@ impl Accuracy {
         let frictionless = problem.len() == problem.rows.points();
         Self {
             tolerance: if frictionless { TIGHTEST } else { LOOSE },
+            tightest: TIGHTEST,
             violation: f64::INFINITY,
         }
     }
@@ -174,8 +182,24 @@ impl Accuracy {
         } else {
             LOOSE * violation
         };
-        self.tolerance = wanted.clamp(TIGHTEST, self.tolerance);
+        self.tolerance = wanted.min(self.tolerance).max(self.tightest);
         self.violation = violation;
         self.tolerance
+    }
+
+    /// What a program ended with: the next ones need not try what this one could not.
+    fn reached(&mut self, tolerance: f64) {
+        if tolerance > self.tolerance {
+            self.tightest = self.tightest.max(tolerance);
+        }
+    }
+
+    /// Steps without progress that are enough to give up.
+    fn patience(&self, violation: f64) -> usize {
+        if self.tolerance <= self.tightest && violation <= CYCLING {
+            FLOOR_PATIENCE
+        } else {
+            PATIENCE
+        }
     }
 }

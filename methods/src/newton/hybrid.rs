@@ -17,8 +17,9 @@
 //! slip: on a slab of 1980 points 10 steps against 61 of Alart and Curnier's.
 //!
 //! A Newton run that fails leaves no trace: the sweeps go on from where they were, so that the method is never worse than
-//! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Rounds of that size that do not
-//! halve the natural map halve the relaxation of the sweeps (large μ), down to 1/16; after that everything starts again, up
+//! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Before the first of that size
+//! `interior-point` is tried, once: where the others cycle it often finds a way. Rounds of that size that do not halve the
+//! natural map halve the relaxation of the sweeps (large μ), down to 1/16; after that everything starts again, up
 //! to eight times: from the forces of a tied crack, from the normal forces reached without any friction, and from ever
 //! more stages of an alternating method (LATIN).
 //!
@@ -45,6 +46,7 @@ use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::b_newton::BEquations;
+use crate::newton::interior_point::{self, along_path};
 use crate::newton::iteration::{Newton, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
@@ -99,6 +101,9 @@ impl CondensedMethod for Hybrid {
             if let Some(end) = rounds.newton(BEquations, problem, monitor)? {
                 return Ok(end);
             }
+            if let Some(end) = rounds.interior_point(problem, monitor)? {
+                return Ok(end);
+            }
             if !rounds.next(problem)? {
                 let (status, at) = (Status::Stalled, rounds.best);
                 return Ok(End { status, at });
@@ -120,9 +125,17 @@ struct Rounds {
     reached: (f64, f64),
     /// Restarts so far.
     restarts: usize,
+    /// Whether the interior-point method was tried.
+    inside: bool,
     /// Where the sweeps ended last.
     best: Forces,
     settings: Hybrid,
+}
+
+/// How a method that was tried ends the whole, if it does.
+fn final_end(end: End) -> Option<End> {
+    let of_the_whole = [Status::Converged, Status::Stopped, Status::MaxIterations];
+    of_the_whole.contains(&end.status).then_some(end)
 }
 
 impl Rounds {
@@ -137,6 +150,7 @@ impl Rounds {
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
+            inside: false,
             best: problem.start(),
             settings: *method,
         }
@@ -188,9 +202,28 @@ impl Rounds {
             rescue: false,
             tangent: Tangent::Condensed,
         };
-        let end = newton.run(problem, self.best.clone(), monitor)?;
-        let final_status = [Status::Converged, Status::Stopped, Status::MaxIterations];
-        Ok(final_status.contains(&end.status).then_some(end))
+        Ok(final_end(newton.run(
+            problem,
+            self.best.clone(),
+            monitor,
+        )?))
+    }
+
+    /// The interior-point method from the start of the increment, before the first of the largest rounds; how the method
+    /// ends, if it does.
+    fn interior_point(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<End>, MethodError> {
+        if self.inside || 2 * self.count < MAX_SWEEPS {
+            return Ok(None);
+        }
+        self.inside = true;
+        problem.begin_again();
+        let limits = self.limits(interior_point::PATIENCE);
+        let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
+        Ok(final_end(end))
     }
 
     /// Prepares the next round; false if nothing is left to try.

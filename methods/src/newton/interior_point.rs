@@ -62,13 +62,15 @@ pub static METHOD: Method = Method {
 
 options! {
     InteriorPoint {
-        fraction: Real(0.99, 0.5, 0.9999), "fraction of the way to the boundary of the cones that a step may take";
+        fraction: Real(FRACTION, 0.5, 0.9999), "fraction of the way to the boundary of the cones that a step may take";
         max_iterations: Count(200, 1, 1_000_000), "steps before giving up";
     }
 }
 
+/// Fraction of the way to the boundary that a step takes by default.
+pub(crate) const FRACTION: f64 = 0.99;
 /// Steps without progress after which the iteration counts as stalled.
-const PATIENCE: usize = 40;
+pub(crate) const PATIENCE: usize = 40;
 /// Steps below this length jam: the path is left, and taken up again deeper inside.
 const JAMMED: f64 = 0.02;
 /// Least depth of the start inside the cones, relative to the reference force per point.
@@ -87,39 +89,48 @@ struct Iterate {
 impl CondensedMethod for InteriorPoint {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
-        let Forces { p: mut P, mut beta } = problem.start();
-        let mut branches = Branches::default();
-        let mut path: Option<Iterate> = None;
-        let mut depth = 0.0;
-
-        let status = loop {
-            let v = problem.jump(&P, &beta);
-            let changes = branches.changes(problem, &P, &v);
-            let violation = problem.violation(&P, &v);
-            match problem.check(violation, (&P, &beta), changes, limits, monitor)? {
-                Check::GoOn => {}
-                Check::Corrected => continue,
-                Check::End(status) => break status,
-            }
-            let x = path.take().unwrap_or_else(|| {
-                depth = next_depth(depth, &P, violation);
-                Iterate::inside(problem, &P, &beta, depth)
-            });
-            problem.counters.factorisations += 1;
-            let Some(step) = PathStep::new(problem, &x).and_then(|s| s.corrected(problem, &x))
-            else {
-                break problem.singular();
-            };
-            let t = x.step_length(problem, &step, self.fraction.max(1.0 - violation));
-            let x = x.moved(t, &step);
-            P.clone_from(&x.P);
-            problem.rebalance(&mut P);
-            beta.clone_from(&x.beta);
-            path = (t >= JAMMED).then_some(x);
-        };
-        let at = Forces { p: P, beta };
-        Ok(End { status, at })
+        along_path(problem, self.fraction, limits, monitor)
     }
+}
+
+/// The loop, from the start of the increment until it ends.
+pub(crate) fn along_path(
+    problem: &mut ContactProblem<'_>,
+    fraction: f64,
+    limits: Limits,
+    monitor: &mut dyn Monitor,
+) -> Ended {
+    let Forces { p: mut P, mut beta } = problem.start();
+    let mut branches = Branches::default();
+    let mut path: Option<Iterate> = None;
+    let mut depth = 0.0;
+
+    let status = loop {
+        let v = problem.jump(&P, &beta);
+        let changes = branches.changes(problem, &P, &v);
+        let violation = problem.violation(&P, &v);
+        match problem.check(violation, (&P, &beta), changes, limits, monitor)? {
+            Check::GoOn => {}
+            Check::Corrected => continue,
+            Check::End(status) => break status,
+        }
+        let x = path.take().unwrap_or_else(|| {
+            depth = next_depth(depth, &P, violation);
+            Iterate::inside(problem, &P, &beta, depth)
+        });
+        problem.counters.factorisations += 1;
+        let Some(step) = PathStep::new(problem, &x).and_then(|s| s.corrected(problem, &x)) else {
+            break problem.singular();
+        };
+        let t = x.step_length(problem, &step, fraction.max(1.0 - violation));
+        let x = x.moved(t, &step);
+        P.clone_from(&x.P);
+        problem.rebalance(&mut P);
+        beta.clone_from(&x.beta);
+        path = (t >= JAMMED).then_some(x);
+    };
+    let at = Forces { p: P, beta };
+    Ok(End { status, at })
 }
 
 /// How deep inside the cones the path begins: as far as the start is wrong, and twice as deep after every jam. The

@@ -143,6 +143,7 @@ impl ProblemFile {
             setup: Setup {
                 setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
                 assembly_s: 0.0,
+                traction_s: 0.0,
             },
         })
     }

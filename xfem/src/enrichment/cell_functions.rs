@@ -33,6 +33,8 @@ pub struct CellFunctions<'a> {
     /// Gradients of the functions [1/m].
     pub gradients: Vec<Point>,
     functions: Vec<CellFunction>,
+    /// ∂ξ/∂x of an affine cell.
+    inverse: Option<[Point; 3]>,
     steps: &'a [f64],
     tips: &'a [TipFrame],
 }
@@ -56,8 +58,10 @@ impl<'a> CellFunctions<'a> {
             }
         };
         let numbers = enrichment.cell(cell);
+        let map = mesh.map(cell);
         CellFunctions {
-            map: mesh.map(cell),
+            inverse: map.constant_inverse(),
+            map,
             numbers,
             values: vec![0.0; numbers.len()],
             gradients: vec![[0.0; 3]; numbers.len()],
@@ -88,7 +92,10 @@ impl<'a> CellFunctions<'a> {
     /// Evaluates all functions at ξ (position x) in a region of the cell.
     pub fn evaluate(&mut self, xi: &Point, x: &Point, region: Region) {
         let n = self.map.kind.shape(xi);
-        let (dn, _) = self.map.gradients(xi);
+        let dn = match &self.inverse {
+            Some(inverse) => self.map.gradients_by(xi, inverse),
+            None => self.map.gradients(xi).0,
+        };
         let mut cached: Option<Branches> = None;
         let count = self.functions.len();
         let steps = &self.steps[region * count..(region + 1) * count];

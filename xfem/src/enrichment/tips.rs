@@ -44,8 +44,10 @@ impl Zone {
     }
 }
 
-/// Cells longer than this times their width take no branch functions by themselves.
-const SLENDER: f64 = 30.0;
+/// Cells longer than this times their width take no branch functions by themselves …
+const SLENDER: f64 = 6.0;
+/// … and longer ones none at all.
+const SLENDEREST: f64 = 30.0;
 
 /// An arm shorter than this, in diagonals of the cell of its tip, is none: its functions drown in the rounding of the others.
 const SHORTEST: f64 = 0.01;
@@ -346,11 +348,12 @@ impl Search<'_> {
         let size = self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
         // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.
-        let slender = self.arms[tip.arm].tip == Tip::Auto
-            && tip
-                .cells
-                .iter()
-                .any(|&cell| self.mesh.map(cell).aspect() > SLENDER);
+        let longest = match self.arms[tip.arm].tip {
+            Tip::Auto => SLENDER,
+            _ => SLENDEREST,
+        };
+        let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
+        let slender = aspects.any(|aspect| aspect > longest);
         parted && alone && !slender && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
     }
 

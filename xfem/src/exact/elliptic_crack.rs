@@ -216,7 +216,7 @@ impl Field for State {
         let nearest = self.ellipse.nearest(front);
         let [ahead, _, tangent] = self.ellipse.front_frame(&nearest);
         let [a, b] = self.ellipse.half_axes;
-        let (sin, cos) = nearest.parameter.sin_cos();
+        let [cos, sin] = nearest.parameter;
         let scale = 0.5 * shear * (PI * (cos / a).hypot(sin / b)).sqrt();
         let slip = combine(&self.frame, [self.jump[0], self.jump[1], 0.0]);
         Some([

@@ -34,8 +34,8 @@ pub struct Nearest {
     pub point: Point,
     /// Unit normal of the front in the crack plane there, pointing out of the crack; the gradient of ψ.
     pub ahead: Point,
-    /// Parameter t of the point, in (−π, π].
-    pub parameter: f64,
+    /// cos t and sin t of its parameter.
+    pub parameter: [f64; 2],
 }
 
 impl Ellipse {
@@ -63,7 +63,7 @@ impl Ellipse {
             psi: (x[0] - y[0]) * outward[0] + (x[1] - y[1]) * outward[1],
             point: add_scaled(&self.centre, 1.0, &in_space(y)),
             ahead: in_space(outward),
-            parameter: (y[1] / b).atan2(y[0] / a),
+            parameter: [y[0] / a, y[1] / b],
         }
     }
 
@@ -141,6 +141,10 @@ fn nearest_in_quadrant([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
             [a, 0.0]
         };
     }
+    if a == b {
+        let r = x.hypot(y);
+        return [a * (x / r), a * (y / r)];
+    }
     // With σ = 1 + s/a₁² > 0 and ϱ = a₀²/a₁²:  F = (ϱ u/(σ + ϱ − 1))² + (v/σ)².
     let terms = |sigma: f64| (ratio * u / (sigma + (ratio - 1.0)), v / sigma);
     // F >= 1 here, so the root lies to the right.
@@ -204,7 +208,8 @@ mod tests {
             }
             prop_assert!((found.psi.abs() - distance(low)).abs() < 1e-12, "{} {}", found.psi, distance(low));
             prop_assert!((norm(&sub(&found.point, &x)) - found.psi.abs()).abs() < 1e-12);
-            prop_assert!(norm(&sub(&e.point(found.parameter), &found.point)) < 1e-13);
+            let [cos, sin] = found.parameter;
+            prop_assert!(norm(&sub(&e.point(sin.atan2(cos)), &found.point)) < 1e-13);
             let inside = (p * scale).powi(2) + (q * scale * scale / b).powi(2) < 1.0;
             prop_assert_eq!(found.psi < 0.0, inside);
         }

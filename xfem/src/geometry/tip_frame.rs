@@ -193,10 +193,8 @@ impl TipFrame {
                 .map(|[g1, g2]| [0, 1, 2].map(|a| g1 * psi_gradient[a] + g2 * phi_gradient[a]));
             return (values, gradients);
         }
-        let r = psi.hypot(phi);
-        let theta = phi.atan2(psi);
-        let (root, s, c) = (r.sqrt(), (0.5 * theta).sin(), (0.5 * theta).cos());
-        let (sin, cos) = (theta.sin(), theta.cos());
+        let r = (psi * psi + phi * phi).sqrt();
+        let (root, [sin, cos], [s, c]) = (r.sqrt(), polar(psi, phi, r), half_polar(psi, phi, r));
         let angular = [s, c, s * sin, c * sin];
         let slope = [
             0.5 * c,
@@ -220,6 +218,31 @@ impl TipFrame {
     }
 }
 
+/// sin θ and cos θ of a point at distance r from the tip; those of θ = 0 at the tip itself.
+fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
+    if r > 0.0 {
+        [phi / r, psi / r]
+    } else {
+        [0.0, 1.0]
+    }
+}
+
+/// sin θ/2 and cos θ/2, −π <= θ <= π, the larger of both from (1 ± cos θ)/2, which cancels nothing, and the other from
+/// their product sin θ/2.
+fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
+    if r == 0.0 {
+        return [0.0, 1.0];
+    }
+    let larger = (0.5 * (1.0 + psi.abs() / r)).sqrt();
+    let other = 0.5 * phi / (r * larger);
+    if psi >= 0.0 {
+        [other, larger]
+    } else {
+        // −0 is the lower face.
+        [larger.copysign(phi), other.abs()]
+    }
+}
+
 /// Functions of both ends ± a of a straight crack and their derivatives along and across it (Westergaard 1939).
 ///
 /// ```text
@@ -230,8 +253,9 @@ impl TipFrame {
 /// They hold the displacement of a crack in an infinite plane under uniform load, less its linear part.
 fn pair_functions(a: f64, x: f64, y: f64) -> ([f64; 4], [[f64; 2]; 4]) {
     let root = |x: f64| {
-        let (r, angle) = (x.hypot(y), 0.5 * y.atan2(x));
-        [r.sqrt() * angle.cos(), r.sqrt() * angle.sin()]
+        let r = x.hypot(y);
+        let [s, c] = half_polar(x, y, r);
+        [r.sqrt() * c, r.sqrt() * s]
     };
     let product = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
     let [re, im] = product(root(x - a), root(x + a));
@@ -262,6 +286,30 @@ mod tests {
     fn frame() -> TipFrame {
         let (s, c) = 0.5f64.sin_cos();
         TipFrame::straight(0, [0.3, -0.2, 0.0], [c, s, 0.0], [-s, c, 0.0])
+    }
+
+    /// Source: √r sin θ/2, √r cos θ/2 and their products with sin θ, θ from atan2. Tolerance: rounding, also next to both faces.
+    #[test]
+    fn branch_functions_are_those_of_the_angle() {
+        let tip = TipFrame::straight(0, [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        let beside = [0.0, 1e-100, 1e-17, 1e-9, 0.3, 1.0, 7.0];
+        let signed = |v: f64| [v, -v];
+        for (psi, phi) in beside.into_iter().flat_map(|x| beside.map(|y| (x, y))) {
+            for (psi, phi) in signed(psi)
+                .into_iter()
+                .flat_map(|x| signed(phi).map(|y| (x, y)))
+            {
+                let (r, theta) = (psi.hypot(phi), phi.atan2(psi));
+                let (s, c) = (0.5 * theta).sin_cos();
+                let exact = [s, c, s * theta.sin(), c * theta.sin()];
+                let side = (phi == 0.0).then(|| 1f64.copysign(phi));
+                let found = tip.branch(&[psi, phi, 0.0], side).0;
+                for (found, exact) in found.iter().zip(exact) {
+                    let error = (found - r.sqrt() * exact).abs();
+                    assert!(error <= 1e-15 * r.sqrt(), "{psi} {phi}: {found} {exact}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -252,16 +252,31 @@ impl CellMap {
 
     /// Gradients ∂N_i/∂x [1/m] and det J [m^dim] at ξ.
     pub fn gradients(&self, xi: &Point) -> (Nodal<Point>, f64) {
-        let mut g = self.kind.reference_gradients(xi);
-        let (inverse, det) = self.inverse_jacobian(&g);
-        for gradient in g.iter_mut() {
-            let reference = *gradient;
+        let reference = self.kind.reference_gradients(xi);
+        let (inverse, det) = self.inverse_jacobian(&reference);
+        (self.in_space(reference, &inverse), det)
+    }
+
+    /// Gradients ∂N_i/∂x [1/m] at ξ of a map whose ∂ξ/∂x is known.
+    pub fn gradients_by(&self, xi: &Point, inverse: &[Point; 3]) -> Nodal<Point> {
+        self.in_space(self.kind.reference_gradients(xi), inverse)
+    }
+
+    fn in_space(&self, mut reference: Nodal<Point>, inverse: &[Point; 3]) -> Nodal<Point> {
+        for gradient in reference.iter_mut() {
+            let own = *gradient;
             for a in 0..self.kind.dim() {
                 // ∂N/∂x_a = Σ_b ∂N/∂ξ_b ∂ξ_b/∂x_a
-                gradient[a] = dot(&reference, &[inverse[0][a], inverse[1][a], inverse[2][a]]);
+                gradient[a] = dot(&own, &[inverse[0][a], inverse[1][a], inverse[2][a]]);
             }
         }
-        (g, det)
+        reference
+    }
+
+    /// ∂ξ_b/∂x_a by b and a [1/m], where it is the same all over the cell.
+    pub fn constant_inverse(&self) -> Option<[Point; 3]> {
+        let centre = self.kind.reference_gradients(&[0.0; 3]);
+        self.is_affine().then(|| self.inverse_jacobian(&centre).0)
     }
 
     /// det J [m^dim] at ξ.
@@ -297,39 +312,21 @@ impl CellMap {
         (inverse, det)
     }
 
-    /// ξ of a point in space, by Newton's method; `None` if it does not converge (point far outside a distorted cell).
-    ///
-    /// One step is exact on affine cells.
+    /// ξ of a point in space; `None` if it is far outside a distorted cell.
     pub fn inverse(&self, x: &Point) -> Option<Point> {
-        /// Newton steps; bilinear maps need 3 to 6 inside the cell.
-        const STEPS: usize = 30;
-        /// In reference units, well above rounding and far below any quadrature error.
-        const TOLERANCE: f64 = 1e-14;
+        self.inverter().at(x)
+    }
+
+    /// What finds the ξ of many points.
+    pub fn inverter(&self) -> Inverter {
         // From the first corner: far from the origin the coordinates themselves hold too few digits of the difference.
         let origin = self[0];
-        let x = sub(x, &origin);
         let local = CellMap::new(self.kind, |i| sub(&self[i], &origin));
-        let mut xi = [0.0; 3];
-        let mut last = f64::INFINITY;
-        for _ in 0..STEPS {
-            let residual = sub(&x, &local.at(&xi));
-            let (inverse, det) = local.inverse_jacobian(&self.kind.reference_gradients(&xi));
-            if det == 0.0 || !det.is_finite() {
-                return None;
-            }
-            let mut step: f64 = 0.0;
-            for b in 0..self.kind.dim() {
-                let delta = dot(&inverse[b], &residual);
-                xi[b] += delta;
-                step = step.max(delta.abs());
-            }
-            // Converged, or the step has sunk into rounding and no longer shrinks.
-            if step <= TOLERANCE || (step < 1e-12 && step >= last) {
-                return Some(xi);
-            }
-            last = step;
+        Inverter {
+            constant: local.constant_inverse(),
+            local,
+            origin,
         }
-        None
     }
 
     /// True if the map is affine (parallelogram, parallelepiped) to rounding.
@@ -345,6 +342,55 @@ impl CellMap {
                 .into_iter()
                 .all(parallel),
         }
+    }
+}
+
+/// The inverse of a map, by Newton's method.
+pub struct Inverter {
+    /// The map seen from its first corner.
+    local: CellMap,
+    origin: Point,
+    constant: Option<[Point; 3]>,
+}
+
+impl Inverter {
+    /// ξ of a point in space; `None` if it does not converge (point far outside a distorted cell). One step is exact on affine
+    /// cells.
+    pub fn at(&self, x: &Point) -> Option<Point> {
+        /// Newton steps; bilinear maps need 3 to 6 inside the cell.
+        const STEPS: usize = 30;
+        /// In reference units, well above rounding and far below any quadrature error.
+        const TOLERANCE: f64 = 1e-14;
+        let (local, kind) = (&self.local, self.local.kind);
+        let x = sub(x, &self.origin);
+        let mut xi = [0.0; 3];
+        let mut last = f64::INFINITY;
+        for _ in 0..STEPS {
+            let residual = sub(&x, &local.at(&xi));
+            let inverse = self
+                .constant
+                .unwrap_or_else(|| local.inverse_jacobian(&kind.reference_gradients(&xi)).0);
+            let mut step: f64 = 0.0;
+            for b in 0..kind.dim() {
+                let delta = dot(&inverse[b], &residual);
+                xi[b] += delta;
+                // NaN stays.
+                step = if delta.abs() <= step {
+                    step
+                } else {
+                    delta.abs()
+                };
+            }
+            if !step.is_finite() {
+                return None;
+            }
+            // Converged, or the step has sunk into rounding and no longer shrinks.
+            if step <= TOLERANCE || (step < 1e-12 && step >= last) {
+                return Some(xi);
+            }
+            last = step;
+        }
+        None
     }
 }
 

@@ -291,8 +291,9 @@ impl<'a> CellIntegrator<'a> {
             return Err(CellError::new(map.centre(), reason));
         }
         let lost = || CellError::new(map.centre(), "a sub-cell point has no reference position");
+        let inverter = map.inverter();
         let place = |(p, region): (WeightedPoint, Region)| {
-            let xi = map.inverse(&p.x).ok_or_else(lost)?;
+            let xi = inverter.at(&p.x).ok_or_else(lost)?;
             Ok(SidedPoint::new(xi, p, region))
         };
         points.into_iter().map(place).collect()

@@ -198,8 +198,9 @@ impl CellIntegrator<'_> {
                 flux[f] = add_scaled(&flux[f], p.weight * value, &normal);
             })?;
         }
+        let inverter = functions.map.inverter();
         self.facet_points(cell, |p, regions, normal| {
-            let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+            let xi = inverter.at(&p.x).ok_or_else(|| lost(&p.x))?;
             for (region, sign) in regions.into_iter().zip([-1.0, 1.0]) {
                 functions.evaluate(&xi, &p.x, region);
                 for (sum, value) in flux.iter_mut().zip(&functions.values) {
@@ -234,9 +235,10 @@ impl CellIntegrator<'_> {
             })
             .collect();
         let own: BTreeSet<Option<u32>> = tips.iter().copied().chain([None]).collect();
+        let inverter = functions.map.inverter();
         for tip in own {
             for (p, region) in self.border_points(cell, local, tip) {
-                let xi = functions.map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+                let xi = inverter.at(&p.x).ok_or_else(|| lost(&p.x))?;
                 functions.evaluate(&xi, &p.x, region);
                 for (f, value) in functions.values.iter().enumerate() {
                     if tips[f] == tip {
@@ -365,13 +367,16 @@ fn lost(x: &Point) -> CellError {
 fn correct_branches(functions: &CellFunctions<'_>, flux: &[Point], points: &mut [EvaluatedPoint]) {
     let kinds = functions.are_branches();
     let measure: f64 = points.iter().map(|p| p.at.weight).sum();
-    for (f, flux) in flux.iter().enumerate().filter(|(f, _)| kinds[*f]) {
-        let mut missing = *flux;
-        for p in points.iter() {
-            missing = add_scaled(&missing, -p.at.weight, &p.gradients[f]);
+    let branches: Vec<usize> = (0..flux.len()).filter(|&f| kinds[f]).collect();
+    let mut missing: Vec<Point> = branches.iter().map(|&f| flux[f]).collect();
+    for p in points.iter() {
+        for (missing, &f) in missing.iter_mut().zip(&branches) {
+            *missing = add_scaled(missing, -p.at.weight, &p.gradients[f]);
         }
-        for p in points.iter_mut() {
-            p.gradients[f] = add_scaled(&p.gradients[f], 1.0 / measure, &missing);
+    }
+    for p in points.iter_mut() {
+        for (missing, &f) in missing.iter().zip(&branches) {
+            p.gradients[f] = add_scaled(&p.gradients[f], 1.0 / measure, missing);
         }
     }
 }
