@@ -61,8 +61,6 @@ pub(crate) struct Solution {
     pub forces: Option<(Vec<f64>, Vec<f64>)>,
     /// Factorisations of clarabel's matrix, of 2 m rows and more.
     pub factorisations: usize,
-    /// The tolerance that it was solved to, or given up with.
-    pub tolerance: f64,
 }
 
 /// Constraints s = right − A P in their cones.
@@ -170,7 +168,6 @@ impl ConeProgram {
         Ok(Solution {
             forces: self.forces(),
             factorisations,
-            tolerance,
         })
     }
 

@@ -129,7 +129,6 @@ impl CondensedMethod for FixedPoint {
             let a = anderson.next(self.parameters(problem, &x.p, &v));
             let solution = program.solve(&a, accuracy.next(violation))?;
             problem.counters.factorisations += solution.factorisations;
-            accuracy.reached(solution.tolerance);
             let Some((p, beta)) = solution.forces else {
                 // On a loose piece without load the cones have no interior.
                 if self.settings.polish && violation <= POLISH {
@@ -159,8 +158,6 @@ fn stuck(problem: &ContactProblem<'_>, violation: f64) -> bool {
 /// How accurately the next program is solved: far from the fixed point its last digits would be thrown away.
 struct Accuracy {
     tolerance: f64,
-    /// The tightest that programs reach.
-    tightest: f64,
     violation: f64,
 }
 
@@ -170,7 +167,6 @@ impl Accuracy {
         let frictionless = problem.len() == problem.rows.points();
         Self {
             tolerance: if frictionless { TIGHTEST } else { LOOSE },
-            tightest: TIGHTEST,
             violation: f64::INFINITY,
         }
     }
@@ -182,21 +178,14 @@ impl Accuracy {
         } else {
             LOOSE * violation
         };
-        self.tolerance = wanted.min(self.tolerance).max(self.tightest);
+        self.tolerance = wanted.clamp(TIGHTEST, self.tolerance);
         self.violation = violation;
         self.tolerance
     }
 
-    /// What a program ended with: the next ones need not try what this one could not.
-    fn reached(&mut self, tolerance: f64) {
-        if tolerance > self.tolerance {
-            self.tightest = self.tightest.max(tolerance);
-        }
-    }
-
     /// Steps without progress that are enough to give up.
     fn patience(&self, violation: f64) -> usize {
-        if self.tolerance <= self.tightest && violation <= CYCLING {
+        if self.tolerance <= TIGHTEST && violation <= CYCLING {
             FLOOR_PATIENCE
         } else {
             PATIENCE
