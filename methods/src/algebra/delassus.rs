@@ -13,7 +13,6 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, Par};
-use rayon::prelude::*;
 
 use crate::MethodError;
 use crate::algebra::dense::mul_add;
@@ -209,7 +208,7 @@ fn mirror_upper(a: &mut Mat<f64>) {
 /// Row and column k := row and column `position[k]`.
 fn permute(a: &mut Mat<f64>, position: &[usize]) {
     let threads = a.nrows() > STRIP;
-    for_all(column_strips(a.as_mut()), threads, |(_, strip)| {
+    for_all(column_strips(a.as_mut(), STRIP), threads, |(_, strip)| {
         permute_rows(strip, position);
     });
     let mut done = vec![false; position.len()];
@@ -305,18 +304,21 @@ impl<'a> Half<'a> {
 
     /// The sorted columns of Y from `begin` on, as many as there are in `y`, which holds zeros; their |y_k|².
     fn solve(&self, begin: usize, y: MatMut<'_, f64>) -> Vec<f64> {
-        let strips = column_strips(y).into_par_iter().map(|(at, mut y)| {
+        let mut squares = vec![0.0; y.ncols()];
+        let strips = column_strips(y, STRIP).into_iter();
+        let strips: Vec<_> = strips.zip(squares.chunks_mut(STRIP)).collect();
+        for_all(strips, true, |((at, mut y), squares)| {
             let columns = begin + at..begin + at + y.ncols();
             for (k, entries) in self.entries[columns.clone()].iter().enumerate() {
                 (entries.iter()).for_each(|&(row, value)| y[(row, k)] += value);
             }
             let first = &self.first[columns];
             forward_solve(self.factor, y.rb_mut(), first);
-            let square = |k: usize| (first[k]..y.nrows()).map(|i| y[(i, k)].powi(2)).sum();
-            (0..y.ncols()).map(square).collect()
+            for (k, square) in squares.iter_mut().enumerate() {
+                *square = (first[k]..y.nrows()).map(|i| y[(i, k)].powi(2)).sum();
+            }
         });
-        let squares: Vec<Vec<f64>> = strips.collect();
-        squares.concat()
+        squares
     }
 
     /// In the order of the rows.

@@ -14,7 +14,8 @@ use faer::{Mat, MatRef};
 use crate::algebra::dense::norm;
 use crate::algebra::floating::Balance;
 use crate::algebra::matrix::SymmetricMatrix;
-use crate::algebra::multifrontal::{Analysis, Cholesky, Fault, Ordering};
+use crate::algebra::multifrontal::{Analysis, Cholesky, Ordering};
+use crate::algebra::strips::Failure;
 use crate::error::MethodError;
 
 /// Refinement aims at this backward error |K u − f| / (||K| |u|| + |f|), a few units of rounding.
@@ -63,10 +64,10 @@ impl Factor {
             unknown: ordering.forward[column],
             size: n,
         };
-        let cholesky = Cholesky::new(tree, &entries, &values).map_err(|fault| match fault {
-            Fault::NotPositive(column) => not_positive(column),
+        let cholesky = Cholesky::new(tree, &entries, &values).map_err(|failure| match failure {
+            Failure::NotPositive(column) => not_positive(column),
             // The largest array of a run: where it does not fit, the run says so.
-            Fault::OutOfMemory => MethodError::OutOfMemory {
+            Failure::OutOfMemory => MethodError::OutOfMemory {
                 what: "sparse factorisation",
             },
         })?;

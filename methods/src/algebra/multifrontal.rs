@@ -14,14 +14,11 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use faer::MatRef;
 
-use crate::algebra::strips::Failure;
+use crate::algebra::strips::{Failure, WORTH_THREADS};
 
 pub(crate) use analysis::{Analysis, Entries, Ordering};
 use front::{Front, Update};
-pub(crate) use tree::AssemblyTree;
-
-/// Multiplications below which threads cost more than they bring.
-const WORTH_THREADS: f64 = 1e7;
+use tree::AssemblyTree;
 
 /// The factor.
 pub(crate) struct Cholesky {
@@ -30,21 +27,16 @@ pub(crate) struct Cholesky {
     panels: Vec<Vec<f64>>,
 }
 
-/// Why there is no factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fault {
-    /// This column of L has no positive pivot.
-    NotPositive(usize),
-    OutOfMemory,
-}
-
 impl Cholesky {
     /// Factors the matrix with these entries below its diagonal of ones.
-    pub fn new(tree: AssemblyTree, entries: &Entries, values: &[f64]) -> Result<Self, Fault> {
+    ///
+    /// # Errors
+    /// The same whatever the number of threads: no memory, else the first column without a positive pivot.
+    pub fn new(tree: AssemblyTree, entries: &Entries, values: &[f64]) -> Result<Self, Failure> {
         let nodes = &tree.nodes;
         let panels: Vec<OnceLock<Vec<f64>>> = nodes.iter().map(|_| OnceLock::new()).collect();
         let updates: Vec<Mutex<Option<Update>>> = nodes.iter().map(|_| Mutex::new(None)).collect();
-        let fault = Mutex::new(None::<Fault>);
+        let failure = Mutex::new(None::<Failure>);
         let update_of = |s: usize| updates[s].lock().unwrap_or_else(PoisonError::into_inner);
         let eliminate = |s: usize| -> Result<(), Failure> {
             let node = &nodes[s];
@@ -68,19 +60,15 @@ impl Cholesky {
             *update_of(s) = Some(front.update);
             Ok(())
         };
-        let work: f64 = nodes
-            .iter()
-            .filter(|s| s.parent == tree::NONE)
-            .map(|s| s.work)
-            .sum();
-        tree.upwards(work > WORTH_THREADS, |s| {
-            if let Err(failure) = eliminate(s) {
-                let mut fault = fault.lock().unwrap_or_else(PoisonError::into_inner);
-                *fault = Some(Fault::first(*fault, failure, nodes[s].columns.start));
+        tree.upwards(tree.work() > WORTH_THREADS, |s| {
+            if let Err(own) = eliminate(s) {
+                let own = own.behind(nodes[s].columns.start);
+                let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
+                *failure = Some(failure.map_or(own, |before| before.or(own)));
             }
         });
-        match fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            Some(fault) => Err(fault),
+        match (failure.into_inner()).unwrap_or_else(PoisonError::into_inner) {
+            Some(failure) => Err(failure),
             None => Ok(Self {
                 panels: panels
                     .into_iter()
@@ -105,18 +93,5 @@ impl Cholesky {
     pub fn panel(&self, s: usize) -> MatRef<'_, f64> {
         let node = &self.tree.nodes[s];
         MatRef::from_column_major_slice(&self.panels[s], node.height(), node.columns.len())
-    }
-}
-
-impl Fault {
-    /// What is reported whoever came first: no memory, else the first column.
-    fn first(before: Option<Self>, failure: Failure, begin: usize) -> Self {
-        match (before, failure) {
-            (Some(Self::OutOfMemory), _) | (_, Failure::OutOfMemory) => Self::OutOfMemory,
-            (None, Failure::NotPositive(k)) => Self::NotPositive(begin + k),
-            (Some(Self::NotPositive(c)), Failure::NotPositive(k)) => {
-                Self::NotPositive(c.min(begin + k))
-            }
-        }
     }
 }

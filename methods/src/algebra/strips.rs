@@ -26,6 +26,24 @@ pub(crate) enum Failure {
     OutOfMemory,
 }
 
+impl Failure {
+    /// The same, columns counted from one that many columns earlier.
+    pub fn behind(self, columns: usize) -> Self {
+        match self {
+            Self::NotPositive(column) => Self::NotPositive(columns + column),
+            Self::OutOfMemory => Self::OutOfMemory,
+        }
+    }
+
+    /// What two failures are told as, whichever came first: no memory, else the earlier column.
+    pub fn or(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::NotPositive(a), Self::NotPositive(b)) => Self::NotPositive(a.min(b)),
+            _ => Self::OutOfMemory,
+        }
+    }
+}
+
 /// Calls `act` with all parts, on several threads if that is asked for.
 pub(crate) fn for_all<T: Send>(parts: Vec<T>, threads: bool, act: impl Fn(T) + Sync + Send) {
     if threads && parts.len() > 1 {
@@ -35,11 +53,11 @@ pub(crate) fn for_all<T: Send>(parts: Vec<T>, threads: bool, act: impl Fn(T) + S
     }
 }
 
-/// Columns in strips, each with its first column.
-pub(crate) fn column_strips(mut a: MatMut<'_, f64>) -> Vec<(usize, MatMut<'_, f64>)> {
+/// Columns in strips of this width, each with its first column.
+pub(crate) fn column_strips(mut a: MatMut<'_, f64>, most: usize) -> Vec<(usize, MatMut<'_, f64>)> {
     let (mut strips, mut begin) = (Vec::new(), 0);
     while a.ncols() > 0 {
-        let width = a.ncols().min(STRIP);
+        let width = a.ncols().min(most);
         let (strip, rest) = a.split_at_col_mut(width);
         strips.push((begin, strip));
         begin += width;
@@ -93,17 +111,14 @@ pub(crate) fn cholesky(mut panel: MatMut<'_, f64>) -> Result<(), Failure> {
         let (done, later) = panel.rb_mut().split_at_col_mut(k + width);
         let block = done.submatrix_mut(k, k, height - k, width);
         let (mut top, mut below) = block.split_at_row_mut(width);
-        cholesky_of_block(top.rb_mut()).map_err(|failure| match failure {
-            Failure::NotPositive(column) => Failure::NotPositive(k + column),
-            Failure::OutOfMemory => Failure::OutOfMemory,
-        })?;
+        cholesky_of_block(top.rb_mut()).map_err(|failure| failure.behind(k))?;
         let top = top.as_ref();
         for_all(row_strips(below.rb_mut()), threads, |(_, part)| {
             solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq);
         });
         let below = below.as_ref();
         let later = later.split_at_row_mut(k + width).1;
-        for_all(column_strips(later), threads, |(begin, strip)| {
+        for_all(column_strips(later, STRIP), threads, |(begin, strip)| {
             let own = below.subrows(begin, below.nrows() - begin);
             subtract_square(strip.split_at_row_mut(begin).1, own);
         });
@@ -149,14 +164,14 @@ pub(crate) fn lu(a: &mut Mat<f64>) -> Vec<usize> {
         let moved: Vec<usize> = order.iter().map(|&i| rows[k + i]).collect();
         rows[k..].copy_from_slice(&moved);
         for_all(
-            column_strips(earlier.split_at_row_mut(k).1),
+            column_strips(earlier.split_at_row_mut(k).1, STRIP),
             threads,
             |(_, strip)| {
                 permute_rows(strip, order);
             },
         );
         for_all(
-            column_strips(later.split_at_row_mut(k).1),
+            column_strips(later.split_at_row_mut(k).1, STRIP),
             threads,
             |(_, mut strip)| {
                 permute_rows(strip.rb_mut(), order);

@@ -374,14 +374,10 @@ impl Inverter {
             for b in 0..kind.dim() {
                 let delta = dot(&inverse[b], &residual);
                 xi[b] += delta;
-                // NaN stays.
-                step = if delta.abs() <= step {
-                    step
-                } else {
-                    delta.abs()
-                };
+                step = step.max(delta.abs());
             }
-            if !step.is_finite() {
+            // A cell without measure has no inverse.
+            if !xi.iter().all(|x| x.is_finite()) {
                 return None;
             }
             // Converged, or the step has sunk into rounding and no longer shrinks.

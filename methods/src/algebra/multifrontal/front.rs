@@ -5,6 +5,8 @@
 //! ```
 //! Blocks are cut at the same places whatever the number of threads, so that the bits are the same.
 
+use std::ops::Range;
+
 use faer::{MatMut, MatRef};
 
 use crate::algebra::strips::{Failure, STRIP, WORTH_THREADS, cholesky, for_all, subtract_square};
@@ -26,18 +28,23 @@ impl Update {
         })
     }
 
+    /// The strip of column j, and where its rows j.. stand in it.
+    fn place(&self, j: usize) -> (usize, Range<usize>) {
+        let (strip, own) = (j / STRIP, j % STRIP);
+        let height = self.size - strip * STRIP;
+        (strip, own * height + own..(own + 1) * height)
+    }
+
     /// Rows j.. of column j.
     fn column(&self, j: usize) -> &[f64] {
-        let (strip, begin) = (&self.strips[j / STRIP], j / STRIP * STRIP);
-        let height = self.size - begin;
-        &strip[(j - begin) * height + j - begin..(j - begin + 1) * height]
+        let (strip, rows) = self.place(j);
+        &self.strips[strip][rows]
     }
 
     /// Rows j.. of column j.
     fn column_mut(&mut self, j: usize) -> &mut [f64] {
-        let begin = j / STRIP * STRIP;
-        let height = self.size - begin;
-        &mut self.strips[j / STRIP][(j - begin) * height + j - begin..(j - begin + 1) * height]
+        let (strip, rows) = self.place(j);
+        &mut self.strips[strip][rows]
     }
 }
 

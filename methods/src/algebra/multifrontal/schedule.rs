@@ -70,8 +70,7 @@ impl<'a> Pieces<'a> {
         if !threads || rayon::current_num_threads() == 1 {
             return None;
         }
-        let roots = tree.nodes.iter().filter(|s| s.parent == NONE);
-        let work = roots.map(|s| s.work).sum::<f64>();
+        let work = tree.work();
         // Supernodes of contact unknowns stand behind all others: their subtrees are no ranges.
         let light = |s: usize| s < tree.contact && tree.nodes[s].work <= GRAIN * work;
         let first = (0..tree.nodes.len()).map(|s| match tree.nodes[s].parent {

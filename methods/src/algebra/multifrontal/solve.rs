@@ -8,9 +8,9 @@ use faer::linalg::triangular_solve::{
 };
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, Par};
-use rayon::prelude::*;
 
 use crate::algebra::multifrontal::Cholesky;
+use crate::algebra::strips::{column_strips, for_all};
 
 /// Entries of L from which threads are worth it.
 const WORTH_THREADS: usize = 1_000_000;
@@ -68,16 +68,8 @@ impl Cholesky {
 
     /// X := (L Lᵀ)⁻¹ X.
     pub fn solve_columns(&self, x: &mut Mat<f64>) {
-        let (mut blocks, mut rest) = (Vec::new(), x.as_mut());
-        while rest.ncols() > 0 {
-            let width = rest.ncols().min(TOGETHER);
-            let (block, others) = rest.split_at_col_mut(width);
-            blocks.push(block);
-            rest = others;
-        }
-        blocks
-            .into_par_iter()
-            .for_each(|block| self.solve_block(block));
+        let blocks = column_strips(x.as_mut(), TOGETHER);
+        for_all(blocks, true, |(_, block)| self.solve_block(block));
     }
 
     fn solve_block(&self, mut x: MatMut<'_, f64>) {

@@ -70,7 +70,7 @@ fn shuffled(n: usize, step: usize, random: &mut Random) -> (Vec<usize>, Vec<bool
     (order, (0..n).map(|j| j % step == 0).collect())
 }
 
-fn factor(k: &SymmetricMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky, Fault>) {
+fn factor(k: &SymmetricMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky, Failure>) {
     let Analysis {
         ordering,
         tree,
@@ -233,7 +233,7 @@ fn the_first_column_without_a_positive_pivot_is_named() {
     let k = SymmetricMatrix::new(n, k.col_ptr().to_vec(), k.row_idx().to_vec(), values).unwrap();
     let order: Vec<usize> = (0..n).collect();
     let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order, &vec![false; n]));
-    let Err(Fault::NotPositive(column)) = cholesky.map(|_| ()) else {
+    let Err(Failure::NotPositive(column)) = cholesky.map(|_| ()) else {
         panic!("a factor of an indefinite matrix");
     };
     // By then both unknowns of the first pair are eliminated, and nothing of the second.

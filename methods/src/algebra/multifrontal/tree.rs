@@ -61,6 +61,12 @@ impl AssemblyTree {
             .unwrap_or(0)
     }
 
+    /// Multiplications and additions of all.
+    pub fn work(&self) -> f64 {
+        let roots = self.nodes.iter().filter(|s| s.parent == NONE);
+        roots.map(|s| s.work).sum()
+    }
+
     /// Entries of L, zeros that were let in included.
     pub fn entries(&self) -> usize {
         let of = |s: &Supernode| trapezoid(s.columns.len(), s.height());
