@@ -99,6 +99,37 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
     }
 }
 
+/// Source: rounding; a plane patch test whose tip lay 1e-13 m before an edge of cells of 1 : 4 was wrong by 12 %. Goal: a tip
+/// closer to an edge than 1e-9 of it, before or behind, lies on it, in cells of any shape: the same unknowns, points and
+/// reactions.
+/// Tolerance 1e-7: what 1e-9 of a cell moves the end of a crack by, times a hundred.
+#[test]
+fn a_tip_within_rounding_of_an_edge_lies_on_it() {
+    let [p, q] = [[-1.2, -0.3], [0.5, 0.37]];
+    for cells in ["[8, 8]", "[16, 4]", "[4, 16]", "[40, 4]"] {
+        let at = |shift: f64| {
+            let end = [0, 1].map(|a| q[a] + shift * (q[a] - p[a]));
+            let text = sheared(&crack(p, end, 0.1, "branch"));
+            let found = solve_with(&text.replace("[8, 8]", cells), METHOD, 1e-9);
+            let counts = [true, false].map(|branch| count(&found.body, branch));
+            let reactions = [0, 1].map(|a| found.reaction("top", a));
+            (counts, found.body.points.len(), reactions)
+        };
+        let on = at(0.0);
+        for exponent in -16..=-10 {
+            for side in [-1.0, 1.0] {
+                let beside = at(side * 10f64.powi(exponent) * 0.2);
+                assert_eq!(
+                    (beside.0, beside.1),
+                    (on.0, on.1),
+                    "{cells} {side}e{exponent}"
+                );
+                assert_below(relative_difference(&beside.2, &on.2), 1e-7, cells);
+            }
+        }
+    }
+}
+
 /// Source: superposition of separate bodies. Goal: three cracks one above the other are numbered, placed and solved each
 /// on its own: points come in case order, equal cracks far apart carry equal forces, the order in the file does not
 /// matter to the answer.

@@ -19,7 +19,7 @@ impl Row for CauseRow {
     const NAME: &'static str = "stress_causes";
     const TITLE: &'static str = "Random scenes by what became of them";
     const QUESTION: &'static str = "How often does the program fail, and why?";
-    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells). `no equilibrium`: no force within the cones of friction balances the load on a floating piece, as a certificate proves. `floor of the arithmetic`: solved, with an error up to 1e-6 that is another one in other units of length.";
+    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells). `no equilibrium`: no force within the cones of friction balances the load on a floating piece, as a certificate proves; `limit of friction`: the same for nine tenths of the friction, and no exact method finds an answer. `floor of the arithmetic`: solved, with an error up to 1e-6 that is another one in other units of length.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,

@@ -17,6 +17,7 @@ use crate::run::record::{Results, RunRow};
 use crate::run::registry::methods;
 use crate::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
 use crate::run::verdict::Verdict;
+use stickslip_methods::Status;
 
 /// Name of the file, as errors tell it.
 pub const FILE: &str = "scene.toml";
@@ -134,6 +135,12 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
             trial.cause = Some(Cause::SeveralSolutions);
         }
     }
+    let missed = |t: &&mut Trial| t.cause > Some(Cause::NoEquilibrium);
+    if trials.iter_mut().filter(|t| t.exact).all(|t| missed(&t)) && is_at_limit(&case) {
+        for trial in trials.iter_mut().filter(missed) {
+            trial.cause = Some(Cause::FrictionLimit);
+        }
+    }
     let mut finding = Finding {
         cause: None,
         reason: String::new(),
@@ -159,9 +166,8 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
     if let Some(cause) = trials[0].cause.filter(|c| *c > Cause::Beyond) {
         seen.push((cause, format!("{DEFAULT}: {}", main.verdict)));
     }
-    let jump = main
-        .reference_jump_m
-        .max(quantity("max_gap").unwrap_or(0.0));
+    let jumps = ["max_gap", "max_slip"].map(|name| quantity(name).unwrap_or(0.0));
+    let jump = jumps.into_iter().fold(main.reference_jump_m, f64::max);
     let answer = Base::new(scene, &case, &base, quantity, jump);
     match &scene.truth {
         _ if !solved => {}
@@ -208,6 +214,23 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         (finding.cause, finding.reason) = (Some(cause), reason);
     }
     finding
+}
+
+/// Whether a little less friction bears the load no more, as a certificate proves.
+///
+/// The certificate is that of limit analysis: no force at all within the cones of friction balances the load. Slip that does
+/// not open asks for more than such forces (Coulomb's law is not associated), so answers end above the friction at which the
+/// forces do.
+fn is_at_limit(case: &Case) -> bool {
+    /// By so much less: a body of three planes has forces from 0.96 of its friction on, and answers from 1.03.
+    const LESS: f64 = 0.9;
+    let mut weaker = case.clone();
+    for crack in &mut weaker.cracks {
+        crack.friction *= LESS;
+    }
+    let results = Choice::parse("interior-point").map(|choice| run(&weaker, &[choice]));
+    let none = Verdict::GaveUp(Status::NoEquilibrium);
+    results.is_ok_and(|own| own.is_ok_and(|r| r.runs.iter().any(|row| row.verdict == none)))
 }
 
 /// −Σ P_t · Δd over all increments and contact points of the default method: what friction took.

@@ -39,6 +39,8 @@ pub enum Cause {
     Beyond,
     /// No contact force within the cones of friction balances the load on a floating piece, as a certificate proves.
     NoEquilibrium,
+    /// No method found an answer, and nine tenths of the friction prove to have none: what friction can bear ends here.
+    FrictionLimit,
     /// Two exact methods found different answers that both hold: there are several.
     SeveralSolutions,
     /// A matrix of the method cannot be factored: its tangent is singular.
@@ -79,6 +81,7 @@ impl Cause {
             Self::Refused => "refused",
             Self::Beyond => "beyond the mesh",
             Self::NoEquilibrium => "no equilibrium",
+            Self::FrictionLimit => "limit of friction",
             Self::SeveralSolutions => "several solutions",
             Self::SingularTangent => "singular tangent",
             Self::Cycling => "cycling",

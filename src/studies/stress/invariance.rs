@@ -38,7 +38,7 @@ pub struct Base<'a> {
 }
 
 impl<'a> Base<'a> {
-    /// `quantity`: by name; `jump`: the largest jump or displacement [m].
+    /// `quantity`: by name; `jump`: the largest jump [m].
     pub fn new(
         scene: &'a Scene,
         case: &'a Case,

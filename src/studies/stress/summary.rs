@@ -188,8 +188,8 @@ pub fn methods(findings: &[Finding]) -> Vec<MethodRow> {
         }
     }
     let row = |((dimension, method), own): ((usize, &str), Vec<(&Finding, &Trial)>)| {
-        let none = [Some(Cause::Declined), Some(Cause::NoEquilibrium)];
-        let tried = |(_, t): &&(&Finding, &Trial)| !none.contains(&t.cause);
+        let none = [Cause::Declined, Cause::NoEquilibrium, Cause::FrictionLimit];
+        let tried = |(_, t): &&(&Finding, &Trial)| t.cause.is_none_or(|c| !none.contains(&c));
         let own: Vec<_> = own.iter().filter(tried).collect();
         let done: Vec<_> = own.iter().filter(|(_, t)| t.cause.is_none()).collect();
         let largest =

@@ -322,11 +322,6 @@ impl Division {
             return Err(PartitionError::Muddle);
         }
         let beyond = chain.vertices.len();
-        if norm(&sub(&hit, &tip)) <= HERE * self.size {
-            // It ends on the border.
-            chain.vertices[beyond - 1] = hit;
-            return self.cut(&chain, beyond);
-        }
         if let Some(&(arm, side)) = chain.arms.last() {
             chain.arms.push((arm, side));
         }

@@ -235,18 +235,26 @@ impl Trace {
             let nearest = stops.iter().copied().min_by(|a, b| at(a).total_cmp(&at(b)));
             if arm.ends[k] == End::Free {
                 let size = |stop: &Stop| stop.vertex.nodes.map_or(0.0, |[i, _]| near.sizes[&i]);
-                free[k] = nearest.is_none_or(|stop| at(&stop) > TIP_ON_EDGE * size(&stop));
-                if free[k] {
-                    let vertex = ChainVertex {
+                let here = nearest.filter(|stop| at(stop) <= TIP_ON_EDGE * size(stop));
+                free[k] = here.is_none();
+                let end = here.unwrap_or(Stop {
+                    s: vertex.s,
+                    vertex: ChainVertex {
                         x: vertex.x,
                         nodes: None,
-                    };
-                    stops.push(Stop {
-                        s: [first, last][k].s,
-                        vertex,
-                    });
-                } else if let Some(stop) = nearest {
-                    self.add_tip(near, [index, k], &stop, stop.s);
+                    },
+                });
+                stops.retain(|stop| {
+                    if k == 0 {
+                        stop.s >= end.s
+                    } else {
+                        stop.s <= end.s
+                    }
+                });
+                if free[k] {
+                    stops.push(end);
+                } else {
+                    self.add_tip(near, [index, k], &end, end.s);
                 }
                 continue;
             }
@@ -338,6 +346,9 @@ impl Trace {
     /// Where an arm crosses edges and nodes, each place once.
     fn stops(&mut self, near: &Near<'_>, arm: &Crack) -> Vec<Stop> {
         let mut stops: Vec<Stop> = Vec::new();
+        let (Some(first), Some(last)) = (arm.path.first(), arm.path.last()) else {
+            return stops;
+        };
         for w in arm.path.windows(2) {
             let [a, b]: [PathVertex; 2] = [w[0], w[1]];
             let tangent = unit(&sub(&b.x, &a.x));
@@ -347,9 +358,16 @@ impl Trace {
                 snapped(phi, near.tolerance(node))
             };
             let along = |x: &Point| dot(&tangent, &sub(x, &a.x));
+            // Beyond a free end too: what lies that close before an edge lies on it, as behind it.
+            let reach = |nodes: [u32; 2], end: bool, kind: End| match kind {
+                End::Free if end => TIP_ON_EDGE * near.sizes[&nodes[0]],
+                _ => near.edge_tolerance(nodes),
+            };
             let mut push = |trace: &mut Self, nodes: [u32; 2], x: &Point| {
-                let (t, slack) = (along(x), near.edge_tolerance(nodes));
-                if t >= -slack && t <= length + slack {
+                let t = along(x);
+                let before = reach(nodes, a.s == first.s, arm.ends[0]);
+                let beyond = reach(nodes, b.s == last.s, arm.ends[1]);
+                if t >= -before && t <= length + beyond {
                     let vertex = trace.vertex(near, nodes, x);
                     // A chord is shorter than its arc.
                     let s = a.s + t / length * (b.s - a.s);
@@ -362,7 +380,7 @@ impl Trace {
             });
             for &[i, j] in &near.edges {
                 let (p, q) = (near.at(i), near.at(j));
-                let slack = near.edge_tolerance([i, j]);
+                let slack = TIP_ON_EDGE * near.sizes[&i];
                 let apart =
                     |c: usize| p[c].max(q[c]) < low[c] - slack || p[c].min(q[c]) > high[c] + slack;
                 if apart(0) || apart(1) {
