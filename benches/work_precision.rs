@@ -17,7 +17,8 @@ use std::time::{Instant, SystemTime};
 
 use common::scene::Scene;
 use common::{
-    ALL_METHODS, EXACT, PREPARE, PROBLEMS, Problem, SOLVE, STAGES, one_thread, runs_all_methods,
+    ALL_METHODS, ENFORCEMENT, EXACT, PREPARE, PROBLEMS, Problem, STAGES, one_thread,
+    runs_all_methods,
 };
 use stickslip::report::page;
 use stickslip::report::sweep;
@@ -243,7 +244,7 @@ fn expected(problems: &[Problem]) -> Result<Vec<Expected>, Box<dyn Error>> {
         for choice in &choices {
             let verdict = scene.judge(choice);
             if verdict.is_honest() {
-                for stage in [PREPARE, SOLVE] {
+                for stage in [PREPARE, ENFORCEMENT] {
                     let name = problem.enforcement(stage, choice.method.name);
                     expect(name, Some(verdict.clone()), enforcement);
                 }

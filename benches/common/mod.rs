@@ -22,7 +22,7 @@ pub const STAGES: [&str; 4] = [MESH_TO_SYSTEM, ASSEMBLY, FACTORISATION, CONDENSA
 
 /// Stages of a method.
 pub const PREPARE: &str = "prepare";
-pub const SOLVE: &str = "solve";
+pub const ENFORCEMENT: &str = "enforcement";
 
 /// The exact method that follows load paths and stands for all of them from case file to judged result.
 pub const EXACT: &str = "hybrid";

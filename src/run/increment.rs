@@ -35,9 +35,19 @@ pub struct Work {
     /// Preparation of the method, counted with the first increment [s].
     pub prepare_s: f64,
     /// What the method took, without what it shares with others [s].
-    pub solve_s: f64,
+    pub solve: Seconds,
     /// Whether the traction operator was needed.
     pub traction: bool,
+}
+
+/// Seconds of a call, without the factorisation and condensation that all runs on a body share.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Seconds {
+    /// All.
+    pub total_s: f64,
+    /// Enforcement: all but load solves, recovery of displacements and checks of equilibrium, which cost the same whatever
+    /// the method.
+    pub enforcement_s: f64,
 }
 
 /// An outcome with what the judge found.
@@ -70,23 +80,23 @@ impl<'a> Solver<'a> {
         if let Some(reason) = method.refuses(system) {
             return Err(Verdict::Refused(reason));
         }
-        let (prepared, prepare_s) = timed(system, || method.prepare(system));
+        let (prepared, prepare) = timed(system, || method.prepare(system));
         prepared?;
         Ok(Self {
             system,
             method,
-            prepare_s,
+            prepare_s: prepare.total_s,
         })
     }
 
     /// Solves an increment, unjudged: what the method returned and its seconds.
-    pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, f64) {
+    pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, Seconds) {
         timed(self.system, || self.method.solve(increment, &mut Silent))
     }
 
     /// Solves an increment and judges the outcome against the violation accepted.
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
-        let (solved, solve_s) = self.solve(increment);
+        let (solved, solve) = self.solve(increment);
         let judged = solved.and_then(|mut outcome| {
             // What nothing can balance is no fault of the method.
             if outcome.status != Status::Converged && unbalanced(increment)? {
@@ -114,7 +124,7 @@ impl<'a> Solver<'a> {
                 factorisation_s: shared.analysis_s + shared.factorisation_s,
                 condensation_s: shared.condensation_s + traction_s,
                 prepare_s: std::mem::take(&mut self.prepare_s),
-                solve_s,
+                solve,
                 traction,
             }),
             judged,
@@ -169,7 +179,8 @@ impl JudgedIncrement {
             factorisation_s: time(|work| work.factorisation_s),
             condensation_s: time(|work| work.condensation_s),
             prepare_s: time(|work| work.prepare_s),
-            solve_s: time(|work| work.solve_s),
+            solve_s: time(|work| work.solve.total_s),
+            enforcement_s: time(|work| work.solve.enforcement_s),
             equilibrium: found(|f| f.equilibrium),
             claimed_equilibrium: found(|f| f.claimed_equilibrium),
             claimed: found(|f| f.claimed),
@@ -208,14 +219,22 @@ impl JudgedIncrement {
     }
 }
 
-/// Seconds a call took, less the time the shared factorisation and condensation took inside it.
-fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, f64) {
-    let shared = || {
+/// Calls something by the clock.
+fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, Seconds) {
+    let with_k = || {
         let t = system.elastic().timings();
-        t.analysis_s + t.factorisation_s + t.condensation_s + t.traction_s
+        let shared = t.analysis_s + t.factorisation_s + t.condensation_s + t.traction_s;
+        [shared, t.solving_s]
     };
-    let (before, clock) = (shared(), Instant::now());
+    let (before, clock) = (with_k(), Instant::now());
     let value = call();
-    let seconds = clock.elapsed().as_secs_f64() - (shared() - before);
-    (value, seconds.max(0.0))
+    let elapsed = clock.elapsed().as_secs_f64();
+    let after = with_k();
+    let total_s = (elapsed - (after[0] - before[0])).max(0.0);
+    let enforcement_s = (total_s - (after[1] - before[1])).max(0.0);
+    let seconds = Seconds {
+        total_s,
+        enforcement_s,
+    };
+    (value, seconds)
 }

@@ -79,6 +79,8 @@ pub struct RunRow {
     pub prepare_s: f64,
     /// Method's solve of this increment [s].
     pub solve_s: f64,
+    /// Of these, without load solve, recovery of displacements and checks of equilibrium [s].
+    pub enforcement_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
     /// The same with the consistency term that the method claims; `equilibrium` where it claims none [-].
@@ -123,6 +125,7 @@ impl RunRow {
             &mut self.condensation_s,
             &mut self.prepare_s,
             &mut self.solve_s,
+            &mut self.enforcement_s,
         ] {
             *time = f64::NAN;
         }

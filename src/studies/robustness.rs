@@ -86,7 +86,7 @@ pub struct Trial {
     pub iterations: usize,
     /// Factorisations inside the iteration, dense or sparse.
     pub factorisations: usize,
-    /// Time of the solve in s; NaN unless the machine did nothing else.
+    /// Time of the enforcement in s; NaN unless the machine did nothing else.
     pub solve_s: f64,
     /// Whether every contact point alone has exactly one solution: [`contact_wise_margin`] > 0.
     pub unique: bool,
@@ -350,7 +350,7 @@ fn run_body(
                     factorisations: outcome
                         .map_or(0, |c| c.factorisations + c.global_factorisations),
                     solve_s: (tried.work.filter(|_| plan.jobs == 1))
-                        .map_or(f64::NAN, |work| work.solve_s),
+                        .map_or(f64::NAN, |work| work.solve.enforcement_s),
                     unique,
                     points: body.points.len(),
                     statuses: [PointStatus::Open, PointStatus::Stick, PointStatus::Slip].map(count),

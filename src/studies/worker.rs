@@ -125,13 +125,14 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Has one request answered; where the worker dies of it, by the verdict on that.
+    /// Has one request answered, in the time of so many; where the worker dies of it, by the verdict on that.
     ///
     /// # Errors
     /// [`WorkerError`].
     pub fn ask<Q: Serialize, A: DeserializeOwned>(
         &mut self,
         request: &Q,
+        many: usize,
     ) -> Result<Result<A, Verdict>, WorkerError> {
         let mut running = match self.running.take() {
             Some(running) => running,
@@ -144,7 +145,7 @@ impl<'a> Worker<'a> {
             .input
             .write_all(&line)
             .and_then(|()| running.input.flush());
-        let limit = Duration::from_secs_f64(self.limits.seconds);
+        let limit = Duration::from_secs_f64(self.limits.seconds * many as f64);
         let verdict = match running.lines.recv_timeout(limit) {
             Ok(line) => match serde_json::from_str(&line) {
                 Ok(answer) => {

@@ -213,7 +213,8 @@ fn bits(results: &Results) -> String {
     let mut results = results.clone();
     for r in &mut results.runs {
         (r.setup_s, r.assembly_s, r.factorisation_s) = (0.0, 0.0, 0.0);
-        (r.condensation_s, r.prepare_s, r.solve_s) = (0.0, 0.0, 0.0);
+        (r.condensation_s, r.prepare_s) = (0.0, 0.0);
+        (r.solve_s, r.enforcement_s) = (0.0, 0.0);
     }
     format!("{results:?}")
 }

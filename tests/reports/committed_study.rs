@@ -5,7 +5,7 @@ use std::path::Path;
 
 use stickslip::run::choice::Choice;
 use stickslip::studies::sweep::measure::Bench;
-use stickslip::studies::sweep::measure::{Repeats, measure};
+use stickslip::studies::sweep::measure::measure;
 use stickslip::studies::sweep::plan::Plan;
 
 fn root(path: &str) -> std::path::PathBuf {
@@ -53,7 +53,7 @@ fn the_committed_numbers_of_the_plate_are_found_again() {
     let held = |id: &str| plate(id) && committed.contains_key(id);
     for task in plan.tasks.iter().filter(|task| held(&task.id)) {
         let choice = Choice::parse(&task.cell.method).unwrap();
-        let record = measure(&mut bench, &task.cell, &task.text, &choice, Repeats::NONE).unwrap();
+        let record = measure(&mut bench, &task.cell, &task.text, &choice).unwrap();
         let (row, found) = (&committed[&task.id], &record.found);
         assert_eq!(row["verdict"], found.verdict.to_string(), "{}", task.id);
         let number = |column: &str| row[column].parse::<f64>().unwrap();

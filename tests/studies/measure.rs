@@ -9,7 +9,7 @@ use stickslip::run::run_case::friction_values;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::measure::Bench;
-use stickslip::studies::sweep::measure::{Repeats, measure};
+use stickslip::studies::sweep::measure::{Repeats, in_turn, measure};
 use stickslip::studies::sweep::record::Record;
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Silent,
@@ -40,7 +40,18 @@ fn cell(case: &str, friction: usize, method: &str, tolerance: f64) -> (Cell, Str
 fn measured(bench: &mut Bench, case: &str, method: &str, tolerance: f64) -> Record {
     let (cell, text) = cell(case, 0, method, tolerance);
     let choice = Choice::parse(method).unwrap();
-    measure(bench, &cell, &text, &choice, REPEATS).unwrap()
+    timed(bench, &cell, &text, choice)
+}
+
+/// A cell, and its times if it has an honest answer.
+fn timed(bench: &mut Bench, cell: &Cell, text: &str, choice: Choice) -> Record {
+    let record = measure(bench, cell, text, &choice).unwrap();
+    if !record.found.verdict.is_honest() {
+        return record;
+    }
+    let own = std::slice::from_ref(cell);
+    let times = in_turn(bench, own, &[choice], text, REPEATS).unwrap();
+    record.retimed(times.into_iter().next().unwrap())
 }
 
 /// A method that runs another one and spoils its answer.
@@ -111,7 +122,7 @@ fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
     let mut bench = Bench::default();
     let choice = Choice::new(&LIAR, &[]).unwrap();
     let (cell, text) = cell("plate_mesh1", 0, "liar", 1e-3);
-    let mut lie = measure(&mut bench, &cell, &text, &choice, REPEATS).unwrap();
+    let mut lie = timed(&mut bench, &cell, &text, choice);
     assert_eq!(lie.found.verdict, Verdict::FalseClaim);
     assert_eq!(lie.found.increments[0].verdict, Verdict::FalseClaim);
     assert_eq!((&lie.spent, &lie.found.solver_error), (&None, &None));
@@ -141,7 +152,7 @@ fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
 fn a_method_that_answers_differently_when_asked_again_is_caught() {
     let choice = Choice::new(&FORGETFUL, &[]).unwrap();
     let (cell, text) = cell("plate_mesh1", 0, "forgetful", 1e-6);
-    let record = measure(&mut Bench::default(), &cell, &text, &choice, REPEATS).unwrap();
+    let record = timed(&mut Bench::default(), &cell, &text, choice);
     let verdict = &record.found.verdict;
     assert!(
         matches!(verdict, Verdict::Crashed(why) if why.contains("other bits")),
@@ -194,4 +205,26 @@ fn what_was_found_is_the_same_whoever_was_measured_before() {
     let spent = after.spent.unwrap();
     assert_eq!((spent.solve.samples, spent.prepare.samples), (7, 7));
     assert!(spent.solve.min_s > 0.0 && spent.solve.median_s >= spent.solve.min_s);
+    let (all, own) = (&spent.solve, &spent.enforcement);
+    assert!(own.min_s > 0.0 && own.median_s < all.median_s && own.samples == 7);
+}
+
+/// Goal: in turn, one method that answers differently the second time leaves the times of the others alone.
+#[test]
+fn methods_are_timed_in_turn() {
+    let (mut cells, mut text) = (Vec::new(), String::new());
+    for name in ["hybrid", "forgetful", "nsgs"] {
+        let (own, case) = cell("plate_mesh1", 0, name, 1e-6);
+        cells.push(own);
+        text = case;
+    }
+    let own = |name| Choice::parse(name).unwrap();
+    let forgetful = Choice::new(&FORGETFUL, &[]).unwrap();
+    let choices = [own("hybrid"), forgetful, own("nsgs")];
+    let times = in_turn(&mut Bench::default(), &cells, &choices, &text, REPEATS).unwrap();
+    let samples: Vec<Option<usize>> = times
+        .iter()
+        .map(|own| own.as_ref().ok().map(|times| times.enforcement.samples))
+        .collect();
+    assert_eq!(samples, [Some(7), None, Some(7)]);
 }

@@ -1,6 +1,6 @@
 //! The elastic body: K, B and the rigid motions, factored once and condensed once, whatever happens at the contact.
 
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
@@ -49,7 +49,7 @@ pub struct ElasticCounters {
     pub condensations: usize,
 }
 
-/// Wall-clock times of the work shared by all runs on the body, in s; 0 for work not done.
+/// Wall-clock times of work with K, in s; 0 for work not done. All but the last are shared by all runs on the body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ElasticTimings {
     /// Elimination order and symbolic factorisation.
@@ -60,6 +60,9 @@ pub struct ElasticTimings {
     pub condensation_s: f64,
     /// Condensation of the traction operator, for the methods that need it.
     pub traction_s: f64,
+    /// Solves with the factor of all runs so far, and their checks of equilibrium: from loads to displacements, and from
+    /// contact forces back to them.
+    pub solving_s: f64,
 }
 
 /// The elastic body, shared by all systems on it through an [`Arc`]. The factor of K and the Delassus operator are
@@ -77,6 +80,7 @@ pub struct Elastic {
     condensed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
     tractions: OnceLock<Result<(Arc<Tractions>, f64), MethodError>>,
     solves: AtomicUsize,
+    solving_ns: AtomicU64,
     products: AtomicUsize,
 }
 
@@ -182,6 +186,7 @@ impl Elastic {
             condensed: OnceLock::new(),
             tractions: OnceLock::new(),
             solves: AtomicUsize::new(0),
+            solving_ns: AtomicU64::new(0),
             products: AtomicUsize::new(0),
         }
     }
@@ -251,6 +256,7 @@ impl Elastic {
             factorisation_s,
             condensation_s: condensed.map_or(0.0, |c| c.1),
             traction_s: tractions.map_or(0.0, |t| t.1),
+            solving_s: 1e-9 * self.solving_ns.load(Relaxed) as f64,
         }
     }
 
@@ -269,14 +275,23 @@ impl Elastic {
     /// Wrong length; the errors of the first factorisation.
     pub fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
         check_len("right-hand side", x.len(), self.unknowns())?;
-        self.stiffness.solve(x)?;
+        self.factorise()?;
         self.solves.fetch_add(1, Relaxed);
-        Ok(())
+        self.timed(|| self.stiffness.solve(x))
+    }
+
+    /// Counts the time of a call as that of solves with the factor.
+    fn timed<T>(&self, call: impl FnOnce() -> T) -> T {
+        let clock = Instant::now();
+        let value = call();
+        let spent = u64::try_from(clock.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.solving_ns.fetch_add(spent, Relaxed);
+        value
     }
 
     /// Backward error of equilibrium between displacements and the sum of some forces.
     pub(crate) fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
-        self.stiffness.imbalance(u, forces)
+        self.timed(|| self.stiffness.imbalance(u, forces))
     }
 
     /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.

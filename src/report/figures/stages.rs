@@ -22,13 +22,14 @@ pub static KIND: Kind = Kind {
 };
 
 /// Stages in the order in which they come, with their tints, no two of one lightness.
-const STAGES: [(&str, Rgb); 7] = [
+const STAGES: [(&str, Rgb); 8] = [
     ("setup", [235, 235, 235]),
     ("assembly", [86, 180, 233]),
     ("factorisation", [0, 114, 178]),
     ("condensation", [240, 228, 66]),
     ("prepare", [213, 94, 0]),
-    ("solve", [30, 30, 30]),
+    ("solves with K", [204, 121, 167]),
+    ("enforcement", [30, 30, 30]),
     ("output", [255, 255, 255]),
 ];
 
@@ -94,7 +95,7 @@ fn figure(group: &[Timed<'_>], records: &[Record], caveat: &str) -> Figure {
             .collect();
     }
     let title = bars[0].last().map_or(String::new(), |(label, stages)| {
-        let most = least(0..7, |i| -stages[*i]).unwrap_or(0);
+        let most = least(0..STAGES.len(), |i| -stages[*i]).unwrap_or(0);
         let share = fixed(100.0 * stages[most] / stages.iter().sum::<f64>(), 0);
         let (stage, label) = (STAGES[most].0, plain(label));
         format!("On the finest mesh, {stage} takes {share} % of the time ({label})")
@@ -122,13 +123,14 @@ fn figure(group: &[Timed<'_>], records: &[Record], caveat: &str) -> Figure {
 }
 
 /// Label and seconds of the stages.
-type Bar = (String, [f64; 7]);
+type Bar = (String, [f64; 8]);
 
-fn stages((record, spent): &Timed<'_>, records: &[Record]) -> [f64; 7] {
+fn stages((record, spent): &Timed<'_>, records: &[Record]) -> [f64; 8] {
     let own = [spent.setup_s, spent.assembly_s, spent.factorisation_s];
     let [a, b, c] = body_times(record, records).unwrap_or(own);
-    let [d, e] = [&spent.prepare, &spent.solve].map(|timing| timing.median_s);
-    let all = [a, b, c, spent.condensation_s, d, e, spent.output_s];
+    let timings = [&spent.prepare, &spent.solve, &spent.enforcement];
+    let [d, all, f] = timings.map(|timing| timing.median_s);
+    let all = [a, b, c, spent.condensation_s, d, all - f, f, spent.output_s];
     all.map(|seconds| {
         if seconds.is_finite() {
             seconds.max(0.0)

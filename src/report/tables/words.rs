@@ -25,6 +25,7 @@ pub const ASSEMBLY_S: &str = "assembly of K, once per mesh";
 pub const FACTORISATION_S: &str = "factorisation of K, once per mesh";
 pub const CONDENSATION_S: &str = "condensation to the contact points, once per mesh; for methods that need it with that of the traction operator";
 pub const PREPARE_S: &str = "preparation of the method";
+pub const ENFORCEMENT_S: &str = "of these enforcement, from the free jump and W to the contact forces: without load solves, recovery of displacements and checks of equilibrium, which cost the same whatever the method";
 pub const AT: &str = "place: a side, a probe, a crack (`crack-1`), or empty";
 pub const COMPONENT: &str = "`x`, `y`, `z`, `n`, `a`, `b`, or empty";
 pub const DIMENSION: &str = "space dimension, 2 or 3";

@@ -226,7 +226,7 @@ fn line(finding: &Finding) -> String {
 
 /// Examines a scene in a worker.
 fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
-    Ok(match worker.ask::<Scene, Finding>(scene)? {
+    Ok(match worker.ask::<Scene, Finding>(scene, 1)? {
         Ok(finding) => finding,
         Err(Verdict::TimedOut) => {
             let limit = format!("no answer in {} s", LIMITS.seconds);

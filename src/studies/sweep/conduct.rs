@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::analysis::is_honest;
 use super::cell::Cell;
-use super::measure::{Bench, Repeats, measure};
+use super::measure::{Bench, MeasureError, Repeats, in_turn, measure};
 use super::plan::Task;
-use super::record::{Found, Limits, Origin, Record, SCHEMA};
+use super::record::{Found, Limits, Origin, Record, SCHEMA, Times};
 use super::store::{Store, StoreError};
 use crate::run::choice::Choice;
 use crate::run::run_case::Progress;
@@ -19,30 +19,49 @@ use crate::studies::worker::{Worker, WorkerError, share};
 /// What makes the program a worker that measures cells.
 const WORK: &[&str] = &["work"];
 
-/// One cell to measure.
+/// What a worker is asked for.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Request {
-    /// The cell.
-    pub cell: Cell,
-    /// Its case file.
+    /// Cells that differ in the method alone.
+    pub cells: Vec<Cell>,
+    /// Their case file.
     pub text: String,
-    /// How often to repeat it.
-    pub repeats: Repeats,
+    /// None: to measure the one cell. Else to time all in turn, which have an honest answer each.
+    pub repeats: Option<Repeats>,
 }
 
-/// The worker's side: measures a cell. The verdict tells that the case, its discretisation or its method cannot be used.
+/// What a worker answers.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Answer {
+    /// A cell, measured.
+    Measured(Box<Record>),
+    /// Times by cell, or what a method did wrong.
+    Timed(Vec<Result<Times, Verdict>>),
+}
+
+/// The worker's side. The verdict tells that the case, its discretisation or its method cannot be used.
 ///
 /// # Errors
 /// As a verdict.
-pub fn answer(bench: &mut Bench, request: &Request) -> Result<Box<Record>, Verdict> {
+pub fn answer(bench: &mut Bench, request: &Request) -> Result<Answer, Verdict> {
     let Request {
-        cell,
+        cells,
         text,
         repeats,
     } = request;
-    let choice = Choice::parse(&cell.method).map_err(Into::into);
-    let measured = choice.and_then(|choice| measure(bench, cell, text, &choice, *repeats));
-    measured.map(Box::new).map_err(Into::into)
+    let choices = cells.iter().map(|cell| Choice::parse(&cell.method));
+    let choices: Vec<Choice> = choices
+        .collect::<Result<_, _>>()
+        .map_err(MeasureError::from)?;
+    let done = match (repeats, cells.as_slice(), choices.as_slice()) {
+        (None, [cell], [choice]) => {
+            let measured = measure(bench, cell, text, choice);
+            measured.map(|record| Answer::Measured(Box::new(record)))
+        }
+        (Some(repeats), ..) => in_turn(bench, cells, &choices, text, *repeats).map(Answer::Timed),
+        (None, ..) => return Err(Verdict::Crashed("one cell is measured at a time".into())),
+    };
+    done.map_err(Into::into)
 }
 
 /// How the cells are measured.
@@ -136,7 +155,6 @@ pub fn conduct(
     let origin = Origin::here();
     // Times of cells that share the machine mean nothing, so none are taken.
     let timed = how.timed && how.jobs == 1;
-    let repeats = if timed { repeats } else { Repeats::NONE };
     let own = how.shard.cells(tasks);
     let mut left = Vec::new();
     for task in &own {
@@ -161,11 +179,27 @@ pub fn conduct(
 
     let done = AtomicUsize::new(0);
     let worker = || Worker::new(how.program, WORK, how.limits);
-    share(&left, how.jobs, how.stop, worker, |worker, task| {
-        let record = one(task, repeats, how.limits, worker, &origin)?;
-        store.put(&record)?;
-        done.fetch_add(1, Ordering::SeqCst);
-        progress.done(&line(&record));
+    let groups = in_groups(left.clone());
+    share(&groups, how.jobs, how.stop, worker, |worker, group| {
+        let mut records = Vec::new();
+        for task in group {
+            if how.stop.load(Ordering::SeqCst) {
+                return Ok(());
+            }
+            let mut record = one(task, how.limits, worker, &origin)?;
+            // None until they are taken in turn, so that a run that ends here goes on with this cell.
+            let spent = record.spent.take().filter(|_| timed);
+            store.put(&record)?;
+            done.fetch_add(1, Ordering::SeqCst);
+            record.spent = spent;
+            progress.done(&line(&record));
+            records.push(record);
+        }
+        records.retain(|record| timed && is_honest(record));
+        for mut record in with_times(records, &group[0].text, repeats, worker)? {
+            record.limits = limits_of(&record, how.limits);
+            store.put(&record)?;
+        }
         Ok::<(), ConductError>(())
     })?;
     Ok(Conducted {
@@ -177,22 +211,85 @@ pub fn conduct(
 
 const REMEDY: &str = "choose another folder, or --redo to measure such cells again";
 
+/// Cells of one problem, tolerance and body: methods that need more of it stand apart.
+fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<&Task>> {
+    let traction = |task: &Task| {
+        let choice = Choice::parse(&task.cell.method);
+        choice.is_ok_and(|choice| choice.needs_traction())
+    };
+    // Neighbouring groups have the same body.
+    let key = |task: &&Task| {
+        let Cell {
+            case,
+            digest,
+            refine,
+            space,
+            friction,
+            tolerance,
+            ..
+        } = &task.cell;
+        let problem = (case.clone(), digest.clone(), *refine, space.clone());
+        let coefficients: Vec<u64> = friction.iter().map(|mu| mu.to_bits()).collect();
+        (problem, traction(task), coefficients, tolerance.to_bits())
+    };
+    tasks.sort_by_cached_key(key);
+    let same = |a: &&Task, b: &&Task| key(a) == key(b);
+    tasks.chunk_by(same).map(<[&Task]>::to_vec).collect()
+}
+
+/// Honest records of one group with their times. Where the worker dies of them all, each is tried by itself.
+fn with_times(
+    records: Vec<Record>,
+    text: &str,
+    repeats: Repeats,
+    worker: &mut Worker<'_>,
+) -> Result<Vec<Record>, WorkerError> {
+    let request = Request {
+        cells: records.iter().map(|record| record.cell.clone()).collect(),
+        text: text.to_owned(),
+        repeats: Some(repeats),
+    };
+    let answer = match records.len() {
+        0 => return Ok(records),
+        many => worker.ask::<_, Result<Answer, Verdict>>(&request, many)?,
+    };
+    let verdict = match answer.and_then(|answer| answer) {
+        Ok(Answer::Timed(times)) if times.len() == records.len() => {
+            let pairs = records.into_iter().zip(times);
+            return Ok(pairs.map(|(record, own)| record.retimed(own)).collect());
+        }
+        _ if records.len() > 1 => {
+            let alone = records.into_iter().map(|record| vec![record]);
+            let each = alone.map(|record| with_times(record, text, repeats, worker));
+            return Ok(each.collect::<Result<Vec<_>, _>>()?.concat());
+        }
+        other => no_answer(other),
+    };
+    let broken = |record: Record| record.retimed(Err(verdict.clone()));
+    Ok(records.into_iter().map(broken).collect())
+}
+
+/// Why there is no answer of the kind asked for.
+fn no_answer(answer: Result<Answer, Verdict>) -> Verdict {
+    let other = || Verdict::Crashed("the worker answered what it was not asked".into());
+    answer.err().unwrap_or_else(other)
+}
+
 fn one(
     task: &Task,
-    repeats: Repeats,
     limits: Limits,
     worker: &mut Worker<'_>,
     origin: &Origin,
 ) -> Result<Record, ConductError> {
     let request = Request {
-        cell: task.cell.clone(),
+        cells: vec![task.cell.clone()],
         text: task.text.to_string(),
-        repeats,
+        repeats: None,
     };
-    let answer = worker.ask::<_, Result<Box<Record>, Verdict>>(&request)?;
+    let answer = worker.ask::<_, Result<Answer, Verdict>>(&request, 1)?;
     let mut record = match answer.and_then(|answer| answer) {
-        Ok(record) => *record,
-        Err(verdict) => {
+        Ok(Answer::Measured(record)) => *record,
+        other => {
             let choice = Choice::parse(&task.cell.method).ok();
             let label = choice.as_ref().map_or(&task.cell.method, |c| &c.label);
             let exact = choice.as_ref().is_some_and(|c| c.method.exact);
@@ -202,13 +299,18 @@ fn one(
                 cell: task.cell.clone(),
                 origin: origin.clone(),
                 limits: None,
-                found: Found::only(verdict, label.clone(), exact),
+                found: Found::only(no_answer(other), label.clone(), exact),
                 spent: None,
             }
         }
     };
-    record.limits = record.found.verdict.kind().is_limit().then_some(limits);
+    record.limits = limits_of(&record, limits);
     Ok(record)
+}
+
+fn limits_of(record: &Record, limits: Limits) -> Option<Limits> {
+    let ended = record.found.verdict.kind().is_limit();
+    ended.then_some(limits)
 }
 
 /// One line on a cell: id, verdict, and what it took.

@@ -16,7 +16,7 @@ use crate::run::verdict::Verdict;
 use crate::studies::convergence::Value;
 
 /// Version of the record files and of the tables made from them.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// One cell, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -216,15 +216,48 @@ pub struct Spent {
     pub factorisation_s: f64,
     /// Condensation to the contact points [s].
     pub condensation_s: f64,
-    /// Preparation of the method, repeated.
+    /// Preparation of the method.
     pub prepare: Timing,
-    /// All increments of the path, repeated.
+    /// All increments of the path.
     pub solve: Timing,
+    /// Of these, without load solves, recovery of displacements and checks of equilibrium.
+    pub enforcement: Timing,
     /// Tables and fields of the last increment, in memory [s].
     pub output_s: f64,
     /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
     /// not tell.
     pub peak_mb: Option<f64>,
+}
+
+/// Times of a method, taken in turn with others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// As in [`Spent`].
+    pub prepare: Timing,
+    /// As in [`Spent`].
+    pub solve: Timing,
+    /// As in [`Spent`].
+    pub enforcement: Timing,
+}
+
+impl Record {
+    /// The record with times in place of those of one pass; a method that broke on the way has none.
+    pub fn retimed(mut self, times: Result<Times, Verdict>) -> Self {
+        match times {
+            Ok(times) => {
+                if let Some(spent) = &mut self.spent {
+                    spent.prepare = times.prepare;
+                    spent.solve = times.solve;
+                    spent.enforcement = times.enforcement;
+                }
+            }
+            Err(verdict) => {
+                let Found { method, exact, .. } = self.found;
+                (self.found, self.spent) = (Found::only(verdict, method, exact), None);
+            }
+        }
+        self
+    }
 }
 
 impl Found {

@@ -90,6 +90,7 @@ fn add_run(results: &mut Results, key: RunKey) {
         condensation_s: 0.000_345_678_9,
         prepare_s: 1.234e-5,
         solve_s: 4.567_891e-4,
+        enforcement_s: 1.234e-4,
         equilibrium: 3.2e-14,
         claimed_equilibrium: 3.2e-14,
         claimed: residual(iterations),

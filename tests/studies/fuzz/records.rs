@@ -14,6 +14,7 @@ use super::{assert_clear, campaign};
 const SPENT: &str = "{\n    \"setup_s\": 0.1,\n    \"assembly_s\": 0.2,\n    \"factorisation_s\": 0.3,\n    \"condensation_s\": 0.4,\n    \
                      \"prepare\": {\"median_s\": 2e-3, \"min_s\": 1e-3, \"low_s\": 1e-3, \"high_s\": 3e-3, \"samples\": 2},\n    \
                      \"solve\": {\"median_s\": 2e-3, \"min_s\": 1e-3, \"low_s\": 1e-3, \"high_s\": 3e-3, \"samples\": 2},\n    \
+                     \"enforcement\": {\"median_s\": 2e-3, \"min_s\": 1e-3, \"low_s\": 1e-3, \"high_s\": 3e-3, \"samples\": 2},\n    \
                      \"output_s\": 0.5,\n    \"peak_mb\": 20.5\n  }";
 
 /// A study of two cells: its folder, and the files in it.
