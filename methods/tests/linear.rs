@@ -154,6 +154,7 @@ fn cracked_box(n: usize, patch: usize, floating: bool) -> ElasticParts {
         jump,
         weight,
         order,
+        free_order: Vec::new(),
         floating,
         frictionless: false,
         traction: None,

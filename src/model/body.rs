@@ -18,8 +18,8 @@ use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::material::{Dilatation, Lame};
-use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
+use stickslip_xfem::mesh::{Lengths, Mesh};
 use stickslip_xfem::stiffness::assembly::{Assembly, elimination_order};
 use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
 use stickslip_xfem::stiffness::cell_matrices::CellMatrices;
@@ -203,7 +203,8 @@ impl Body {
         }
         let jump_of_free = rows(&jump)?;
         let last = in_contact(&jump_of_free, dim, needs.frictionless);
-        let order = elimination_order(&mesh, &enrichment, &solver_numbers, &last);
+        let order = |last: &[bool]| elimination_order(&mesh, &enrichment, &solver_numbers, last);
+        let (order, free_order) = (order(&last), order(&vec![false; free]));
         setup_s += clock.elapsed().as_secs_f64() - traction_s;
         let elastic = Elastic::new(ElasticParts {
             dim,
@@ -211,6 +212,7 @@ impl Body {
             jump: jump_of_free,
             weight: points.iter().map(|p| p.weight).collect(),
             order,
+            free_order,
             floating: motions.modes,
             frictionless: needs.frictionless,
             traction: needs.traction.then(|| rows(&traction)).transpose()?,
@@ -414,25 +416,29 @@ type PlacedCracks = (Vec<Crack>, BTreeMap<usize, ContactSurface>);
 
 /// Places the cracks: those along cell facets split the mesh, the others keep a level set.
 fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError> {
+    let place = |number: usize, mesh: &Mesh, lengths: &Lengths| {
+        let spec = &case.cracks[number];
+        Crack::new(number, &spec.geometry, spec.tip, mesh, lengths)
+    };
     let mut doubled = BTreeMap::new();
-    let mut through = Vec::new();
-    for (number, spec) in case.cracks.iter().enumerate() {
-        let crack = Crack::new(number, &spec.geometry, spec.tip, mesh);
+    let mut cracks = Vec::new();
+    let mut lengths = mesh.lengths();
+    for number in 0..case.cracks.len() {
+        let crack = place(number, mesh, &lengths);
         match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
             Some(surface) => {
                 doubled.insert(number, surface);
+                lengths = mesh.lengths();
             }
-            None => through.push(number),
+            None => cracks.push(crack),
         }
     }
-    // Level sets belong to the final nodes.
-    let cracks = through
-        .into_iter()
-        .map(|number| {
-            let spec = &case.cracks[number];
-            Crack::new(number, &spec.geometry, spec.tip, mesh)
-        })
-        .collect();
+    if !doubled.is_empty() {
+        // Level sets belong to the final nodes.
+        for crack in &mut cracks {
+            *crack = place(crack.number, mesh, &lengths);
+        }
+    }
     let cracks = arms(cracks, mesh).map_err(|e| crack_error(case, &e.into()))?;
     Ok((cracks, doubled))
 }

@@ -29,7 +29,7 @@ impl Sides {
         }
         // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
         let spec = case.cracks.first()?;
-        let crack = Crack::new(0, &spec.geometry, spec.tip, mesh);
+        let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &mesh.lengths());
         let mut nodes: Vec<Side> = (0..mesh.nodes.len()).map(|n| crack.side_of(n)).collect();
         for cell in 0..mesh.cell_count() {
             let side = sign(crack.distance(&mesh.centre(cell)));

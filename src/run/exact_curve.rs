@@ -37,7 +37,7 @@ pub fn exact_rows(posed: &Posed<'_>) -> Vec<ExactRow> {
         return Vec::new();
     };
     // From the case file: a crack along cell edges has no level set.
-    let crack = Crack::new(0, &spec.geometry, spec.tip, mesh);
+    let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &mesh.lengths());
     let Geometry::Curve(curve) = &crack.geometry else {
         return Vec::new();
     };

@@ -160,6 +160,7 @@ pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
         jump: problem.h.transposed().as_rows()?,
         weight: vec![1.0; problem.points()],
         order: minimum_degree(&stiffness)?,
+        free_order: Vec::new(),
         stiffness,
         floating: Vec::new(),
         frictionless: false,

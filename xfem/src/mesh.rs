@@ -37,6 +37,17 @@ pub struct Mesh {
     pub sides: BTreeMap<String, Vec<Facet>>,
 }
 
+/// Lengths of a mesh as it is.
+#[derive(Debug, Clone)]
+pub struct Lengths {
+    /// Shortest edge at every node [m].
+    pub of_nodes: Vec<f64>,
+    /// Shortest edge [m].
+    pub smallest: f64,
+    /// See [`Mesh::rounding`] [m].
+    pub rounding: f64,
+}
+
 impl Mesh {
     /// A mesh from its parts; `cells` is flat, `kind.nodes()` entries per cell.
     pub fn new(
@@ -154,6 +165,16 @@ impl Mesh {
     /// Shortest cell edge [m].
     pub fn smallest_edge(&self) -> f64 {
         self.node_sizes().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Its lengths, gathered from all cells.
+    pub fn lengths(&self) -> Lengths {
+        let of_nodes = self.node_sizes();
+        Lengths {
+            smallest: of_nodes.iter().copied().fold(f64::INFINITY, f64::min),
+            of_nodes,
+            rounding: self.rounding(),
+        }
     }
 
     /// Rounding of positions: what differences of coordinates carry far from the origin [m].

@@ -4,6 +4,8 @@
 //! ```text
 //! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
 //! ```
+//! Where they are not last, L Y = (D B)ᵀ is solved along the tree of the factor.
+//!
 //! A floating body has a generalised inverse G for K⁻¹, and balanced rows: those of B P (`floating::Balance`).
 //!
 //! Row i of B touches few unknowns, so column i of Y is zero above the first of them. Columns are therefore sorted by
@@ -136,46 +138,28 @@ pub(crate) fn condense(
     jump: &JumpOperator,
     rows: &[usize],
 ) -> Result<Condensed, MethodError> {
-    let m = rows.len();
-    check_rows(m)?;
+    check_rows(rows.len())?;
     let half = Half::new(factor, jump, rows);
-    let c = half.height();
-    // Y, then W in its place.
-    let mut w = Mat::<f64>::zeros(c.max(m), m);
-    let squares = half.unsorted(&half.solve(0, w.as_mut().subrows_mut(0, c)));
-    // Upper triangle in sorted numbering, Wₛ = Yᵀ Y. The last columns of Y are done with first.
-    let mut strip = Mat::<f64>::zeros(m, STRIP.min(m));
-    for begin in (0..m).step_by(STRIP).rev() {
-        let end = (begin + STRIP).min(m);
-        let top = half.first[begin].min(c);
-        let y = w.as_ref().subrows(top, c - top);
-        let own = y.subcols(begin, end - begin);
-        let mut product = strip.as_mut().submatrix_mut(0, 0, end, end - begin);
-        let parts = row_strips(product.rb_mut());
-        let threads = ((c - top) * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
-        for_all(parts, threads, |(row, part)| {
-            let others = y.subcols(row, part.nrows()).transpose();
-            matmul(part, Accum::Replace, others, own, 1.0, Par::Seq);
-        });
-        let mut place = w.as_mut().submatrix_mut(0, begin, end, end - begin);
-        place.copy_from(product);
-    }
-    if c > m {
-        w = w.as_ref().subrows(0, m).to_owned();
-    }
+    let (mut w, squares) = match factor.contact_last() {
+        true => half.square(),
+        false => factor.condense(&half.entries, true),
+    };
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
     mirror_upper(&mut w);
-    let mut position = vec![0; m];
+    let mut position = vec![0; rows.len()];
     for (s, &i) in half.sorted.iter().enumerate() {
         position[i] = s;
     }
     permute(&mut w, &position);
-    Ok((w, squares))
+    Ok((w, half.unsorted(&squares)))
 }
 
 /// The diagonal of W for the listed rows of B, strips of Y in memory only.
 pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<f64> {
     let half = Half::new(factor, jump, rows);
+    if !factor.contact_last() {
+        return half.unsorted(&factor.condense(&half.entries, false).1);
+    }
     let mut squares = Vec::new();
     let m = rows.len();
     // As many strips at a time as there are threads.
@@ -260,7 +244,7 @@ fn check_rows(rows: usize) -> Result<(), MethodError> {
 /// Y with columns sorted by first non-zero, solved for panel by panel.
 struct Half<'a> {
     factor: &'a Factor,
-    /// Entries of (D B_c)ᵀ by sorted column: position within the contact unknowns, value.
+    /// Entries of (D B)ᵀ by sorted column: position in L, counted from the contact unknowns where these come last; value.
     entries: Vec<Vec<(usize, f64)>>,
     /// First non-zero of each sorted column.
     first: Vec<usize>,
@@ -270,7 +254,11 @@ struct Half<'a> {
 
 impl<'a> Half<'a> {
     fn new(factor: &'a Factor, jump: &JumpOperator, rows: &[usize]) -> Self {
-        let begin = factor.ordering.contact_begin;
+        let begin = if factor.contact_last() {
+            factor.ordering.contact_begin
+        } else {
+            0
+        };
         let c = factor.scale.len() - begin;
         let mut pinned = vec![false; factor.scale.len()];
         for &pin in &factor.pins {
@@ -300,6 +288,35 @@ impl<'a> Half<'a> {
     /// Number of contact unknowns.
     fn height(&self) -> usize {
         self.factor.scale.len() - self.factor.ordering.contact_begin
+    }
+
+    /// Yᵀ Y, of which the upper triangle counts, and |y_k|².
+    fn square(&self) -> Condensed {
+        let (m, c) = (self.sorted.len(), self.height());
+        // Y, then W in its place.
+        let mut w = Mat::<f64>::zeros(c.max(m), m);
+        let squares = self.solve(0, w.as_mut().subrows_mut(0, c));
+        // The last columns of Y are done with first.
+        let mut strip = Mat::<f64>::zeros(m, STRIP.min(m));
+        for begin in (0..m).step_by(STRIP).rev() {
+            let end = (begin + STRIP).min(m);
+            let top = self.first[begin].min(c);
+            let y = w.as_ref().subrows(top, c - top);
+            let own = y.subcols(begin, end - begin);
+            let mut product = strip.as_mut().submatrix_mut(0, 0, end, end - begin);
+            let parts = row_strips(product.rb_mut());
+            let threads = ((c - top) * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
+            for_all(parts, threads, |(row, part)| {
+                let others = y.subcols(row, part.nrows()).transpose();
+                matmul(part, Accum::Replace, others, own, 1.0, Par::Seq);
+            });
+            let mut place = w.as_mut().submatrix_mut(0, begin, end, end - begin);
+            place.copy_from(product);
+        }
+        if c > m {
+            w = w.as_ref().subrows(0, m).to_owned();
+        }
+        (w, squares)
     }
 
     /// The sorted columns of Y from `begin` on, as many as there are in `y`, which holds zeros; their |y_k|².
@@ -424,6 +441,7 @@ mod tests {
             .unwrap(),
             weight: vec![1.0; rows / 2],
             order: (0..n).map(order).collect(),
+            free_order: Vec::new(),
             floating: Vec::new(),
             frictionless: false,
             traction: None,
@@ -471,6 +489,7 @@ mod tests {
             jump: JumpOperator::new(n, n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
             weight: vec![1.0; n / 2],
             order: (0..n).collect(),
+            free_order: Vec::new(),
             floating: Vec::new(),
             frictionless: false,
             traction: None,

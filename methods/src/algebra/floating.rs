@@ -128,6 +128,11 @@ impl Balance {
             .collect()
     }
 
+    /// Whether there is a motion to take out.
+    pub fn holds_something(&self) -> bool {
+        !self.motions.is_empty()
+    }
+
     /// f := Pᵀ f.
     pub fn balance(&self, f: &mut [f64]) {
         for Motion { r, s } in &self.motions {

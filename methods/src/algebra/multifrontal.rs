@@ -3,6 +3,7 @@
 //! threads.
 
 mod analysis;
+mod condense;
 mod front;
 mod schedule;
 mod solve;

@@ -7,7 +7,7 @@ use faer::Mat;
 use crate::MethodError;
 use crate::algebra::delassus::{self, Condensed};
 use crate::algebra::dense::{norm, ratio};
-use crate::algebra::factor::Factor;
+use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 
@@ -48,35 +48,31 @@ pub(crate) trait Stiffness: Send + Sync {
     fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64;
 }
 
-/// A sparse K, factored once with the contact unknowns last.
+/// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
     k: SymmetricMatrix,
-    /// Preferred elimination order.
-    order: Vec<usize>,
-    in_contact: Vec<bool>,
+    elimination: Elimination,
     pins: Vec<usize>,
     balance: Arc<Balance>,
     factor: OnceLock<Result<Factor, MethodError>>,
 }
 
 impl SparseStiffness {
-    /// `in_contact` marks the unknowns that move a contact point; `floating` spans the kernel of K.
+    /// `floating` spans the kernel of K.
     ///
     /// # Errors
     /// Motions that are not rigid or depend on each other.
     pub fn new(
         k: SymmetricMatrix,
-        order: Vec<usize>,
+        elimination: Elimination,
         floating: &[Vec<f64>],
-        in_contact: Vec<bool>,
     ) -> Result<Self, MethodError> {
         let pins = pins(&k, floating)?;
-        let balance = Arc::new(Balance::new(&k, floating, &in_contact));
+        let balance = Arc::new(Balance::new(&k, floating, &elimination.in_contact));
         Ok(Self {
             k,
             balance,
-            order,
-            in_contact,
+            elimination,
             pins,
             factor: OnceLock::new(),
         })
@@ -86,7 +82,7 @@ impl SparseStiffness {
     pub fn factor(&self) -> Result<&Factor, MethodError> {
         let build = || {
             let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            Factor::new(&self.k, &self.order, &self.in_contact, pins, balance)
+            Factor::new(&self.k, &self.elimination, pins, balance)
         };
         self.factor
             .get_or_init(build)

@@ -191,10 +191,18 @@ pub(crate) fn lu(a: &mut Mat<f64>) -> Vec<usize> {
 
 /// Row i := row `order[i]`.
 pub(crate) fn permute_rows(mut a: MatMut<'_, f64>, order: &[usize]) {
-    let mut column = vec![0.0; order.len()];
+    // Pivoting moves few of many rows.
+    let moved = order
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(i, from)| i != from);
+    let moved: Vec<(usize, usize)> = moved.collect();
+    let mut column = vec![0.0; moved.len()];
     for j in 0..a.ncols() {
-        (column.iter_mut().zip(order)).for_each(|(to, &i)| *to = a[(i, j)]);
-        (column.iter().enumerate()).for_each(|(i, &from)| a[(i, j)] = from);
+        let mut a = a.rb_mut().col_mut(j);
+        (column.iter_mut().zip(&moved)).for_each(|(to, &(_, from))| *to = a[from]);
+        (column.iter().zip(&moved)).for_each(|(value, &(i, _))| a[i] = *value);
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use crate::algebra::delassus::Dense;
+use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::algebra::rows::RowSet;
@@ -25,8 +26,11 @@ pub struct ElasticParts {
     pub jump: JumpOperator,
     /// Tributary area (2D: length) per contact point, > 0, in m² (m).
     pub weight: Vec<f64>,
-    /// Preferred fill-reducing elimination order of the n unknowns, a permutation.
+    /// Preferred fill-reducing elimination order of the n unknowns, a permutation, for when those in contact come last
+    /// whatever it says: see [`in_contact`].
     pub order: Vec<usize>,
+    /// The same for when all are alike; empty if those in contact are to come last. The order that takes least work is taken.
+    pub free_order: Vec<usize>,
     /// Basis of the kernel of K: the rigid motions left by the supports, n entries each; empty if K is definite.
     pub floating: Vec<Vec<f64>>,
     /// Promise that no run on this body will ever have friction: only normal rows are condensed.
@@ -105,24 +109,28 @@ impl Elastic {
         check_len("elimination order", parts.order.len(), n)?;
         let diagonal = (0..n).map(|j| parts.stiffness.diagonal(j));
         check_positive("stiffness diagonal", diagonal)?;
-        let mut seen = vec![false; n];
-        for (index, &j) in parts.order.iter().enumerate() {
-            if j >= n || std::mem::replace(&mut seen[j], true) {
-                return Err(MethodError::pattern(
-                    "elimination order",
-                    index,
-                    "not a permutation of the unknowns",
-                ));
-            }
+        check_permutation(&parts.order)?;
+        if !parts.free_order.is_empty() {
+            check_len("elimination order", parts.free_order.len(), n)?;
+            check_permutation(&parts.free_order)?;
         }
         check_contact(parts.dim, n, &parts.jump, &parts.weight, &parts.floating)?;
         if let Some(traction) = &parts.traction {
             check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
             check_len("traction operator columns", traction.cols(), n)?;
         }
-        let contact = in_contact(&parts.jump, parts.dim, parts.frictionless);
-        let stiffness =
-            SparseStiffness::new(parts.stiffness, parts.order, &parts.floating, contact)?;
+        let rows = condensed_rows(parts.dim, parts.weight.len(), parts.frictionless);
+        let touched = |&i: &usize| {
+            let own = parts.jump.row(i).filter(|e| e.1 != 0.0);
+            own.map(|e| e.0).collect()
+        };
+        let elimination = Elimination {
+            contact_last: parts.order,
+            free: parts.free_order,
+            in_contact: in_contact(&parts.jump, parts.dim, parts.frictionless),
+            rows: rows.source.iter().map(touched).collect(),
+        };
+        let stiffness = SparseStiffness::new(parts.stiffness, elimination, &parts.floating)?;
         check_motions(&parts.jump, &parts.floating)?;
         Ok(Arc::new(Self {
             frictionless: parts.frictionless,
@@ -399,6 +407,21 @@ pub fn in_contact(jump: &JumpOperator, dim: usize, frictionless: bool) -> Vec<bo
     let entries = rows.source.iter().flat_map(|&i| jump.row(i));
     (entries.filter(|(_, b)| *b != 0.0)).for_each(|(j, _)| moved[j] = true);
     moved
+}
+
+/// Refuses an order that is none.
+fn check_permutation(order: &[usize]) -> Result<(), MethodError> {
+    let mut seen = vec![false; order.len()];
+    for (index, &j) in order.iter().enumerate() {
+        if j >= order.len() || std::mem::replace(&mut seen[j], true) {
+            return Err(MethodError::pattern(
+                "elimination order",
+                index,
+                "not a permutation of the unknowns",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What bodies of any kind must fulfil.

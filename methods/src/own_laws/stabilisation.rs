@@ -286,6 +286,7 @@ mod tests {
             jump: sparse(m, n, b),
             weight: weight.clone(),
             order: (0..n).collect(),
+            free_order: Vec::new(),
             floating: vec![],
             frictionless: false,
             traction: Some(sparse(m, n, s)),

@@ -297,6 +297,7 @@ pub fn displacement_norm(body: &Body) -> Result<Arc<Elastic>, BodyError> {
         jump,
         weight: body.points.iter().map(|p| p.weight).collect(),
         order: elimination_order(&body.mesh, &body.enrichment, &kept, &last),
+        free_order: Vec::new(),
         floating: Vec::new(),
         frictionless: false,
         traction: None,

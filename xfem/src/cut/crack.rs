@@ -15,8 +15,8 @@ use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::ellipse::Ellipse;
 use crate::geometry::{Point, dot, sub};
-use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
+use crate::mesh::{Lengths, Mesh};
 
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
@@ -116,8 +116,14 @@ impl Crack {
         self.number == other.number && (solid || self.range == other.range)
     }
 
-    /// Places a crack in a mesh, alone.
-    pub fn new(number: usize, shape: &CrackShape, tip: Tip, mesh: &Mesh) -> Self {
+    /// Places a crack in a mesh of these lengths, alone.
+    pub fn new(
+        number: usize,
+        shape: &CrackShape,
+        tip: Tip,
+        mesh: &Mesh,
+        lengths: &Lengths,
+    ) -> Self {
         let flat = |p: &[f64; 2]| [p[0], p[1], 0.0];
         let geometry = match shape {
             CrackShape::Polyline(points) => {
@@ -152,7 +158,7 @@ impl Crack {
                 _ => [End::Free; 2],
             },
             path: match &geometry {
-                Geometry::Curve(curve) => path(curve, mesh.smallest_edge()),
+                Geometry::Curve(curve) => path(curve, lengths.smallest),
                 _ => Vec::new(),
             },
             geometry,
@@ -160,12 +166,9 @@ impl Crack {
             tip,
             phi: Vec::new(),
         };
-        let rounding = mesh.rounding();
-        crack.phi = mesh
-            .nodes
-            .iter()
-            .zip(mesh.node_sizes())
-            .map(|(x, h)| snapped(crack.distance(x), on_crack(h, rounding)))
+        let nodes = mesh.nodes.iter().zip(&lengths.of_nodes);
+        crack.phi = nodes
+            .map(|(x, &h)| snapped(crack.distance(x), on_crack(h, lengths.rounding)))
             .collect();
         crack
     }

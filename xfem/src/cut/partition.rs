@@ -239,7 +239,7 @@ mod tests {
     /// The corners of the face of a plane through the cell [−1, 1]³.
     fn face(shape: &CrackShape) -> Vec<FaceCorner> {
         let mesh = box_mesh(&GridSpec::new(vec![vec![-1.0, 1.0]; 3])).unwrap();
-        let crack = Crack::new(0, shape, Tip::None, &mesh);
+        let crack = Crack::new(0, shape, Tip::None, &mesh, &mesh.lengths());
         let partition = Partition::solid(&mesh, 0, &[crack], &[0], &[]);
         assert_eq!((partition.parts.len(), partition.faces.len()), (2, 1));
         partition.faces[0].corners.clone()

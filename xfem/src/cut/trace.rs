@@ -87,6 +87,12 @@ struct Near<'a> {
     cells_of: BTreeMap<u32, Vec<usize>>,
     /// Edges of these cells, lower node first.
     edges: BTreeSet<[u32; 2]>,
+    /// The same by their least x, in which they are sorted [m].
+    by_x: Vec<(f64, [u32; 2])>,
+    /// Largest extent of an edge along x [m].
+    widest: f64,
+    /// No place is taken for another one farther away [m].
+    slack: f64,
     /// Shortest edge at each of their nodes [m].
     sizes: BTreeMap<u32, f64>,
     /// Rounding of coordinates [m].
@@ -100,6 +106,9 @@ impl<'a> Near<'a> {
             mesh,
             cells_of: BTreeMap::new(),
             edges: BTreeSet::new(),
+            by_x: Vec::new(),
+            widest: 0.0,
+            slack: 0.0,
             sizes: BTreeMap::new(),
             rounding: mesh.rounding(),
         };
@@ -127,7 +136,34 @@ impl<'a> Near<'a> {
                 }
             }
         }
+        let along_x = |edge: &[u32; 2]| edge.map(|n| mesh.nodes[n as usize][0]);
+        for edge in &near.edges {
+            let [a, b] = along_x(edge);
+            near.by_x.push((a.min(b), *edge));
+            near.widest = near.widest.max((b - a).abs());
+        }
+        near.by_x.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let longest = near.sizes.values().copied().fold(0.0, f64::max);
+        near.slack = (TIP_ON_EDGE * longest).max(4.0 * near.rounding);
         near
+    }
+
+    /// The edges in a box or on its border, in order.
+    fn edges_in(&self, mut low: [f64; 2], mut high: [f64; 2]) -> Vec<[u32; 2]> {
+        for a in 0..2 {
+            (low[a], high[a]) = (low[a] - self.slack, high[a] + self.slack);
+        }
+        let from = low[0] - self.widest;
+        let begin = self.by_x.partition_point(|edge| edge.0 < from);
+        let end = self.by_x.partition_point(|edge| edge.0 <= high[0]);
+        let inside = |[i, j]: [u32; 2]| {
+            let [p, q] = [i, j].map(|n| self.at(n));
+            (0..2).all(|c| p[c].max(q[c]) >= low[c] && p[c].min(q[c]) <= high[c])
+        };
+        let own = self.by_x[begin..end.max(begin)].iter().map(|edge| edge.1);
+        let mut found: Vec<[u32; 2]> = own.filter(|edge| inside(*edge)).collect();
+        found.sort_unstable();
+        found
     }
 
     /// Cells at a node or edge.
@@ -187,12 +223,14 @@ impl Trace {
 
     /// The vertex at a place: on a node or an edge, if it is that close.
     fn place(&mut self, near: &Near<'_>, x: &Point) -> ChainVertex {
-        for &node in near.cells_of.keys() {
+        let edges = near.edges_in([x[0], x[1]], [x[0], x[1]]);
+        let nodes: BTreeSet<u32> = edges.iter().flatten().copied().collect();
+        for node in nodes {
             if norm(&sub(x, near.at(node))) <= 4.0 * near.tolerance(node) {
                 return self.vertex(near, [node, node], x);
             }
         }
-        for &edge in &near.edges {
+        for edge in edges {
             let foot = segment_foot(x, near.at(edge[0]), near.at(edge[1]));
             if norm(&sub(x, &foot)) <= 4.0 * near.edge_tolerance(edge) {
                 return self.vertex(near, edge, x);
@@ -378,14 +416,8 @@ impl Trace {
                 let pick = [f64::min, f64::max][k];
                 [0, 1].map(|c| pick(a.x[c], b.x[c]))
             });
-            for &[i, j] in &near.edges {
+            for [i, j] in near.edges_in(low, high) {
                 let (p, q) = (near.at(i), near.at(j));
-                let slack = TIP_ON_EDGE * near.sizes[&i];
-                let apart =
-                    |c: usize| p[c].max(q[c]) < low[c] - slack || p[c].min(q[c]) > high[c] + slack;
-                if apart(0) || apart(1) {
-                    continue;
-                }
                 let (f, g) = (level(i), level(j));
                 if f * g < 0.0 {
                     push(self, [i, j], &crossing(p, f, q, g));
@@ -451,10 +483,13 @@ fn host(
         .map(|cell| (near.depth(cell, &middle), cell));
     let best = deep.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     // Between two places of one edge, without a bend.
-    let along_edge = near.edges.iter().any(|edge| {
-        let on = |key: &[u32; 2]| key.iter().all(|n| edge.contains(n));
-        keys.len() == 2 && keys.iter().all(on)
-    });
+    let nodes: BTreeSet<u32> = keys.iter().flatten().copied().collect();
+    let along_edge = keys.len() == 2
+        && match nodes.into_iter().collect::<Vec<u32>>()[..] {
+            [_] => true,
+            [i, j] => near.edges.contains(&[i, j]),
+            _ => false,
+        };
     let mut path = arm.path.iter();
     let straight = !path.any(|v| v.s > stops[0].s && v.s < stops[1].s);
     match best {

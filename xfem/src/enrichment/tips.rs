@@ -76,6 +76,7 @@ impl Tips {
     /// Cracks that leave a cell no clean parts.
     pub fn flat(mesh: &Mesh, arms: &[Crack], trace: &Trace) -> Result<Self, EnrichmentError> {
         let mut search = Search {
+            smallest: mesh.smallest_edge(),
             mesh,
             near: Neighbours::new(mesh),
             arms,
@@ -215,6 +216,8 @@ struct Search<'a> {
     /// Arms with functions of both ends.
     pairs: Vec<usize>,
     partitions: BTreeMap<usize, Partition>,
+    /// Shortest edge [m].
+    smallest: f64,
 }
 
 impl Search<'_> {
@@ -365,7 +368,7 @@ impl Search<'_> {
     /// Whether a cell of some nodes holds a part of the line behind a tip beyond its room.
     fn is_blocked(&self, frame: &TipFrame, room: f64, nodes: &BTreeSet<u32>) -> bool {
         let (size, _) = self.mesh.extent();
-        let line = frame.behind(room, size, 0.1 * self.mesh.smallest_edge());
+        let line = frame.behind(room, size, 0.1 * self.smallest);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
@@ -391,7 +394,7 @@ impl Search<'_> {
                 && own.len() == 2
                 && alone
                 && !cells.is_empty()
-                && self.inside(index) > SHORTEST * self.mesh.smallest_edge()
+                && self.inside(index) > SHORTEST * self.smallest
             {
                 self.pairs.push(index);
             }

@@ -192,6 +192,47 @@ fn supernodes_have_the_rows_of_their_columns_and_few_more() {
     );
 }
 
+/// Columns of a few entries each, many of them far apart.
+fn sparse_columns(n: usize, m: usize, random: &mut Random) -> Vec<Vec<(usize, f64)>> {
+    let mut at = |n: usize| (random.next() * n as f64) as usize;
+    let places: Vec<[usize; 4]> = (0..m)
+        .map(|_| [at(n), at(n), at(n / 9), at(n / 5)])
+        .collect();
+    let column = |(k, own): (usize, &[usize; 4])| {
+        let entries = own.iter().enumerate();
+        entries
+            .map(|(i, &p)| (p, 1.0 - 0.3 * ((i + k) % 5) as f64))
+            .collect()
+    };
+    places.iter().enumerate().map(column).collect()
+}
+
+/// Source: W = Bᵀ A⁻¹ B by solves with the factor. Tolerance: rounding. Goal: the diagonal has the same bits without W.
+#[test]
+fn what_is_condensed_along_the_tree_is_what_solves_give() {
+    let mut random = Random(17);
+    for (size, dofs, m) in [([30, 30, 1], 2, 70), ([8, 7, 6], 3, 250), ([5, 1, 1], 1, 1)] {
+        let (n, links) = grid(size, dofs);
+        let k = matrix(n, &links, &mut random);
+        let order: Vec<usize> = (0..n).collect();
+        let (_, cholesky) = factor(&k, Analysis::new(&k, &order, &vec![false; n]));
+        let cholesky = cholesky.unwrap();
+        let b = sparse_columns(n, m, &mut random);
+        let (w, diagonal) = cholesky.condense(&b, true);
+        assert_eq!(cholesky.condense(&b, false).1, diagonal);
+        for j in (0..m).step_by(11) {
+            let mut x = vec![0.0; n];
+            b[j].iter().for_each(|&(p, value)| x[p] += value);
+            cholesky.solve(&mut x);
+            for i in 0..=j {
+                let product: f64 = b[i].iter().map(|&(p, value)| value * x[p]).sum();
+                assert!((w[(i, j)] - product).abs() < 1e-13, "{i} {j}");
+            }
+            assert!((w[(j, j)] - diagonal[j]).abs() < 1e-13);
+        }
+    }
+}
+
 #[test]
 fn one_thread_and_four_give_the_same_bits() {
     let mut random = Random(3);
@@ -214,7 +255,9 @@ fn one_thread_and_four_give_the_same_bits() {
             let cholesky = cholesky.unwrap();
             let mut x: Vec<f64> = (0..n).map(|j| (j % 13) as f64).collect();
             cholesky.solve(&mut x);
-            (cholesky.panels, x)
+            let b = sparse_columns(n, 800, &mut Random(1));
+            let (w, diagonal) = cholesky.condense(&b, true);
+            (cholesky.panels, x, w, diagonal)
         })
     };
     assert!(run(1) == run(4));
