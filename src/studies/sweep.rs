@@ -5,6 +5,7 @@
 //! ```
 
 pub mod analysis;
+pub mod bodies;
 pub mod cell;
 pub mod compare;
 pub mod conduct;

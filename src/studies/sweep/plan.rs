@@ -7,6 +7,7 @@
 //! [[cells]]                                    # every combination of what follows; blocks are joined
 //! cases = ["plate_mesh1", "my_case.toml"]      # shipped cases, or files beside this one
 //! # random = { dimension = 2, seed = 1, problems = 20 }     instead: problems of `stickslip stress methods`
+//! # bodies = { dimension = 3, seed = 1, points = [100, 1000], of_each = 5 }     or: bodies of about so many contact points
 //! refine = [1, 2]                              # the case's own by default
 //! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
 //! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
@@ -20,6 +21,7 @@ use std::sync::Arc;
 use crate::run::registry::methods;
 use stickslip_methods::Tier;
 
+use super::bodies::{POINTS, Sized};
 use super::cell::{Cell, digest};
 use super::measure::Repeats;
 use super::record::SCHEMA;
@@ -306,6 +308,7 @@ fn block(
     let table = value.table(&[
         "cases",
         "random",
+        "bodies",
         "refine",
         "contact",
         "friction",
@@ -313,13 +316,14 @@ fn block(
         "tolerances",
     ])?;
     let (mut cases, mut drawn) = (Vec::new(), None);
-    match table.exactly_one(&["cases", "random"])? {
+    match table.exactly_one(&["cases", "random", "bodies"])? {
         ("cases", list) => {
             let count = list.list()?.len();
             take(&mut room.cases, count, MAX_CASES, list, "cases")?;
             let found = entries(list, |v| find_case(v, folder))?;
             cases.extend(found.into_iter().map(|case| (case.name.clone(), case)));
         }
+        ("bodies", sizes) => cases.extend(bodies(sizes, room)?),
         (_, random) => {
             let table = random.table(&["dimension", "seed", "problems"])?;
             let seed = table.get("seed");
@@ -359,6 +363,34 @@ fn block(
     let cells = own.chain(drawn_cells).fold(0, usize::saturating_add);
     take(&mut room.cells, cells, MAX_CELLS, value, "cells")?;
     Ok((block, drawn))
+}
+
+/// Bodies of some sizes.
+fn bodies(value: Value<'_>, room: &mut Room) -> Result<Vec<(String, Case)>, CaseError> {
+    let table = value.table(&["dimension", "seed", "points", "of_each"])?;
+    let dim = table.required("dimension")?.integer(2..=3)?;
+    let seed = table.get("seed");
+    let seed = seed.map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64;
+    let sizes = entries(table.required("points")?, |v| v.integer(POINTS))?;
+    let of_each = table.required("of_each")?.integer(1..=MAX_CASES)?;
+    let count = sizes.len().saturating_mul(of_each);
+    take(&mut room.cases, count, MAX_CASES, value, "cases")?;
+    let all = sizes.iter().flat_map(|&points| {
+        (0..of_each).map(move |number| Sized {
+            dim,
+            points,
+            seed,
+            number,
+        })
+    });
+    all.map(|body| {
+        let name = body.name();
+        Ok((
+            name.clone(),
+            case::parse(format!("{name}.toml"), body.text())?,
+        ))
+    })
+    .collect()
 }
 
 /// A list with at least one entry.
