@@ -19,6 +19,7 @@ mod quantity_name;
 pub mod residual;
 pub mod robustness;
 mod runs;
+pub mod scaling;
 pub mod stages;
 pub mod table1;
 pub mod time_to_accuracy;
@@ -28,11 +29,14 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 19] = [
+pub static CATALOGUE: [(Chapter, &Kind); 22] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
     (Chapter::Methods, &cost::KIND),
     (Chapter::Study, &fastest::KIND),
+    (Chapter::Study, &scaling::CLASSES),
+    (Chapter::Study, &scaling::TIME),
+    (Chapter::Study, &scaling::ITERATIONS),
     (Chapter::Study, &work_precision::KIND),
     (Chapter::Study, &time_to_accuracy::KIND),
     (Chapter::Study, &performance::KIND),

@@ -16,6 +16,7 @@ use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::ranking::ranking;
 use crate::studies::sweep::analysis::recommendation::recommendations;
+use crate::studies::sweep::analysis::scaling::growth;
 use crate::studies::sweep::analysis::series::{Series, series};
 use crate::studies::sweep::analysis::success::success;
 use crate::studies::sweep::analysis::test_set::TestSet;
@@ -44,6 +45,7 @@ pub fn bundle(
     table::add(&mut bundle, &success(records), &caveat)?;
     table::add(&mut bundle, &profiles(&sets), "")?;
     table::add(&mut bundle, &rankings(&sets), &caveat)?;
+    table::add(&mut bundle, &growth(records), &caveat)?;
     table::add(&mut bundle, &curves(records), "")?;
     let meshes = refinements(records);
     let errors = meshes
@@ -52,6 +54,7 @@ pub fn bundle(
     table::add(&mut bundle, &errors.collect::<Vec<_>>(), "")?;
     table::add(&mut bundle, &recommendations(records), &caveat)?;
     figures::fastest::add(&mut bundle, &sets, &caveat)?;
+    figures::scaling::add(&mut bundle, records, &caveat)?;
     figures::performance::add(&mut bundle, &sets, &caveat)?;
     figures::work_precision::add(&mut bundle, records, &caveat)?;
     figures::time_to_accuracy::add(&mut bundle, records, &caveat)?;

@@ -24,6 +24,7 @@ use crate::studies::spaces::patch::PatchRow;
 use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 use crate::studies::sweep::analysis::recommendation::Recommendation;
+use crate::studies::sweep::analysis::scaling::Growth;
 use crate::studies::sweep::analysis::success::SuccessRow;
 
 /// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
@@ -163,6 +164,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     let study = vec![
         Description::of::<Recommendation>(),
         Description::of::<ranks::RankingRow>(),
+        Description::of::<Growth>(),
         Description::of::<SuccessRow>(),
         Description::of::<sweep::SummaryRow>(),
         Description::of::<ranks::ProfileRow>(),

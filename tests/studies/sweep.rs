@@ -412,6 +412,19 @@ fn bad_sweep_files_are_refused_at_their_place() {
             "4:10",
             "exclude each other",
         ),
+        (
+            format!("{good}bodies = {{ dimension = 2, points = [100], of_each = 3 }}\n"),
+            "4:10",
+            "exclude each other",
+        ),
+        (
+            good.replace(
+                "cases = [\"cyclic\"]",
+                "bodies = { dimension = 2, points = [3], of_each = 1 }",
+            ),
+            "3:",
+            "out of range",
+        ),
         (format!("{good}meshes = [1]\n"), "4:1", "unknown key"),
         (
             good.replace("[[cells]]", "repeats = { least = 0 }\n[[cells]]"),

@@ -11,6 +11,7 @@ use crate::studies::convergence::orders::ErrorRow;
 use crate::studies::sweep::analysis::compare_methods;
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing};
 use crate::studies::sweep::analysis::recommendation::Recommendation;
+use crate::studies::sweep::analysis::scaling::Growth;
 use crate::studies::sweep::analysis::series::{Point, Swept};
 use crate::studies::sweep::analysis::success::SuccessRow;
 use crate::studies::sweep::compare::Change;
@@ -165,6 +166,29 @@ impl Row for RankingRow {
     }
 }
 
+impl Row for Growth {
+    const NAME: &'static str = "scaling";
+    const TITLE: &'static str = "How methods grow with the contact unknowns N on bodies of given sizes: time and iterations as powers of N";
+    const QUESTION: &'static str = "Which method still works when there are many contact points?";
+    const NOTES: &'static str = "Least squares of the logarithms over right answers at tier high with more than 50 unknowns; failures are no part of the exponents.";
+    const ORDER: Order<Self> = Order::Given;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "dim" "" .shown() = r.dim, DIMENSION;
+            "method" "" .shown() = r.method.clone(), METHOD;
+            "bodies" "" .shown() = r.bodies, "bodies it was given, with the friction coefficient that most have";
+            "correct" "" .named("right") = r.correct, "of these, with a right answer at tier high in the time allowed";
+            "unknowns_from" "" .named("unknowns from") = r.unknowns[0], "fewest contact unknowns of these";
+            "unknowns_to" "" .named("to") = r.unknowns[1], "most";
+            "exponent_time" "–" .significant(3).named("time ~ N to the power") = r.exponents[0], "exponent of the time of the method; `NaN` where sizes or times do not tell";
+            "exponent_iterations" "–" .significant(3).named("iterations ~ N to the power") = r.exponents[1], "exponent of the iterations";
+            "points" "" = r.largest.0, "largest number of contact points asked for that it has a right answer to";
+            "share" "–" .significant(3).named("part in the largest").percent(0) = r.largest.1, "median part of the time of the method in the whole run there, from the mesh to the contact forces";
+        }
+    }
+}
+
 /// A point of a curve of solver error against work.
 pub struct PointRow<'a> {
     /// Name of the problem.
@@ -270,6 +294,8 @@ impl Row for Recommendation {
             "friction" "" .shown() = r.class.friction.map_or_else(|| ANY.into(), |friction| friction.to_string()), "`frictionless`, `slip`, `stick` (nothing slips) or `any`";
             "loading" "" .shown() = r.class.path.map_or(ANY, |path| if path { "path" } else { "single increment" }), "`single increment`, `path` or `any`";
             "unknowns" "" .shown() = r.class.size.map_or_else(|| ANY.into(), |size| size.to_string()), "contact unknowns: `up to 100`, `101 to 1000`, `over 1000` or `any`";
+            "unknowns_from" "" .named("measured from") = r.unknowns[0], "fewest contact unknowns of the problems measured";
+            "unknowns_to" "" .named("to") = r.unknowns[1], "most: for larger problems the table says nothing";
             "problems" "" .shown() = r.problems, "problems of the class";
             "timed" "" = r.timed, "of these, solved by some method, with times that can be compared";
             "fastest" "" .shown() = fastest(r), "among the methods that are right most often those that none is faster than beyond the intervals of the means in `ranking.csv`, separated by `; `; first the one that is among the fastest of all methods on most problems; empty without times";

@@ -9,6 +9,7 @@ pub mod costs;
 pub mod profile;
 pub mod ranking;
 pub mod recommendation;
+pub mod scaling;
 pub mod series;
 pub mod success;
 #[cfg(test)]

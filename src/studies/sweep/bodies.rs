@@ -25,6 +25,25 @@ pub const POINTS: RangeInclusive<usize> = 4..=20_000;
 /// Friction coefficient where none is given.
 const FRICTION: f64 = 0.3;
 
+/// Names of all begin like this.
+const NAME: &str = "bodies";
+
+/// Contact points asked for of a body, by its name.
+pub fn points_of(case: &str) -> Option<usize> {
+    parts(case)?[1].parse().ok()
+}
+
+/// Dimension of a body, by its name.
+pub fn dimension_of(case: &str) -> Option<usize> {
+    parts(case)?[0].strip_suffix('d')?.parse().ok()
+}
+
+fn parts(case: &str) -> Option<[&str; 2]> {
+    let rest = case.strip_prefix(NAME)?.strip_prefix('-')?;
+    let (dim, rest) = rest.split_once('-')?;
+    Some([dim, rest.split('-').next()?])
+}
+
 /// A body by its numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Sized {
@@ -47,7 +66,7 @@ impl Sized {
             seed,
             number,
         } = self;
-        format!("bodies-{dim}d-{points:05}-seed-{seed}-{number}")
+        format!("{NAME}-{dim}d-{points:05}-seed-{seed}-{number}")
     }
 
     /// The case file.
@@ -174,6 +193,8 @@ mod tests {
                         seed: 1,
                         number,
                     };
+                    assert_eq!(points_of(&own.name()), Some(points));
+                    assert_eq!(dimension_of(&own.name()), Some(dim));
                     let case = case::parse("body.toml", own.text()).unwrap();
                     let body = Body::new(&case, 1, Needs::default());
                     let found = body.map(|body| body.points.len());

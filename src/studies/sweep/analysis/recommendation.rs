@@ -164,6 +164,8 @@ pub struct Recommendation {
     pub class: Class,
     /// Accuracy asked for.
     pub tier: Tier,
+    /// Fewest and most contact unknowns of those measured.
+    pub unknowns: [usize; 2],
     /// How many there were.
     pub problems: usize,
     /// How many of them have times that can be compared.
@@ -282,9 +284,12 @@ fn recommend(class: Class, set: &TestSet<'_>) -> Recommendation {
         [rate, ..] if rate > 0.5 && votes >= FEWEST => Confidence::Likely,
         _ => Confidence::Open,
     };
+    let sizes = (set.records.iter().flatten()).filter_map(|r| r.found.problem.as_ref());
+    let sizes = sizes.map(|size| size.unknowns);
     Recommendation {
         class,
         tier: set.tier,
+        unknowns: [sizes.clone().min().unwrap_or(0), sizes.max().unwrap_or(0)],
         problems: set.problems.len(),
         timed,
         fastest,

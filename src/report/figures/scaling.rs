@@ -1,0 +1,290 @@
+//! How methods grow with the contact unknowns and with friction.
+
+use super::kind::Kind;
+use super::runs::distinct;
+use crate::report::number::{fixed, significant};
+use crate::report::plot::{Axis, Cell, Figure, Guide, HeatMap, Panel, Series, looks, plain};
+use crate::report::{Bundle, ReportError};
+use crate::studies::sweep::analysis::scaling::{
+    Quantity, Sample, common_friction, exponent, medians, samples,
+};
+use crate::studies::sweep::record::Record;
+use crate::studies::sweep::statistics::median;
+
+/// Time.
+pub static TIME: Kind = Kind {
+    file: "scaling.time.svg",
+    question: "Which method still works when there are many contact points?",
+    shows: "Time of the methods against the number of contact unknowns on bodies of given sizes, and its part in the whole \
+            run from the mesh to the contact forces; medians over the bodies of a size, right answers at tier high alone.",
+};
+
+/// Iterations.
+pub static ITERATIONS: Kind = Kind {
+    file: "scaling.iterations.svg",
+    question: "Do iterations grow with the mesh, and with friction?",
+    shows: "Iterations of the methods against the number of contact unknowns, and against the friction coefficient on \
+            bodies of one size; medians over the bodies, right answers at tier high alone.",
+};
+
+/// Methods by class.
+pub static CLASSES: Kind = Kind {
+    file: "scaling.classes.svg",
+    question: "Which method for which size?",
+    shows: "Time of every method over that of the fastest on the same body, the median over the bodies of a size that it \
+            solves at tier high, below it how many these are; –: none.",
+};
+
+/// All three; `caveat`: what captions say of a sweep that is not complete.
+///
+/// # Errors
+/// Those of drawing and of [`Bundle::add`].
+pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
+    let all = samples(records);
+    let Some(common) = common_friction(&all) else {
+        return Ok(());
+    };
+    let own: Vec<Sample> = all
+        .iter()
+        .copied()
+        .filter(|s| s.friction == common)
+        .collect();
+    let caption = |what: &str| {
+        format!("{what}; medians over bodies of one size, right answers at tier high{caveat}")
+    };
+    if own.iter().any(|s| s.time.is_finite()) {
+        let figure = time(
+            &own,
+            &caption("bodies with cracks all over or right through"),
+        );
+        TIME.add(bundle, "", figure.svg()?)?;
+        CLASSES.add(bundle, "", classes(&own, caveat).svg()?)?;
+    }
+    let figure = iterations(&all, &own, &caption("the same bodies; right: one size"));
+    ITERATIONS.add(bundle, "", figure.svg()?)
+}
+
+/// Dimensions there are samples of.
+fn dimensions(all: &[Sample<'_>]) -> Vec<usize> {
+    let some = |dim: &usize| all.iter().any(|s| s.dim == *dim);
+    [2, 3].into_iter().filter(some).collect()
+}
+
+/// A panel with a curve for every method.
+fn panel<'s>(
+    own: &[&'s Sample<'s>],
+    further: &[&str],
+    axes: [Axis; 2],
+    same: fn(&Sample<'_>) -> f64,
+    [x, y]: [Quantity; 2],
+) -> Panel {
+    let [horizontal, vertical] = axes;
+    let mut panel = Panel::new(horizontal, vertical, 55.0);
+    let groups: Vec<&[&Sample]> = own.chunk_by(|a, b| a.method == b.method).collect();
+    let names: Vec<&str> = groups.iter().map(|group| group[0].method).collect();
+    for (group, (label, style)) in groups.iter().zip(looks(&names, further)) {
+        let points = medians(group.iter().copied(), same, x, y);
+        panel.series.push(Series::new(label, style, points));
+    }
+    panel
+}
+
+const UNKNOWNS: Quantity = |s| s.unknowns;
+
+fn time(all: &[Sample<'_>], caption: &str) -> Figure {
+    let further = winners(all);
+    let seconds: Quantity = |s| s.time;
+    let share: Quantity = |s| 100.0 * s.share;
+    let mut panels = Vec::new();
+    for dim in dimensions(all) {
+        let own: Vec<&Sample> = all.iter().filter(|s| s.dim == dim).collect();
+        let whole = Axis::log("part in the whole run [%]").through(&[100.0]);
+        let panel_of = |axis: Axis, quantity: Quantity| {
+            let axes = [Axis::log("contact unknowns [-]"), axis];
+            let grown = panel(
+                &own,
+                &further,
+                axes,
+                |s| s.points as f64,
+                [UNKNOWNS, quantity],
+            );
+            Panel {
+                heading: format!("{dim}D"),
+                ..grown
+            }
+        };
+        let mut times = panel_of(Axis::log("time of the method [s]"), seconds);
+        times.guides = vec![Guide::new(2.0, 1.0, "")];
+        panels.extend([times, panel_of(whole, share)]);
+    }
+    // The sentence: what grows least among those that solve the largest bodies.
+    let largest = all.iter().map(|s| s.points).max().unwrap_or(0);
+    let names = distinct(all.iter().filter(|s| s.points == largest).map(|s| s.method));
+    let fastest = names.iter().map(|name| {
+        let there = all
+            .iter()
+            .filter(|s| s.method == *name && s.points == largest);
+        (median(there.map(|s| s.time)), *name)
+    });
+    let best = fastest.min_by(|a, b| a.0.total_cmp(&b.0));
+    let title = best.map_or(String::new(), |(seconds, name)| {
+        let own = all.iter().filter(|s| s.method == name);
+        let grows = exponent(own, |s| s.time);
+        let grows = grows.map_or(String::new(), |a| {
+            format!(", growing with the power {}", fixed(a, 1))
+        });
+        let seconds = significant(seconds, 2);
+        format!(
+            "{} takes least time on {largest} points: {seconds} s{grows}",
+            plain(name)
+        )
+    });
+    Figure::new(&title, caption, 2, panels)
+}
+
+fn iterations(all: &[Sample<'_>], common: &[Sample<'_>], caption: &str) -> Figure {
+    let further = winners(common);
+    let mut panels = Vec::new();
+    for dim in dimensions(all) {
+        let of_sizes: Vec<&Sample> = common.iter().filter(|s| s.dim == dim).collect();
+        let axes = || {
+            [
+                Axis::log("contact unknowns [-]"),
+                Axis::log("iterations [-]"),
+            ]
+        };
+        let grown = panel(
+            &of_sizes,
+            &further,
+            axes(),
+            |s| s.points as f64,
+            [UNKNOWNS, |s| s.iterations],
+        );
+        panels.push(Panel {
+            heading: format!("{dim}D"),
+            ..grown
+        });
+        // The size that was given most friction coefficients.
+        let sizes = distinct(all.iter().filter(|s| s.dim == dim).map(|s| s.points));
+        let many = |points: &usize| {
+            let own = all.iter().filter(|s| s.dim == dim && s.points == *points);
+            distinct(own.map(|s| s.friction)).len()
+        };
+        let Some(points) = sizes.into_iter().max_by_key(many).filter(|p| many(p) > 1) else {
+            continue;
+        };
+        let fits = |s: &&Sample| s.dim == dim && s.points == points;
+        let of_friction: Vec<&Sample> = all.iter().filter(fits).collect();
+        let axes = [
+            Axis::log("friction coefficient [-]"),
+            Axis::log("iterations [-]"),
+        ];
+        let own = panel(
+            &of_friction,
+            &further,
+            axes,
+            |s| s.friction,
+            [|s| s.friction, |s| s.iterations],
+        );
+        panels.push(Panel {
+            heading: format!("{dim}D, about {points} points"),
+            ..own
+        });
+    }
+    let names = distinct(common.iter().map(|s| s.method));
+    let steady = names.into_iter().filter(|name| {
+        let own = common.iter().filter(|s| s.method == *name);
+        exponent(own, |s| s.iterations).is_some_and(|b| b < 0.1)
+    });
+    let steady: Vec<String> = steady.map(plain).collect();
+    let title = match steady.is_empty() {
+        true => "Iterations of every method grow with the mesh".to_owned(),
+        false => format!(
+            "Iterations hardly grow with the mesh for {}",
+            steady.join(", ")
+        ),
+    };
+    Figure::new(&title, caption, 2, panels)
+}
+
+/// Ratio with the full tint.
+const WORST: f64 = 100.0;
+
+/// Time of an answer over that of the fastest right one on the same body.
+fn behind(own: &Sample<'_>, all: &[Sample<'_>]) -> f64 {
+    let same = all.iter().filter(|other| other.body == own.body);
+    own.time / same.map(|s| s.time).fold(f64::INFINITY, f64::min)
+}
+
+/// Dimensions and sizes there are samples of.
+fn sizes(all: &[Sample<'_>]) -> Vec<(usize, usize)> {
+    let mut sizes = distinct(all.iter().map(|s| (s.dim, s.points)));
+    sizes.sort_unstable();
+    sizes
+}
+
+/// Ratios of a method on the bodies of a size.
+fn ratios(all: &[Sample<'_>], method: &str, size: (usize, usize)) -> Vec<f64> {
+    let own = all
+        .iter()
+        .filter(|s| s.method == method && (s.dim, s.points) == size);
+    own.map(|s| behind(s, all)).collect()
+}
+
+/// Methods that are fastest on the bodies of some size, in the median.
+fn winners<'a>(all: &[Sample<'a>]) -> Vec<&'a str> {
+    let names = distinct(all.iter().map(|s| s.method));
+    let of_size = sizes(all).into_iter().filter_map(|size| {
+        let own = names
+            .iter()
+            .map(|name| (median(ratios(all, name, size)), *name));
+        let own = own.filter(|own| own.0.is_finite());
+        own.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
+    });
+    distinct(of_size)
+}
+
+fn classes(all: &[Sample<'_>], caveat: &str) -> HeatMap {
+    let columns = sizes(all);
+    let names = distinct(all.iter().map(|s| s.method));
+    let line = |name: &str| {
+        let cell = |size: &(usize, usize)| {
+            let own = ratios(all, name, *size);
+            let bodies = all.iter().filter(|s| (s.dim, s.points) == *size);
+            let given = distinct(bodies.map(|s| s.body)).len();
+            match own.len() {
+                0 => Cell {
+                    tint: f64::NAN,
+                    text: "–".into(),
+                    below: String::new(),
+                },
+                count => {
+                    let middle = median(own);
+                    Cell {
+                        tint: (middle.ln() / WORST.ln()).clamp(0.0, 1.0),
+                        text: significant(middle, 2),
+                        below: format!("{count} of {given}"),
+                    }
+                }
+            }
+        };
+        (plain(name), columns.iter().map(cell).collect())
+    };
+    let fastest: Vec<String> = winners(all).into_iter().map(plain).collect();
+    HeatMap {
+        title: format!("Fastest by size: {}", fastest.join(", ")),
+        caption: format!(
+            "time of the method over that of the fastest on the same body, median over the bodies of a size that it solves \
+             at tier high; below: how many these are of those that some method solves; –: none{caveat}"
+        ),
+        groups: columns
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|own| (format!("{}D, contact points", own[0].0), own.len()))
+            .collect(),
+        columns: columns
+            .iter()
+            .map(|(_, points)| points.to_string())
+            .collect(),
+        rows: names.into_iter().map(line).collect(),
+    }
+}
