@@ -224,7 +224,7 @@ fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, Seconds) {
     let with_k = || {
         let t = system.elastic().timings();
         let shared = t.analysis_s + t.factorisation_s + t.condensation_s + t.traction_s;
-        [shared, t.solving_s]
+        [shared, t.on_body_s]
     };
     let (before, clock) = (with_k(), Instant::now());
     let value = call();

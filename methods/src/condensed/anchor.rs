@@ -70,7 +70,7 @@ impl ContactProblem<'_> {
         let Some(mut state) = self.recover(p, beta)? else {
             return Ok(Check::End(Status::Diverged));
         };
-        if self.anchor.is_some() && self.imbalance(&state) > BALANCED {
+        if self.anchor.is_some() && self.imbalance(&state)? > BALANCED {
             // It once stood far away: what was rounded there is still in its displacements.
             self.anchor = None;
             match self.recover(p, beta)? {
@@ -93,13 +93,14 @@ impl ContactProblem<'_> {
     }
 
     /// Backward error of equilibrium, as the judge measures it.
-    fn imbalance(&self, state: &ContactState) -> f64 {
+    fn imbalance(&self, state: &ContactState) -> Result<f64, MethodError> {
         let none = vec![0.0; state.u.len()];
         let further = match self.further.is_empty() {
             true => &none,
             false => &self.further,
         };
-        imbalance(self.increment, state, further)
+        let elastic = self.increment.system.elastic();
+        elastic.on_body(|| imbalance(self.increment, state, further))
     }
 
     /// Puts the anchor to an iterate whose violation no longer falls because slender parts sway: what is left of it is
@@ -212,6 +213,11 @@ impl ContactProblem<'_> {
 
     /// Displacements after a step from the anchor, or from no contact forces, one solve; `None` if they left the finite range.
     fn displaced(&mut self, step: &Forces) -> Result<Option<Vec<f64>>, MethodError> {
+        let elastic = self.increment.system.elastic();
+        elastic.on_body(|| self.displace(step))?
+    }
+
+    fn displace(&mut self, step: &Forces) -> Result<Option<Vec<f64>>, MethodError> {
         let elastic = self.increment.system.elastic();
         let mut u = match &self.anchor {
             Some(_) => vec![0.0; self.free.len()],

@@ -118,6 +118,15 @@ pub struct ContactProblem<'a> {
     pub(crate) confirmed: Option<ContactState>,
 }
 
+/// Displacements and jump without contact forces.
+fn free(increment: &Increment<'_>) -> Result<(Vec<f64>, Vec<f64>), MethodError> {
+    increment.check()?;
+    let mut u = increment.load.force.clone();
+    increment.system.elastic().solve(&mut u)?;
+    let jump = increment.jump(&u);
+    Ok((u, jump))
+}
+
 impl<'a> ContactProblem<'a> {
     /// Does the one linear solve without contact forces. If it leaves every gap open, that is the solution, and the
     /// body is not even condensed.
@@ -126,16 +135,13 @@ impl<'a> ContactProblem<'a> {
         form: DelassusForm,
         claim: impl Fn(f64) -> Claim,
     ) -> Result<Begin<'a>, MethodError> {
-        increment.check()?;
         let system = increment.system;
         let (elastic, dim) = (system.elastic(), system.dim());
-        let mut u = increment.load.force.clone();
-        elastic.solve(&mut u)?;
+        let (u, jump) = elastic.on_body(|| free(increment))??;
         let counters = Counters {
             solves: 1,
             ..Default::default()
         };
-        let jump = increment.jump(&u);
         if elastic.floating().is_empty() && jump.iter().step_by(dim).all(|&g| g >= 0.0) {
             let p = vec![0.0; jump.len()];
             return Ok(Begin::Done(Outcome {

@@ -44,6 +44,11 @@
 //! floating piece open or slide on the way, the tangent cannot hold it: a few local and global stages (as in LATIN)
 //! move the iterate on, and if that happens again and again the piece is reported as a mechanism. The same stages move
 //! it on after 15 steps without progress.
+//!
+//! Steps may grow with the number of points beside a junction, where points open and close on the way: the bound μ max(P_n, 0)
+//! follows the pressure of the last iterate, so that shear is right a step late, and merits rise and fall in turn. A
+//! T-junction at μ = 0.2 and 0.3 takes 6, 7 and 41 steps on 41, 82 and 164 cells; `newton-ac`, whose bound is that of the trial
+//! pressure P_n − r_n g, takes 4, 5 and 7.
 
 #![allow(non_snake_case)]
 
