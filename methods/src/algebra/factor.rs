@@ -48,12 +48,19 @@ impl Elimination {
         const WORTH: f64 = 2e9;
         /// What is gained by the free order at least.
         const GAIN: f64 = 0.8;
+        /// Part of the work that lies in the contact unknowns where another order may gain so much.
+        const DENSE: f64 = 0.5;
         let last = Analysis::new(k, &self.contact_last, &self.in_contact);
         let c = (k.size() - last.ordering.contact_begin) as f64;
         let m = self.rows.len() as f64;
         // Columns of Y begin where their row does: of a dense triangle and a dense square about a third is left.
-        let work = last.tree.work() + c * m * (c + m) / 3.0;
-        if self.free.is_empty() || balance.holds_something() || work < WORTH {
+        let condensation = c * m * (c + m) / 3.0;
+        let (work, dense) = (
+            last.tree.work() + condensation,
+            c.powi(3) / 3.0 + condensation,
+        );
+        if self.free.is_empty() || balance.holds_something() || work < WORTH || dense < DENSE * work
+        {
             return last;
         }
         let free = Analysis::new(k, &self.free, &vec![false; k.size()]);

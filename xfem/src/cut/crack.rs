@@ -9,6 +9,8 @@
 //! A crack that meets an earlier one ends there: it is an arm whose step is 0 beyond its parent (Daux, Moës, Dolbow,
 //! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
+use std::sync::Arc;
+
 use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
@@ -105,7 +107,7 @@ pub struct Crack {
     /// Enrichment of tips inside the body.
     pub tip: Tip,
     /// φ at the nodes, snapped to 0 within [`ON_CRACK`] [m].
-    pub phi: Vec<f64>,
+    pub phi: Arc<[f64]>,
 }
 
 impl Crack {
@@ -164,7 +166,7 @@ impl Crack {
             geometry,
             parents: Vec::new(),
             tip,
-            phi: Vec::new(),
+            phi: Arc::from([]),
         };
         let nodes = mesh.nodes.iter().zip(&lengths.of_nodes);
         crack.phi = nodes
