@@ -46,14 +46,14 @@ for part in $parts; do
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
                 'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg' \
                 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.von-mises.svg'
-            keep accuracy orders.csv orders.md 'partial_slip.*.energy.error.svg'
-            keep spaces infsup_by_space patch_by_space infsup.svg
+            keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
+            keep spaces infsup_by_space patch_by_space.csv infsup.svg
             keep stress stress_causes stress_invariances stress_methods stress_ladders stress_options stress_scenes.csv \
                 stress_options.svg stress_iterations.svg
             cp -r results/stress/cases reports/stress/
             keep robustness robustness failures.csv robustness.svg
             keep study recommendations ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
-                'work_precision.plate_mesh1*.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'
+                'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'
             keep bench timings
             "$stickslip" page reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
