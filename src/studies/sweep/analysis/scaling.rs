@@ -1,5 +1,5 @@
-//! How exact methods grow with the number of contact unknowns and with friction, on [bodies](crate::studies::sweep::bodies)
-//! of given sizes: right answers at the finest tier alone.
+//! How exact methods grow with the number of contact unknowns and with friction, on [bodies] of given sizes: right answers at
+//! the finest tier alone.
 //!
 //! ```text
 //!   time ~ N^a, iterations ~ N^b     a, b: least squares of the logarithms over all bodies with more than 50 unknowns N
