@@ -39,17 +39,12 @@ fn enforcement(criterion: &mut Criterion) {
                     BatchSize::SmallInput,
                 );
             });
-            let prepared = || {
-                let mut solver = scene.build(choice);
-                scene.prepare(solver.as_mut());
-                solver
-            };
             group.warm_up_time(WARM_UP).measurement_time(MEASUREMENT);
             bench(&mut group, &name(ENFORCEMENT), |b| {
                 b.iter_custom(|calls| {
-                    let mut solvers: Vec<_> = (0..calls).map(|_| prepared()).collect();
+                    let mut solvers: Vec<_> = (0..calls).map(|_| scene.solver(choice)).collect();
                     let own = solvers.iter_mut();
-                    own.map(|solver| scene.enforcement(solver.as_mut())).sum()
+                    own.map(|solver| scene.enforcement(solver)).sum()
                 });
             });
         }

@@ -1,7 +1,7 @@
 //! One increment of a case, ready for any method: K factored and condensed, start state reached.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::loading::Loading;
@@ -100,14 +100,16 @@ impl Scene {
         solver.prepare(&self.system).expect("K is factored");
     }
 
+    /// A method built and prepared.
+    pub fn solver(&self, choice: &Choice) -> Solver<'_> {
+        Solver::new(choice, &self.system).expect("the judge accepted it")
+    }
+
     /// Time to solve the increment without the work on all unknowns of the body.
-    pub fn enforcement(&self, solver: &mut dyn Enforcement) -> Duration {
-        let on_body = || self.system.elastic().timings().on_body_s;
-        let (before, clock) = (on_body(), Instant::now());
-        let outcome = self.solve(solver);
-        let elapsed = clock.elapsed().as_secs_f64();
-        std::hint::black_box(outcome);
-        Duration::from_secs_f64((elapsed - (on_body() - before)).max(0.0))
+    pub fn enforcement(&self, solver: &mut Solver<'_>) -> Duration {
+        let (outcome, seconds) = solver.solve(&self.increment());
+        std::hint::black_box(outcome.expect("the input is valid"));
+        Duration::from_secs_f64(seconds.enforcement_s)
     }
 
     /// Solves the increment.

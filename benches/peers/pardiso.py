@@ -5,7 +5,7 @@
     peers/bin/python benches/peers/pardiso.py benches/scale/cube_30.toml --program target/release/stickslip --out reports/peers
 
 Both factor the same K, symmetric positive definite, and use as many threads as asked for. PARDISO orders by METIS and keeps no
-unknowns for last; stickslip eliminates the contact unknowns last and has the Schur complement on them afterwards.
+unknowns for last; stickslip may eliminate the contact unknowns last, and has the Schur complement on the contact rows afterwards.
 """
 
 import argparse

@@ -1,5 +1,6 @@
 //! Linear algebra below the contact problem: matrices, the factored stiffness, the Delassus operator, rigid motions.
 
+pub(crate) mod condensation;
 pub(crate) mod delassus;
 pub(crate) mod dense;
 pub(crate) mod factor;

@@ -3,6 +3,7 @@
 pub mod arms;
 pub mod crack;
 pub mod flat;
+mod near;
 pub mod part;
 pub mod partition;
 pub mod placement;

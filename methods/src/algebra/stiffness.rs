@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 use faer::Mat;
 
 use crate::MethodError;
-use crate::algebra::delassus::{self, Condensed};
+use crate::algebra::condensation::{self, Condensed};
+use crate::algebra::delassus;
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
@@ -123,11 +124,11 @@ impl Stiffness for SparseStiffness {
     }
 
     fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
-        delassus::condense(self.factor()?, jump, rows)
+        condensation::condense(self.factor()?, jump, rows)
     }
 
     fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
-        Ok(delassus::diagonal(self.factor()?, jump, rows))
+        Ok(condensation::diagonal(self.factor()?, jump, rows))
     }
 
     fn local_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {

@@ -49,18 +49,25 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
         .copied()
         .filter(|s| s.friction == common)
         .collect();
+    let fastest = winners(&own);
     let caption = |what: &str| {
         format!("{what}; medians over bodies of one size, right answers at tier high{caveat}")
     };
     if own.iter().any(|s| s.time.is_finite()) {
         let figure = time(
             &own,
+            &fastest,
             &caption("bodies with cracks all over or right through"),
         );
         TIME.add(bundle, "", figure.svg()?)?;
-        CLASSES.add(bundle, "", classes(&own, caveat).svg()?)?;
+        CLASSES.add(bundle, "", classes(&own, &fastest, caveat).svg()?)?;
     }
-    let figure = iterations(&all, &own, &caption("the same bodies; right: one size"));
+    let figure = iterations(
+        &all,
+        &own,
+        &fastest,
+        &caption("the same bodies; right: one size"),
+    );
     ITERATIONS.add(bundle, "", figure.svg()?)
 }
 
@@ -91,8 +98,7 @@ fn panel<'s>(
 
 const UNKNOWNS: Quantity = |s| s.unknowns;
 
-fn time(all: &[Sample<'_>], caption: &str) -> Figure {
-    let further = winners(all);
+fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
     let seconds: Quantity = |s| s.time;
     let share: Quantity = |s| 100.0 * s.share;
     let mut panels = Vec::new();
@@ -103,7 +109,7 @@ fn time(all: &[Sample<'_>], caption: &str) -> Figure {
             let axes = [Axis::log("contact unknowns [-]"), axis];
             let grown = panel(
                 &own,
-                &further,
+                fastest,
                 axes,
                 |s| s.points as f64,
                 [UNKNOWNS, quantity],
@@ -142,8 +148,12 @@ fn time(all: &[Sample<'_>], caption: &str) -> Figure {
     Figure::new(&title, caption, 2, panels)
 }
 
-fn iterations(all: &[Sample<'_>], common: &[Sample<'_>], caption: &str) -> Figure {
-    let further = winners(common);
+fn iterations(
+    all: &[Sample<'_>],
+    common: &[Sample<'_>],
+    fastest: &[&str],
+    caption: &str,
+) -> Figure {
     let mut panels = Vec::new();
     for dim in dimensions(all) {
         let of_sizes: Vec<&Sample> = common.iter().filter(|s| s.dim == dim).collect();
@@ -155,7 +165,7 @@ fn iterations(all: &[Sample<'_>], common: &[Sample<'_>], caption: &str) -> Figur
         };
         let grown = panel(
             &of_sizes,
-            &further,
+            fastest,
             axes(),
             |s| s.points as f64,
             [UNKNOWNS, |s| s.iterations],
@@ -181,7 +191,7 @@ fn iterations(all: &[Sample<'_>], common: &[Sample<'_>], caption: &str) -> Figur
         ];
         let own = panel(
             &of_friction,
-            &further,
+            fastest,
             axes,
             |s| s.friction,
             [|s| s.friction, |s| s.iterations],
@@ -244,7 +254,7 @@ fn winners<'a>(all: &[Sample<'a>]) -> Vec<&'a str> {
     distinct(of_size)
 }
 
-fn classes(all: &[Sample<'_>], caveat: &str) -> HeatMap {
+fn classes(all: &[Sample<'_>], fastest: &[&str], caveat: &str) -> HeatMap {
     let columns = sizes(all);
     let names = distinct(all.iter().map(|s| s.method));
     let line = |name: &str| {
@@ -270,7 +280,7 @@ fn classes(all: &[Sample<'_>], caveat: &str) -> HeatMap {
         };
         (plain(name), columns.iter().map(cell).collect())
     };
-    let fastest: Vec<String> = winners(all).into_iter().map(plain).collect();
+    let fastest: Vec<String> = fastest.iter().map(|name| plain(name)).collect();
     HeatMap {
         title: format!("Fastest by size: {}", fastest.join(", ")),
         caption: format!(

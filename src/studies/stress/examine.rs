@@ -3,6 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
+use stickslip_methods::Status;
+
 use super::finding::{Cause, Finding, Trial};
 use super::invariance::Base;
 use super::referee::{Patch, compare, uncovered};
@@ -17,7 +19,6 @@ use crate::run::record::{Results, RunRow};
 use crate::run::registry::methods;
 use crate::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
 use crate::run::verdict::Verdict;
-use stickslip_methods::Status;
 
 /// Name of the file, as errors tell it.
 pub const FILE: &str = "scene.toml";
@@ -135,9 +136,9 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
             trial.cause = Some(Cause::SeveralSolutions);
         }
     }
-    let missed = |t: &&mut Trial| t.cause > Some(Cause::NoEquilibrium);
-    if trials.iter_mut().filter(|t| t.exact).all(|t| missed(&t)) && is_at_limit(&case) {
-        for trial in trials.iter_mut().filter(missed) {
+    let missed = |t: &Trial| t.cause > Some(Cause::NoEquilibrium);
+    if trials.iter().filter(|t| t.exact).all(missed) && is_at_limit(&case) {
+        for trial in trials.iter_mut().filter(|t| missed(t)) {
             trial.cause = Some(Cause::FrictionLimit);
         }
     }

@@ -22,8 +22,8 @@ use stickslip_xfem::mesh::stream::Stream;
 /// How many contact points a body may have.
 pub const POINTS: RangeInclusive<usize> = 4..=20_000;
 
-/// Friction coefficient where none is given.
-const FRICTION: f64 = 0.3;
+/// Friction coefficient of bodies and random problems where none is given.
+pub const FRICTION: f64 = 0.3;
 
 /// Names of all begin like this.
 const NAME: &str = "bodies";

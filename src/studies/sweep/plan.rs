@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::run::registry::methods;
 use stickslip_methods::Tier;
 
-use super::bodies::{POINTS, Sized};
+use super::bodies::{FRICTION, POINTS, Sized};
 use super::cell::{Cell, digest};
 use super::measure::Repeats;
 use super::record::SCHEMA;
@@ -221,9 +221,6 @@ struct Random {
     problems: usize,
 }
 
-/// Friction coefficients of random problems where none are given.
-const RANDOM_FRICTION: f64 = 0.3;
-
 impl Random {
     fn cases(&self, friction: Option<&[f64]>) -> Result<Vec<(String, Case)>, PlanError> {
         // The same bodies for all methods, also those that need the stress at the crack.
@@ -231,7 +228,7 @@ impl Random {
             frictionless: false,
             traction: true,
         };
-        let friction = friction.unwrap_or(&[RANDOM_FRICTION]);
+        let friction = friction.unwrap_or(&[FRICTION]);
         let case = |problem| {
             let Self { dim, seed, .. } = *self;
             let text = case_numbered(seed, dim, problem, friction, needs)?;

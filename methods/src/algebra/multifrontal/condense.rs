@@ -11,35 +11,11 @@ use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::algebra::multifrontal::Cholesky;
-use crate::algebra::multifrontal::tree::AssemblyTree;
+use crate::algebra::multifrontal::tree::{AssemblyTree, Supernode};
 use crate::algebra::strips::{STRIP, WORTH_THREADS, column_strips, for_all};
 
 /// Entry of B: column, position in L, value.
 type Entry = (u32, usize, f64);
-
-/// Columns of B by supernode.
-struct Seen {
-    /// Of every supernode, increasing.
-    columns: Vec<Vec<u32>>,
-}
-
-impl Seen {
-    /// `begins`: for every column the supernodes of its entries.
-    fn new(tree: &AssemblyTree, begins: impl Iterator<Item = (u32, usize)>) -> Self {
-        let mut columns: Vec<Vec<u32>> = vec![Vec::new(); tree.nodes.len()];
-        begins.for_each(|(column, s)| columns[s].push(column));
-        for s in 0..columns.len() {
-            let mut own = std::mem::take(&mut columns[s]);
-            for &child in &tree.children[s] {
-                own.extend_from_slice(&columns[child]);
-            }
-            own.sort_unstable();
-            own.dedup();
-            columns[s] = own;
-        }
-        Self { columns }
-    }
-}
 
 impl AssemblyTree {
     /// The supernode of every column of L.
@@ -50,17 +26,33 @@ impl AssemblyTree {
             .collect()
     }
 
+    /// The columns of B that every supernode sees, increasing; `begins`: for every column the supernodes of its entries.
+    fn seen(&self, begins: impl Iterator<Item = (u32, usize)>) -> Vec<Vec<u32>> {
+        let mut seen: Vec<Vec<u32>> = vec![Vec::new(); self.nodes.len()];
+        begins.for_each(|(column, s)| seen[s].push(column));
+        for s in 0..seen.len() {
+            let mut own = std::mem::take(&mut seen[s]);
+            for &child in &self.children[s] {
+                own.extend_from_slice(&seen[child]);
+            }
+            own.sort_unstable();
+            own.dedup();
+            seen[s] = own;
+        }
+        seen
+    }
+
     /// Multiplications and additions of W for a B whose columns have entries at these positions.
     pub fn condensation(&self, b: impl Iterator<Item = Vec<usize>>) -> f64 {
         let of = self.supernodes();
         let begins = (0u32..).zip(b);
         let begins = begins.flat_map(|(column, at)| at.into_iter().map(move |p| (column, p)));
-        let seen = Seen::new(self, begins.map(|(column, p)| (column, of[p])));
-        let work = |(node, columns): (&super::tree::Supernode, &Vec<u32>)| {
+        let seen = self.seen(begins.map(|(column, p)| (column, of[p])));
+        let work = |(node, columns): (&Supernode, &Vec<u32>)| {
             let [k, h, a] = [node.columns.len(), node.height(), columns.len()].map(|n| n as f64);
             a * k * (k + 2.0 * (h - k) + a)
         };
-        self.nodes.iter().zip(&seen.columns).map(work).sum()
+        self.nodes.iter().zip(&seen).map(work).sum()
     }
 }
 
@@ -77,13 +69,13 @@ impl Cholesky {
         }
         let begins = entries.iter().enumerate();
         let begins = begins.flat_map(|(s, own)| own.iter().map(move |e| (e.0, s)));
-        let seen = Seen::new(tree, begins);
+        let seen = tree.seen(begins);
         let size = if formed { m } else { 0 };
         let mut w = Mat::<f64>::zeros(size, size);
         let mut squares = vec![0.0; m];
         let mut updates: Vec<Mat<f64>> = tree.nodes.iter().map(|_| Mat::new()).collect();
         for (s, node) in tree.nodes.iter().enumerate() {
-            let columns = &seen.columns[s];
+            let columns = &seen[s];
             if columns.is_empty() {
                 continue;
             }
@@ -96,7 +88,7 @@ impl Cholesky {
             for &child in &tree.children[s] {
                 let update = std::mem::replace(&mut updates[child], Mat::new());
                 let mut at = 0;
-                for (j, &column) in seen.columns[child].iter().enumerate() {
+                for (j, &column) in seen[child].iter().enumerate() {
                     at += columns[at..].partition_point(|&c| c < column);
                     let (from, to) = (update.col_as_slice(j), y.col_as_slice_mut(at));
                     let places = tree.places(child).iter();

@@ -117,7 +117,7 @@ fn measured(record: &Record) -> Option<Measured> {
 }
 
 /// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
-fn seconds(record: &Record, records: &[Record]) -> Seconds {
+pub(super) fn seconds(record: &Record, records: &[Record]) -> Seconds {
     let times = body_times(record, records).zip(published_times(record));
     times.map_or(
         Seconds::NONE,

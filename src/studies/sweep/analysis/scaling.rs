@@ -7,9 +7,11 @@
 
 use stickslip_methods::Tier;
 
-use super::{body_times, compare_methods, has_defaults, is_correct, method_time, published_times};
+use super::accuracy::seconds;
+use super::{compare_methods, has_defaults, is_correct, method_time, published_times};
+use crate::studies::convergence::slope;
 use crate::studies::sweep::bodies;
-use crate::studies::sweep::record::{Record, Spent};
+use crate::studies::sweep::record::Record;
 use crate::studies::sweep::statistics::median;
 
 /// Fewer unknowns say nothing about growth.
@@ -46,8 +48,7 @@ pub fn samples(records: &[Record]) -> Vec<Sample<'_>> {
     let own = records.iter().filter_map(|record| {
         let points = asked(record)?;
         let size = record.found.problem.as_ref()?;
-        let times = published_times(record);
-        let time = times.map_or(f64::NAN, |spent| method_time(spent).median_s);
+        let time = published_times(record).map_or(f64::NAN, |spent| method_time(spent).median_s);
         let fits = record.found.exact && is_correct(record, Tier::High);
         fits.then(|| Sample {
             dim: size.dim,
@@ -58,7 +59,7 @@ pub fn samples(records: &[Record]) -> Vec<Sample<'_>> {
             unknowns: size.unknowns as f64,
             iterations: record.found.sum(|i| i.iterations) as f64,
             time,
-            share: times.map_or(f64::NAN, |spent| time / whole(record, spent, records)),
+            share: time / seconds(record, records).total(),
         })
     });
     let mut all: Vec<Sample> = own.collect();
@@ -74,12 +75,6 @@ fn asked(record: &Record) -> Option<usize> {
     let cell = &record.cell;
     let fits = has_defaults(cell) && cell.tolerance == Tier::High.tolerance();
     bodies::points_of(&cell.case).filter(|_| fits)
-}
-
-/// Seconds of the whole run.
-fn whole(record: &Record, spent: &Spent, records: &[Record]) -> f64 {
-    let body: f64 = body_times(record, records).map_or(f64::NAN, |t| t.iter().sum());
-    body + spent.condensation_s + spent.prepare.median_s + spent.solve.median_s
 }
 
 /// Medians of y over those with the same x, by x.
@@ -114,17 +109,13 @@ pub fn exponent<'s>(
     quantity: Quantity,
 ) -> Option<f64> {
     let large = samples.filter(|s| s.unknowns > FEWEST && quantity(s) > 0.0);
-    let points: Vec<[f64; 2]> = large.map(|s| [s.unknowns.ln(), quantity(s).ln()]).collect();
-    let n = points.len() as f64;
-    let mean = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / n);
-    let sum = |k: usize, l: usize| {
-        let terms = points.iter().map(|p| (p[k] - mean[k]) * (p[l] - mean[l]));
-        terms.sum::<f64>()
-    };
+    let points: Vec<[f64; 2]> = large.map(|s| [s.unknowns, quantity(s)]).collect();
     let ends = points.iter().map(|p| p[0]);
-    let spread =
-        ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min);
-    (spread > 3f64.ln()).then(|| sum(0, 1) / sum(0, 0))
+    let (least, most) = (
+        ends.clone().fold(f64::INFINITY, f64::min),
+        ends.fold(0.0, f64::max),
+    );
+    (most > 3.0 * least).then(|| slope(&points))
 }
 
 /// A method on the bodies of a dimension.

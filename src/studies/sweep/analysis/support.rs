@@ -93,8 +93,8 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
     }
 }
 
-/// The record with times: preparation 10 % and enforcement 90 % of `seconds`, the solution as much as both, each with an interval of ±10 %; factorisation of
-/// K 0.1 s, the other stages 0.01 s.
+/// The record with times: preparation 10 % and enforcement 90 % of `seconds`, the solution as much as both, each with an
+/// interval of ±10 %; factorisation of K 0.1 s, the other stages 0.01 s.
 pub fn timed(mut record: Record, seconds: f64) -> Record {
     record.spent = Some(Spent {
         setup_s: 0.01,
