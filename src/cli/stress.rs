@@ -156,11 +156,7 @@ fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliEr
         ));
     }
     for change in &finding.invariance {
-        let force = (change.force).map_or("other points".into(), |f| format!("{f:.1e}"));
-        let (name, energy) = (&change.transformation, change.energy);
-        say(format_args!(
-            "{name:34} forces {force:12} energy {energy:.1e}"
-        ));
+        say(format_args!("{:34} {change}", change.transformation));
     }
     let cause = finding.cause.map_or("right", |c| c.name());
     say(format_args!(

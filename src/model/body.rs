@@ -119,6 +119,7 @@ impl Body {
             let allowed = "a motion of the grid points that keeps all cells convex";
             case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
+        mesh.origin = case.origin;
         let (cracks, doubled) = place_cracks(case, &mut mesh)?;
         let beside = held_sides(case, &mesh, &cracks);
         let enrichment =

@@ -35,6 +35,8 @@ pub struct Mesh {
     cells: Vec<u32>,
     /// Boundary facets by the name of their side.
     pub sides: BTreeMap<String, Vec<Facet>>,
+    /// Where x = 0 lies in the coordinates that places were stated in: they were rounded there [m].
+    pub origin: Point,
 }
 
 /// Lengths of a mesh as it is.
@@ -63,6 +65,7 @@ impl Mesh {
             grid,
             cells,
             sides,
+            origin: [0.0; 3],
         }
     }
 
@@ -177,16 +180,13 @@ impl Mesh {
         }
     }
 
-    /// Rounding of positions: what differences of coordinates carry far from the origin [m].
+    /// Rounding of positions: what differences of the coordinates they were stated in carry [m].
     pub fn rounding(&self) -> f64 {
         /// Units in the last place: of a grid line, of a point of a crack, of their difference.
         const UNITS: f64 = 8.0;
-        let largest = self
-            .nodes
-            .iter()
-            .flatten()
-            .fold(0.0, |m: f64, x| m.max(x.abs()));
-        UNITS * f64::EPSILON * largest
+        let stated = |x: &Point| [0, 1, 2].map(|a| (x[a] + self.origin[a]).abs());
+        let all = self.nodes.iter().flat_map(stated);
+        UNITS * f64::EPSILON * all.fold(0.0, f64::max)
     }
 
     /// Lowest and highest coordinates [m].

@@ -131,10 +131,22 @@ pub struct Change {
     pub transformation: String,
     /// Whether it rounds nothing and gives nothing another name.
     pub exact: bool,
+    /// The verdict or error it ends with, where that is not `solved`.
+    pub verdict: Option<String>,
     /// Largest change of contact forces, over the largest force [-]; none where the contact points are others.
     pub force: Option<f64>,
     /// Change of strain energy and dissipation, over their sum [-]; 1 where the verdict is another.
     pub energy: f64,
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.verdict, self.force) {
+            (Some(verdict), _) => f.write_str(verdict),
+            (None, Some(force)) => write!(f, "forces {force:.1e}, energy {:.1e}", self.energy),
+            (None, None) => write!(f, "other points, energy {:.1e}", self.energy),
+        }
+    }
 }
 
 /// A scene and what was found.

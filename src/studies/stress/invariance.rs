@@ -92,17 +92,22 @@ impl<'a> Base<'a> {
             return None;
         }
         // Another verdict is the largest change there is.
-        let (mut force, mut energy) = (None, 1.0);
-        if let Ok(results) = results
-            && results.runs.iter().all(|r| r.verdict == Verdict::Solved)
-        {
-            energy = self.energy(&results, transform.energy(self.scene.dim));
-            let other: Vec<PointState> = results.points.into_iter().map(|row| row.point).collect();
-            force = self.force(transform, &other);
+        let (mut force, mut energy, mut verdict) = (None, 1.0, None);
+        match results {
+            Err(error) => verdict = Some(error.to_string()),
+            Ok(results) => match results.runs.iter().find(|r| r.verdict != Verdict::Solved) {
+                Some(row) => verdict = Some(row.verdict.to_string()),
+                None => {
+                    energy = self.energy(&results, transform.energy(self.scene.dim));
+                    let own = results.points.into_iter();
+                    force = self.force(transform, &own.map(|row| row.point).collect::<Vec<_>>());
+                }
+            },
         }
         Some(Change {
             transformation: transform.name(),
             exact: transform.is_exact(),
+            verdict,
             force,
             energy: if energy.is_finite() { energy } else { 1.0 },
         })
@@ -172,9 +177,7 @@ impl<'a> Base<'a> {
             false => c.energy <= error,
         };
         let lost = changes.iter().find(|c| !kept(c))?;
-        let force = (lost.force).map_or("other points".into(), |f| format!("forces {f:.1e}"));
-        let (name, energy) = (&lost.transformation, lost.energy);
-        Some(format!("{name}: {force}, energy {energy:.1e}"))
+        Some(format!("{}: {lost}", lost.transformation))
     }
 
     /// Change of energy by a mesh twice as fine; none where that has no answer.
