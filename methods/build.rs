@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Families in the order of tables; a family's methods stand in the order of its `mod` lines.
-const FAMILIES: [&str; 4] = ["newton", "splitting", "conic", "own_laws"];
+const FAMILIES: [&str; 5] = ["newton", "splitting", "conic", "combined", "own_laws"];
 
 fn main() {
     let mut methods = String::new();

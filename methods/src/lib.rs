@@ -66,7 +66,7 @@
 //! # Methods
 //!
 //! Each has a page with its equations, options, guarantees and failure modes: [`newton`], [`splitting`], [`conic`],
-//! [`own_laws`].
+//! [`combined`], [`own_laws`].
 //!
 //! # Add a method
 //!
@@ -79,6 +79,7 @@ mod condensed;
 mod contract;
 mod error;
 
+pub mod combined;
 pub mod conic;
 pub mod newton;
 pub mod own_laws;

@@ -5,9 +5,6 @@ pub mod b_newton;
 pub mod newton_ac;
 pub mod pdas;
 
-// Sweeps first, Newton to finish.
-pub mod hybrid;
-
 // Along the central path of the cones.
 pub mod interior_point;
 

@@ -9,7 +9,7 @@ use std::path::Path;
 /// Sources of a package, its rooms, each of which may import those before it, and whether its files are looked at too.
 #[rustfmt::skip]
 const PACKAGES: [(&str, &[&str], bool); 3] = [
-    ("methods/src", &["error", "algebra", "contract", "condensed", "newton", "splitting", "conic", "own_laws"], false),
+    ("methods/src", &["error", "algebra", "contract", "condensed", "newton", "splitting", "conic", "combined", "own_laws"], false),
     ("xfem/src", &[
         "geometry", "material", "mesh", "quadrature", "cut", "enrichment", "stiffness", "fields", "contact", "intensity", "exact",
     ], false),

@@ -38,9 +38,14 @@ const POLISH_PATIENCE: usize = 30;
 options! {
     Settings {
         max_iterations: Count(200, 1, 1_000_000), "cone programs and Newton steps before giving up";
-        anderson: Count(5, 0, 20), "differences that Anderson acceleration keeps; 0: the plain fixed point";
+        anderson: Count(Settings::ANDERSON, 0, 20), "differences that Anderson acceleration keeps; 0: the plain fixed point";
         polish: Switch(true), "1: finish by Newton steps, which reach what the cone programs cannot";
     }
+}
+
+impl Settings {
+    /// Differences kept by default.
+    const ANDERSON: i64 = 5;
 }
 
 /// The fixed point of one law.
@@ -56,6 +61,24 @@ impl FixedPoint {
     pub fn new(options: &Options, law: Law, parameter: fn(f64, &[f64], &[f64]) -> f64) -> Self {
         Self {
             settings: Settings::new(options),
+            law,
+            parameter,
+        }
+    }
+
+    /// As a part of a method that takes so many iterations at most.
+    pub fn within(
+        max_iterations: usize,
+        law: Law,
+        parameter: fn(f64, &[f64], &[f64]) -> f64,
+    ) -> Self {
+        let (anderson, polish) = (Settings::ANDERSON as usize, true);
+        Self {
+            settings: Settings {
+                max_iterations,
+                anderson,
+                polish,
+            },
             law,
             parameter,
         }

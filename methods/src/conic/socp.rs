@@ -56,6 +56,11 @@ pub static METHOD: Method = Method {
     build: |options| Box::new(FixedPoint::new(options, Law::Cone, shift)),
 };
 
+/// The method as a part of another that takes so many iterations at most.
+pub(crate) fn within(max_iterations: usize) -> FixedPoint {
+    FixedPoint::within(max_iterations, Law::Cone, shift)
+}
+
 /// μ s of a point.
 fn shift(mu: f64, _: &[f64], v: &[f64]) -> f64 {
     mu * tangential_norm(v)

@@ -32,7 +32,7 @@ pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
 }
 
 /// Steps without progress after which an iteration counts as cycling.
-const PATIENCE: usize = 60;
+pub(crate) const PATIENCE: usize = 60;
 
 /// The equations of one point and the pieces of their derivative. `r`, `P`, `v` are the rows of the point.
 pub(crate) trait Scheme: Send {

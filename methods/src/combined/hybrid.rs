@@ -18,7 +18,8 @@
 //!
 //! A Newton run that fails leaves no trace: the sweeps go on from where they were, so that the method is never worse than
 //! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Before the first of that size
-//! `interior-point` is tried, once: where the others cycle it often finds a way. Rounds of that size that do not halve the
+//! the methods of other families are tried from the start of the increment, once: `interior-point`, `pdas` with its rescues,
+//! `socp`. Where the others cycle one of them often finds a way. Rounds of that size that do not halve the
 //! natural map halve the relaxation of the sweeps (large μ), down to 1/16; after that everything starts again, up
 //! to eight times: from the forces of a tied crack, from the normal forces reached without any friction, and from ever
 //! more stages of an alternating method (LATIN).
@@ -44,10 +45,11 @@ use crate::condensed::saddle::{self, Saddle};
 use crate::condensed::stages::alternate;
 use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
+use crate::conic::socp;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::b_newton::BEquations;
 use crate::newton::interior_point::{self, along_path};
-use crate::newton::iteration::{Newton, Scheme};
+use crate::newton::iteration::{self, Newton, Scheme};
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
 use crate::{
@@ -83,6 +85,8 @@ const MAX_SWEEPS: usize = 640;
 const PROGRESS: f64 = 0.5;
 /// Smallest relaxation of the sweeps.
 const LEAST_RELAXATION: f64 = 0.1;
+/// Most iterations of each method of another family.
+const SHARE: usize = 200;
 /// Restarts before the method gives up.
 const MAX_RESTARTS: usize = 8;
 /// Sweeps of the first round after a restart.
@@ -101,7 +105,7 @@ impl CondensedMethod for Hybrid {
             if let Some(end) = rounds.newton(BEquations, problem, monitor)? {
                 return Ok(end);
             }
-            if let Some(end) = rounds.interior_point(problem, monitor)? {
+            if let Some(end) = rounds.others(problem, monitor)? {
                 return Ok(end);
             }
             if !rounds.next(problem)? {
@@ -125,17 +129,16 @@ struct Rounds {
     reached: (f64, f64),
     /// Restarts so far.
     restarts: usize,
-    /// Whether the interior-point method was tried.
-    inside: bool,
+    /// Whether the other methods were tried.
+    tried: bool,
     /// Where the sweeps ended last.
     best: Forces,
     settings: Hybrid,
 }
 
-/// How a method that was tried ends the whole, if it does.
-fn final_end(end: End) -> Option<End> {
-    let of_the_whole = [Status::Converged, Status::Stopped, Status::MaxIterations];
-    of_the_whole.contains(&end.status).then_some(end)
+/// Whether a method that was tried ends the whole; iterations that have run out the sweeps see themselves.
+fn is_final(end: &End) -> bool {
+    [Status::Converged, Status::Stopped].contains(&end.status)
 }
 
 impl Rounds {
@@ -150,7 +153,7 @@ impl Rounds {
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
-            inside: false,
+            tried: false,
             best: problem.start(),
             settings: *method,
         }
@@ -194,36 +197,56 @@ impl Rounds {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
         problem.begin_phase();
-        let mut newton = Newton {
+        let end = self
+            .newton_of(scheme)
+            .run(problem, self.best.clone(), monitor)?;
+        Ok(is_final(&end).then_some(end))
+    }
+
+    fn newton_of<S: Scheme>(&self, scheme: S) -> Newton<S> {
+        Newton {
             scheme,
             multiple: self.settings.r,
             limits: self.limits(NEWTON_PATIENCE),
             line_search: true,
             rescue: false,
             tangent: Tangent::Condensed,
-        };
-        Ok(final_end(newton.run(
-            problem,
-            self.best.clone(),
-            monitor,
-        )?))
+        }
     }
 
-    /// The interior-point method from the start of the increment, before the first of the largest rounds; how the method
-    /// ends, if it does.
-    fn interior_point(
+    /// Other methods from the start of the increment, before the first of the largest rounds; how the method ends, if it
+    /// does.
+    fn others(
         &mut self,
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
-        if self.inside || 2 * self.count < MAX_SWEEPS {
+        if self.tried || 2 * self.count < MAX_SWEEPS {
             return Ok(None);
         }
-        self.inside = true;
+        self.tried = true;
         problem.begin_again();
-        let limits = self.limits(interior_point::PATIENCE);
-        let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
-        Ok(final_end(end))
+        let share = |problem: &ContactProblem<'_>| {
+            (problem.counters.iterations + SHARE).min(self.settings.max_iterations)
+        };
+        let limits = Limits::new(share(problem), interior_point::PATIENCE);
+        let mut end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
+        if !is_final(&end) {
+            problem.begin_again();
+            let mut newton = Newton {
+                line_search: false,
+                rescue: true,
+                limits: Limits::new(share(problem), iteration::PATIENCE),
+                ..self.newton_of(Sets)
+            };
+            let start = problem.start();
+            end = newton.run(problem, start, monitor)?;
+        }
+        if !is_final(&end) {
+            problem.begin_again();
+            end = socp::within(share(problem)).iterate(problem, monitor)?;
+        }
+        Ok(is_final(&end).then_some(end))
     }
 
     /// Prepares the next round; false if nothing is left to try.

@@ -1,0 +1,3 @@
+//! Methods made of others.
+
+pub mod hybrid;
