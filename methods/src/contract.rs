@@ -11,7 +11,6 @@ pub(crate) mod registry;
 pub(crate) mod state;
 pub(crate) mod system;
 pub(crate) mod tier;
-pub(crate) mod tractions;
 
 pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings, in_contact};
 pub use judge::{Residuals, consistency, residuals, residuals_of};

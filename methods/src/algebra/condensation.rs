@@ -4,7 +4,8 @@
 //! ```text
 //! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
 //! ```
-//! Where they are not last, L Y = (D B)ᵀ is solved along the tree of the factor.
+//! Where they are not last, L Y = (D B)ᵀ is solved along the tree of the factor, and so it is for the rows of a traction
+//! operator, which reach beyond the contact unknowns.
 //!
 //! A floating body has a generalised inverse G for K⁻¹, and balanced rows: those of B P (`floating::Balance`).
 //!
@@ -69,6 +70,33 @@ pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> 
     half.unsorted(&squares)
 }
 
+/// The traction operator S condensed to some rows: T and X.
+pub(crate) struct Tractions {
+    /// S K⁻¹ Sᵀ, symmetric positive semi-definite, in N/m.
+    pub t: Mat<f64>,
+    /// B K⁻¹ Sᵀ, dimensionless.
+    pub x: Mat<f64>,
+}
+
+impl Tractions {
+    /// For the listed rows of S and B.
+    pub fn new(
+        factor: &Factor,
+        s: &JumpOperator,
+        b: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<Self, MethodError> {
+        check_rows(rows.len())?;
+        let m = rows.len();
+        let both = [b, s].map(|operator| columns(factor, operator, rows, 0));
+        let (square, _) = factor.condense(&both.concat(), true);
+        let x = square.as_ref().submatrix(0, m, m, m).to_owned();
+        let mut t = square.as_ref().submatrix(m, m, m, m).to_owned();
+        mirror_upper(&mut t);
+        Ok(Self { t, x })
+    }
+}
+
 /// Lower triangle := upper triangle.
 fn mirror_upper(a: &mut Mat<f64>) {
     /// Square blocks that fit a cache.
@@ -112,6 +140,27 @@ fn permute(a: &mut Mat<f64>, position: &[usize]) {
     }
 }
 
+/// (D B)ᵀ for the listed rows of B: positions in L, counted from `begin`, and values.
+fn columns(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+    begin: usize,
+) -> Vec<Vec<(usize, f64)>> {
+    let mut pinned = vec![false; factor.scale.len()];
+    factor.pins.iter().for_each(|&pin| pinned[pin] = true);
+    // Pinned unknowns take no part of balanced forces.
+    let column = |&i: &usize| -> Vec<(usize, f64)> {
+        let row: Vec<(usize, f64)> = jump.row(i).filter(|e| e.1 != 0.0).collect();
+        let own = row.iter().map(|&(j, b)| (j, b * factor.scale[j]));
+        own.chain(factor.balance.completion(&row))
+            .filter(|&(j, _)| !pinned[j])
+            .map(|(j, value)| (factor.ordering.inverse[j] - begin, value))
+            .collect()
+    };
+    rows.iter().map(column).collect()
+}
+
 /// Y with columns sorted by first non-zero, solved for panel by panel.
 struct Half<'a> {
     factor: &'a Factor,
@@ -133,20 +182,7 @@ impl<'a> Half<'a> {
             0
         };
         let height = factor.scale.len() - begin;
-        let mut pinned = vec![false; factor.scale.len()];
-        for &pin in &factor.pins {
-            pinned[pin] = true;
-        }
-        // Pinned unknowns take no part of balanced forces.
-        let entries = |i: usize| -> Vec<(usize, f64)> {
-            let row: Vec<(usize, f64)> = jump.row(i).filter(|e| e.1 != 0.0).collect();
-            let own = row.iter().map(|&(j, b)| (j, b * factor.scale[j]));
-            own.chain(factor.balance.completion(&row))
-                .filter(|&(j, _)| !pinned[j])
-                .map(|(j, value)| (factor.ordering.inverse[j] - begin, value))
-                .collect()
-        };
-        let unsorted: Vec<Vec<(usize, f64)>> = rows.iter().map(|&i| entries(i)).collect();
+        let unsorted = columns(factor, jump, rows, begin);
         let first_of = |k: usize| unsorted[k].iter().map(|e| e.0).min().unwrap_or(height);
         let mut sorted: Vec<usize> = (0..rows.len()).collect();
         sorted.sort_by_key(|&k| (first_of(k), k));

@@ -175,23 +175,6 @@ impl Factor {
         self.balance.take_out(x);
     }
 
-    /// X := G F in place for all columns together, without refinement.
-    pub fn solve_columns(&self, x: &mut Mat<f64>) {
-        let mut inner = Mat::<f64>::zeros(x.nrows(), x.ncols());
-        for j in 0..x.ncols() {
-            let f = x.col_as_slice_mut(j);
-            self.balance.balance(f);
-            self.pins.iter().for_each(|&pin| f[pin] = 0.0);
-            self.scale_and_permute(f, inner.col_as_slice_mut(j));
-        }
-        self.cholesky.solve_columns(&mut inner);
-        for j in 0..x.ncols() {
-            let x = x.col_as_slice_mut(j);
-            self.permute_back_and_scale(inner.col_as_slice(j), x);
-            self.balance.take_out(x);
-        }
-    }
-
     /// x := D (L Lᵀ)⁻¹ D x, 0 for pinned unknowns.
     fn solve_scaled(&self, x: &mut [f64], work: &mut [f64]) {
         self.scale_and_permute(x, work);

@@ -2,10 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use faer::Mat;
-
 use crate::MethodError;
-use crate::algebra::condensation::{self, Condensed};
+use crate::algebra::condensation::{self, Condensed, Tractions};
 use crate::algebra::delassus;
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
@@ -29,11 +27,16 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Solves K x = f in place, with iterative refinement; where K is singular, by a generalised inverse.
     fn solve(&self, x: &mut [f64]) -> Result<(), MethodError>;
 
-    /// Solves K X = F in place for all columns together, without refinement.
-    fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError>;
-
     /// W = B K⁻¹ Bᵀ on the listed rows of B, and its diagonal as [`compliances`](Self::compliances) gives it.
     fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError>;
+
+    /// A traction operator condensed to the listed rows.
+    fn tractions(
+        &self,
+        traction: &JumpOperator,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<Tractions, MethodError>;
 
     /// The diagonal of W alone: W is not formed.
     fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError>;
@@ -118,13 +121,17 @@ impl Stiffness for SparseStiffness {
         Ok(())
     }
 
-    fn solve_columns(&self, x: &mut Mat<f64>) -> Result<(), MethodError> {
-        self.factor()?.solve_columns(x);
-        Ok(())
-    }
-
     fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         condensation::condense(self.factor()?, jump, rows)
+    }
+
+    fn tractions(
+        &self,
+        traction: &JumpOperator,
+        jump: &JumpOperator,
+        rows: &[usize],
+    ) -> Result<Tractions, MethodError> {
+        Tractions::new(self.factor()?, traction, jump, rows)
     }
 
     fn compliances(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {
@@ -199,13 +206,18 @@ impl Stiffness for DelassusOnly {
         Ok(())
     }
 
-    fn solve_columns(&self, _: &mut Mat<f64>) -> Result<(), MethodError> {
-        Err(MethodError::NoStiffness)
-    }
-
     fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
         Ok((delassus::dense(&self.w)?, diagonal))
+    }
+
+    fn tractions(
+        &self,
+        _: &JumpOperator,
+        _: &JumpOperator,
+        _: &[usize],
+    ) -> Result<Tractions, MethodError> {
+        Err(MethodError::NoStiffness)
     }
 
     fn compliances(&self, _: &JumpOperator, rows: &[usize]) -> Result<Vec<f64>, MethodError> {

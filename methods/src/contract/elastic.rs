@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use crate::algebra::condensation::Tractions;
 use crate::algebra::delassus::Dense;
 use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
@@ -11,7 +12,6 @@ use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
 use crate::contract::operator::ContactOperator;
-use crate::contract::tractions::Tractions;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
 
 /// What a discretisation hands over.
@@ -390,7 +390,7 @@ impl Elastic {
             let clock = Instant::now();
             let s = self.traction().ok_or(MethodError::NoTraction)?;
             let rows = self.rows().source;
-            let tractions = Tractions::new(&*self.stiffness, s, &self.jump, &rows)?;
+            let tractions = self.stiffness.tractions(s, &self.jump, &rows)?;
             self.solves.fetch_add(rows.len(), Relaxed);
             Ok((Arc::new(tractions), clock.elapsed().as_secs_f64()))
         };

@@ -1,21 +1,11 @@
-//! Forward and back substitution, along the tree for one column and by blocks of columns for many.
+//! Forward and back substitution along the tree.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::reborrow::ReborrowMut;
-use faer::{Accum, Mat, MatMut, Par};
-
 use crate::algebra::multifrontal::Cholesky;
-use crate::algebra::strips::{column_strips, for_all};
 
 /// Entries of L from which threads are worth it.
 const WORTH_THREADS: usize = 1_000_000;
-/// Columns solved for together.
-const TOGETHER: usize = 32;
 /// Sums run in this many lanes.
 const LANES: usize = 8;
 
@@ -64,61 +54,6 @@ impl Cholesky {
             x.copy_from_slice(&front[..columns]);
             let _ = fronts[s].set(front);
         });
-    }
-
-    /// X := (L Lᵀ)⁻¹ X.
-    pub fn solve_columns(&self, x: &mut Mat<f64>) {
-        let blocks = column_strips(x.as_mut(), TOGETHER);
-        for_all(blocks, true, |(_, block)| self.solve_block(block));
-    }
-
-    fn solve_block(&self, mut x: MatMut<'_, f64>) {
-        let (tree, width) = (&self.tree, x.ncols());
-        let mut below = Mat::<f64>::zeros(self.tree.highest(), width);
-        for (s, node) in tree.nodes.iter().enumerate() {
-            let (columns, pattern) = (node.columns.len(), tree.pattern(s));
-            let panel = self.panel(s);
-            let mut own = x.rb_mut().subrows_mut(node.columns.start, columns);
-            let triangle = panel.subrows(0, columns);
-            solve_lower_triangular_in_place(triangle, own.rb_mut(), Par::Seq);
-            let mut below = below.as_mut().subrows_mut(0, pattern.len());
-            let low = panel.subrows(columns, pattern.len());
-            matmul(
-                below.rb_mut(),
-                Accum::Replace,
-                low,
-                own.as_ref(),
-                1.0,
-                Par::Seq,
-            );
-            for j in 0..width {
-                for (k, &row) in pattern.iter().enumerate() {
-                    x[(row as usize, j)] -= below[(k, j)];
-                }
-            }
-        }
-        for (s, node) in tree.nodes.iter().enumerate().rev() {
-            let (columns, pattern) = (node.columns.len(), tree.pattern(s));
-            let panel = self.panel(s);
-            let mut below = below.as_mut().subrows_mut(0, pattern.len());
-            for j in 0..width {
-                for (k, &row) in pattern.iter().enumerate() {
-                    below[(k, j)] = x[(row as usize, j)];
-                }
-            }
-            let mut own = x.rb_mut().subrows_mut(node.columns.start, columns);
-            let low = panel.subrows(columns, pattern.len()).transpose();
-            matmul(
-                own.rb_mut(),
-                Accum::Add,
-                low,
-                below.as_ref(),
-                -1.0,
-                Par::Seq,
-            );
-            let triangle = panel.subrows(0, columns).transpose();
-            solve_upper_triangular_in_place(triangle, own, Par::Seq);
-        }
     }
 
     /// The part of x of every supernode.

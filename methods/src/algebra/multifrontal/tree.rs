@@ -52,15 +52,6 @@ impl AssemblyTree {
         &self.places[self.nodes[s].pattern.clone()]
     }
 
-    /// Most rows below the columns of a supernode.
-    pub fn highest(&self) -> usize {
-        self.nodes
-            .iter()
-            .map(|s| s.pattern.len())
-            .max()
-            .unwrap_or(0)
-    }
-
     /// Multiplications and additions of all.
     pub fn work(&self) -> f64 {
         let roots = self.nodes.iter().filter(|s| s.parent == NONE);
