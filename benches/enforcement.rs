@@ -25,7 +25,7 @@ fn enforcement(criterion: &mut Criterion) {
         let scene = Scene::new(problem);
         let mut group = group(criterion, &problem.enforcement("", "").group);
         for choice in &choices {
-            let name = |stage| problem.enforcement(stage, choice.method.name);
+            let name = |stage| problem.enforcement(stage, choice.name());
             let verdict = scene.judge(choice);
             if !verdict.is_honest() {
                 left_out(&name(ENFORCEMENT), &verdict);

@@ -245,7 +245,7 @@ fn expected(problems: &[Problem]) -> Result<Vec<Expected>, Box<dyn Error>> {
             let verdict = scene.judge(choice);
             if verdict.is_honest() {
                 for stage in [PREPARE, ENFORCEMENT] {
-                    let name = problem.enforcement(stage, choice.method.name);
+                    let name = problem.enforcement(stage, choice.name());
                     expect(name, Some(verdict.clone()), enforcement);
                 }
             }

@@ -1,6 +1,7 @@
 //! The command line: verbs, arguments, what is printed.
 
 mod arguments;
+mod conform;
 mod converge;
 mod error;
 mod exchange;
@@ -66,6 +67,8 @@ enum Verb {
     Solve(exchange::SolveArgs),
     /// Judge reactions that other programs found for a problem from an FCLIB file
     Judge(exchange::JudgeArgs),
+    /// Test a method, or a program as one, on small problems with known answers
+    Conform(conform::Arguments),
     /// List the methods and the shipped cases
     List,
     /// Describe a method or a case, or all `methods`
@@ -110,6 +113,7 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Export(arguments) => exchange::run_export(arguments),
         Verb::Solve(arguments) => exchange::run_solve(arguments),
         Verb::Judge(arguments) => exchange::run_judge(arguments),
+        Verb::Conform(arguments) => conform::run(&arguments),
         Verb::List => show::run_list(),
         Verb::Show(arguments) => show::run(arguments),
         Verb::Check(arguments) => run::run_check(arguments),

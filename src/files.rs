@@ -1,6 +1,7 @@
 //! Files: contact problems that other programs read and write, and folders written as a whole.
 
 pub mod bundle;
+pub mod digest;
 pub mod interchange;
 pub(crate) mod regular;
 pub(crate) mod visible;

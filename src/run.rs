@@ -5,6 +5,8 @@ pub mod exact_curve;
 pub mod expect;
 pub mod increment;
 pub mod load_path;
+pub mod local_problem;
+pub mod outside;
 pub mod provenance;
 pub mod record;
 pub mod registry;

@@ -92,7 +92,7 @@ impl Scene {
 
     /// A new instance of a method that has seen nothing.
     pub fn build(&self, choice: &Choice) -> Box<dyn Enforcement> {
-        (choice.method.build)(&choice.options)
+        choice.build()
     }
 
     /// Prepares a method.

@@ -9,5 +9,6 @@ pub mod matrix;
 pub(crate) mod multifrontal;
 pub(crate) mod rows;
 pub(crate) mod spectrum;
+pub mod square;
 pub(crate) mod stiffness;
 pub(crate) mod strips;

@@ -1,6 +1,8 @@
 //! The increment seen from the contact points, and the pieces that methods on them are built from.
 
+pub(crate) mod acceleration;
 pub(crate) mod anchor;
+pub(crate) mod anderson;
 pub(crate) mod branches;
 #[cfg(test)]
 pub(crate) mod fixture;

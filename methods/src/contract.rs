@@ -18,7 +18,7 @@ pub use operator::{ContactOperator, DelassusForm, SWAYING};
 pub(crate) use options::options;
 pub use options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};
 pub use point_status::{PointStatus, point_status};
-pub use registry::{Enforcement, Method, NameTaken, Needs, Registry};
+pub use registry::{Enforcement, Method, NameTaken, Needs, OperatorKind, Registry};
 pub use state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Silent, Status};
 pub use system::{ContactSystem, Increment, Load};
 pub use tier::{Tier, UnknownTier};

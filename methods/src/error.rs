@@ -70,6 +70,9 @@ pub enum MethodError {
         /// Dimension of the space of such motions.
         modes: usize,
     },
+    /// What only a symmetric Delassus operator has was asked of another.
+    #[error("the Delassus operator is not symmetric")]
+    UnsymmetricDelassus,
     /// Friction was asked of an [`Elastic`](super::Elastic) built for frictionless contact only.
     #[error(
         "point {point} has friction {friction}, but the elastic body was set up for frictionless contact only"
@@ -119,6 +122,22 @@ pub enum MethodError {
         "the method solves laws of its own, to which the forces at the start are history: other starts are other problems"
     )]
     StartIsHistory,
+    /// A method found out on the way that it cannot treat the system: what
+    /// [`Enforcement::refuses`](super::Enforcement::refuses) would have said.
+    #[error("{reason}")]
+    Refused {
+        /// Why, in its own words.
+        reason: String,
+    },
+    /// A method failed, for a reason of its own.
+    #[error("{reason}")]
+    Failed {
+        /// Its own words.
+        reason: String,
+    },
+    /// A method did not end in the time it was given.
+    #[error("not ended in the time given")]
+    TimeLimit,
 }
 
 impl MethodError {

@@ -2,6 +2,8 @@
 
 // Contact equations, solved by one loop (`iteration`) that differs in H and H'.
 pub mod b_newton;
+pub mod gnm;
+pub mod ncp_newton;
 pub mod newton_ac;
 pub mod pdas;
 
@@ -10,6 +12,7 @@ pub mod interior_point;
 
 pub(crate) mod central_path;
 pub(crate) mod iteration;
+pub(crate) mod kinks;
 pub(crate) mod line_search;
 pub(crate) mod springs;
 pub(crate) mod step;

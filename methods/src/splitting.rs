@@ -8,5 +8,6 @@ pub mod latin;
 pub mod admm;
 
 // Point by point, or by projections alone.
+pub mod accelerated_gradient;
 pub mod nsgs;
 pub mod projection;

@@ -17,3 +17,4 @@ mod registry;
 mod robustness;
 mod toys;
 mod tresca;
+mod unsymmetric;

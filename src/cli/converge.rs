@@ -64,9 +64,9 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     let choice = Choice::parse(&arguments.method)?;
-    if !choice.method.exact {
+    if !choice.exact() {
         return Err(CliError::Inexact {
-            name: choice.method.name,
+            name: choice.name().to_owned(),
         });
     }
     let mut refine: Vec<usize> = arguments.refine.into_iter().map(usize::from).collect();

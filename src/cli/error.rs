@@ -1,11 +1,14 @@
 //! Why a command ended without an answer.
 
+use stickslip_methods::MethodError;
+
 use crate::case::CaseError;
 use crate::files::bundle::FolderError;
 use crate::report::ReportError;
 use crate::report::page::PageError;
 use crate::run::choice::ChoiceError;
 use crate::run::run_case::RunError;
+use crate::studies::exchange::collection::CollectionError;
 use crate::studies::exchange::export::ExportError;
 use crate::studies::exchange::problem_file::ProblemFileError;
 use crate::studies::paper::PaperError;
@@ -46,6 +49,9 @@ pub enum CliError {
     /// An increment that cannot be exported.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A folder of problem files that cannot be listed.
+    #[error(transparent)]
+    Collection(#[from] CollectionError),
     /// A problem file that cannot be solved.
     #[error(transparent)]
     ProblemFile(#[from] ProblemFileError),
@@ -73,7 +79,7 @@ pub enum CliError {
     )]
     Inexact {
         /// The method.
-        name: &'static str,
+        name: String,
     },
     /// A sweep file.
     #[error(transparent)]
@@ -93,6 +99,9 @@ pub enum CliError {
     /// A worker that lost its conductor, or was refused its memory limit.
     #[error("cannot measure cells: {0}")]
     Work(std::io::Error),
+    /// An exercise that makes no system.
+    #[error("an exercise of the conformance kit: {0}")]
+    Exercise(#[from] MethodError),
     /// A method with options.
     #[error(transparent)]
     Choice(#[from] ChoiceError),

@@ -5,19 +5,20 @@ use std::path::PathBuf;
 use clap::Args;
 use stickslip_methods::{Residuals, Tier};
 
-use super::arguments::{find_case, methods_or_all, provenance, refuse_twins};
+use super::arguments::{ProgramLimit, find_case, methods_or_all, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::say;
 use super::progress::Bar;
 use crate::files::interchange::matrix_market;
 use crate::report::names::{self, problem_name};
 use crate::report::standard;
-use crate::report::table::{Column, Order, Row, columns, readable};
+use crate::report::table::{self, Column, Order, Row, columns, readable};
 use crate::report::{Bundle, prepare_output};
 use crate::run::choice::Choice;
 use crate::run::record::Results;
 use crate::run::run_case::{Fields, Progress, Settings};
 use crate::run::verdict::EQUILIBRIUM;
+use crate::studies::exchange::collection::{Entry, FamilyRun, ProblemRow, by_family, entries};
 use crate::studies::exchange::export::{Request, export};
 use crate::studies::exchange::problem_file::ProblemFile;
 
@@ -46,7 +47,7 @@ pub struct ExportArgs {
 /// Arguments of `solve`.
 #[derive(Debug, Args)]
 pub struct SolveArgs {
-    /// FCLIB files (HDF5), local or global
+    /// FCLIB files (HDF5), local or global, and folders of them
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Method with options, NAME or NAME:key=value,key=value; may be repeated; all by default
@@ -55,9 +56,14 @@ pub struct SolveArgs {
     /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
+    /// Solutions per method and problem, fewer where they take more than 5 s; times are those of the fastest
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    repeats: u16,
     /// Folder for the results
     #[arg(long, default_value = "results")]
     out: PathBuf,
+    #[command(flatten)]
+    limit: ProgramLimit,
 }
 
 /// Arguments of `judge`.
@@ -98,17 +104,16 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
 }
 
 pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
-    let chosen = methods_or_all(&args.method)?;
-    let problems = (args.files.iter())
-        .map(|file| ProblemFile::read(file))
-        .collect::<Result<Vec<_>, _>>()?;
-    refuse_twins(
-        "problem",
-        problems.iter().map(|problem| problem.name.as_str()),
-    )?;
+    let chosen = methods_or_all(&args.method, &args.limit)?;
+    let entries = entries(&args.files)?;
+    refuse_twins("problem", entries.iter().map(|entry| entry.name.as_str()))?;
+    // A file that was named must be readable, one that was found may be refused; neither must hold the memory of all.
+    for entry in entries.iter().filter(|entry| !entry.found) {
+        ProblemFile::read(&entry.path)?;
+    }
     let _claim = prepare_output(&args.out)?;
     let bar = Bar::new();
-    bar.plan(problems.len() * chosen.len());
+    bar.plan(entries.len() * chosen.len());
     let settings = Settings {
         tier: Some(args.tier),
         jobs: 1,
@@ -116,8 +121,26 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     };
     let mut results = Results::default();
     let mut solutions = Bundle::new();
-    for problem in &problems {
-        let solved = problem.run(&chosen, args.tier, &bar);
+    let mut problems = Vec::new();
+    for Entry { name, path, found } in entries {
+        let problem = match ProblemFile::read_as(&path, name.clone()) {
+            Ok(problem) => problem,
+            Err(error) if found => {
+                let found = Err(error.reason(&path));
+                problems.push(ProblemRow {
+                    problem: name,
+                    found,
+                });
+                chosen.iter().for_each(|_| bar.done(""));
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let solved = problem.run(&chosen, args.tier, args.repeats.into(), &bar);
+        problems.push(ProblemRow {
+            problem: name,
+            found: problem.size().map_err(|error| error.to_string()),
+        });
         results.append(solved.results);
         for solution in solved.solutions {
             let stem = names::stem(&solution.key);
@@ -128,9 +151,20 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
         }
     }
     bar.finish();
-    let mut bundle = standard::bundle(&results, &provenance(settings))?;
+    let runs = results.runs.iter().map(|row| FamilyRun {
+        problem: &row.key.case,
+        accuracy: row.tier.clone(),
+        method: &row.key.method,
+        verdict: &row.verdict,
+        iterations: row.iterations,
+    });
+    let families = by_family(runs);
+    let mut bundle = standard::bundle(&results, &provenance_with(settings, &chosen))?;
+    table::add(&mut bundle, &problems, "")?;
+    table::add(&mut bundle, &families, "")?;
     bundle.append(solutions)?;
     bundle.commit(&args.out)?;
+    say(format_args!("{}", readable(&problems, "").terminal()));
     say(format_args!(
         "{}",
         readable(

@@ -4,7 +4,7 @@
 //! source for the code, the command line and the manual.
 
 use crate::run::registry::methods;
-use stickslip_methods::Method;
+use stickslip_methods::{Method, Needs, OperatorKind, Options};
 
 /// The page of one method in Markdown.
 pub fn page(method: &Method) -> String {
@@ -13,8 +13,12 @@ pub fn page(method: &Method) -> String {
     } else {
         "It solves laws of its own: their distance from the contact laws is a modelling error, reported as the natural map."
     };
+    let operator = match needs(method).operator {
+        OperatorKind::SemiDefinite => "symmetric and positive semi-definite",
+        OperatorKind::Any => "any, symmetric or not",
+    };
     let mut text = format!(
-        "## `{}`: {}\n\n{kind}\nReference: {}.\n\n",
+        "## `{}`: {}\n\n{kind}\nDelassus operator W: {operator}.\nReference: {}.\n\n",
         method.name, method.label, method.reference
     );
     let mut fenced = false;
@@ -38,6 +42,12 @@ pub fn page(method: &Method) -> String {
         );
     }
     text
+}
+
+/// What the method needs with its default options.
+fn needs(method: &Method) -> Needs {
+    let defaults = Options::new(method.options, &[]);
+    defaults.map_or_else(|_| Needs::default(), |own| (method.build)(&own).needs())
 }
 
 /// `docs/methods.md`.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_methods::Tier;
 
-use super::arguments::methods_or_all;
+use super::arguments::{ProgramLimit, methods_or_all};
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
@@ -44,6 +44,8 @@ pub struct Arguments {
     /// Bodies worked on at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
+    #[command(flatten)]
+    limit: ProgramLimit,
 }
 
 fn friction(text: &str) -> Result<f64, String> {
@@ -55,7 +57,7 @@ fn friction(text: &str) -> Result<f64, String> {
 
 /// Runs the study; false if a method claimed what does not hold, or failed with an error. Giving up is a result here.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let choices = methods_or_all(&arguments.method)?;
+    let choices = methods_or_all(&arguments.method, &arguments.limit)?;
     let sorted = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values.dedup();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_methods::Tier;
 
-use super::arguments::{find_case, provenance, refuse_twins};
+use super::arguments::{ProgramLimit, find_case, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::say;
 use super::progress::Bar;
@@ -13,7 +13,7 @@ use crate::model::body::{Body, Needs};
 use crate::model::loading::Loading;
 use crate::report::table::readable;
 use crate::report::{page, prepare_output, standard};
-use crate::run::choice::{Choice, choices};
+use crate::run::choice::choices;
 use crate::run::expect;
 use crate::run::record::Results;
 use crate::run::run_case::{Fields, RunError, Settings, friction_values, run_case};
@@ -39,6 +39,8 @@ pub struct Arguments {
     /// Runs at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
+    #[command(flatten)]
+    limit: ProgramLimit,
 }
 
 /// Arguments of `stickslip check`.
@@ -77,7 +79,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let given = arguments
         .method
         .iter()
-        .map(|m| Choice::parse(m))
+        .map(|m| arguments.limit.parse(m))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     for case in &cases {
@@ -92,7 +94,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         results.append(run_case(case, &given, settings, &bar)?);
     }
     bar.finish();
-    standard::write(out, &results, &provenance(settings))?;
+    standard::write(out, &results, &provenance_with(settings, &given))?;
     page::write(out)?;
     say(format_args!(
         "{}",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use super::arguments::positive;
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
@@ -29,7 +30,7 @@ const STANDARD: (&str, &str) = (
 /// Arguments of the verb `study`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Sweep file; by default that of the project's own study
+    /// Sweep file, or a folder of FCLIB files; by default the sweep of the project's own study
     sweep: Option<PathBuf>,
     /// Folder for the records and the report; cells that have a record there are not measured again
     #[arg(long, default_value = "results")]
@@ -105,19 +106,13 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 1e9 => Ok(seconds),
-        _ => Err("a number > 0 and at most 1e9".into()),
-    }
-}
-
 /// Set by an interruption.
 pub static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Runs the verb `study`; false if cells are left, or in a whole sweep one claimed what does not hold or crashed.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let plan = match &arguments.sweep {
+        Some(folder) if folder.is_dir() => Plan::of_folder(folder)?,
         Some(file) => Plan::read(file)?,
         None => Plan::parse(STANDARD.0.as_ref(), STANDARD.1)?,
     };
@@ -261,6 +256,9 @@ fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
     let bundle = sweep::bundle(records, total, &provenance(store, records))?;
     bundle.commit_all(store.dir(), "figures")?;
     page::write(store.dir())?;
+    for sentence in sweep::sensitivity_sentences(records) {
+        say(format_args!("{sentence}"));
+    }
     say(format_args!("Results: {}", store.dir().display()));
     Ok(!records.iter().any(|r| wrong(&r)))
 }

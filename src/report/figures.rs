@@ -20,6 +20,7 @@ pub mod residual;
 pub mod robustness;
 mod runs;
 pub mod scaling;
+pub mod sensitivity;
 pub mod stages;
 pub mod table1;
 pub mod time_to_accuracy;
@@ -29,7 +30,7 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 22] = [
+pub static CATALOGUE: [(Chapter, &Kind); 23] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
     (Chapter::Methods, &cost::KIND),
@@ -37,6 +38,7 @@ pub static CATALOGUE: [(Chapter, &Kind); 22] = [
     (Chapter::Study, &scaling::CLASSES),
     (Chapter::Study, &scaling::TIME),
     (Chapter::Study, &scaling::ITERATIONS),
+    (Chapter::Study, &sensitivity::KIND),
     (Chapter::Study, &work_precision::KIND),
     (Chapter::Study, &time_to_accuracy::KIND),
     (Chapter::Study, &performance::KIND),

@@ -1,22 +1,30 @@
 //! Records of a sweep as tables and figures.
 //!
 //! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
-//! `success.*`. All others belong to the machine. Times stand beside honest verdicts only, see
+//! `success.*`, `sensitivity.*`, `safe_windows.*`. All others belong to the machine. Times stand beside honest verdicts only, see
 //! [`published_times`](crate::studies::sweep::analysis::published_times).
 
 use stickslip_methods::Tier;
 
+use super::names::file_name;
 use super::number::{fixed, significant};
 use super::table::{self, Readable, readable};
 use super::tables::ranks::{AccuracyRow, ChangeRow, PointRow, ProfileRow, RankingRow};
-use super::tables::sweep::{CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow};
+use super::tables::sensitivity::{SensitivityRow, WindowRow};
+use super::tables::sweep::{
+    CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow, compare_cells,
+};
 use super::{Bundle, Provenance, ReportError, figures};
+use crate::run::verdict::Verdict;
+use crate::studies::exchange::collection::{FamilyRun, ProblemRow, by_family, family};
+use crate::studies::exchange::problem_file::Size;
 use crate::studies::sweep::analysis::accuracy::{refinements, sequences};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::ranking::ranking;
 use crate::studies::sweep::analysis::recommendation::recommendations;
 use crate::studies::sweep::analysis::scaling::growth;
+use crate::studies::sweep::analysis::sensitivity::sweeps;
 use crate::studies::sweep::analysis::series::{Series, series};
 use crate::studies::sweep::analysis::success::success;
 use crate::studies::sweep::analysis::test_set::TestSet;
@@ -42,7 +50,9 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     table::add(&mut bundle, &numbers(records, total, &sets), "")?;
     add_cells(&mut bundle, records)?;
+    add_files(&mut bundle, records, &caveat)?;
     table::add(&mut bundle, &success(records), &caveat)?;
+    add_sensitivity(&mut bundle, records, &caveat)?;
     table::add(&mut bundle, &profiles(&sets), "")?;
     table::add(&mut bundle, &rankings(&sets), &caveat)?;
     table::add(&mut bundle, &growth(records), &caveat)?;
@@ -55,7 +65,7 @@ pub fn bundle(
     table::add(&mut bundle, &recommendations(records), &caveat)?;
     figures::fastest::add(&mut bundle, &sets, &caveat)?;
     figures::scaling::add(&mut bundle, records, &caveat)?;
-    figures::performance::add(&mut bundle, &sets, &caveat)?;
+    figures::performance::add(&mut bundle, "", &sets, &caveat)?;
     figures::work_precision::add(&mut bundle, records, &caveat)?;
     figures::time_to_accuracy::add(&mut bundle, records, &caveat)?;
     figures::stages::add(&mut bundle, records, &caveat)?;
@@ -80,6 +90,29 @@ fn numbers(records: &[Record], total: usize, sets: &[TestSet<'_>]) -> Vec<Summar
     rows
 }
 
+/// Adds `safe_windows.*`, `sensitivity.*` and its figure, where options were swept.
+fn add_sensitivity(
+    bundle: &mut Bundle,
+    records: &[Record],
+    caveat: &str,
+) -> Result<(), ReportError> {
+    let sweeps = sweeps(records);
+    if sweeps.is_empty() {
+        return Ok(());
+    }
+    table::add(bundle, &WindowRow::of(&sweeps), caveat)?;
+    let rows: Vec<SensitivityRow> = sweeps.iter().flat_map(SensitivityRow::of).collect();
+    table::add(bundle, &rows, caveat)?;
+    figures::sensitivity::add(bundle, &sweeps, caveat)
+}
+
+/// What a paper would print of the options that were swept, a sentence each.
+pub fn sensitivity_sentences(records: &[Record]) -> Vec<String> {
+    let sweeps = sweeps(records);
+    let rows = WindowRow::of(&sweeps);
+    rows.iter().map(WindowRow::sentence).collect()
+}
+
 /// Adds `cells.csv`, `increments.csv`, `deviations.csv` and `times.csv`.
 fn add_cells(bundle: &mut Bundle, records: &[Record]) -> Result<(), ReportError> {
     let cells: Vec<CellRow> = records.iter().map(CellRow).collect();
@@ -95,6 +128,56 @@ fn add_cells(bundle: &mut Bundle, records: &[Record]) -> Result<(), ReportError>
     table::add(bundle, &deviations.collect::<Vec<_>>(), "")?;
     let times: Vec<TimeRow> = records.iter().filter_map(TimeRow::of).collect();
     table::add(bundle, &times, "")
+}
+
+/// Adds `problems.csv`, `families.csv` and a performance profile per family, where problems come from files.
+fn add_files(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
+    let mut own: Vec<&Record> = records.iter().filter(|r| r.cell.is_from_file()).collect();
+    own.sort_by(|a, b| compare_cells(a, b));
+    let same = |a: &&Record, b: &&Record| a.cell.problem() == b.cell.problem();
+    let rows: Vec<ProblemRow> = own.chunk_by(same).map(problem_row).collect();
+    table::add(bundle, &rows, caveat)?;
+    let runs = own.iter().map(|record| FamilyRun {
+        problem: &record.cell.case,
+        accuracy: significant(record.cell.tolerance, 2),
+        method: &record.found.method,
+        verdict: &record.found.verdict,
+        iterations: record.found.sum(|i| i.iterations),
+    });
+    let mut families = by_family(runs);
+    // Stable: methods stay in their order.
+    families.sort_by(|a, b| (&a.family, &a.accuracy).cmp(&(&b.family, &b.accuracy)));
+    table::add(bundle, &families, caveat)?;
+    let mut names: Vec<&str> = families.iter().map(|row| row.family.as_str()).collect();
+    names.dedup();
+    for name in names {
+        let members = own
+            .iter()
+            .filter(|record| family(&record.cell.case) == name);
+        let members: Vec<Record> = members.map(|record| (*record).clone()).collect();
+        let sets = Tier::ALL.map(|tier| TestSet::new(&members, tier));
+        figures::performance::add(bundle, &format!("{}.", file_name(&[name])), &sets, caveat)?;
+    }
+    Ok(())
+}
+
+/// What the cells on one problem file say of it.
+fn problem_row(own: &[&Record]) -> ProblemRow {
+    let size = own.iter().find_map(|record| {
+        let size = record.found.problem.as_ref()?;
+        Some(Size {
+            dim: size.dim,
+            points: size.points,
+            operator: size.operator.clone()?,
+        })
+    });
+    ProblemRow {
+        problem: own[0].cell.case.clone(),
+        found: size.ok_or_else(|| match &own[0].found.verdict {
+            Verdict::Refused(reason) => reason.clone(),
+            other => other.to_string(),
+        }),
+    }
 }
 
 /// Steps of the performance profiles, tier after tier.

@@ -2,9 +2,11 @@
 
 pub mod convergence;
 pub mod paper;
+pub mod problems;
 pub mod ranks;
 pub mod robustness;
 pub mod runs;
+pub mod sensitivity;
 pub mod spaces;
 pub mod stress;
 pub mod sweep;
@@ -14,6 +16,7 @@ mod words;
 use super::table::Description;
 use crate::run::record::{ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, RunRow};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
+use crate::studies::exchange::collection::{FamilyRow, ProblemRow};
 use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
@@ -166,6 +169,8 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<ranks::RankingRow>(),
         Description::of::<Growth>(),
         Description::of::<SuccessRow>(),
+        Description::of::<sensitivity::WindowRow<'_>>(),
+        Description::of::<sensitivity::SensitivityRow<'_>>(),
         Description::of::<sweep::SummaryRow>(),
         Description::of::<ranks::ProfileRow>(),
         Description::of::<ranks::PointRow<'_>>(),
@@ -198,7 +203,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     ];
     let benchmarks = vec![
         Description::of::<super::timings::TimingRow>(),
-        timings::siconos(),
+        timings::peers(),
     ];
     let expected = vec![
         Description::of::<runs::ExpectSummary>(),
@@ -210,6 +215,8 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<HistoryRow>(),
         Description::of::<PointRow>(),
         Description::of::<ExactRow>(),
+        Description::of::<ProblemRow>(),
+        Description::of::<FamilyRow>(),
     ];
     of(Chapter::Paper, paper)
         .chain(of(Chapter::Methods, methods))

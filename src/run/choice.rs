@@ -1,19 +1,29 @@
 //! Which method runs, with which options.
 
-use stickslip_methods::{Method, OptionError, Options};
+use std::path::Path;
+use std::time::Instant;
+
+use stickslip_methods::{Enforcement, Method, OptionError, OptionSpec, OptionValue, Options};
 
 use crate::case::{Case, CaseError, MethodSpec};
+use crate::run::outside::{OUTSIDE, Outside, Program};
 use crate::run::registry::{method, methods};
 
 /// A method with its options.
 #[derive(Debug, Clone)]
 pub struct Choice {
-    /// Method.
-    pub method: &'static Method,
-    /// Options, defaults filled in.
-    pub options: Options,
-    /// Name in tables: registry name, changed options in brackets.
+    source: Source,
+    /// Name in tables: registry name, changed options in brackets; of a program `exec:` and the name of its file.
     pub label: String,
+}
+
+/// Where a method comes from.
+#[derive(Debug, Clone)]
+enum Source {
+    /// The registry, with options, defaults filled in.
+    Registry(&'static Method, Options),
+    /// A program.
+    Outside(Program),
 }
 
 impl Choice {
@@ -24,22 +34,22 @@ impl Choice {
             "" => method.name.to_owned(),
             list => format!("{}[{list}]", method.name),
         };
-        Ok(Choice {
-            method,
-            options,
-            label,
-        })
+        let source = Source::Registry(method, options);
+        Ok(Choice { source, label })
     }
 
-    /// A method as on the command line: `name` or `name:option=value,option=value`.
+    /// A method as on the command line: `name`, `name:option=value,option=value`, or `exec:PROGRAM`.
     ///
     /// # Errors
     /// [`ChoiceError`].
     pub fn parse(argument: &str) -> Result<Self, ChoiceError> {
+        if let Some(path) = argument.strip_prefix(OUTSIDE) {
+            return Self::outside(path);
+        }
         let (name, list) = argument.split_once(':').unwrap_or((argument, ""));
         let method = method(name).ok_or_else(|| ChoiceError::Unknown {
             name: name.into(),
-            known: method_names(),
+            known: format!("{}, {OUTSIDE}PROGRAM", method_names()),
         })?;
         let mut options = Vec::new();
         for part in list.split(',').filter(|part| !part.is_empty()) {
@@ -58,17 +68,88 @@ impl Choice {
         })
     }
 
+    fn outside(path: &str) -> Result<Self, ChoiceError> {
+        let program = Program::find(path).map_err(|why| ChoiceError::Program {
+            path: path.into(),
+            why,
+        })?;
+        Ok(Choice {
+            label: format!("{OUTSIDE}{}", program.name()),
+            source: Source::Outside(program),
+        })
+    }
+
     /// As [`parse`](Self::parse) reads it, without options that have their defaults.
     pub fn argument(&self) -> String {
-        match changed(&self.options).as_str() {
-            "" => self.method.name.to_owned(),
-            list => format!("{}:{list}", self.method.name),
+        match &self.source {
+            Source::Outside(program) => format!("{OUTSIDE}{}", program.path()),
+            Source::Registry(method, options) => match changed(options).as_str() {
+                "" => method.name.to_owned(),
+                list => format!("{}:{list}", method.name),
+            },
+        }
+    }
+
+    /// Name without options: that in the registry, or the label of a program.
+    pub fn name(&self) -> &str {
+        match &self.source {
+            Source::Registry(method, _) => method.name,
+            Source::Outside(_) => &self.label,
+        }
+    }
+
+    /// Whether its limit is the solution of the contact laws; that of a program is taken for it.
+    pub fn exact(&self) -> bool {
+        match &self.source {
+            Source::Registry(method, _) => method.exact,
+            Source::Outside(_) => true,
+        }
+    }
+
+    /// All options with their values; a program has none.
+    pub fn options(&self) -> Vec<(OptionSpec, OptionValue)> {
+        match &self.source {
+            Source::Registry(_, options) => options.iter().collect(),
+            Source::Outside(_) => Vec::new(),
+        }
+    }
+
+    /// The option of this name, if it has one.
+    pub fn spec(&self, name: &str) -> Option<OptionSpec> {
+        let mut all = self.options().into_iter().map(|(spec, _)| spec);
+        all.find(|spec| spec.name() == name)
+    }
+
+    /// The program, if it is one.
+    pub fn program(&self) -> Option<&Program> {
+        match &self.source {
+            Source::Registry(..) => None,
+            Source::Outside(program) => Some(program),
+        }
+    }
+
+    /// The same, where it is a program with so many seconds for an increment and an end to all of them.
+    pub fn limited(self, seconds: f64, until: Option<Instant>) -> Self {
+        match self.source {
+            Source::Registry(..) => self,
+            Source::Outside(program) => Self {
+                source: Source::Outside(program.limited(seconds, until)),
+                ..self
+            },
+        }
+    }
+
+    /// Makes an instance.
+    pub fn build(&self) -> Box<dyn Enforcement> {
+        match &self.source {
+            Source::Registry(method, options) => (method.build)(options),
+            Source::Outside(program) => Box::new(Outside::new(program.clone())),
         }
     }
 
     /// Whether the method asks for the traction operator.
     pub fn needs_traction(&self) -> bool {
-        (self.method.build)(&self.options).needs().traction
+        self.build().needs().traction
     }
 
     /// Every registered method with its defaults.
@@ -76,6 +157,19 @@ impl Choice {
         let all = methods().iter();
         all.map(|method| Choice::new(method, &[])).collect()
     }
+}
+
+/// The argument of a method with the path of a program as seen from a folder.
+pub fn seen_from(folder: &Path, argument: &str) -> String {
+    match argument.strip_prefix(OUTSIDE) {
+        Some(path) => format!("{OUTSIDE}{}", folder.join(path).display()),
+        None => argument.to_owned(),
+    }
+}
+
+/// Whether a label or an argument names a program.
+pub fn is_outside(method: &str) -> bool {
+    method.starts_with(OUTSIDE)
 }
 
 /// The options that differ from their defaults, in the order of the method: the same settings give the same text.
@@ -111,6 +205,14 @@ pub enum ChoiceError {
         argument: String,
         /// What is wrong.
         source: OptionError,
+    },
+    /// A file that is no program.
+    #[error("method {OUTSIDE}{path}: {why}")]
+    Program {
+        /// As given.
+        path: String,
+        /// What is wrong.
+        why: String,
     },
     /// An option that is no `key=value`.
     #[error("method {argument}: `{part}` is not key=value with a number")]

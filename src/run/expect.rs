@@ -85,8 +85,8 @@ pub fn expectation_rows(
 /// An expectation without a method speaks of the exact ones.
 fn applies(expect: &Expect, choice: &Choice, refine: usize, friction: f64) -> bool {
     let method = match &expect.method {
-        Some(name) => name == choice.method.name,
-        None => choice.method.exact,
+        Some(name) => name == choice.name(),
+        None => choice.exact(),
     };
     method
         && expect.friction.is_none_or(|mu| mu == friction)

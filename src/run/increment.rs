@@ -13,6 +13,9 @@ use crate::run::choice::Choice;
 use crate::run::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
 use crate::run::verdict::{Accuracy, Verdict};
 
+/// Seconds after which no further solution begins.
+const REPEAT_S: f64 = 5.0;
+
 /// What came of an increment.
 pub struct JudgedIncrement {
     /// Claim × check.
@@ -48,6 +51,8 @@ pub struct Seconds {
     /// Enforcement: all but load solves, recovery of displacements and checks of equilibrium, which cost the same whatever
     /// the method.
     pub enforcement_s: f64,
+    /// The same by the method's own account, where it runs outside and gives one.
+    pub reported_s: Option<f64>,
 }
 
 /// An outcome with what the judge found.
@@ -76,7 +81,7 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// The verdict on one that declines the system, or fails.
     pub fn new(choice: &Choice, system: &'a ContactSystem) -> Result<Self, Verdict> {
-        let mut method = (choice.method.build)(&choice.options);
+        let mut method = choice.build();
         if let Some(reason) = method.refuses(system) {
             return Err(Verdict::Refused(reason));
         }
@@ -91,12 +96,36 @@ impl<'a> Solver<'a> {
 
     /// Solves an increment, unjudged: what the method returned and its seconds.
     pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, Seconds) {
-        timed(self.system, || self.method.solve(increment, &mut Silent))
+        let solve = || self.method.solve(increment, &mut Silent);
+        let (outcome, mut seconds) = timed(self.system, solve);
+        seconds.reported_s = self.method.reported_s();
+        (outcome, seconds)
     }
 
     /// Solves an increment and judges the outcome against the violation accepted.
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
-        let (solved, solve) = self.solve(increment);
+        self.judge_fastest(increment, accepted, 1)
+    }
+
+    /// The same, the time that of the fastest of so many solutions, or of as many as begin within [`REPEAT_S`]: all give the
+    /// same bits, the first one pays for cold caches.
+    pub fn judge_fastest(
+        &mut self,
+        increment: &Increment<'_>,
+        accepted: f64,
+        repeats: usize,
+    ) -> JudgedIncrement {
+        let clock = Instant::now();
+        let (solved, mut solve) = self.solve(increment);
+        for _ in 1..repeats {
+            if clock.elapsed().as_secs_f64() > REPEAT_S {
+                break;
+            }
+            let (_, again) = self.solve(increment);
+            if again.total_s < solve.total_s {
+                solve = again;
+            }
+        }
         let judged = solved.and_then(|mut outcome| {
             // What nothing can balance is no fault of the method.
             if outcome.status != Status::Converged && unbalanced(increment)? {
@@ -181,6 +210,7 @@ impl JudgedIncrement {
             prepare_s: time(|work| work.prepare_s),
             solve_s: time(|work| work.solve.total_s),
             enforcement_s: time(|work| work.solve.enforcement_s),
+            reported_s: time(|work| work.solve.reported_s.unwrap_or(f64::NAN)),
             equilibrium: found(|f| f.equilibrium),
             claimed_equilibrium: found(|f| f.claimed_equilibrium),
             claimed: found(|f| f.claimed),
@@ -235,6 +265,7 @@ fn timed<T>(system: &ContactSystem, call: impl FnOnce() -> T) -> (T, Seconds) {
     let seconds = Seconds {
         total_s,
         enforcement_s,
+        reported_s: None,
     };
     (value, seconds)
 }

@@ -81,6 +81,8 @@ pub struct RunRow {
     pub solve_s: f64,
     /// Of these, without load solve, recovery of displacements and checks of equilibrium [s].
     pub enforcement_s: f64,
+    /// The same by the account of a program from outside; NaN of all other methods [s].
+    pub reported_s: f64,
     /// Backward error of equilibrium found by the judge [-].
     pub equilibrium: f64,
     /// The same with the consistency term that the method claims; `equilibrium` where it claims none [-].
@@ -126,6 +128,7 @@ impl RunRow {
             &mut self.prepare_s,
             &mut self.solve_s,
             &mut self.enforcement_s,
+            &mut self.reported_s,
         ] {
             *time = f64::NAN;
         }

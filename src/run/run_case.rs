@@ -87,7 +87,7 @@ pub fn run_case(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(settings.jobs)
         .build()?;
-    let first = choices.iter().position(|c| c.method.exact).unwrap_or(0);
+    let first = choices.iter().position(Choice::exact).unwrap_or(0);
     let mut results = Results::default();
     if settings.jobs == 1 {
         warm_up(case.model.dim());

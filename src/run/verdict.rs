@@ -245,6 +245,8 @@ impl From<MethodError> for Verdict {
     fn from(error: MethodError) -> Self {
         match error {
             MethodError::OutOfMemory { .. } => Verdict::OutOfMemory,
+            MethodError::TimeLimit => Verdict::TimedOut,
+            MethodError::Refused { reason } => Verdict::Refused(reason),
             other => Verdict::Crashed(other.to_string()),
         }
     }

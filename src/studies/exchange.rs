@@ -1,5 +1,6 @@
 //! Between an increment and the problems of interchange files.
 
+pub mod collection;
 pub mod export;
 pub mod problem_file;
 
@@ -10,12 +11,12 @@ use faer::sparse::linalg::amd;
 use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 use nalgebra::{DMatrix, DVector};
 use stickslip_methods::{
-    ContactState, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError, SymmetricMatrix,
+    ContactState, DelassusMatrix, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError,
+    SymmetricMatrix,
 };
 
-use crate::files::interchange::{
-    GlobalProblem, Info, LocalEquality, LocalProblem, Solution, SparseMatrix,
-};
+use crate::files::interchange::{GlobalProblem, Info, LocalProblem, Solution, SparseMatrix};
+use crate::run::local_problem::{local_velocity, unsolved};
 
 /// What a file gives a method.
 pub struct System {
@@ -25,18 +26,6 @@ pub struct System {
     pub friction: Vec<f64>,
     /// The load on it; the increment starts from rest.
     pub load: Load,
-}
-
-/// Local velocity (g, d) of a state: gaps, and slips since the start of the increment.
-pub fn local_velocity(increment: &Increment<'_>, state: &ContactState) -> Vec<f64> {
-    let dim = increment.system.dim();
-    let mut v = increment.jump(&state.u);
-    for (row, start) in increment.start_jump().into_iter().enumerate() {
-        if row % dim != 0 {
-            v[row] -= start;
-        }
-    }
-    v
 }
 
 /// An increment with its solution as local problem.
@@ -55,25 +44,14 @@ pub fn local_problem(
         *rest = u - q - *rest;
     }
     let amplitude = |mode: &Vec<f64>| mode.iter().zip(&rest).map(|(v, x)| v * x).sum();
-    let count = form.modes.len();
     LocalProblem {
-        dim: increment.system.dim(),
-        w: SparseMatrix::from_symmetric(&form.w),
-        q: form.q.clone(),
-        mu: increment.system.friction().to_vec(),
-        equality: (count > 0).then(|| LocalEquality {
-            v: SparseMatrix::from_dense_columns(rows, &form.modes),
-            r: SparseMatrix::from_dense(count, count, |_, _| 0.0),
-            s: form.balance.iter().map(|c| -c).collect(),
-        }),
-        info,
         solution: Some(Solution {
             v: Vec::new(),
             u,
             r: solution.p.clone(),
             l: form.modes.iter().map(amplitude).collect(),
         }),
-        guesses: Vec::new(),
+        ..unsolved(increment, form, info)
     }
 }
 
@@ -104,7 +82,11 @@ pub fn global_problem(
     })
 }
 
-/// The body and load of a local problem.
+/// Asymmetry of W or M, in units of the largest entry, up to which it is rounding of whoever wrote the file: their symmetric
+/// part is taken. Beyond it they are taken as they stand.
+pub const ROUNDING: f64 = 1e-12;
+
+/// The body and load of a local problem. A W that is symmetric up to [`ROUNDING`] is held as such.
 ///
 /// V and s become rigid motions and a load f on the contact points with Vᵀ f = s, whose free jump W f is taken off q.
 ///
@@ -112,7 +94,11 @@ pub fn global_problem(
 /// What [`Elastic::from_delassus`] refuses; R ≠ 0 is the caller's to refuse.
 pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     let rows = problem.q.len();
-    let w = problem.w.symmetric_part()?;
+    let square = problem.w.as_square()?;
+    let w = match square.asymmetry().relative {
+        ..=ROUNDING => DelassusMatrix::from(problem.w.symmetric_part()?),
+        _ => square.into(),
+    };
     let (mut modes, mut force) = (Vec::new(), vec![0.0; rows]);
     // V may have no columns: then it says nothing.
     let equality = (problem.equality.as_ref()).filter(|equality| equality.v.cols() > 0);
@@ -152,7 +138,8 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
 /// The body and load of a global problem. Tributary areas are not in the file and taken as 1.
 ///
 /// # Errors
-/// What [`Elastic::new`] refuses; equality constraints are the caller's to refuse.
+/// What [`Elastic::new`] refuses; equality constraints, and an M that is not symmetric up to [`ROUNDING`], are the caller's
+/// to refuse.
 pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
     let stiffness = problem.m.symmetric_part()?;
     let elastic = Elastic::new(ElasticParts {

@@ -344,7 +344,7 @@ fn run_body(
                     problem: *problem,
                     friction,
                     method: choice.label.clone(),
-                    exact: choice.method.exact,
+                    exact: choice.exact(),
                     natural_map: (tried.judged.as_ref()).map_or(f64::NAN, |j| j.found.natural_map),
                     iterations: outcome.map_or(0, |c| c.iterations),
                     factorisations: outcome

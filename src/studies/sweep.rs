@@ -5,12 +5,15 @@
 //! ```
 
 pub mod analysis;
+mod block;
 pub mod bodies;
 pub mod cell;
 pub mod compare;
 pub mod conduct;
+pub mod files;
 pub mod measure;
 pub mod merge;
+mod options;
 pub mod plan;
 pub mod record;
 pub mod statistics;

@@ -17,11 +17,8 @@ use serde::de::DeserializeOwned;
 
 use super::memory;
 use super::sweep::record::Limits;
+use crate::run::outside::process::denied;
 use crate::run::verdict::Verdict;
-
-/// What a process says that an allocation ended: the runtime, and libraries that panic. Errors are told by type, but a dead
-/// worker left words only.
-const DENIED: [&str; 3] = ["memory allocation of", "out of memory", "OutOfMemory"];
 
 /// A worker that does not start.
 #[derive(Debug, thiserror::Error)]
@@ -231,9 +228,8 @@ impl Running {
         let complaints = self.complaints.join().unwrap_or_default();
         let status = status.map_or_else(|e| e.to_string(), |status| status.to_string());
         let first = complaints.lines().find(|line| !line.is_empty());
-        let denied = |line: &&str| DENIED.iter().any(|words| line.contains(words));
         match first {
-            Some(line) if denied(&line) => Verdict::OutOfMemory,
+            Some(line) if denied(line) => Verdict::OutOfMemory,
             Some(line) => Verdict::Crashed(format!("{status}: {line}")),
             None => Verdict::Crashed(status),
         }

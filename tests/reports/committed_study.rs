@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use stickslip::run::choice::Choice;
+use stickslip::studies::sweep::cell::Source;
 use stickslip::studies::sweep::measure::Bench;
 use stickslip::studies::sweep::measure::measure;
 use stickslip::studies::sweep::plan::Plan;
@@ -53,7 +54,10 @@ fn the_committed_numbers_of_the_plate_are_found_again() {
     let held = |id: &str| plate(id) && committed.contains_key(id);
     for task in plan.tasks.iter().filter(|task| held(&task.id)) {
         let choice = Choice::parse(&task.cell.method).unwrap();
-        let record = measure(&mut bench, &task.cell, &task.text, &choice).unwrap();
+        let Source::Case(text) = &*task.source else {
+            panic!("{} comes from a file", task.id)
+        };
+        let record = measure(&mut bench, &task.cell, text, &choice).unwrap();
         let (row, found) = (&committed[&task.id], &record.found);
         assert_eq!(row["verdict"], found.verdict.to_string(), "{}", task.id);
         let number = |column: &str| row[column].parse::<f64>().unwrap();

@@ -138,8 +138,7 @@ fn cracks_through_the_body_are_smooth_whatever_the_tip_option() {
 fn verdicts_that_are_not_honest_have_no_error() {
     let case = plate(0.53, "none");
     let mut study = study("nsgs", None);
-    let one = [("max_iterations".to_owned(), 1.0)];
-    study.choice = Choice::new(study.choice.method, &one).unwrap();
+    study.choice = Choice::parse("nsgs:max_iterations=1").unwrap();
     let samples = samples(&case, &study);
     assert!(samples.iter().all(|s| s.measured == Measured::Nothing));
     let (errors, orders) = orders::rows(&samples);

@@ -9,6 +9,7 @@ mod fuzz;
 mod infsup;
 mod interchange;
 mod measure;
+mod outside;
 mod planted;
 mod random;
 mod robustness;

@@ -33,6 +33,7 @@ fn cell(case: &str, friction: usize, method: &str, tolerance: f64) -> (Cell, Str
         friction: friction_values(&case)[friction].clone(),
         method: method.into(),
         tolerance,
+        program: None,
     };
     (cell, case.source)
 }
@@ -227,4 +228,27 @@ fn methods_are_timed_in_turn() {
         .map(|own| own.as_ref().ok().map(|times| times.enforcement.samples))
         .collect();
     assert_eq!(samples, [Some(7), None, Some(7)]);
+}
+
+/// Goal: a wrong scale costs the default method a few steps, not its speed: at most 30 iterations at any r, as without it
+/// 11 at most. Cases that took 33 to 73 when the scale was kept.
+#[test]
+fn a_wrong_scale_costs_hybrid_a_few_steps() {
+    let mut bench = Bench::default();
+    for case in [
+        "beam_model2",
+        "partial_opening",
+        "sliding_block_star",
+        "sloped_patch",
+    ] {
+        for r in ["1e-3", "1e2", "1e3"] {
+            let method = format!("hybrid:r={r}");
+            let (cell, text) = cell(case, 0, &method, 1e-6);
+            let choice = Choice::parse(&method).unwrap();
+            let found = measure(&mut bench, &cell, &text, &choice).unwrap().found;
+            assert_eq!(found.verdict, Verdict::Solved, "{case} {r}");
+            let most = found.increments.iter().map(|i| i.iterations).max();
+            assert!(most.is_some_and(|n| n <= 30), "{case} {r}: {most:?}");
+        }
+    }
 }

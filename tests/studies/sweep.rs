@@ -426,6 +426,64 @@ fn bad_sweep_files_are_refused_at_their_place() {
             "out of range",
         ),
         (format!("{good}meshes = [1]\n"), "4:1", "unknown key"),
+        (format!("{good}options = {{}}\n"), "4:11", "empty table"),
+        (format!("{good}options.r = 1\n"), "4:13", "wrong type"),
+        (format!("{good}options.r = []\n"), "4:13", "empty list"),
+        (
+            format!("{good}options.x = [1]\n"),
+            "4:13",
+            "no method has an option `x`",
+        ),
+        (
+            format!("{good}options = {{ r = [1], gamma = [2] }}\n"),
+            "4:11",
+            "no method has all of them",
+        ),
+        (
+            format!("{good}methods = [\"pdas\", \"nsgs\"]\noptions.r = [1]\n"),
+            "4:20",
+            "no option `r`",
+        ),
+        (
+            format!("{good}methods = [\"pdas:r=2\"]\noptions.r = [1, 3]\n"),
+            "4:12",
+            "given twice",
+        ),
+        (
+            format!("{good}options.r = [1, 1e4]\n"),
+            "4:17",
+            "a number from 0.001 to 1000",
+        ),
+        (
+            format!("{good}methods = [\"hybrid\"]\noptions.first = [5, 2.5]\n"),
+            "5:21",
+            "a whole number from 1 to 10000",
+        ),
+        (
+            format!("{good}options.monolithic = [0, 2]\n"),
+            "4:26",
+            "a whole number from 0 to 1",
+        ),
+        (
+            format!("{good}options.first = {{ from = 1, to = 10, per_decade = 2 }}\n"),
+            "4:17",
+            "3.162e0 is not allowed",
+        ),
+        (
+            format!("{good}options.r = {{ from = 1, to = 0.1 }}\n"),
+            "4:30",
+            "out of range",
+        ),
+        (
+            format!("{good}options.r = {{ from = 0, to = 1 }}\n"),
+            "4:22",
+            "out of range",
+        ),
+        (
+            format!("{good}options.r = {{ from = 1 }}\n"),
+            "4:13",
+            "missing `to`",
+        ),
         (
             good.replace("[[cells]]", "repeats = { least = 0 }\n[[cells]]"),
             "2:21",
@@ -448,6 +506,62 @@ fn bad_sweep_files_are_refused_at_their_place() {
         assert!(error.contains(part), "{text}\n{error}");
         assert!(!out.exists(), "{text}");
     }
+}
+
+/// Methods and options of the cells of a sweep of one case at one tolerance.
+fn listed(folder: &Path, block: &str) -> Vec<String> {
+    let file = folder.join("options.toml");
+    let text =
+        format!("title = \"t\"\n[[cells]]\ncases = [\"cyclic\"]\ntolerances = [1e-6]\n{block}\n");
+    fs::write(&file, text).unwrap();
+    let output = study(&file, &folder.join("none"), &["--list"])
+        .stdout(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{block}");
+    let ids = String::from_utf8(output.stdout).unwrap();
+    let mut found: Vec<String> = (ids.lines())
+        .map(|id| {
+            let (_, method) = id.split_once(".mu-0.3.").unwrap();
+            method.split_once(".tol-").unwrap().0.to_owned()
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+/// Goal: an option is an axis; ids name the value as on the command line, and the default is the plain method.
+#[test]
+fn options_of_methods_are_axes_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = |block: &str| listed(folder.path(), block);
+    let grid = "methods = [\"pdas\"]\noptions.r = { from = 0.1, to = 10, per_decade = 2 }";
+    let expected = [
+        "pdas",
+        "pdas-r=1e-1",
+        "pdas-r=1e1",
+        "pdas-r=3.162e-1",
+        "pdas-r=3.162e0",
+    ];
+    assert_eq!(listed(grid), expected);
+    // The default stands between the values of a grid, and is not added to a list.
+    let off = "methods = [\"pdas\"]\noptions.r = { from = 0.5, to = 5 }";
+    assert_eq!(listed(off), ["pdas", "pdas-r=5e-1", "pdas-r=5e0"]);
+    let list = "methods = [\"pdas\"]\noptions.r = [0.5, 2]";
+    assert_eq!(listed(list), ["pdas-r=2e0", "pdas-r=5e-1"]);
+    // Without names every method that has all options, with every combination.
+    let both = "options = { r = [1, 2], monolithic = [0, 1] }";
+    let expected: Vec<String> = ["b-newton", "gnm", "ncp-newton", "newton-ac", "pdas"]
+        .iter()
+        .flat_map(|name| {
+            let ends = ["", "-monolithic=1e0", "-r=2e0", "-r=2e0-monolithic=1e0"];
+            ends.map(|end| format!("{name}{end}"))
+        })
+        .collect();
+    assert_eq!(listed(both), expected);
+    // Beside options that a method is given by name.
+    let beside = "methods = [\"hybrid:first=3\"]\noptions.r = [2]";
+    assert_eq!(listed(beside), ["hybrid-r=2e0-first=3e0"]);
 }
 
 /// Goal: whoever cannot write gets an error that names the path, and nothing half-written.

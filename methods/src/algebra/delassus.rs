@@ -3,13 +3,15 @@
 use faer::Mat;
 
 use crate::MethodError;
-use crate::algebra::dense::mul_add;
+use crate::algebra::dense::{dot, mul_add};
 use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::square::{DelassusMatrix, SquareMatrix};
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
 pub const MAX_CONDENSED_ROWS: usize = 12_000;
-/// The Delassus operator on the contact rows in use, symmetric positive semi-definite, in m/N (2D: m²/N). How it is held
-/// is the business of the implementation alone.
+
+/// The Delassus operator on the contact rows in use, in m/N (2D: m²/N): symmetric positive semi-definite where it comes from
+/// a stiffness, whatever it is where it was given. How it is held is the business of the implementation alone.
 pub trait Delassus: Send + Sync {
     /// Number of contact rows.
     fn rows(&self) -> usize;
@@ -25,6 +27,22 @@ pub trait Delassus: Send + Sync {
 
     /// Whether the matrix is held, so that columns cost nothing.
     fn formed(&self) -> bool;
+
+    /// Whether W = Wᵀ.
+    fn symmetric(&self) -> bool {
+        true
+    }
+
+    /// v += Wᵀ p.
+    fn apply_transpose_add(&self, p: &[f64], v: &mut [f64]) {
+        if self.symmetric() {
+            return self.apply_add(p, v);
+        }
+        let mut work = Vec::new();
+        for (k, v) in v.iter_mut().enumerate() {
+            *v += dot(self.column(k, &mut work), p);
+        }
+    }
 
     /// Sum of the diagonal.
     fn trace(&self) -> f64 {
@@ -59,23 +77,34 @@ pub trait Delassus: Send + Sync {
 pub(crate) struct Dense {
     w: Mat<f64>,
     diagonal: Vec<f64>,
+    symmetric: bool,
 }
 
 impl Dense {
-    pub fn new(w: Mat<f64>) -> Self {
+    /// `symmetric`: whether it is, up to the rounding of whoever computed it.
+    pub fn new(w: Mat<f64>, symmetric: bool) -> Self {
         let diagonal = (0..w.nrows()).map(|k| w[(k, k)]).collect();
-        Self { w, diagonal }
+        Self {
+            w,
+            diagonal,
+            symmetric,
+        }
     }
 
     /// The block of some of the rows.
     pub fn select(&self, at: &[usize]) -> Self {
-        Self::new(Mat::from_fn(at.len(), at.len(), |i, j| {
-            self.w[(at[i], at[j])]
-        }))
+        let block = Mat::from_fn(at.len(), at.len(), |i, j| self.w[(at[i], at[j])]);
+        Self::new(block, self.symmetric)
     }
 
     /// The lower triangle, every entry stored.
+    ///
+    /// # Errors
+    /// A matrix that is not symmetric.
     pub fn lower(&self) -> Result<SymmetricMatrix, MethodError> {
+        if !self.symmetric {
+            return Err(MethodError::UnsymmetricDelassus);
+        }
         let m = self.w.nrows();
         let mut col_ptr = vec![0];
         let (mut row_idx, mut values) = (Vec::new(), Vec::new());
@@ -85,6 +114,26 @@ impl Dense {
             col_ptr.push(values.len());
         }
         SymmetricMatrix::new(m, col_ptr, row_idx, values)
+    }
+
+    /// All of it; of an unsymmetric one what is not 0.
+    pub fn matrix(&self) -> Result<DelassusMatrix, MethodError> {
+        if self.symmetric {
+            return Ok(self.lower()?.into());
+        }
+        let m = self.w.nrows();
+        let mut col_ptr = vec![0];
+        let (mut row_idx, mut values) = (Vec::new(), Vec::new());
+        for j in 0..m {
+            for (i, &value) in self.w.col_as_slice(j).iter().enumerate() {
+                if value != 0.0 {
+                    row_idx.push(i);
+                    values.push(value);
+                }
+            }
+            col_ptr.push(values.len());
+        }
+        Ok(SquareMatrix::new(m, col_ptr, row_idx, values)?.into())
     }
 }
 
@@ -108,21 +157,10 @@ impl Delassus for Dense {
     fn formed(&self) -> bool {
         true
     }
-}
 
-/// W given as a sparse matrix, full.
-pub(crate) fn dense(sparse: &SymmetricMatrix) -> Result<Mat<f64>, MethodError> {
-    let m = sparse.size();
-    check_rows(m)?;
-    let mut w = Mat::<f64>::zeros(m, m);
-    for j in 0..m {
-        for k in sparse.col_ptr()[j]..sparse.col_ptr()[j + 1] {
-            let (i, value) = (sparse.row_idx()[k], sparse.values()[k]);
-            w[(i, j)] = value;
-            w[(j, i)] = value;
-        }
+    fn symmetric(&self) -> bool {
+        self.symmetric
     }
-    Ok(w)
 }
 
 /// Refuses more rows than a full W has memory for.

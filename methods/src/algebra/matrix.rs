@@ -194,7 +194,7 @@ impl JumpOperator {
 }
 
 /// Checks the pointer array of a compressed format.
-fn check_pointers(
+pub(crate) fn check_pointers(
     what: &'static str,
     ptr: &[usize],
     n: usize,

@@ -1,4 +1,5 @@
-//! Extreme eigenvalues of a symmetric positive semi-definite operator, estimated by the Lanczos process.
+//! Extreme eigenvalues of a positive semi-definite operator, of its symmetric part if it has another, estimated by the
+//! Lanczos process.
 
 use faer::{Mat, Side};
 
@@ -11,7 +12,7 @@ const STEPS: usize = 60;
 /// Eigenvalues below this fraction of the largest belong to redundant contact points, not to the body.
 const SIGNIFICANT: f64 = 1e-4;
 
-/// (smallest significant, largest) eigenvalue of W on the complement of the rigid motions; `None` if W vanishes there.
+/// (smallest significant, largest) eigenvalue of (W + Wᵀ)/2 on the complement of the rigid motions; `None` if W vanishes there.
 pub(crate) fn extremes(w: &dyn Delassus, modes: &ModeJumps) -> Option<(f64, f64)> {
     let m = w.rows();
     let steps = STEPS.min(m - modes.len().min(m));
@@ -43,6 +44,10 @@ pub(crate) fn extremes(w: &dyn Delassus, modes: &ModeJumps) -> Option<(f64, f64)
         v.iter_mut().for_each(|v| *v /= length);
         let mut next = vec![0.0; m];
         w.apply_add(&v, &mut next);
+        if !w.symmetric() {
+            w.apply_transpose_add(&v, &mut next);
+            next.iter_mut().for_each(|x| *x *= 0.5);
+        }
         modes.project_out(&mut next);
         diagonal.push(dot(&v, &next));
         scale = scale.max(norm(&next));
@@ -64,6 +69,21 @@ pub(crate) fn extremes(w: &dyn Delassus, modes: &ModeJumps) -> Option<(f64, f64)
     (largest > 0.0).then_some((smallest, largest))
 }
 
+/// Singular values above this fraction of the largest count for the rank.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Numerical rank of W; `None` if its singular values are not to be had.
+pub(crate) fn rank(w: &dyn Delassus) -> Option<usize> {
+    let full = w.to_matrix();
+    let values = match w.symmetric() {
+        true => full.self_adjoint_eigenvalues(Side::Lower).ok()?,
+        false => full.singular_values().ok()?,
+    };
+    let largest = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let counts = |x: &&f64| x.abs() > NEGLIGIBLE * largest;
+    Some(values.iter().filter(counts).count())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,11 +99,21 @@ mod tests {
                 0.0
             }
         });
-        let (least, most) = extremes(&Dense::new(w), &none).unwrap();
+        let (least, most) = extremes(&Dense::new(w, true), &none).unwrap();
         assert!(
             (least - 3.0).abs() < 1e-9 && (most - 40.0).abs() < 1e-9,
             "{least} {most}"
         );
-        assert_eq!(extremes(&Dense::new(Mat::zeros(3, 3)), &none), None);
+        assert_eq!(extremes(&Dense::new(Mat::zeros(3, 3), true), &none), None);
+    }
+
+    /// A nilpotent matrix has eigenvalues 0 alone, and the rank of its entry.
+    #[test]
+    fn the_rank_counts_singular_values() {
+        let entry = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == 0 && j == 2)));
+        assert_eq!(rank(&Dense::new(entry, false)), Some(1));
+        let ones = Mat::from_fn(4, 4, |i, j| f64::from(u8::from(i % 2 == j % 2)) * 1e-7);
+        assert_eq!(rank(&Dense::new(ones, true)), Some(2));
+        assert_eq!(rank(&Dense::new(Mat::zeros(2, 2), true)), Some(0));
     }
 }

@@ -4,11 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use crate::MethodError;
 use crate::algebra::condensation::{self, Condensed, Tractions};
-use crate::algebra::delassus;
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::square::DelassusMatrix;
+use crate::algebra::strips::cholesky;
 
 /// K behind a factor: factorise, solve, Schur complement on the contact rows. Everything above works through this door.
 pub(crate) trait Stiffness: Send + Sync {
@@ -50,7 +51,20 @@ pub(crate) trait Stiffness: Send + Sync {
 
     /// Backward error of equilibrium between displacements and the sum of some forces.
     fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64;
+
+    /// max |w_ij − w_ji| / max |w_ij|: 0 where W comes from a stiffness.
+    fn asymmetry(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether W has an eigenvalue below −[`INDEFINITE`] times its largest entry; never where it comes from a stiffness.
+    fn indefinite(&self) -> bool {
+        false
+    }
 }
+
+/// Negative eigenvalues of W down to this multiple of its largest entry are rounding of whoever computed it.
+pub(crate) const INDEFINITE: f64 = 1e-9;
 
 /// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
@@ -170,16 +184,40 @@ impl Stiffness for SparseStiffness {
 
 /// A body known by its Delassus operator alone: its unknowns are the jumps of the contact points, u = W f.
 pub(crate) struct DelassusOnly {
-    w: SymmetricMatrix,
+    w: DelassusMatrix,
+    asymmetry: f64,
     modes: ModeJumps,
+    indefinite: OnceLock<bool>,
 }
 
 impl DelassusOnly {
     /// `floating` are the jumps of the rigid motions.
-    pub fn new(w: SymmetricMatrix, jump: &JumpOperator, floating: &[Vec<f64>]) -> Self {
+    pub fn new(w: DelassusMatrix, jump: &JumpOperator, floating: &[Vec<f64>]) -> Self {
         let all: Vec<usize> = (0..jump.rows()).collect();
         let modes = ModeJumps::new(jump, &all, floating);
-        Self { w, modes }
+        Self {
+            asymmetry: w.asymmetry(),
+            w,
+            modes,
+            indefinite: OnceLock::new(),
+        }
+    }
+
+    /// Whether W, symmetric, moved by [`INDEFINITE`] times its largest entry has no Cholesky factor. What is too large to be
+    /// formed is not known to be.
+    fn has_negative_eigenvalue(&self) -> bool {
+        let Ok(mut full) = self.w.dense() else {
+            return false;
+        };
+        let columns = 0..full.ncols();
+        let largest = columns
+            .flat_map(|j| full.col_as_slice(j))
+            .fold(0.0, |m: f64, w| m.max(w.abs()));
+        if largest == 0.0 {
+            return false;
+        }
+        (0..full.ncols()).for_each(|j| full[(j, j)] += INDEFINITE * largest);
+        cholesky(full.as_mut()).is_err()
     }
 }
 
@@ -201,14 +239,17 @@ impl Stiffness for DelassusOnly {
     }
 
     fn solve(&self, x: &mut [f64]) -> Result<(), MethodError> {
-        let f = x.to_vec();
-        self.w.mul(&f, x);
+        // A load enters as an offset of the jump: without contact forces there are none.
+        if x.iter().any(|&f| f != 0.0) {
+            let f = x.to_vec();
+            self.w.mul(&f, x);
+        }
         Ok(())
     }
 
     fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
-        Ok((delassus::dense(&self.w)?, diagonal))
+        Ok((self.w.dense()?, diagonal))
     }
 
     fn tractions(
@@ -246,5 +287,13 @@ impl Stiffness for DelassusOnly {
         let deformation = ratio(norm(&residual), norm(u) + norm(&work));
         let size: f64 = forces.iter().map(|f| norm(f)).sum();
         deformation.max(ratio(norm(&self.modes.components(&total)), size))
+    }
+
+    fn asymmetry(&self) -> f64 {
+        self.asymmetry
+    }
+
+    fn indefinite(&self) -> bool {
+        *(self.indefinite).get_or_init(|| self.has_negative_eigenvalue())
     }
 }

@@ -19,14 +19,18 @@
 //! A Newton run that fails leaves no trace: the sweeps go on from where they were, so that the method is never worse than
 //! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Before the first of that size
 //! the methods of other families are tried from the start of the increment, once: `interior-point`, `pdas` with its rescues,
-//! `socp`. Where the others cycle one of them often finds a way. Rounds of that size that do not halve the
+//! `socp` if W is symmetric. Where the others cycle one of them often finds a way. Rounds of that size that do not halve the
 //! natural map halve the relaxation of the sweeps (large μ), down to 1/16; after that everything starts again, up
 //! to eight times: from the forces of a tied crack, from the normal forces reached without any friction, and from ever
 //! more stages of an alternating method (LATIN).
 //!
+//! Where contact points are redundant, as in packings of rigid bodies, `interior-point` comes as early as after the second
+//! round: sweeps then creep, and Newton's tangents are singular. On packings of 70 to 80 spheres, 237 to 289 points with two
+//! fifths of the rows of W redundant, it takes 15 to 18 steps where sweeps stall at 1e-5.
+//!
 //! # Options
-//! `first`: sweeps of the first round. `r`: scale of the Newton methods, as there. `max_iterations`: sweeps and Newton steps
-//! together.
+//! `first`: sweeps of the first round. `r`: scale of the first Newton run of an increment, as in `pdas`. If it is not 1 that run ends after
+//! 12 steps, and all others have r = 1: a wrong r costs no more than these steps. `max_iterations`: sweeps and Newton steps together.
 //!
 //! # Guarantees
 //! Those of the sweeps: convergence without friction. Near a regular solution, quadratic. With friction there is no proof,
@@ -41,6 +45,7 @@
 
 #![allow(non_snake_case)]
 
+use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::saddle::{self, Saddle};
 use crate::condensed::stages::alternate;
 use crate::condensed::starts::tied_forces;
@@ -54,7 +59,7 @@ use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
 use crate::{
     CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, MethodError, Monitor,
-    Status, options,
+    Needs, Status, options,
 };
 
 /// Registry entry.
@@ -79,12 +84,17 @@ options! {
 
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;
+/// Most steps of a Newton run with another scale than the natural one.
+const SCALED_STEPS: usize = 12;
 /// Most sweeps of a round.
 const MAX_SWEEPS: usize = 640;
 /// A round of sweeps counts as progress if it brings the natural map below this fraction of the best before.
 const PROGRESS: f64 = 0.5;
 /// Smallest relaxation of the sweeps.
 const LEAST_RELAXATION: f64 = 0.1;
+/// Where points are redundant, sweeps of a round before the interior-point method, as a multiple of the first: those of the
+/// second round.
+const EARLY: usize = 2;
 /// Most iterations of each method of another family.
 const SHARE: usize = 200;
 /// Restarts before the method gives up.
@@ -93,6 +103,10 @@ const MAX_RESTARTS: usize = 8;
 const RESTART_SWEEPS: usize = 20;
 
 impl CondensedMethod for Hybrid {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut rounds = Rounds::new(problem, self);
         loop {
@@ -129,11 +143,29 @@ struct Rounds {
     reached: (f64, f64),
     /// Restarts so far.
     restarts: usize,
-    /// Whether the other methods were tried.
+    /// r of the next Newton run: as given, from the first that fails 1.
+    multiple: f64,
+    /// Whether the other methods were tried, and whether the interior-point method was.
     tried: bool,
+    pathed: bool,
     /// Where the sweeps ended last.
     best: Forces,
     settings: Hybrid,
+}
+
+/// Whether contact points are redundant: the matrix of all points tied is singular.
+fn redundant(problem: &mut ContactProblem<'_>) -> bool {
+    problem.counters.factorisations += 1;
+    let all: Vec<usize> = (0..problem.len()).collect();
+    let (unit, none) = (problem.operator.rho, vec![[0.0; 3]; problem.len()]);
+    let mut tied = none.clone();
+    for own in problem.rows.iter() {
+        own.clone()
+            .zip(0..)
+            .for_each(|(k, l): (usize, usize)| tied[k][l] = unit);
+    }
+    let law = Law::Rows { a: &none, c: &tied };
+    Bordered::new(problem, &all, &law).is_none()
 }
 
 /// Whether a method that was tried ends the whole; iterations that have run out the sweeps see themselves.
@@ -153,7 +185,9 @@ impl Rounds {
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
+            multiple: method.r,
             tried: false,
+            pathed: false,
             best: problem.start(),
             settings: *method,
         }
@@ -191,27 +225,38 @@ impl Rounds {
 
     /// Newton's method from where the sweeps ended; how the method ends, if it does.
     fn newton<S: Scheme>(
-        &self,
+        &mut self,
         scheme: S,
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
         problem.begin_phase();
-        let end = self
-            .newton_of(scheme)
-            .run(problem, self.best.clone(), monitor)?;
+        let mut newton = self.newton_of(scheme);
+        if self.multiple != 1.0 {
+            let most = problem.counters.iterations + SCALED_STEPS;
+            let most = most.min(self.settings.max_iterations);
+            newton.limits = Limits::new(most, NEWTON_PATIENCE);
+        }
+        let end = newton.run(problem, self.best.clone(), monitor)?;
+        self.multiple = 1.0;
         Ok(is_final(&end).then_some(end))
     }
 
     fn newton_of<S: Scheme>(&self, scheme: S) -> Newton<S> {
         Newton {
             scheme,
-            multiple: self.settings.r,
+            multiple: self.multiple,
             limits: self.limits(NEWTON_PATIENCE),
             line_search: true,
+            kinks: false,
             rescue: false,
             tangent: Tangent::Condensed,
         }
+    }
+
+    /// Iterations in all at which a method of another family is given up that begins now.
+    fn share(&self, problem: &ContactProblem<'_>) -> usize {
+        (problem.counters.iterations + SHARE).min(self.settings.max_iterations)
     }
 
     /// Other methods from the start of the increment, before the first of the largest rounds; how the method ends, if it
@@ -221,30 +266,34 @@ impl Rounds {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
-        if self.tried || 2 * self.count < MAX_SWEEPS {
+        let last_chance = !self.tried && 2 * self.count >= MAX_SWEEPS;
+        let second = self.count == EARLY * self.settings.first;
+        if !self.pathed && (last_chance || (second && redundant(problem))) {
+            self.pathed = true;
+            let limits = Limits::new(self.share(problem), interior_point::PATIENCE);
+            problem.begin_again();
+            let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
+            if is_final(&end) {
+                return Ok(Some(end));
+            }
+        }
+        if !last_chance {
             return Ok(None);
         }
         self.tried = true;
         problem.begin_again();
-        let share = |problem: &ContactProblem<'_>| {
-            (problem.counters.iterations + SHARE).min(self.settings.max_iterations)
+        let mut newton = Newton {
+            line_search: false,
+            rescue: true,
+            limits: Limits::new(self.share(problem), iteration::PATIENCE),
+            ..self.newton_of(Sets)
         };
-        let limits = Limits::new(share(problem), interior_point::PATIENCE);
-        let mut end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
-        if !is_final(&end) {
+        let start = problem.start();
+        let mut end = newton.run(problem, start, monitor)?;
+        // Cone programs are minimisations.
+        if !is_final(&end) && problem.operator.w.symmetric() {
             problem.begin_again();
-            let mut newton = Newton {
-                line_search: false,
-                rescue: true,
-                limits: Limits::new(share(problem), iteration::PATIENCE),
-                ..self.newton_of(Sets)
-            };
-            let start = problem.start();
-            end = newton.run(problem, start, monitor)?;
-        }
-        if !is_final(&end) {
-            problem.begin_again();
-            end = socp::within(share(problem)).iterate(problem, monitor)?;
+            end = socp::within(self.share(problem)).iterate(problem, monitor)?;
         }
         Ok(is_final(&end).then_some(end))
     }

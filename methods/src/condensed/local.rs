@@ -4,14 +4,14 @@
 //!
 //! open    q_n >= 0                   P = 0
 //! closed  g = 0  eliminates P_n:     P_n = −(q_n + w·P_t)/W_nn,   d = b + S P_t
-//!                                    w = W_tn,  S = W_tt − w wᵀ/W_nn,  b = q_t − w q_n/W_nn
+//!                                    w = W_ntᵀ,  w' = W_tn,  S = W_tt − w' wᵀ/W_nn,  b = q_t − w' q_n/W_nn
 //!         d = −α P_t, α >= 0:        P_t(α) = −(S + α I)⁻¹ b
 //! stick   α = 0                      if |P_t(0)| <= μ P_n(0)
 //! slip    |P_t(α)| = μ P_n(α)        one equation in α, a quartic once cleared of fractions
 //! ```
 //! (Bonnefon & Daviet, INRIA research report (2011): quartic formulation of Coulomb 3D frictional contact.) Where the point
 //! does not stick, |P_t| − μ P_n is positive at α = 0 and tends to μ q_n/W_nn < 0 for α → ∞: a root always exists for
-//! definite W, whatever μ. In 2D it is unique and explicit. In 3D ψ(α) = μ P_n/|P_t| − 1 is linear in α where S is
+//! definite W, whatever μ, symmetric or not. In 2D it is unique and explicit. In 3D ψ(α) = μ P_n/|P_t| − 1 is linear in α where S is
 //! isotropic and nearly linear elsewhere: Newton's method on ψ, kept inside a bracket by bisection, takes a handful of
 //! steps and always the same root. A point that may open opens, even if for large μ it might also stay closed.
 
@@ -26,25 +26,29 @@ pub(crate) struct LocalOperator {
     /// Rows of the point, 1, 2 or 3.
     size: usize,
     w_nn: f64,
-    /// W_tn.
+    /// W_nt.
     w: [f64; 2],
+    /// W_tn.
+    below: [f64; 2],
     /// S by row.
     s: [[f64; 2]; 2],
 }
 
 impl LocalOperator {
-    /// For the symmetric positive definite block with entries `w(k, l)`, k, l < `size`.
+    /// For the positive definite block with entries `w(k, l)`, k, l < `size`.
     pub fn new(size: usize, w: impl Fn(usize, usize) -> f64) -> Self {
         let mut operator = Self {
             size,
             w_nn: w(0, 0),
             w: [0.0; 2],
+            below: [0.0; 2],
             s: [[0.0; 2]; 2],
         };
         for k in 1..size {
-            operator.w[k - 1] = w(k, 0);
+            operator.w[k - 1] = w(0, k);
+            operator.below[k - 1] = w(k, 0);
             for l in 1..size {
-                operator.s[k - 1][l - 1] = w(k, l) - w(k, 0) * w(l, 0) / w(0, 0);
+                operator.s[k - 1][l - 1] = w(k, l) - w(k, 0) * w(0, l) / w(0, 0);
             }
         }
         operator
@@ -57,7 +61,7 @@ impl LocalOperator {
         }
         let mut b = [0.0; 2];
         for (k, b) in b[..self.size - 1].iter_mut().enumerate() {
-            *b = q[k + 1] - self.w[k] * q[0] / self.w_nn;
+            *b = q[k + 1] - self.below[k] * q[0] / self.w_nn;
         }
         let stick = self.closed(q[0], b, 0.0);
         if tangential_norm(&stick[..self.size]) <= mu * stick[0] {

@@ -43,7 +43,8 @@ impl End {
 
 impl<M: CondensedMethod> Enforcement for M {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        CondensedMethod::refuses(self, system)
+        let needs = CondensedMethod::needs(self);
+        CondensedMethod::refuses(self, system).or_else(|| needs.refuses(system))
     }
 
     fn needs(&self) -> Needs {

@@ -53,6 +53,20 @@ impl Pair {
         }
     }
 
+    /// P, k v and k β in one vector of forces.
+    pub fn stacked(&self, k: f64) -> Vec<f64> {
+        let jumps = self.v.iter().chain(&self.beta).map(|v| k * v);
+        self.p.iter().copied().chain(jumps).collect()
+    }
+
+    /// Takes what [`stacked`](Self::stacked) gives.
+    pub fn unstack(&mut self, k: f64, stacked: &[f64]) {
+        let (p, jumps) = stacked.split_at(self.p.len());
+        self.p.copy_from_slice(p);
+        let own = self.v.iter_mut().chain(&mut self.beta);
+        own.zip(jumps).for_each(|(v, jump)| *v = jump / k);
+    }
+
     /// self += ω (new − self).
     pub fn relax(&mut self, problem: &ContactProblem<'_>, omega: f64, new: &Pair) {
         let step = |x: &mut [f64], new: &[f64]| {

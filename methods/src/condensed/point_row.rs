@@ -153,16 +153,30 @@ fn rows(
     a: Blocks<'_>,
     c: Blocks<'_>,
 ) {
+    // Side by side, for the loop over all entries.
+    let laws: Vec<(Range<usize>, [f64; 3])> = (active.iter())
+        .map(|(row, own)| (own.clone(), c[*row]))
+        .collect();
     let mut work = Vec::new();
     for (column, (k, point)) in active.iter().enumerate() {
         let w = w.column(*k, &mut work);
-        for (entry, (row, own)) in J.col_as_slice_mut(column).iter_mut().zip(active) {
-            for (w, c) in w[own.clone()].iter().zip(c[*row]) {
-                *entry += c * w;
+        let entries = &mut J.col_as_slice_mut(column)[..active.len()];
+        for (entry, (own, c)) in entries.iter_mut().zip(&laws) {
+            *entry = match &w[own.clone()] {
+                [n] => c[0] * n,
+                [n, a] => c[0] * n + c[1] * a,
+                [n, a, b] => c[0] * n + c[1] * a + c[2] * b,
+                own => unreachable!("a point of {} rows", own.len()),
+            };
+        }
+        // Active rows of one point follow each other.
+        let before = (active[..column].iter().rev()).take_while(|(_, own)| own == point);
+        let first = column - before.count();
+        for (entry, (row, own)) in entries[first..].iter_mut().zip(&active[first..]) {
+            if own != point {
+                break;
             }
-            if own.start == point.start {
-                *entry += a[*row][k - own.start];
-            }
+            *entry += a[*row][k - own.start];
         }
     }
 }

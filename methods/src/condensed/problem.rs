@@ -348,6 +348,11 @@ impl<'a> ContactProblem<'a> {
         Violations::of(friction, self.rows, rho, p_ref, p, v).largest()
     }
 
+    /// That of the iterate noted last.
+    pub(crate) fn last_violation(&self) -> f64 {
+        self.history.last().map_or(f64::INFINITY, |h| h.violation)
+    }
+
     /// Adds an entry to the history.
     pub(crate) fn note(&mut self, violation: f64, changes: usize) {
         self.history.push(Iteration { violation, changes });

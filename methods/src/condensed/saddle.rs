@@ -46,7 +46,7 @@ pub(crate) struct Iterate {
 impl Saddle {
     pub fn new(operator: Arc<ContactOperator>) -> Self {
         let kappa = AUGMENTATION / operator.rho;
-        let own = (operator.modes.len() > 0).then(|| Dense::new(augment(&operator, kappa)));
+        let own = (operator.modes.len() > 0).then(|| augment(&operator, kappa));
         Self {
             operator,
             own,
@@ -126,6 +126,24 @@ impl Saddle {
         self.w().apply_add(&x.p, &mut x.v);
     }
 
+    /// P and γ/κ in one vector of forces.
+    pub fn stacked(&self, x: &Iterate) -> Vec<f64> {
+        let held = x.gamma.iter().map(|gamma| gamma / self.kappa);
+        x.p.iter().copied().chain(held).collect()
+    }
+
+    /// Takes what [`stacked`](Self::stacked) gives, and computes v if it is something else.
+    pub fn unstack(&self, problem: &ContactProblem<'_>, x: &mut Iterate, stacked: &[f64]) {
+        if self.stacked(x) == stacked {
+            return;
+        }
+        let (p, held) = stacked.split_at(x.p.len());
+        x.p.copy_from_slice(p);
+        let own = x.gamma.iter_mut().zip(held);
+        own.for_each(|(gamma, held)| *gamma = self.kappa * held);
+        self.refresh(problem, x);
+    }
+
     /// γ <- γ + κ (Qᵀ P − c).
     pub fn update_multipliers(&self, problem: &ContactProblem<'_>, x: &mut Iterate) {
         let step: Vec<f64> = (problem.missing(&x.p).iter())
@@ -150,29 +168,34 @@ impl Saddle {
 }
 
 /// Π W Π + κ Q Qᵀ.
-fn augment(operator: &ContactOperator, kappa: f64) -> Mat<f64> {
-    let q = &operator.modes.q;
-    let m = operator.w.rows();
-    let wq: Vec<Vec<f64>> = q
-        .iter()
-        .map(|q| {
-            let mut wq = vec![0.0; m];
-            operator.w.apply_add(q, &mut wq);
-            wq
-        })
-        .collect();
-    // Π W Π = W − Q (W Q)ᵀ − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
+fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
+    let (q, w) = (&operator.modes.q, &operator.w);
+    let m = w.rows();
+    let each = |product: &dyn Fn(&[f64], &mut [f64])| -> Vec<Vec<f64>> {
+        let one = |q: &Vec<f64>| {
+            let mut found = vec![0.0; m];
+            product(q, &mut found);
+            found
+        };
+        q.iter().map(one).collect()
+    };
+    let wq = each(&|q, wq| w.apply_add(q, wq));
+    let qw = match w.symmetric() {
+        true => wq.clone(),
+        false => each(&|q, qw| w.apply_transpose_add(q, qw)),
+    };
+    // Π W Π = W − Q (Qᵀ W) − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
     let mut augmented = operator.w.to_matrix();
     for j in 0..m {
         for (i, entry) in augmented.col_as_slice_mut(j).iter_mut().enumerate() {
             for a in 0..q.len() {
-                *entry += kappa * q[a][i] * q[a][j] - q[a][i] * wq[a][j] - wq[a][i] * q[a][j];
+                *entry += kappa * q[a][i] * q[a][j] - q[a][i] * qw[a][j] - wq[a][i] * q[a][j];
                 for b in 0..q.len() {
                     *entry += q[a][i] * inner[(a, b)] * q[b][j];
                 }
             }
         }
     }
-    augmented
+    Dense::new(augmented, w.symmetric())
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
-use crate::algebra::dense::{along, dot, solve_dense};
+use crate::algebra::dense::{DenseLu, along, dot, solve_dense};
 use crate::algebra::factor::kernel;
 use crate::algebra::spectrum::extremes;
 use crate::condensed::pair::Pair;
@@ -29,12 +29,18 @@ const RESCUE_RELAXATION: f64 = 0.8;
 /// solution than the one that was not enough.
 const RESCUE_SWEEPS: usize = 20;
 
+/// Factors of I + k₀ W.
+enum Factor {
+    Cholesky(Llt<f64>),
+    /// Where W is not symmetric, or symmetric and indefinite beyond 1/k₀.
+    Lu(DenseLu),
+}
+
 /// The factored global stage, bordered by the rigid motions.
 pub(crate) struct GlobalStage {
     operator: Arc<ContactOperator>,
     k0: f64,
-    /// Cholesky factor of I + k₀ W.
-    factor: Llt<f64>,
+    factor: Factor,
     /// (I + k₀ W)⁻¹ Q by column.
     border: Vec<Vec<f64>>,
     /// Qᵀ (I + k₀ W)⁻¹ Q.
@@ -56,8 +62,16 @@ impl GlobalStage {
             column.iter_mut().for_each(|w| *w *= k0);
             column[j] += 1.0;
         }
-        let factor = Llt::new(a.as_ref(), Side::Lower)
-            .map_err(|e| kernel("factorisation of I + k0 W", format!("{e:?}")))?;
+        let cholesky = (operator.w.symmetric())
+            .then(|| Llt::new(a.as_ref(), Side::Lower).ok())
+            .flatten();
+        let factor = match cholesky {
+            Some(factor) => Factor::Cholesky(factor),
+            None => Factor::Lu(
+                DenseLu::new(a)
+                    .ok_or_else(|| kernel("factorisation of I + k0 W", "it is singular".into()))?,
+            ),
+        };
         let columns = operator.modes.q.iter();
         let border: Vec<Vec<f64>> = columns.map(|q| apply(&factor, q.clone())).collect();
         let schur = Mat::from_fn(border.len(), border.len(), |i, j| {
@@ -203,8 +217,14 @@ fn stage_rows(
     problem.rows.iter().map(of_point).collect()
 }
 
-fn apply(factor: &Llt<f64>, mut x: Vec<f64>) -> Vec<f64> {
+/// (I + k₀ W)⁻¹ x; NaN, which no judge accepts, where it left the finite range.
+fn apply(factor: &Factor, mut x: Vec<f64>) -> Vec<f64> {
     let n = x.len();
-    factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
-    x
+    match factor {
+        Factor::Cholesky(factor) => {
+            factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
+            x
+        }
+        Factor::Lu(factor) => factor.solve(&x).unwrap_or_else(|| vec![f64::NAN; n]),
+    }
 }

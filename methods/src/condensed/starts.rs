@@ -180,8 +180,8 @@ pub fn contact_wise_margin(system: &ContactSystem) -> Result<f64, MethodError> {
     let margin = |i: usize| {
         let own = rows.of(i);
         let block = operator.w.block(own.clone());
-        let column = [block[0][0], block[1][0], block[2][0]];
-        column[0] - system.friction()[i] * tangential_norm(&column[..own.len()])
+        let row = block[0];
+        row[0] - system.friction()[i] * tangential_norm(&row[..own.len()])
     };
     let least = (0..rows.points()).map(margin).fold(f64::INFINITY, f64::min);
     Ok(operator.rho * least)

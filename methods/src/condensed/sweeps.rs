@@ -20,10 +20,13 @@ pub(crate) struct Sweeps {
 impl Sweeps {
     pub fn new(problem: &ContactProblem<'_>, saddle: &Saddle) -> Self {
         let proximal = PROXIMAL / problem.operator.rho;
+        let mirrored = saddle.w().symmetric();
         let points = problem.rows.iter();
         let local = points.map(|rows| {
             let block = saddle.w().block(rows.clone());
             let operator = LocalOperator::new(rows.len(), |k, l| {
+                // Rounding may have left a symmetric W' two halves.
+                let (k, l) = if mirrored && k == 0 { (l, 0) } else { (k, l) };
                 block[k][l] + if k == l { proximal } else { 0.0 }
             });
             (operator, block)

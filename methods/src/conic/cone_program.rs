@@ -17,7 +17,7 @@ use clarabel::solver::{
 
 use crate::algebra::dense::norm;
 use crate::algebra::factor::kernel;
-use crate::{ContactProblem, MethodError};
+use crate::{ContactProblem, Forces, MethodError};
 
 /// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
 pub(crate) const TIGHTEST: f64 = 1e-11;
@@ -57,8 +57,8 @@ pub(crate) struct ConeProgram {
 
 /// What a program ended with.
 pub(crate) struct Solution {
-    /// (P, β); `None` if no force fulfils the constraints.
-    pub forces: Option<(Vec<f64>, Vec<f64>)>,
+    /// `None` if none fulfils the constraints.
+    pub forces: Option<Forces>,
     /// Factorisations of clarabel's matrix, of 2 m rows and more.
     pub factorisations: usize,
 }
@@ -182,13 +182,13 @@ impl ConeProgram {
     }
 
     /// Whatever else the status is, the natural map will judge the iterate.
-    fn forces(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+    fn forces(&self) -> Option<Forces> {
         let solution = &self.solver.solution;
-        let P: Vec<f64> = solution.x.iter().map(|x| x * self.force).collect();
+        let p: Vec<f64> = solution.x.iter().map(|x| x * self.force).collect();
         let multipliers = solution.z.iter().zip(&self.rigid);
         let beta: Vec<f64> = multipliers.map(|(z, q)| z * self.length - q).collect();
-        let finite = P.iter().chain(&beta).all(|x| x.is_finite());
-        (finite && !self.infeasible()).then_some((P, beta))
+        let finite = p.iter().chain(&beta).all(|x| x.is_finite());
+        (finite && !self.infeasible()).then_some(Forces { p, beta })
     }
 }
 
@@ -294,7 +294,7 @@ mod tests {
         let load = (f.to_vec(), vec![0.0; f.len()]);
         with_contact(&springs(f.len(), k), vec![mu], load, |_, problem| {
             let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();
-            let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().0;
+            let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().p;
             parameters.iter().map(solve).collect()
         })
     }

@@ -8,10 +8,11 @@
 
 #![allow(non_snake_case)]
 
+use crate::condensed::anderson::Anderson;
 use crate::condensed::branches::Branches;
 use crate::condensed::starts::tied_forces;
-use crate::conic::anderson::Anderson;
 use crate::conic::cone_program::{ConeProgram, Law, TIGHTEST};
+use crate::conic::mprgp::Mprgp;
 use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
@@ -54,6 +55,8 @@ pub(crate) struct FixedPoint {
     law: Law,
     /// a of one point from μ, P, v.
     parameter: fn(f64, &[f64], &[f64]) -> f64,
+    /// Given bounds by gradients instead of clarabel.
+    gradients: bool,
 }
 
 impl FixedPoint {
@@ -63,7 +66,13 @@ impl FixedPoint {
             settings: Settings::new(options),
             law,
             parameter,
+            gradients: false,
         }
+    }
+
+    /// Whether given bounds are left to gradients instead of clarabel.
+    pub fn by_gradients(self, gradients: bool) -> Self {
+        Self { gradients, ..self }
     }
 
     /// As a part of a method that takes so many iterations at most.
@@ -81,7 +90,15 @@ impl FixedPoint {
             },
             law,
             parameter,
+            gradients: false,
         }
+    }
+
+    fn program(&self, problem: &ContactProblem<'_>, x: &Forces) -> Result<Program, MethodError> {
+        Ok(match self.gradients {
+            true => Program::Gradients(Box::new(Mprgp::new(problem))),
+            false => Program::Conic(Box::new(ConeProgram::new(problem, self.law, &x.p)?)),
+        })
     }
 
     /// A few Newton steps.
@@ -96,6 +113,7 @@ impl FixedPoint {
             multiple: 1.0,
             limits: Limits::new(self.settings.max_iterations, POLISH_PATIENCE),
             line_search: true,
+            kinks: false,
             rescue: false,
             tangent: Tangent::Condensed,
         };
@@ -113,10 +131,35 @@ impl FixedPoint {
     }
 }
 
+/// The convex problem of one parameter per point.
+enum Program {
+    Conic(Box<ConeProgram>),
+    Gradients(Box<Mprgp>),
+}
+
+impl Program {
+    /// `None` if no force fulfils the constraints.
+    fn solve(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        a: &[f64],
+        tolerance: f64,
+    ) -> Result<Option<Forces>, MethodError> {
+        match self {
+            Self::Conic(program) => {
+                let solution = program.solve(a, tolerance)?;
+                problem.counters.factorisations += solution.factorisations;
+                Ok(solution.forces)
+            }
+            Self::Gradients(program) => Ok(Some(program.solve(problem, a, tolerance))),
+        }
+    }
+}
+
 impl CondensedMethod for FixedPoint {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut x = problem.start();
-        let mut program = ConeProgram::new(problem, self.law, &x.p)?;
+        let mut program = self.program(problem, &x)?;
         let mut anderson = Anderson::new(self.settings.anderson);
         let mut branches = Branches::default();
         let mut accuracy = Accuracy::new(problem);
@@ -144,15 +187,13 @@ impl CondensedMethod for FixedPoint {
                 Check::GoOn => {}
                 Check::Corrected => {
                     // The program holds q.
-                    program = ConeProgram::new(problem, self.law, &x.p)?;
+                    program = self.program(problem, &x)?;
                     continue;
                 }
                 Check::End(status) => return Ok(End { status, at: x }),
             }
             let a = anderson.next(self.parameters(problem, &x.p, &v));
-            let solution = program.solve(&a, accuracy.next(violation))?;
-            problem.counters.factorisations += solution.factorisations;
-            let Some((p, beta)) = solution.forces else {
+            let Some(next) = program.solve(problem, &a, accuracy.next(violation))? else {
                 // On a loose piece without load the cones have no interior.
                 if self.settings.polish && violation <= POLISH {
                     return self.polished(problem, x, monitor);
@@ -160,7 +201,7 @@ impl CondensedMethod for FixedPoint {
                 let status = problem.singular();
                 return Ok(End { status, at: x });
             };
-            x = Forces { p, beta };
+            x = next;
             problem.rebalance(&mut x.p);
         }
     }

@@ -10,6 +10,8 @@ use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
 use crate::algebra::rows::RowSet;
+use crate::algebra::spectrum::rank;
+use crate::algebra::square::DelassusMatrix;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
 use crate::contract::operator::ContactOperator;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
@@ -149,13 +151,17 @@ impl Elastic {
     /// jumps `floating` of its rigid motions, one vector each. Its unknowns u are the jumps of the contact points:
     /// u = W (f + P) + R α, and a load carries the free jump q as its offset.
     ///
+    /// W need not be symmetric ([`SquareMatrix`](crate::SquareMatrix)): then it acts on forces as it stands, row by row, and
+    /// methods that need a symmetric one [refuse](crate::Needs::refuses) it.
+    ///
     /// # Errors
     /// Inconsistent sizes, negative diagonal entries, non-finite values.
     pub fn from_delassus(
         dim: usize,
-        w: SymmetricMatrix,
+        w: impl Into<DelassusMatrix>,
         floating: Vec<Vec<f64>>,
     ) -> Result<Arc<Self>, MethodError> {
+        let w = w.into();
         let m = w.size();
         if let Some(index) = (0..m).find(|&j| w.diagonal(j) < 0.0) {
             return Err(MethodError::range(
@@ -244,6 +250,17 @@ impl Elastic {
         self.frictionless
     }
 
+    /// max |w_ij − w_ji| / max |w_ij| of the Delassus operator W that was given; 0 where W comes from a stiffness.
+    pub fn asymmetry(&self) -> f64 {
+        self.stiffness.asymmetry()
+    }
+
+    /// Whether the symmetric W that was given has an eigenvalue below −1e-9 times its largest entry; found out once, by one
+    /// Cholesky factorisation. Never where W comes from a stiffness.
+    pub fn indefinite(&self) -> bool {
+        self.stiffness.indefinite()
+    }
+
     /// Work done so far.
     pub fn counters(&self) -> ElasticCounters {
         ElasticCounters {
@@ -292,7 +309,7 @@ impl Elastic {
     ///
     /// # Errors
     /// Those of the factorisation.
-    pub(crate) fn on_body<T>(&self, call: impl FnOnce() -> T) -> Result<T, MethodError> {
+    pub fn on_body<T>(&self, call: impl FnOnce() -> T) -> Result<T, MethodError> {
         self.factorise()?;
         let clock = Instant::now();
         let value = call();
@@ -356,7 +373,9 @@ impl Elastic {
             let rows = self.rows();
             let (w, diagonal) = self.stiffness.delassus(&self.jump, &rows.source)?;
             self.diagonal.get_or_init(|| Ok(diagonal));
-            Ok((Arc::new(Dense::new(w)), clock.elapsed().as_secs_f64()))
+            let symmetric = self.asymmetry() == 0.0;
+            let w = Arc::new(Dense::new(w, symmetric));
+            Ok((w, clock.elapsed().as_secs_f64()))
         };
         let formed = self.delassus.get_or_init(build).as_ref();
         formed.map(|w| w.0.clone()).map_err(Clone::clone)
@@ -375,12 +394,23 @@ impl Elastic {
     /// floats, that of the body held at the pinned unknowns.
     ///
     /// # Errors
-    /// Those of the first factorisation and condensation; a body set up without friction, which has only normal rows.
+    /// Those of the first factorisation and condensation; a body set up without friction, which has only normal rows; a W
+    /// that was given and is not symmetric.
     pub fn delassus(&self) -> Result<SymmetricMatrix, MethodError> {
         if self.frictionless {
             return Err(MethodError::NoTangentialRows);
         }
         self.formed()?.lower()
+    }
+
+    /// Numerical rank of the Delassus operator, formed unless it exists: singular values above 1e-10 of the largest. Where it
+    /// is less than the number of rows, contact points are redundant. `None` if the decomposition fails. Takes time with the
+    /// third power of the rows.
+    ///
+    /// # Errors
+    /// Those of the first factorisation and condensation.
+    pub fn rank(&self) -> Result<Option<usize>, MethodError> {
+        Ok(rank(&*self.formed()?))
     }
 
     /// The condensed traction operator on [`rows`](Self::rows), computed unless it exists.

@@ -121,4 +121,8 @@ impl Delassus for Products {
     fn formed(&self) -> bool {
         false
     }
+
+    fn symmetric(&self) -> bool {
+        self.elastic.asymmetry() == 0.0
+    }
 }

@@ -1,5 +1,6 @@
 //! Methods: what one is, how it describes itself, and the list of those a program knows.
 
+use crate::algebra::stiffness::INDEFINITE;
 use crate::contract::operator::DelassusForm;
 use crate::contract::options::{OptionSpec, Options};
 use crate::contract::state::{Monitor, Outcome};
@@ -12,8 +13,8 @@ use crate::error::MethodError;
 /// It may keep factorisations between calls, never history: the same increment twice gives the same bits.
 pub trait Enforcement: Send {
     /// Why the method cannot treat this system; `None` if it can.
-    fn refuses(&self, _system: &ContactSystem) -> Option<String> {
-        None
+    fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        self.needs().refuses(system)
     }
 
     /// What the method needs of the body.
@@ -40,15 +41,61 @@ pub trait Enforcement: Send {
         increment: &Increment<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, MethodError>;
+
+    /// What the last [`solve`](Self::solve) took by the method's own account \[s\], where it runs outside this process and says
+    /// so.
+    fn reported_s(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Which Delassus operators a method can treat. Those of a stiffness are of the first kind; one that was given may not be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OperatorKind {
+    /// Symmetric positive semi-definite: the method minimises ½ P·W P + q·P, or relies on it in another way. What is taken
+    /// for granted of a method that says nothing.
+    #[default]
+    SemiDefinite,
+    /// Any: the method works with products, rows and columns of W alone, and solves with LU factors.
+    Any,
 }
 
 /// What a method needs of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Needs {
+    /// Which Delassus operators it can treat.
+    pub operator: OperatorKind,
     /// How it works with the Delassus operator.
     pub delassus: DelassusForm,
     /// The stress at the contact points, [`ElasticParts::traction`](crate::ElasticParts::traction).
     pub traction: bool,
+}
+
+impl Needs {
+    /// Those of a method that works with any W, as a matrix.
+    pub const ANY_OPERATOR: Self = Self {
+        operator: OperatorKind::Any,
+        delassus: DelassusForm::Formed,
+        traction: false,
+    };
+
+    /// Why a method with these needs cannot treat a system, by its Delassus operator; `None` if it can.
+    pub fn refuses(&self, system: &ContactSystem) -> Option<String> {
+        let elastic = system.elastic();
+        let asymmetry = elastic.asymmetry();
+        match self.operator {
+            OperatorKind::Any => None,
+            OperatorKind::SemiDefinite if asymmetry > 0.0 => Some(format!(
+                "W is unsymmetric by {asymmetry:.1e} relative, the method needs a symmetric W"
+            )),
+            OperatorKind::SemiDefinite => elastic.indefinite().then(|| {
+                format!(
+                    "W has an eigenvalue below -{INDEFINITE:e} of its largest entry, the method needs a positive \
+                     semi-definite W"
+                )
+            }),
+        }
+    }
 }
 
 /// A method as a registry lists it.

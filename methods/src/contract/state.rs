@@ -65,6 +65,8 @@ statuses! {
     Diverged = "diverged",
     /// The monitor asked to stop.
     Stopped = "stopped",
+    /// The method says that it has no solution, and nothing else.
+    Unexplained = "unexplained",
 }
 
 impl std::fmt::Display for Status {

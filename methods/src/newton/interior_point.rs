@@ -45,7 +45,8 @@ use crate::condensed::branches::Branches;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
 use crate::{
-    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
+    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs,
+    options,
 };
 
 /// Registry entry.
@@ -87,6 +88,10 @@ struct Iterate {
 }
 
 impl CondensedMethod for InteriorPoint {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
         along_path(problem, self.fraction, limits, monitor)

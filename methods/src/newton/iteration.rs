@@ -1,4 +1,4 @@
-//! Newton's method on non-smooth contact equations: the loop of `b-newton`, `newton-ac` and `pdas`.
+//! Newton's method on non-smooth contact equations: the loop of `b-newton`, `newton-ac`, `pdas`, `gnm` and `ncp-newton`.
 //! ```text
 //! H(P, v) = 0 at every point,  v = q + W P + Q β,  Qᵀ P = c
 //! V (δP, δv) = −H,  δv = W δP + Q δβ,  x <- x + t δ,   x = (P, β),  V an element of the generalised derivative of H
@@ -10,10 +10,12 @@
 
 #![allow(non_snake_case)]
 
+use crate::algebra::dense::{along, minus};
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
 use crate::contract::law::{Branch, return_map};
+use crate::newton::kinks::add_kinks;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{MONOLITHIC, Tangent};
 use crate::{
@@ -23,12 +25,18 @@ use crate::{
 
 options! {
     R: Real("r", 1.0, 1e-3, 1e3): "multiple of 1/W_ii that turns gaps and slips into forces";
+    KINKS: Switch("kinks", false): "1: a step that raises the merit is shortened to the least on its way, searched from kink to kink";
 }
 
 /// Options of a scheme that gives up after so many steps.
-pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
+pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 4] {
     let steps = OptionSpec::Whole(max_iterations);
-    [OptionSpec::Real(R), steps, Tangent::OPTION]
+    [
+        OptionSpec::Real(R),
+        steps,
+        Tangent::OPTION,
+        OptionSpec::Switch(KINKS),
+    ]
 }
 
 /// Steps without progress after which an iteration counts as cycling.
@@ -49,6 +57,11 @@ pub(crate) trait Scheme: Send {
         H
     }
 
+    /// The normal force that bounds friction, linear in P and v.
+    fn bound(&self, r: &[f64], P: &[f64], v: &[f64]) -> f64 {
+        trial(r, P, v)[0]
+    }
+
     /// The piece at (P, v).
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
 
@@ -61,6 +74,9 @@ pub(crate) trait Scheme: Send {
         v: &[f64],
         piece: Self::Piece,
     ) -> [PointRow; 3];
+
+    /// Called with every iterate and its violation before the next step, for what changes with them.
+    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {}
 
     /// The Newton direction; `None` if the tangent is singular. `pieces` are those at x.
     fn direction(
@@ -80,6 +96,8 @@ pub(crate) struct Newton<S> {
     pub limits: Limits,
     /// Shorten steps that raise the merit.
     pub line_search: bool,
+    /// And search for the least on the way.
+    pub kinks: bool,
     /// Move on by a few local and global stages where stuck.
     pub rescue: bool,
     pub tangent: Tangent,
@@ -93,6 +111,7 @@ impl<S: Scheme> Newton<S> {
             multiple: options.real(&R),
             limits: Limits::new(options.count(max_iterations), PATIENCE),
             line_search: true,
+            kinks: options.switch(&KINKS),
             rescue: true,
             tangent: Tangent::new(options.switch(&MONOLITHIC)),
         }
@@ -128,6 +147,7 @@ impl<S: Scheme> Newton<S> {
                 }
                 Check::End(status) => return Ok(End { status, at: x }),
             }
+            self.scheme.prepare(problem, violation, &x);
 
             let stuck = self.rescue && problem.stagnates();
             let mut direction = match stuck {
@@ -156,7 +176,14 @@ impl<S: Scheme> Newton<S> {
             };
 
             let mut t = 1.0;
-            if self.line_search {
+            if self.kinks {
+                search.record(self.merit(problem, &r, &x.p, &v));
+                let dv = minus(&problem.jump_after(&x, 1.0, &step), &v);
+                let kinks = self.kinks(problem, &r, (&x.p, &v), (&step.p, &dv));
+                t = search.exact(&kinks, |t| {
+                    self.merit(problem, &r, &along(&x.p, t, &step.p), &along(&v, t, &dv))
+                });
+            } else if self.line_search {
                 search.record(self.merit(problem, &r, &x.p, &v));
                 t = search.length(|t| {
                     let v = problem.jump_after(&x, t, &step);
@@ -201,6 +228,30 @@ impl<S: Scheme> Newton<S> {
             self.scheme.piece(problem.friction(i), r, P, &v[own])
         };
         points.map(piece).collect()
+    }
+
+    /// Where the pieces change along a step, in increasing order.
+    fn kinks(
+        &self,
+        problem: &ContactProblem<'_>,
+        r: &[f64],
+        (P, v): (&[f64], &[f64]),
+        (dP, dv): (&[f64], &[f64]),
+    ) -> Vec<f64> {
+        let mut kinks = Vec::new();
+        for (i, own) in problem.rows.iter().enumerate() {
+            let (mu, range, r) = (problem.friction(i), own.clone(), &r[own.clone()]);
+            let of = |P: &[f64], v: &[f64]| {
+                let (P, v) = (&P[range.clone()], &v[range.clone()]);
+                (trial(r, P, v), self.scheme.bound(r, P, v))
+            };
+            let ((z, bound), (dz, dbound)) = (of(P, v), of(dP, dv));
+            let (z, dz) = (&z[..own.len()], &dz[..own.len()]);
+            add_kinks(mu, (z, bound), (dz, dbound), &mut kinks);
+        }
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        kinks
     }
 
     /// Σ H²/r over all rows, an energy.

@@ -56,7 +56,7 @@ impl Tangent {
         };
         Needs {
             delassus,
-            ..Needs::default()
+            ..Needs::ANY_OPERATOR
         }
     }
 

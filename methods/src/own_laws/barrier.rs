@@ -57,7 +57,7 @@ use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
 use crate::own_laws::unloaded::unloaded;
 use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Method, Monitor, Status, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Method, Monitor, Needs, Status, options,
 };
 
 /// Registry entry.
@@ -157,6 +157,10 @@ impl Balance {
 }
 
 impl CondensedMethod for Barrier {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let (rho, unit) = (problem.operator.rho, problem.mean_jump());
         if unit == 0.0 || problem.increment.unloaded() {

@@ -13,9 +13,12 @@
 //! A fixed point has P = Π(P − k v), which is the contact law itself: the answer does not depend on k.
 //!
 //! # Options
-//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step
-//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
-//! method; the iterates are the same.
+//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step on all
+//! unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the method; the
+//! iterates are the same. `anderson`: differences kept by the acceleration of Λ (Walker & Ni, SIAM J. Numer. Anal. 49 (2011)
+//! 1715), taken back where the natural map doubles. With the default stiffness there is little to accelerate, 4 instead of 5
+//! updates in the median, but it gets past stalls: of 1000 random problems (`stickslip stress methods`, 100 per dimension
+//! and μ = 0, 0.3, 1, 2, 5) 12 instead of 43 are given up.
 //!
 //! # Guarantees
 //! Without friction the outer loop contracts by 1/(1 + k w_min), w_min the smallest eigenvalue of W, for any k > 0; the
@@ -27,6 +30,7 @@
 //! # Failure modes
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
+use crate::condensed::acceleration::Acceleration;
 use crate::newton::springs::Springs;
 use crate::newton::step::Tangent;
 use crate::{
@@ -52,6 +56,7 @@ options! {
         max_outer: Count(1000, 1, 1_000_000), "multiplier updates before giving up";
         max_inner: Count(100, 1, 1_000_000), "Newton steps per inner problem before giving up";
         monolithic: Switch(false), Tangent::HELP;
+        anderson: Count(0, 0, 20), Acceleration::HELP;
     }
 }
 
@@ -97,6 +102,7 @@ impl CondensedMethod for AugmentedLagrangian {
         };
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;
+        let mut acceleration = Acceleration::new(self.settings.anderson, || x.p.clone());
 
         let status = loop {
             let v = problem.jump(&x.p, &x.beta);
@@ -107,6 +113,11 @@ impl CondensedMethod for AugmentedLagrangian {
                 Check::End(status) => break status,
             }
             springs.anchor.clone_from(&x.p);
+            if let Some(acceleration) = &mut acceleration
+                && problem.counters.iterations > 1
+            {
+                springs.anchor = acceleration.next(problem, x.p.clone());
+            }
             let start = springs.predict(problem, x);
             changes = 0;
             let (inner, end) = springs.solve(

@@ -14,10 +14,19 @@
 //! I + k₀ W never changes and is factored once per system.
 //!
 //! # Options
-//! `search_direction`: k₀ as a multiple of 1/√(w_min w_max), which minimises the contraction of the linear part,
-//! max |1 − k₀ w|/(1 + k₀ w) over the eigenvalues w of W. w_min and w_max come from 60 Lanczos steps; eigenvalues
-//! below 1e-4 w_max (redundant contact points) do not count. `relaxation`: ω; 1/2 is Douglas–Rachford, 1
-//! Peaceman–Rachford. `max_iterations`.
+//! `search_direction`: k₀ as a multiple of 1/√(w_min w_max), which minimises the contraction of the linear part, max |1 − k₀
+//! w|/(1 + k₀ w) over the eigenvalues w of W. w_min and w_max come from 60 Lanczos steps; eigenvalues below 1e-4 w_max
+//! (redundant contact points) do not count. `relaxation`: ω; 1/2 is Douglas–Rachford, 1 Peaceman–Rachford. `max_iterations`.
+//! `anderson`: differences kept by the acceleration of (P, k₀ v) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken
+//! back where the natural map doubles. On random problems (`stickslip stress methods`, 100 per entry) median iterations and
+//! how many gave up:
+//!
+//! | μ                | 0       | 0.3     | 1       | 2       | 5       |
+//! |------------------|---------|---------|---------|---------|---------|
+//! | 2D, `anderson` 0 | 118     | 272     | 196     | 161     | 140     |
+//! | 2D, `anderson` 5 | 48      | 78      | 65      | 72, 2   | 62      |
+//! | 3D, `anderson` 0 | 234, 7  | 355, 7  | 338, 6  | 245, 6  | 188, 6  |
+//! | 3D, `anderson` 5 | 102     | 118, 7  | 111, 1  | 108, 1  | 103     |
 //!
 //! # Guarantees
 //! Convergence for monotone laws (no friction, or Tresca) and ω < 1. For Coulomb friction there is no proof; the
@@ -31,12 +40,13 @@
 
 use std::sync::Arc;
 
+use crate::condensed::acceleration::Acceleration;
 use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Options,
-    options,
+    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Needs,
+    Options, options,
 };
 
 /// Registry entry.
@@ -56,6 +66,7 @@ options! {
         search_direction: Real(1.0, 1e-3, 1e3), "search direction k0 as a multiple of 1/sqrt(w_min w_max), extreme eigenvalues of W";
         relaxation: Real(0.8, 0.1, 1.0), "relaxation of the global stage";
         max_iterations: Count(20_000, 1, 10_000_000), "pairs of stages before giving up";
+        anderson: Count(0, 0, 20), Acceleration::HELP;
     }
 }
 
@@ -90,11 +101,17 @@ impl Latin {
 }
 
 impl CondensedMethod for Latin {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let global = self.stage(problem)?;
         let mut pair = Pair::start(problem);
         let mut before: Vec<Branch> = Vec::new();
+        let k0 = global.k0();
+        let mut acceleration = Acceleration::new(self.settings.anderson, || pair.stacked(k0));
         let mut changes = 0;
 
         let status = loop {
@@ -108,6 +125,10 @@ impl CondensedMethod for Latin {
                 break problem.singular();
             };
             pair.relax(problem, self.settings.relaxation, &new);
+            if let Some(acceleration) = &mut acceleration {
+                let next = acceleration.next(problem, pair.stacked(k0));
+                pair.unstack(k0, &next);
+            }
         };
         let at = pair.into();
         Ok(End { status, at })

@@ -15,7 +15,18 @@
 //!
 //! # Options
 //! `relaxation`: ω to begin with. Every 300 sweeps in a row without progress halve it, at most four times: cycles at large
-//! μ often end so. `max_iterations`: sweeps.
+//! μ often end so. `max_iterations`: sweeps. `anderson`: differences kept by the acceleration of
+//! (P, γ/κ) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken back where the natural map doubles. On random problems
+//! (`stickslip stress methods`, 100 per entry) median sweeps and how many gave up:
+//!
+//! | μ                | 0       | 0.3     | 1       | 2       | 5       |
+//! |------------------|---------|---------|---------|---------|---------|
+//! | 2D, `anderson` 0 | 245     | 206     | 196     | 187, 1  | 177, 3  |
+//! | 2D, `anderson` 5 | 43      | 42      | 50, 1   | 58, 1   | 56, 2   |
+//! | 3D, `anderson` 0 | 278, 5  | 241, 6  | 250, 4  | 277, 2  | 307, 8  |
+//! | 3D, `anderson` 5 | 47, 2   | 55      | 66      | 90, 1   | 88, 7   |
+//!
+//! An accelerated sweep costs one product with W more, as much as the sweep.
 //!
 //! # Guarantees
 //! Convergence without friction and for bodies that do not float: every local problem lowers the same convex energy. With
@@ -30,11 +41,12 @@
 //! A point whose force does not change, as an open one that stays open, leaves v as it is and costs one local problem. v
 //! is computed afresh only every now and then, and before anything is claimed.
 
+use crate::condensed::acceleration::Acceleration;
 use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
 use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs, options,
 };
 
 /// Registry entry.
@@ -53,6 +65,7 @@ options! {
     Nsgs {
         relaxation: Real(1.0, 0.1, 1.9), "fraction of the step to the solution of each local problem";
         max_iterations: Count(100_000, 1, 100_000_000), "sweeps over all points before giving up";
+        anderson: Count(0, 0, 20), Acceleration::HELP;
     }
 }
 
@@ -64,6 +77,10 @@ const STAGNATION: usize = 300;
 const MAX_HALVINGS: usize = 4;
 
 impl CondensedMethod for Nsgs {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
         let saddle = Saddle::new(problem.operator.clone());
@@ -71,6 +88,7 @@ impl CondensedMethod for Nsgs {
         let mut x = saddle.start(problem);
         let mut branches = vec![Branch::Open; problem.rows.points()];
         let (mut changes, mut halvings) = (0, 0);
+        let mut acceleration = Acceleration::new(self.anderson, || saddle.stacked(&x));
 
         let status = loop {
             if let Some(status) = saddle.ends(problem, &mut x, changes, limits, monitor)? {
@@ -83,6 +101,10 @@ impl CondensedMethod for Nsgs {
             halvings = halvings.max((problem.idle() / STAGNATION).min(MAX_HALVINGS));
             let omega = self.relaxation / f64::from(1_u32 << halvings);
             changes = sweeps.sweep(problem, &saddle, omega, &mut x, &mut branches);
+            if let Some(acceleration) = &mut acceleration {
+                let next = acceleration.next(problem, saddle.stacked(&x));
+                saddle.unstack(problem, &mut x, &next);
+            }
         };
         let (p, beta) = saddle.balanced(problem, &x);
         let at = Forces { p, beta };

@@ -42,7 +42,7 @@ use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
 use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
+    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs, options,
 };
 
 /// Registry entry.
@@ -75,6 +75,10 @@ const SMALLEST: f64 = 0.3;
 const SHRINK: f64 = 2.0 / 3.0;
 
 impl CondensedMethod for Projection {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let extragradient = self.variant == 1;
         let limits = Limits::new(self.max_iterations, PATIENCE);
@@ -110,16 +114,17 @@ impl CondensedMethod for Projection {
 }
 
 /// What a step needs to know of the system.
-struct Step {
-    saddle: Saddle,
+pub(crate) struct Step {
+    pub saddle: Saddle,
     /// r by row, in N/m.
-    r: Vec<f64>,
+    pub r: Vec<f64>,
     /// Whether γ moves within the step.
     moves_gamma: bool,
 }
 
 impl Step {
-    fn new(problem: &ContactProblem<'_>, moves_gamma: bool) -> Self {
+    /// `moves_gamma`: whether γ moves within the step.
+    pub fn new(problem: &ContactProblem<'_>, moves_gamma: bool) -> Self {
         let saddle = Saddle::new(problem.operator.clone());
         let floor = COMPLIANCE_FLOOR / problem.operator.rho;
         let mut r = vec![0.0; problem.len()];
@@ -189,7 +194,7 @@ impl Step {
     }
 
     /// Projects on the cone of one point, nearest in |P|²/r.
-    fn project_point(&self, mu: f64, r: &[f64], p: &mut [f64]) -> Branch {
+    pub fn project_point(&self, mu: f64, r: &[f64], p: &mut [f64]) -> Branch {
         let last = r.len() - 1;
         let stretch = (r[0] / r[last]).sqrt();
         p[0] /= stretch;

@@ -15,6 +15,7 @@ use super::fclib_global::GlobalProblem;
 use super::fclib_local::LocalProblem;
 use super::hdf5::{Tree, is_signed};
 use crate::files::regular;
+use crate::files::visible::excerpt;
 
 /// Largest file read [bytes]; those of the FCLIB collection have some hundred megabytes.
 const MAX_BYTES: u64 = 4 << 30;
@@ -76,6 +77,12 @@ pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeErr
 
 fn decode(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
     let tree = Tree::open(path, bytes)?;
+    if let Some(sign) = rolling(&tree) {
+        let what = format!(
+            "rolling-friction problem: {sign}; only Coulomb friction of contact forces is solved, not of moments"
+        );
+        return Err(InterchangeError::refused(path, what));
+    }
     let none = |found| {
         let allowed = "one of the groups /fclib_local and /fclib_global";
         InterchangeError::unexpected(path, found, allowed)
@@ -89,6 +96,33 @@ fn decode(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
         (true, true) => Err(none("it holds two problems")),
         (false, false) => Err(none("it holds no problem")),
     }
+}
+
+/// By what a file shows that its contacts resist rolling, with a moment beside the force at every contact: a group of its own,
+/// as `/fclib_global_rolling` of FCLIB since 2021, coefficients of rolling friction μ_r beside μ, or the components (n, a, b)
+/// with two moments. In the plane (n, a) with one moment has as many components as a point in space: μ_r tells.
+fn rolling(tree: &Tree) -> Option<String> {
+    /// Longest name shown.
+    const SHOWN: usize = 60;
+    let named = |group: &str, is_one: fn(&str) -> bool| {
+        let found = tree.names(group).into_iter().find(|name| is_one(name));
+        found.map(|name| excerpt(&name, SHOWN))
+    };
+    if let Some(name) = named("", |name| name.to_lowercase().contains("rolling")) {
+        return Some(format!("group /{name}"));
+    }
+    let groups = ["fclib_local", "fclib_global"].into_iter();
+    groups.into_iter().find_map(|group| {
+        let vectors = format!("{group}/vectors");
+        let coefficient = |name: &str| ["mu_r", "mur"].contains(&name) || name.contains("roll");
+        if let Some(name) = named(&vectors, coefficient) {
+            return Some(format!(
+                "{vectors}/{name}, coefficients of rolling friction"
+            ));
+        }
+        let five = tree.integer(&format!("{group}/spacedim")).ok() == Some(5);
+        five.then(|| format!("{group}/spacedim = 5, a force and two moments per contact"))
+    })
 }
 
 impl Problem {

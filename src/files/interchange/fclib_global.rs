@@ -6,7 +6,7 @@
 //! G and b stand together or not at all.
 
 use super::error::InterchangeError;
-use super::fclib_matrix::{read_matrix, read_symmetric};
+use super::fclib_matrix::read_matrix;
 use super::fclib_parts::{
     Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
 };
@@ -20,7 +20,7 @@ const GROUP: &str = "fclib_global";
 pub struct GlobalProblem {
     /// Components per contact point, 2 or 3.
     pub dim: usize,
-    /// M, n × n, symmetric; here the stiffness K.
+    /// M, n × n; here the stiffness K. Not always symmetric.
     pub m: SparseMatrix,
     /// H, n × m with m = `dim` · points; here Bᵀ.
     pub h: SparseMatrix,
@@ -81,7 +81,7 @@ impl GlobalProblem {
         };
         let mut problem = Self {
             dim,
-            m: read_symmetric(tree, &format!("{GROUP}/M"), f.len())?,
+            m: read_matrix(tree, &format!("{GROUP}/M"), f.len(), f.len())?,
             h: read_matrix(tree, &format!("{GROUP}/H"), f.len(), w.len())?,
             f,
             w,

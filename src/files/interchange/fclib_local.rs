@@ -6,7 +6,7 @@
 //! V, R and s stand together or not at all.
 
 use super::error::InterchangeError;
-use super::fclib_matrix::{read_matrix, read_symmetric};
+use super::fclib_matrix::read_matrix;
 use super::fclib_parts::{
     Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
 };
@@ -20,7 +20,7 @@ const GROUP: &str = "fclib_local";
 pub struct LocalProblem {
     /// Components per contact point, 2 or 3.
     pub dim: usize,
-    /// Delassus operator W, m × m, symmetric, m = `dim` · points.
+    /// Delassus operator W, m × m, m = `dim` · points; not always symmetric.
     pub w: SparseMatrix,
     /// Velocity without reactions q, m entries.
     pub q: Vec<f64>,
@@ -68,7 +68,7 @@ impl LocalProblem {
         let q = tree.all_reals(&q_name)?;
         let rows = q.len();
         let mu = read_friction(tree, GROUP, points(tree, &q_name, rows, dim)?)?;
-        let w = read_symmetric(tree, &format!("{GROUP}/W"), rows)?;
+        let w = read_matrix(tree, &format!("{GROUP}/W"), rows, rows)?;
         let (v_name, r_name) = (format!("{GROUP}/V"), format!("{GROUP}/R"));
         let equality = match (tree.has_group(&v_name)?, tree.has_group(&r_name)?) {
             (false, false) => None,

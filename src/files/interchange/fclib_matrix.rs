@@ -2,8 +2,8 @@
 //!
 //! A matrix is stored as compressed columns (nz = −1), compressed rows (nz = −2) or nz >= 0 triplets. Of a triplet, `i`
 //! holds the row and `p` the column in what Siconos and every other user of CSparse writes; FCLIB's header says the
-//! opposite. Files of either kind are read: rows are in `i` if that fits the matrix, otherwise in `p`. For the square
-//! symmetric M and W both are the same matrix.
+//! opposite. Files of either kind are read: rows are in `i` if that fits the matrix, otherwise in `p`. Square matrices fit
+//! both ways: of an unsymmetric W the rows are those of Siconos, which writes such files and reads them so.
 //!
 //! Written are triplets with rows in `i`: Siconos writes them itself, refuses compressed rows of M and H, and copies
 //! `nz` = −1 indices of compressed columns (its `fclib_interface.c` of 2024).
@@ -13,9 +13,6 @@ use hdf5_pure::GroupBuilder;
 use super::error::{InterchangeError, check_size, unwritable};
 use super::hdf5::{Tree, put_integers, put_reals, subgroup};
 use super::sparse::SparseMatrix;
-
-/// Largest |a_ij − a_ji| of M and W, in units of the largest entry. Files come from single-precision codes too.
-const ASYMMETRY: f64 = 1e-7;
 
 /// Reads a matrix of known size.
 pub(super) fn read_matrix(
@@ -64,25 +61,6 @@ pub(super) fn read_matrix(
         return Err(tree.value(&format!("{name}/x"), 0, value, allowed));
     }
     Ok(matrix)
-}
-
-/// Reads a square matrix that must be symmetric.
-pub(super) fn read_symmetric(
-    tree: &Tree,
-    name: &str,
-    size: usize,
-) -> Result<SparseMatrix, InterchangeError> {
-    let matrix = read_matrix(tree, name, size, size)?;
-    let Some((i, j, difference)) = matrix.asymmetry(ASYMMETRY) else {
-        return Ok(matrix);
-    };
-    let value = format!("{:e} in row {i}, column {j}", matrix.get(i, j));
-    let allowed = format!(
-        "a symmetric matrix; the mirror entry is {:e}, they differ by {difference:e}",
-        matrix.get(j, i)
-    );
-    let index = matrix.entries().position(|e| (e.0, e.1) == (i, j));
-    Err(tree.value(&format!("{name}/x"), index.unwrap_or(0), value, allowed))
 }
 
 /// The arrays of a matrix as they lie in the file.

@@ -74,6 +74,19 @@ impl Tree {
         }
     }
 
+    /// Names of the groups and datasets in a group, of the file itself for `""`; none where they cannot be listed.
+    pub fn names(&self, group: &str) -> Vec<String> {
+        let group = match group {
+            "" => Ok(self.file.root()),
+            name => self.file.group(name),
+        };
+        let Ok(group) = group else {
+            return Vec::new();
+        };
+        let [groups, datasets] = [group.groups(), group.datasets()].map(Result::unwrap_or_default);
+        groups.into_iter().chain(datasets).collect()
+    }
+
     fn dataset(&self, name: &str) -> Result<Option<Dataset>, InterchangeError> {
         match self.file.dataset(name) {
             Ok(dataset) => Ok(Some(dataset)),

@@ -1,6 +1,6 @@
 //! A sparse matrix between file and solver.
 
-use stickslip_methods::{JumpOperator, MethodError, SymmetricMatrix};
+use stickslip_methods::{DelassusMatrix, JumpOperator, MethodError, SquareMatrix, SymmetricMatrix};
 
 /// Sparse matrix in compressed columns, rows sorted within a column, no position stored twice.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +71,18 @@ impl SparseMatrix {
         Self::sorted(lower.size(), lower.size(), triplets)
     }
 
+    /// A Delassus operator in full.
+    pub fn from_delassus(w: &DelassusMatrix) -> Self {
+        let n = w.size();
+        match w {
+            DelassusMatrix::Symmetric(lower) => Self::from_symmetric(lower),
+            DelassusMatrix::General(w) => {
+                let column = |j| w.column(j).map(move |(i, value)| (i, j, value));
+                Self::sorted(n, n, (0..n).flat_map(column).collect())
+            }
+        }
+    }
+
     /// The jump operator B.
     pub fn from_rows(b: &JumpOperator) -> Self {
         let row = |i| b.row(i).map(move |(j, value)| (i, j, value));
@@ -103,6 +115,15 @@ impl SparseMatrix {
         triplets.extend(diagonal.map(|(i, j, value)| (i, j, 0.5 * value)));
         let lower = Self::sorted(self.rows, self.cols, triplets);
         SymmetricMatrix::new(self.cols, lower.col_ptr, lower.row_idx, lower.values)
+    }
+
+    /// The matrix as it stands, where it is square.
+    ///
+    /// # Errors
+    /// A matrix that is not square, non-finite values.
+    pub fn as_square(&self) -> Result<SquareMatrix, MethodError> {
+        let (ends, rows) = (self.col_ptr.clone(), self.row_idx.clone());
+        SquareMatrix::new(self.rows, ends, rows, self.values.clone())
     }
 
     /// The matrix as jump operator.
@@ -186,16 +207,6 @@ impl SparseMatrix {
             Err(_) => 0.0,
         }
     }
-
-    /// The entry that differs most from its mirror image, (row, column, |difference|), if any difference exceeds
-    /// `relative` times the largest entry.
-    pub fn asymmetry(&self, relative: f64) -> Option<(usize, usize, f64)> {
-        let largest = self.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        self.entries()
-            .map(|(i, j, v)| (i, j, (v - self.get(j, i)).abs()))
-            .filter(|&(_, _, difference)| difference > relative * largest)
-            .max_by(|a, b| a.2.total_cmp(&b.2))
-    }
 }
 
 #[cfg(test)]
@@ -221,6 +232,8 @@ mod tests {
         assert_eq!(SparseMatrix::from_symmetric(&lower), a);
         let skew = SparseMatrix::from_triplets(2, 2, [(0, 1, 1.0), (1, 0, 2.0)]).unwrap();
         assert_eq!(skew.symmetric_part().unwrap().values(), [0.0, 1.5, 0.0]);
+        let square = skew.as_square().unwrap();
+        assert_eq!((square.get(0, 1), square.get(1, 0)), (1.0, 2.0));
         let b = SparseMatrix::from_triplets(2, 3, [(1, 0, 2.0), (0, 2, -1.0)]).unwrap();
         assert_eq!(SparseMatrix::from_rows(&b.as_rows().unwrap()), b);
         assert_eq!(b.transposed().get(2, 0), -1.0);
@@ -232,13 +245,5 @@ mod tests {
         let a = SparseMatrix::from_dense(2, 2, |i, j| if i < j { 3.0 } else { 0.0 });
         let entries: Vec<_> = a.entries().collect();
         assert_eq!(entries, [(0, 0, 0.0), (0, 1, 3.0), (1, 1, 0.0)]);
-    }
-
-    #[test]
-    fn asymmetry_names_the_worst_pair() {
-        let symmetric = SparseMatrix::from_triplets(2, 2, [(0, 1, 1.0), (1, 0, 1.0)]).unwrap();
-        assert_eq!(symmetric.asymmetry(0.0), None);
-        let a = SparseMatrix::from_triplets(2, 2, [(0, 1, 1.0), (1, 0, 0.25)]).unwrap();
-        assert_eq!(a.asymmetry(1e-8).map(|w| w.2), Some(0.75));
     }
 }

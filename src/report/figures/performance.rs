@@ -12,11 +12,11 @@ use stickslip_methods::Tier;
 
 /// What it is.
 pub static KIND: Kind = Kind {
-    file: "profile.time.svg",
+    file: "*profile.time.svg",
     question: "How often is a method fastest, and how often within a factor of the fastest?",
     shows: "Fraction of the problems that a method solves within a multiple of the time of the fastest method on \
             each of them (Dolan and Moré), a panel per accuracy tier; a problem without right answer of a method is \
-            solved at no multiple.",
+            solved at no multiple. One of all problems, and one per family of problem files.",
 };
 
 /// A tier in headings.
@@ -25,11 +25,16 @@ pub fn heading(tier: Tier) -> String {
     format!("tier {tier}: natural map ≤ {tolerance}")
 }
 
-/// The figure of all tiers; `caveat`: what the caption says of a sweep that is not complete.
+/// The figure of all tiers; `own`: how its file name begins; `caveat`: what the caption says of a sweep that is not complete.
 ///
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
-pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<(), ReportError> {
+pub fn add(
+    bundle: &mut Bundle,
+    own: &str,
+    sets: &[TestSet<'_>],
+    caveat: &str,
+) -> Result<(), ReportError> {
     let (mut panels, mut counts, mut title) = (Vec::new(), Vec::new(), String::new());
     for set in sets {
         let costs = Costs::new(set);
@@ -72,5 +77,5 @@ pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<()
     }
     let counts = counts.join("; ");
     let caption = format!("{counts}{caveat}; ratios of medians within the intervals mean nothing");
-    KIND.add(bundle, "", Figure::new(&title, &caption, 3, panels).svg()?)
+    KIND.add(bundle, own, Figure::new(&title, &caption, 3, panels).svg()?)
 }

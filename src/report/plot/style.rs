@@ -1,6 +1,7 @@
 //! How things look: colours, dashes, markers, and which methods stand out.
 
 use super::canvas::{Canvas, plain};
+use crate::run::choice::is_outside;
 use crate::run::registry::methods;
 use stickslip_methods::Method;
 
@@ -217,11 +218,11 @@ pub fn rank(label: &str) -> usize {
     methods().iter().position(own).unwrap_or(methods().len())
 }
 
-/// Whether the method solves the contact laws themselves; false for what the registry does not know.
+/// Whether the method solves the contact laws themselves, as programs from outside are to; false for what the registry does
+/// not know.
 pub fn is_exact(label: &str) -> bool {
-    methods()
-        .get(rank(label))
-        .is_some_and(|method| method.exact)
+    let known = methods().get(rank(label));
+    known.map_or(is_outside(label), |method| method.exact)
 }
 
 /// Marker of a contact status and whether it is filled.
@@ -273,15 +274,16 @@ pub fn draw_marker(
     canvas.line(&closed, colour, 0.25);
 }
 
-/// Labels and looks of the curves of methods in one figure: `HIGHLIGHTED` methods and `further` ones stand out, all others
-/// share grey and one label.
+/// Labels and looks of the curves of methods in one figure: `HIGHLIGHTED` methods, programs from outside and `further` ones
+/// stand out, all others share grey and one label.
 pub fn looks(labels: &[&str], further: &[&str]) -> Vec<(String, Style)> {
     let mut extra = 0;
     let mut style = |index: usize| {
         let name = base(labels[index]);
         let first = labels[..index].iter().all(|label| base(label) != name);
         let named = first && HIGHLIGHTED.contains(&name);
-        let shown = named || further.contains(&labels[index]);
+        // Who brings a program looks for it.
+        let shown = named || is_outside(name) || further.contains(&labels[index]);
         extra += usize::from(shown && !named);
         shown.then(|| Style::of_method(labels[index], extra.saturating_sub(1)))
     };

@@ -245,6 +245,37 @@ fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
 }
 
 #[test]
+fn swept_options_have_tables_and_a_figure() {
+    assert!(!files(&records_of_a_sweep()).contains_key("sensitivity.csv"));
+    let mut records = Vec::new();
+    for case in ["plate", "beam"] {
+        for value in ["", ":r=1e-1", ":r=1e1", ":r=1e2"] {
+            let mut record = record(case, &format!("pdas{value}"), 1e-6);
+            if value == ":r=1e2" && case == "beam" {
+                fail(&mut record, "gave-up: stalled");
+            }
+            records.push(record);
+        }
+    }
+    let files = files(&records);
+    let text = |path: &str| String::from_utf8(files[path].clone()).unwrap();
+    // Both cases together, then each.
+    assert_eq!(text("sensitivity.csv").lines().count(), 1 + 3 * 4);
+    let windows = text("safe_windows.csv");
+    assert!(
+        windows.contains(
+            "any r from 0.1 to 10 solves all 2 problems to 1e-6 (tried: from 0.1 to 100)"
+        ),
+        "{windows}"
+    );
+    let figure = text("figures/sensitivity.svg");
+    assert!(
+        figure.contains(">0 %<") && figure.contains("pdas[r]"),
+        "{figure}"
+    );
+}
+
+#[test]
 fn without_times_there_are_no_rankings_and_no_errors() {
     let mut records = records_of_a_sweep();
     records.iter_mut().for_each(|record| record.spent = None);

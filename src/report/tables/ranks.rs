@@ -56,10 +56,11 @@ impl Row for SuccessRow {
             "no_equilibrium" "" = r.failures[6], "no contact force within the cones of friction balances the load";
             "diverged" "" = r.failures[7], "ended with numbers that grew without bound";
             "stopped" "" = r.failures[8], "was stopped";
-            "refused" "" .shown() = r.failures[9], "declined";
-            "crashed" "" .shown() = r.failures[10], "failed with an error";
-            "timed_out" "" = r.failures[11], "stopped at the time limit";
-            "out_of_memory" "" = r.failures[12], "denied memory, by the limit or by the system";
+            "unexplained" "" = r.failures[9], "a program from outside that gave up and did not say why";
+            "refused" "" .shown() = r.failures[10], "declined";
+            "crashed" "" .shown() = r.failures[11], "failed with an error";
+            "timed_out" "" = r.failures[12], "stopped at the time limit";
+            "out_of_memory" "" = r.failures[13], "denied memory, by the limit or by the system";
         }
     }
 }

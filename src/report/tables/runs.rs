@@ -60,6 +60,7 @@ impl Row for RunRow {
             "prepare_s" "s" .time() = r.prepare_s, PREPARE_S;
             "solve_s" "s" .time().digits(3) = r.solve_s, "solution of this increment";
             "enforcement_s" "s" .time().digits(3) = r.enforcement_s, ENFORCEMENT_S;
+            "reported_s" "s" .time() = r.reported_s, REPORTED_S;
             "equilibrium" "–" .residual() = r.equilibrium, "backward error of equilibrium, found by the judge";
             "claimed_equilibrium" "–" .residual() = r.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
             "claimed" "–" .residual() = r.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";

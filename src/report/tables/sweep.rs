@@ -345,6 +345,7 @@ impl Row for TimeRow<'_> {
             "enforcement_median_s" "s" .time() = r.spent.enforcement.median_s, ENFORCEMENT_S;
             "enforcement_low_s" "s" .time() = r.spent.enforcement.low_s, LOW;
             "enforcement_high_s" "s" .time() = r.spent.enforcement.high_s, "upper end";
+            "reported_median_s" "s" .time() = r.spent.reported.map_or(f64::NAN, |own| own.median_s), REPORTED_S;
             "method_median_s" "s" .time() = r.method().median_s, "time of the method: preparation and enforcement, sum of the two medians";
             "method_low_s" "s" .time() = r.method().low_s, "sum of the lower ends";
             "method_high_s" "s" .time() = r.method().high_s, "sum of the upper ends";

@@ -28,45 +28,85 @@ impl Row for TimingRow {
     }
 }
 
-/// The comparison with Siconos, which a script of `benches/peers` writes.
-pub fn siconos() -> Description {
+/// The comparison with solvers of other programs, which the scripts of `benches/peers` write.
+pub fn peers() -> Description {
     let about = About::new;
+    let mut columns = vec![
+        about("problem", "", "name of the exported problem").shown(),
+        about("dim", "", DIMENSION).shown(),
+        about("points", "", POINTS).shown(),
+        about(
+            "method",
+            "",
+            "the fastest exact method here, with default options",
+        )
+        .shown(),
+        about("iterations", "", ITERATIONS).shown(),
+        about("time_s", "s", "its time").digits(3),
+        about(
+            "default_iterations",
+            "",
+            "iterations of `hybrid`, the default",
+        )
+        .named("of hybrid"),
+        about("default_time_s", "s", "its time")
+            .named("hybrid")
+            .digits(3),
+    ];
+    for (name, title, solver, iterations, time, ratio, of_default) in [
+        (
+            "siconos",
+            "Siconos",
+            "its fastest solver",
+            "siconos_iterations",
+            "siconos_time_s",
+            "siconos_ratio",
+            "siconos_default_ratio",
+        ),
+        (
+            "pinocchio",
+            "Pinocchio",
+            "its fastest solver",
+            "pinocchio_iterations",
+            "pinocchio_time_s",
+            "pinocchio_ratio",
+            "pinocchio_default_ratio",
+        ),
+    ] {
+        columns.extend([
+            about(name, "", solver).named(title),
+            about(iterations, "", "its iterations").named("its iterations"),
+            about(time, "s", "its time").named("its time").digits(3),
+            about(ratio, "–", "its time over that of the fastest method here")
+                .named("over ours")
+                .digits(3),
+            about(of_default, "–", "its time over that of `hybrid`")
+                .named("over hybrid")
+                .digits(3),
+        ]);
+    }
+    columns.extend([
+        about(
+            "difference",
+            "–",
+            "largest difference of the contact forces to those of the first peer, relative",
+        )
+        .named("difference of forces")
+        .digits(2),
+        about(
+            "jump_difference",
+            "–",
+            "the same of the jumps, relative to those without contact forces",
+        )
+        .named("of jumps")
+        .digits(2),
+    ]);
     Description {
-        name: "siconos_comparison",
-        title: "Best exact method here beside the best solver of Siconos, to the same natural map of 1e-9",
-        question: "How does the best method here compare with the best of another program?",
-        notes: "Written by `benches/peers`, whose README says how both were run.",
+        name: "peer_comparison",
+        title: "The fastest exact method here and the default beside the fastest solvers of other programs, to the same natural map of 1e-9",
+        question: "How do the methods here compare with the best of other programs?",
+        notes: "Written by `benches/peers`, whose README says how all were run.",
         readable: true,
-        columns: vec![
-            about("problem", "", "name of the exported problem").shown(),
-            about("dim", "", DIMENSION).shown(),
-            about("points", "", POINTS).shown(),
-            about("method", "", METHOD).shown(),
-            about("iterations", "", ITERATIONS).shown(),
-            about("natural_map", "–", NATURAL_MAP).digits(2),
-            about("time_s", "s", "time of the method").digits(3),
-            about("peer", "", "solver of Siconos").named("Siconos"),
-            about("peer_iterations", "", "its iterations").named("its iterations"),
-            about(
-                "peer_natural_map",
-                "–",
-                "natural map of its answer, found by the judge here",
-            )
-            .named("its natural map")
-            .digits(2),
-            about("peer_time_s", "s", "its time")
-                .named("its time")
-                .digits(3),
-            about("ratio", "–", "its time / ours")
-                .named("its time / ours")
-                .digits(3),
-            about(
-                "difference",
-                "–",
-                "largest difference of the contact forces, relative",
-            )
-            .named("difference of forces")
-            .digits(2),
-        ],
+        columns,
     }
 }

@@ -4,7 +4,7 @@ pub const CASE: &str = "name of the case: its file without `.toml`";
 pub const MESH: &str = "mesh label, e.g. `22x22`";
 pub const SPACE: &str =
     "contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `star/mean-dilatation`";
-pub const METHOD: &str = "method, options other than the default in brackets";
+pub const METHOD: &str = "method, options other than the default in brackets; `exec:` and the name of the file of a program from outside";
 pub const FRICTION: &str = "friction coefficient (of the first crack where cracks differ)";
 pub const INCREMENT: &str = "number of the increment, from 1";
 pub const TIER: &str =
@@ -26,6 +26,7 @@ pub const FACTORISATION_S: &str = "factorisation of K, once per mesh";
 pub const CONDENSATION_S: &str = "condensation to the contact points, once per mesh; for methods that need it with that of the traction operator";
 pub const PREPARE_S: &str = "preparation of the method";
 pub const ENFORCEMENT_S: &str = "of these enforcement, from the free jump and W to the contact forces: without load solves, recovery of displacements and checks of equilibrium, which cost the same whatever the method";
+pub const REPORTED_S: &str = "of a program from outside (`exec:`) its own account of what its solver took, no part of any comparison; `NaN` without one, and of all other methods. `enforcement` is then the wall time of the process from its start to its end";
 pub const AT: &str = "place: a side, a probe, a crack (`crack-1`), or empty";
 pub const COMPONENT: &str = "`x`, `y`, `z`, `n`, `a`, `b`, or empty";
 pub const DIMENSION: &str = "space dimension, 2 or 3";

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
+    Asymmetry, ContactState, ContactSystem, Increment, Load, MethodError, Residuals, SquareMatrix,
+    Tier, residuals,
 };
 
 use crate::case::label::visible;
@@ -12,10 +14,11 @@ use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market}
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
+use crate::run::local_problem::local_velocity;
 use crate::run::record::{Results, RunKey};
 use crate::run::run_case::Progress;
 use crate::run::verdict::Accuracy;
-use crate::studies::exchange::{System, global_system, local_system, local_velocity};
+use crate::studies::exchange::{ROUNDING, System, global_system, local_system};
 
 /// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
 /// bound an empty V would take memory that grows with the square of the file.
@@ -28,17 +31,55 @@ const MAX_NAME: usize = 200;
 const COMMENTS: u64 = 1 << 20;
 const LINE: u64 = 128;
 
+/// Most rows of which the rank is found out: that takes as long as tens of factorisations.
+const MOST_RANKED: usize = 2000;
+
+/// What a collection says of the operator of a problem.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OperatorSize {
+    /// `local` or `global`.
+    pub kind: String,
+    /// Entries of W (global: of M) that the file stores, those at one position once.
+    pub entries: usize,
+    /// max |w_ij − w_ji| / max |w_ij| of it.
+    pub asymmetry: f64,
+    /// Rows of W, the tangential ones of points without friction too.
+    pub rows: usize,
+    /// Rigid motions.
+    pub motions: usize,
+    /// Numerical rank of W: singular values above 1e-10 of the largest; absent with more than 2000 rows.
+    pub rank: Option<usize>,
+}
+
+/// Dimension, contact points and operator of a problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Size {
+    /// Components per contact point.
+    pub dim: usize,
+    /// Contact points.
+    pub points: usize,
+    /// The operator.
+    pub operator: OperatorSize,
+}
+
 /// A problem read and turned into a system.
 pub struct ProblemFile {
-    /// File name without `.hdf5`: the case of its runs.
+    /// File name without `.hdf5`, or the name in its collection: the case of its runs.
     pub name: String,
-    kind: &'static str,
+    /// `local` or `global`.
+    pub kind: &'static str,
     path: PathBuf,
-    system: ContactSystem,
-    load: Load,
-    rest: Load,
+    /// The body with its friction coefficients.
+    pub system: ContactSystem,
+    /// What acts on it.
+    pub load: Load,
+    /// Nothing.
+    pub rest: Load,
     start: ContactState,
-    setup: Setup,
+    /// Time for reading.
+    pub setup: Setup,
+    /// Stored entries of W or M, and how far it is from symmetric in the file.
+    stored: (usize, f64),
 }
 
 /// What methods made of a problem.
@@ -90,14 +131,33 @@ pub enum ProblemFileError {
     },
 }
 
+impl ProblemFileError {
+    /// What is wrong, without the path: where it lies says nothing about a problem.
+    pub fn reason(&self, path: &Path) -> String {
+        let quoted = format!("`{}`", path.display());
+        let text = self.to_string();
+        match text.strip_prefix(&format!("{quoted}: ")) {
+            Some(rest) => rest.to_owned(),
+            None => text.replace(&quoted, &format!("`{}`", file_name(path))),
+        }
+    }
+}
+
 impl ProblemFile {
-    /// Reads a file.
+    /// Reads a file; its name is that of the file.
     ///
     /// # Errors
     /// [`ProblemFileError`], naming the file.
     pub fn read(path: &Path) -> Result<Self, ProblemFileError> {
+        Self::read_as(path, file_name(path))
+    }
+
+    /// Reads a file under a name of its own.
+    ///
+    /// # Errors
+    /// [`ProblemFileError`], naming the file.
+    pub fn read_as(path: &Path, name: String) -> Result<Self, ProblemFileError> {
         let clock = Instant::now();
-        let name = name(path);
         if name.len() > MAX_NAME {
             let what = format!(
                 "its name has {} bytes, at most {MAX_NAME} are taken",
@@ -118,6 +178,12 @@ impl ProblemFile {
                 source,
             },
         };
+        let operator = match &problem {
+            Problem::Local(problem) => &problem.w,
+            Problem::Global(problem) => &problem.m,
+        };
+        let asymmetry = operator.as_square().map_err(failed)?.asymmetry();
+        let stored = (operator.len(), asymmetry.relative);
         let (kind, system) = match &problem {
             Problem::Local(problem) => ("local", local_system(problem)),
             Problem::Global(problem) => ("global", global_system(problem)),
@@ -140,6 +206,7 @@ impl ProblemFile {
             start: ContactState::zero(&system),
             system,
             load,
+            stored,
             setup: Setup {
                 setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
                 assembly_s: 0.0,
@@ -148,8 +215,35 @@ impl ProblemFile {
         })
     }
 
+    /// The problem in numbers; W is formed for its rank.
+    ///
+    /// # Errors
+    /// Those of the condensation.
+    pub fn size(&self) -> Result<Size, MethodError> {
+        Ok(Size {
+            dim: self.system.dim(),
+            points: self.system.points(),
+            operator: self.operator()?,
+        })
+    }
+
+    fn operator(&self) -> Result<OperatorSize, MethodError> {
+        let elastic = self.system.elastic();
+        let rows = self.load.offset.len();
+        let ranked = (rows <= MOST_RANKED).then(|| elastic.rank());
+        let (entries, asymmetry) = self.stored;
+        Ok(OperatorSize {
+            kind: self.kind.into(),
+            entries,
+            asymmetry,
+            rows,
+            motions: elastic.floating().len(),
+            rank: ranked.transpose()?.flatten(),
+        })
+    }
+
     /// The problem as an increment from rest.
-    fn increment(&self, tolerance: f64) -> Increment<'_> {
+    pub fn increment(&self, tolerance: f64) -> Increment<'_> {
         Increment {
             system: &self.system,
             load: &self.load,
@@ -190,24 +284,42 @@ impl ProblemFile {
         })
     }
 
-    /// Runs methods on the problem, from rest.
-    pub fn run(&self, choices: &[Choice], tier: Tier, progress: &dyn Progress) -> Solved {
+    /// One method on the problem, from rest, judged; the time is that of the fastest of `repeats` solutions.
+    pub fn try_method(
+        &self,
+        choice: &Choice,
+        accuracy: Accuracy,
+        repeats: usize,
+    ) -> (JudgedIncrement, RunKey) {
+        let key = RunKey {
+            case: self.name.clone(),
+            mesh: self.kind.into(),
+            space: "fclib".into(),
+            method: choice.label.clone(),
+            friction: self.system.friction().first().copied().unwrap_or(0.0),
+            increment: 1,
+        };
+        let increment = self.increment(accuracy.asked);
+        let tried = match Solver::new(choice, &self.system) {
+            Ok(mut solver) => solver.judge_fastest(&increment, accuracy.accepted, repeats),
+            Err(verdict) => JudgedIncrement::not_started(verdict),
+        };
+        (tried, key)
+    }
+
+    /// Runs methods on the problem, from rest; times are those of the fastest of `repeats` solutions.
+    pub fn run(
+        &self,
+        choices: &[Choice],
+        tier: Tier,
+        repeats: usize,
+        progress: &dyn Progress,
+    ) -> Solved {
         let mut solved = Solved::default();
         let accuracy = Accuracy::exactly(tier.tolerance());
         let increment = self.increment(accuracy.asked);
         for choice in choices {
-            let key = RunKey {
-                case: self.name.clone(),
-                mesh: self.kind.into(),
-                space: "fclib".into(),
-                method: choice.label.clone(),
-                friction: self.system.friction().first().copied().unwrap_or(0.0),
-                increment: 1,
-            };
-            let tried = match Solver::new(choice, &self.system) {
-                Ok(mut solver) => solver.judge(&increment, accuracy.accepted),
-                Err(verdict) => JudgedIncrement::not_started(verdict),
-            };
+            let (tried, key) = self.try_method(choice, accuracy, repeats);
             progress.done(&format!("{} {}", self.name, choice.label));
             let row = tried.run_row(&key, &self.system, self.setup, accuracy);
             solved.results.runs.push(row);
@@ -225,7 +337,7 @@ impl ProblemFile {
 }
 
 /// File name without the extensions HDF5 files have.
-fn name(path: &Path) -> String {
+pub fn file_name(path: &Path) -> String {
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -260,8 +372,26 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
         Problem::Global(problem) if problem.equality.is_some() => Err(unsupported(
             "G is present: eliminate the equality constraints Gᵀ v + b = 0 first",
         )),
-        Problem::Global(_) => Ok(()),
+        Problem::Global(problem) => match problem.m.as_square() {
+            Ok(m) if m.asymmetry().relative > ROUNDING => Err(unsupported(&unsymmetric(&m))),
+            _ => Ok(()),
+        },
     }
+}
+
+/// That M is not symmetric, by how much and where, and what to do about it.
+fn unsymmetric(m: &SquareMatrix) -> String {
+    let Asymmetry {
+        relative,
+        at: (i, j),
+    } = m.asymmetry();
+    format!(
+        "M is unsymmetric by {relative:.1e} relative to its largest entry (row {i}, column {j}: {:e}, mirror image {:e}); \
+         global files are solved by a Cholesky factor of M: condense it to a local file, W = Hᵀ M⁻¹ H and q = Hᵀ M⁻¹ f + w, \
+         whose W may be unsymmetric",
+        m.get(i, j),
+        m.get(j, i)
+    )
 }
 
 #[cfg(test)]

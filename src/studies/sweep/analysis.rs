@@ -10,6 +10,7 @@ pub mod profile;
 pub mod ranking;
 pub mod recommendation;
 pub mod scaling;
+pub mod sensitivity;
 pub mod series;
 pub mod success;
 #[cfg(test)]
@@ -18,6 +19,7 @@ pub mod test_set;
 
 use std::cmp::Ordering;
 
+use crate::run::choice::is_outside;
 use crate::run::registry::methods;
 use stickslip_methods::Tier;
 
@@ -92,11 +94,14 @@ pub fn body_times(record: &Record, records: &[Record]) -> Option<[f64; 3]> {
 
 /// Whether the options of a cell's method are the defaults.
 pub fn has_defaults(cell: &Cell) -> bool {
-    !cell.method.contains(':')
+    !cell.method.contains(':') || is_outside(&cell.method)
 }
 
-/// Name of a cell's method in the registry.
+/// Name of a cell's method in the registry; of a program its argument.
 pub fn method_name(cell: &Cell) -> &str {
+    if is_outside(&cell.method) {
+        return &cell.method;
+    }
     cell.method.split(':').next().unwrap_or(&cell.method)
 }
 

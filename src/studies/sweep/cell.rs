@@ -1,21 +1,35 @@
 //! What is measured: one case on one mesh, with one contact space, friction, method and tolerance.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
+
+use crate::files::digest::sha256;
+use crate::run::choice::Choice;
 
 /// Longest id: with the ending of a file that is being written it is the name of a file.
 const MAX_ID: usize = 200;
 
+/// What describes the problem of a cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Source {
+    /// Text of a case file.
+    Case(String),
+    /// Path of a problem file.
+    File(PathBuf),
+}
+
 /// One cell of a sweep. Everything that decides about its numbers is in here, and nothing else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// Name of the case.
+    /// Name of the case, or of the problem of a file.
     pub case: String,
-    /// SHA-256 of the case file, the first 16 hexadecimal digits.
+    /// SHA-256 of the case file or problem file, the first 16 hexadecimal digits.
     pub digest: String,
     /// Refinement factor of the mesh, from 1.
     pub refine: usize,
-    /// Contact space of all cracks; `None`: the case's own.
+    /// Contact space of all cracks; `None`: the case's own; `fclib` of a problem file.
     pub space: Option<String>,
     /// Friction coefficient of every crack.
     pub friction: Vec<f64>,
@@ -23,9 +37,21 @@ pub struct Cell {
     pub method: String,
     /// Natural map asked of the method and accepted by the judge.
     pub tolerance: f64,
+    /// Digest of the file where the method is a [`Program`](crate::run::outside::Program). No part of the id: a program that
+    /// changed is measured again, in place of what it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<String>,
 }
 
+/// Contact space of problems from files, in place of that of a case.
+pub const FROM_FILE: &str = "fclib";
+
 impl Cell {
+    /// Whether its problem comes from a problem file.
+    pub fn is_from_file(&self) -> bool {
+        self.space.as_deref() == Some(FROM_FILE)
+    }
+
     /// Friction coefficient of the first crack; 0 without cracks.
     pub fn mu(&self) -> f64 {
         self.friction.first().copied().unwrap_or(0.0)
@@ -42,7 +68,7 @@ impl Cell {
         let safe = |c: char| if is_safe(c) { c } else { '-' };
         // The digest tells apart what is cut off.
         let name: String = readable.chars().map(safe).take(MAX_ID - 9).collect();
-        format!("{name}.{}", &hexadecimal(&exact)[..8])
+        format!("{name}.{}", &sha256(exact.as_bytes())[..8])
     }
 
     /// What is solved, apart from how: the id without method and tolerance.
@@ -64,6 +90,34 @@ pub(super) fn is_id(text: &str) -> bool {
 
 fn is_safe(c: char) -> bool {
     c.is_ascii_alphanumeric() || "._-=".contains(c)
+}
+
+/// A cell with what it takes to measure it anywhere.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// [`Cell::id`].
+    pub id: String,
+    /// The cell.
+    pub cell: Cell,
+    /// Its case file or problem file.
+    pub source: Arc<Source>,
+}
+
+/// A method of some cells.
+pub(super) struct Named {
+    /// As in [`Cell::method`].
+    pub argument: String,
+    /// As in [`Cell::program`].
+    pub program: Option<String>,
+}
+
+impl Named {
+    pub fn of(choice: &Choice) -> Self {
+        Self {
+            argument: choice.argument(),
+            program: choice.program().map(|own| own.digest().to_owned()),
+        }
+    }
 }
 
 /// What several cells solve.
@@ -93,12 +147,12 @@ impl Problem {
 
 /// Digest of a case file, as in [`Cell::digest`].
 pub fn digest(text: &str) -> String {
-    hexadecimal(text)[..16].to_owned()
+    digest_of_bytes(text.as_bytes())
 }
 
-fn hexadecimal(text: &str) -> String {
-    let bytes = Sha256::digest(text.as_bytes());
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// The same of a file of any kind.
+pub fn digest_of_bytes(bytes: &[u8]) -> String {
+    sha256(bytes)[..16].to_owned()
 }
 
 #[cfg(test)]
@@ -114,6 +168,7 @@ mod tests {
             friction: vec![0.1, 0.2],
             method: "penalty:normal=1e2".into(),
             tolerance: 1e-6,
+            program: None,
         }
     }
 

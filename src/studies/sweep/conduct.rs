@@ -2,16 +2,18 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
 use super::analysis::is_honest;
-use super::cell::Cell;
-use super::measure::{Bench, MeasureError, Repeats, in_turn, measure};
-use super::plan::Task;
+use super::cell::Task;
+use super::cell::{Cell, Source};
+use super::measure::{Bench, MeasureError, Repeats, file_in_turn, in_turn, measure, measure_file};
 use super::record::{Found, Limits, Origin, Record, SCHEMA, Times};
 use super::store::{Store, StoreError};
-use crate::run::choice::Choice;
+use crate::run::choice::{Choice, is_outside};
+use crate::run::outside::Program;
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::worker::{Worker, WorkerError, share};
@@ -24,10 +26,12 @@ const WORK: &[&str] = &["work"];
 pub struct Request {
     /// Cells that differ in the method alone.
     pub cells: Vec<Cell>,
-    /// Their case file.
-    pub text: String,
+    /// Their case file or problem file.
+    pub source: Source,
     /// None: to measure the one cell. Else to time all in turn, which have an honest answer each.
     pub repeats: Option<Repeats>,
+    /// Time for the answer [s].
+    pub seconds: f64,
 }
 
 /// What a worker answers.
@@ -46,22 +50,43 @@ pub enum Answer {
 pub fn answer(bench: &mut Bench, request: &Request) -> Result<Answer, Verdict> {
     let Request {
         cells,
-        text,
+        source,
         repeats,
+        seconds,
     } = request;
-    let choices = cells.iter().map(|cell| Choice::parse(&cell.method));
-    let choices: Vec<Choice> = choices
-        .collect::<Result<_, _>>()
-        .map_err(MeasureError::from)?;
+    // A program that this process leaves running would disturb the next cell: it is ended before this process is.
+    let until = Instant::now() + Duration::from_secs_f64(IN_TIME * seconds);
+    let choices = cells.iter().map(|cell| chosen(cell, *seconds, until));
+    let choices = choices.collect::<Result<Vec<_>, _>>()?;
     let done = match (repeats, cells.as_slice(), choices.as_slice()) {
         (None, [cell], [choice]) => {
-            let measured = measure(bench, cell, text, choice);
+            let measured = match source {
+                Source::Case(text) => measure(bench, cell, text, choice),
+                Source::File(path) => measure_file(bench, cell, path, choice),
+            };
             measured.map(|record| Answer::Measured(Box::new(record)))
         }
-        (Some(repeats), ..) => in_turn(bench, cells, &choices, text, *repeats).map(Answer::Timed),
+        (Some(repeats), ..) => match source {
+            Source::Case(text) => in_turn(bench, cells, &choices, text, *repeats),
+            Source::File(path) => file_in_turn(bench, cells, &choices, path, *repeats),
+        }
+        .map(Answer::Timed),
         (None, ..) => return Err(Verdict::Crashed("one cell is measured at a time".into())),
     };
     done.map_err(Into::into)
+}
+
+/// Fraction of its time after which a program is ended.
+const IN_TIME: f64 = 0.95;
+
+/// The method of a cell.
+fn chosen(cell: &Cell, seconds: f64, until: Instant) -> Result<Choice, Verdict> {
+    let choice = Choice::parse(&cell.method).map_err(MeasureError::from)?;
+    if choice.program().map(Program::digest) != cell.program.as_deref() {
+        let message = "the program was changed after the sweep began";
+        return Err(Verdict::Crashed(message.into()));
+    }
+    Ok(choice.limited(seconds, Some(until)))
 }
 
 /// How the cells are measured.
@@ -167,7 +192,8 @@ pub fn conduct(
                 store.check_origin(&record, &origin, REMEDY)?;
                 let other_limits = record.limits.is_some_and(|limits| limits != how.limits);
                 let untimed = timed && is_honest(&record) && record.spent.is_none();
-                if other_limits || untimed {
+                let other_program = record.cell.program != task.cell.program;
+                if other_limits || untimed || other_program {
                     left.push(*task);
                 }
             }
@@ -180,6 +206,7 @@ pub fn conduct(
     let done = AtomicUsize::new(0);
     let worker = || Worker::new(how.program, WORK, how.limits);
     let groups = in_groups(left.clone());
+    let seconds = how.limits.seconds;
     share(&groups, how.jobs, how.stop, worker, |worker, group| {
         let mut records = Vec::new();
         for task in group {
@@ -196,7 +223,7 @@ pub fn conduct(
             records.push(record);
         }
         records.retain(|record| timed && is_honest(record));
-        for mut record in with_times(records, &group[0].text, repeats, worker)? {
+        for mut record in with_times(records, &group[0].source, repeats, seconds, worker)? {
             record.limits = limits_of(&record, how.limits);
             store.put(&record)?;
         }
@@ -214,6 +241,10 @@ const REMEDY: &str = "choose another folder, or --redo to measure such cells aga
 /// Cells of one problem, tolerance and body: methods that need more of it stand apart.
 fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<&Task>> {
     let traction = |task: &Task| {
+        // Whose file need not be read for that.
+        if is_outside(&task.cell.method) {
+            return false;
+        }
         let choice = Choice::parse(&task.cell.method);
         choice.is_ok_and(|choice| choice.needs_traction())
     };
@@ -240,14 +271,16 @@ fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<&Task>> {
 /// Honest records of one group with their times. Where the worker dies of them all, each is tried by itself.
 fn with_times(
     records: Vec<Record>,
-    text: &str,
+    source: &Source,
     repeats: Repeats,
+    seconds: f64,
     worker: &mut Worker<'_>,
 ) -> Result<Vec<Record>, WorkerError> {
     let request = Request {
         cells: records.iter().map(|record| record.cell.clone()).collect(),
-        text: text.to_owned(),
+        source: source.clone(),
         repeats: Some(repeats),
+        seconds: seconds * records.len() as f64,
     };
     let answer = match records.len() {
         0 => return Ok(records),
@@ -260,7 +293,7 @@ fn with_times(
         }
         _ if records.len() > 1 => {
             let alone = records.into_iter().map(|record| vec![record]);
-            let each = alone.map(|record| with_times(record, text, repeats, worker));
+            let each = alone.map(|record| with_times(record, source, repeats, seconds, worker));
             return Ok(each.collect::<Result<Vec<_>, _>>()?.concat());
         }
         other => no_answer(other),
@@ -283,8 +316,9 @@ fn one(
 ) -> Result<Record, ConductError> {
     let request = Request {
         cells: vec![task.cell.clone()],
-        text: task.text.to_string(),
+        source: (*task.source).clone(),
         repeats: None,
+        seconds: limits.seconds,
     };
     let answer = worker.ask::<_, Result<Answer, Verdict>>(&request, 1)?;
     let mut record = match answer.and_then(|answer| answer) {
@@ -292,7 +326,7 @@ fn one(
         other => {
             let choice = Choice::parse(&task.cell.method).ok();
             let label = choice.as_ref().map_or(&task.cell.method, |c| &c.label);
-            let exact = choice.as_ref().is_some_and(|c| c.method.exact);
+            let exact = choice.as_ref().is_some_and(Choice::exact);
             Record {
                 schema: SCHEMA,
                 id: task.id.clone(),

@@ -1,9 +1,11 @@
 //! One cell, measured: the load path once for the verdicts and errors. Its times come from [`in_turn`].
 
+mod from_file;
 mod reference;
 mod rounds;
 mod scene;
 
+pub use from_file::{file_in_turn, measure_file};
 pub use rounds::{Repeats, in_turn};
 pub use scene::{Bench, MeasureError};
 
@@ -42,7 +44,7 @@ pub fn measure(
     let mut found = Found {
         problem: Some(size(&scene)),
         increments: pass.increments.clone(),
-        ..Found::only(verdict, choice.label.clone(), choice.method.exact)
+        ..Found::only(verdict, choice.label.clone(), choice.exact())
     };
     let honest = found.verdict.is_honest();
     let mut output_s = f64::NAN;
@@ -57,22 +59,9 @@ pub fn measure(
     let peaks = [scene.peak_mb, memory::peak_mb()].into_iter().flatten();
     let peak_mb = peaks.reduce(f64::max);
     if honest {
-        found.solver_error = solver_error(&mut scene, &pass.snapshots, choice.method.name);
+        found.solver_error = solver_error(&mut scene, &pass.snapshots, choice.name());
     }
-    let sum = |of: fn(&RunRow) -> f64| Timing::of(&[pass.rows.iter().map(of).sum()]);
-    let spent = pass.rows.last().filter(|_| honest).and_then(|row| {
-        Some(Spent {
-            setup_s: row.setup_s,
-            assembly_s: row.assembly_s,
-            factorisation_s: row.factorisation_s,
-            condensation_s: row.condensation_s,
-            prepare: sum(|row| row.prepare_s)?,
-            solve: sum(|row| row.solve_s)?,
-            enforcement: sum(|row| row.enforcement_s)?,
-            output_s,
-            peak_mb,
-        })
-    });
+    let spent = honest.then(|| spent_of(&pass.rows, output_s, peak_mb));
     Ok(Record {
         schema: SCHEMA,
         id: cell.id(),
@@ -80,7 +69,25 @@ pub fn measure(
         origin: Origin::here(),
         limits: None,
         found,
-        spent,
+        spent: spent.flatten(),
+    })
+}
+
+/// What the increments of one pass took; none without increments.
+fn spent_of(rows: &[RunRow], output_s: f64, peak_mb: Option<f64>) -> Option<Spent> {
+    let sum = |of: fn(&RunRow) -> f64| Timing::of(&[rows.iter().map(of).sum()]);
+    let row = rows.last()?;
+    Some(Spent {
+        setup_s: row.setup_s,
+        assembly_s: row.assembly_s,
+        factorisation_s: row.factorisation_s,
+        condensation_s: row.condensation_s,
+        prepare: sum(|row| row.prepare_s)?,
+        solve: sum(|row| row.solve_s)?,
+        enforcement: sum(|row| row.enforcement_s)?,
+        reported: sum(|row| row.reported_s),
+        output_s,
+        peak_mb,
     })
 }
 
@@ -166,5 +173,6 @@ fn size(scene: &Scene<'_>) -> ProblemSize {
         dofs: body.elastic.unknowns(),
         points: body.points.len(),
         unknowns: scene.system.rows(),
+        operator: None,
     }
 }

@@ -14,6 +14,7 @@ use crate::model::errors::Deviation;
 use crate::run::provenance::Provenance;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::Value;
+use crate::studies::exchange::problem_file::OperatorSize;
 
 /// Version of the record files and of the tables made from them.
 pub const SCHEMA: u32 = 3;
@@ -42,7 +43,8 @@ impl Record {
     pub(super) fn labels(&self) -> impl Iterator<Item = &str> {
         let cell = [&self.cell.case, &self.cell.method, &self.found.method];
         let problem = self.found.problem.iter().flat_map(|p| [&p.mesh, &p.space]);
-        let own = cell.into_iter().chain(&self.cell.space).chain(problem);
+        let own = (cell.into_iter()).chain(&self.cell.space);
+        let own = own.chain(&self.cell.program).chain(problem);
         let origin = self.origin.parts().map(|(_, text)| text);
         own.map(String::as_str).chain(origin)
     }
@@ -153,7 +155,7 @@ pub struct ProblemSize {
     pub mesh: String,
     /// Contact space with its marks, as in `runs.csv`.
     pub space: String,
-    /// Largest distance of neighbouring grid lines [m].
+    /// Largest distance of neighbouring grid lines [m]; 0 of a problem file.
     pub h_m: f64,
     /// Dimension of the body.
     pub dim: usize,
@@ -163,6 +165,9 @@ pub struct ProblemSize {
     pub points: usize,
     /// Contact unknowns.
     pub unknowns: usize,
+    /// The operator of a problem file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<OperatorSize>,
 }
 
 /// One increment.
@@ -222,6 +227,9 @@ pub struct Spent {
     pub solve: Timing,
     /// Of these, without load solves, recovery of displacements and checks of equilibrium.
     pub enforcement: Timing,
+    /// Enforcement by the account of a program from outside, where it gives one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reported: Option<Timing>,
     /// Tables and fields of the last increment, in memory [s].
     pub output_s: f64,
     /// Largest resident memory of the process from the mesh to the end of the repeats [MB]; absent where the system does
@@ -238,6 +246,9 @@ pub struct Times {
     pub solve: Timing,
     /// As in [`Spent`].
     pub enforcement: Timing,
+    /// As in [`Spent`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reported: Option<Timing>,
 }
 
 impl Record {
@@ -249,6 +260,7 @@ impl Record {
                     spent.prepare = times.prepare;
                     spent.solve = times.solve;
                     spent.enforcement = times.enforcement;
+                    spent.reported = times.reported;
                 }
             }
             Err(verdict) => {

@@ -91,6 +91,7 @@ fn add_run(results: &mut Results, key: RunKey) {
         prepare_s: 1.234e-5,
         solve_s: 4.567_891e-4,
         enforcement_s: 1.234e-4,
+        reported_s: f64::NAN,
         equilibrium: 3.2e-14,
         claimed_equilibrium: 3.2e-14,
         claimed: residual(iterations),

@@ -210,7 +210,8 @@ fn every_defect_is_named() {
         (columns().integers("W/p", &[0, 3, 5, 8, 12]), ["W/p[4] = 12", "8 to 10"]),
         (columns().integers("W/i", &[0, 1, 2, 0, 1, 0, 2, 3, 2, -3]), ["W/i[9] = -3", "0 to 3"]),
         (columns().reals("W/x", &[4.0, 1.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, nan]), ["W/x[9] = NaN", "finite"]),
-        (columns().reals("W/x", &[4.0, 9.0, 0.5, 1.0, 3.0, 0.5, 5.0, -1.0, -1.0, 2.0]), ["row 0, column 1", "symmetric"]),
+        (triplets().reals("vectors/mu_r", &[0.1, 0.1]), ["rolling-friction problem", "fclib_local/vectors/mu_r"]),
+        (triplets().integers("spacedim", &[5]), ["rolling-friction problem", "spacedim = 5"]),
     ];
     for (raw, parts) in rows {
         let error = raw.read().unwrap_err();

@@ -81,7 +81,9 @@ fn devices_and_directories_are_refused() {
     for device in ["/dev/zero", "/dev/null", "/dev/urandom"] {
         refused_by_all(device, dir.path(), &["a device, not a regular file"]);
     }
-    refused_by_all("/", dir.path(), &["a directory, not a regular file"]);
+    fs::create_dir(dir.path().join("empty")).unwrap();
+    let words = ["a directory, not a regular file", "no file.hdf5 or file.h5"];
+    refused_by_all("empty", dir.path(), &words);
 }
 
 /// Goal: nothing is allocated for a file that cannot be meant.

@@ -230,7 +230,11 @@ fn an_accepted_problem_is_run_or_refused() {
         match ProblemFile::read(&file) {
             Ok(problem) => {
                 assert_eq!(
-                    problem.run(&choices, Tier::Low, &Quiet).results.runs.len(),
+                    problem
+                        .run(&choices, Tier::Low, 1, &Quiet)
+                        .results
+                        .runs
+                        .len(),
                     2
                 );
                 true

@@ -104,6 +104,7 @@ fn an_id_is_the_name_of_a_file_however_long_the_name_of_the_case() {
         friction: vec![0.1],
         method: "nsgs".into(),
         tolerance: 1e-6,
+        program: None,
     };
     let [one, two] = ["a", "b"].map(|end| cell("ü".repeat(249) + end).id());
     assert!(one.len() <= 200 && one != two, "{one}");

@@ -52,7 +52,7 @@ pub fn samples(records: &[Record]) -> Vec<Sample<'_>> {
         let fits = record.found.exact && is_correct(record, Tier::High);
         fits.then(|| Sample {
             dim: size.dim,
-            method: &record.cell.method,
+            method: &record.found.method,
             body: &record.cell.case,
             points,
             friction: record.cell.mu(),
@@ -149,7 +149,7 @@ pub fn growth(records: &[Record]) -> Vec<Growth> {
     for dim in [2, 3] {
         let of_dim: Vec<Sample> = all.iter().copied().filter(|s| s.dim == dim).collect();
         for own in of_dim.chunk_by(|a, b| a.method == b.method) {
-            let of_method = |r: &&Record| r.cell.method == own[0].method && r.cell.mu() == common;
+            let of_method = |r: &&Record| r.found.method == own[0].method && r.cell.mu() == common;
             let given =
                 |r: &&Record| asked(r).is_some() && bodies::dimension_of(&r.cell.case) == Some(dim);
             let largest = own.iter().map(|s| s.points).max().unwrap_or(0);

@@ -174,7 +174,7 @@ fn options(method: &str) -> Vec<(String, f64)> {
     let Ok(choice) = Choice::parse(method) else {
         return Vec::new();
     };
-    let all = choice.options.iter();
+    let all = choice.options().into_iter();
     all.map(|(spec, value)| (spec.name().to_owned(), value.number()))
         .collect()
 }

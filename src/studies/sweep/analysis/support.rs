@@ -33,6 +33,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
         friction: vec![0.3],
         method: method.into(),
         tolerance,
+        program: None,
     };
     let label = match method.split_once(':') {
         Some((name, options)) => format!("{name}[{options}]"),
@@ -65,6 +66,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
                 dofs: 1000,
                 points: 11,
                 unknowns: 22,
+                operator: None,
             }),
             increments: vec![IncrementFound {
                 verdict: Verdict::Solved,
@@ -104,6 +106,7 @@ pub fn timed(mut record: Record, seconds: f64) -> Record {
         prepare: timing(0.1 * seconds),
         solve: timing(seconds),
         enforcement: timing(0.9 * seconds),
+        reported: None,
         output_s: 0.01,
         peak_mb: Some(40.0),
     });
@@ -127,6 +130,7 @@ pub fn solved(case: &str, times: &[(&str, f64)]) -> Vec<Record> {
 pub fn failed(case: &str, method: &str) -> Record {
     let mut failed = of_case(lying("gave-up: stalled"), case);
     failed.cell.method = method.into();
+    failed.found.method = method.into();
     failed
 }
 

@@ -31,7 +31,7 @@ impl<'a> TestSet<'a> {
     pub fn new(records: &'a [Record], tier: Tier) -> Self {
         let wanted = |r: &&Record| has_defaults(&r.cell) && r.cell.tolerance == tier.tolerance();
         let own: Vec<&Record> = records.iter().filter(wanted).collect();
-        let mut methods: Vec<&str> = own.iter().map(|r| r.cell.method.as_str()).collect();
+        let mut methods: Vec<&str> = own.iter().map(|r| r.found.method.as_str()).collect();
         methods.sort_by(|a, b| compare_methods(a, b));
         methods.dedup();
         let all = problems(records);
@@ -39,7 +39,7 @@ impl<'a> TestSet<'a> {
         let mut by_place: BTreeMap<(usize, &str), &Record> = BTreeMap::new();
         for record in own {
             if let Ok(place) = place(&record.cell.problem()) {
-                let key = (place, record.cell.method.as_str());
+                let key = (place, record.found.method.as_str());
                 by_place.entry(key).or_insert(record);
             }
         }

@@ -5,9 +5,9 @@
 //! began it; only these calls are timed. A round that ends in other bits than the first is an error of the method: the same
 //! increment twice must give the same bits.
 
-use stickslip_methods::{ContactState, Increment, Load};
+use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
 
-use super::scene::{Bench, MeasureError, Scene};
+use super::scene::{Bench, MeasureError};
 use crate::run::choice::Choice;
 use crate::run::increment::Solver;
 use crate::run::verdict::{Accuracy, Verdict};
@@ -64,11 +64,21 @@ pub fn in_turn(
     let loads: Vec<Load> = (0..=scene.case.path.increments)
         .map(|k| scene.loading.at(k))
         .collect();
+    let asked = (scene.system, &loads[..], cell.tolerance);
+    Ok(take_rounds(asked, choices, repeats))
+}
+
+/// Rounds of all methods on a system under some loads, that at the start first, at a tolerance.
+pub(super) fn take_rounds(
+    (system, loads, tolerance): (&ContactSystem, &[Load], f64),
+    choices: &[Choice],
+    repeats: Repeats,
+) -> Vec<Result<Times, Verdict>> {
     let path = Path {
-        scene: &scene,
-        loads: &loads,
-        rest: ContactState::zero(scene.system),
-        asked: Accuracy::exactly(cell.tolerance).asked,
+        system,
+        loads,
+        rest: ContactState::zero(system),
+        asked: Accuracy::exactly(tolerance).asked,
     };
     let mut runners: Vec<Runner> = choices.iter().map(Runner::new).collect();
     while runners.iter().any(|own| own.goes_on(repeats)) {
@@ -76,12 +86,12 @@ pub fn in_turn(
             own.broken = own.round(&path).err();
         }
     }
-    Ok(runners.into_iter().map(Runner::times).collect())
+    runners.into_iter().map(Runner::times).collect()
 }
 
 /// What all methods follow.
 struct Path<'a> {
-    scene: &'a Scene<'a>,
+    system: &'a ContactSystem,
     /// By increment, the one at the start first.
     loads: &'a [Load],
     rest: ContactState,
@@ -94,8 +104,8 @@ struct Runner<'a> {
     choice: &'a Choice,
     /// At the end of every increment, found in the first round.
     states: Vec<ContactState>,
-    /// Preparation, solution and enforcement by round [s].
-    samples: [Vec<f64>; 3],
+    /// Preparation, solution, enforcement, and that by the account of a program from outside, by round [s].
+    samples: [Vec<f64>; 4],
     broken: Option<Verdict>,
 }
 
@@ -110,15 +120,15 @@ impl<'a> Runner<'a> {
     }
 
     fn goes_on(&self, repeats: Repeats) -> bool {
-        let [prepare, solve, _] = &self.samples;
+        let [prepare, solve, ..] = &self.samples;
         let spent_s = prepare.iter().chain(solve).sum();
         self.broken.is_none() && !repeats.enough(solve.len(), spent_s)
     }
 
     fn round(&mut self, path: &Path<'_>) -> Result<(), Verdict> {
-        let system = path.scene.system;
+        let system = path.system;
         let mut solver = Solver::new(self.choice, system)?;
-        let mut sums = [solver.prepare_s, 0.0, 0.0];
+        let mut sums = [solver.prepare_s, 0.0, 0.0, 0.0];
         for (index, load) in path.loads.windows(2).enumerate() {
             let problem = Increment {
                 system,
@@ -131,6 +141,7 @@ impl<'a> Runner<'a> {
             let (outcome, seconds) = solver.solve(&problem);
             sums[1] += seconds.total_s;
             sums[2] += seconds.enforcement_s;
+            sums[3] += seconds.reported_s.unwrap_or(f64::NAN);
             let state = outcome?.state;
             match self.states.get(index) {
                 None => self.states.push(state),
@@ -152,12 +163,13 @@ impl<'a> Runner<'a> {
         if let Some(broken) = self.broken {
             return Err(broken);
         }
-        let [prepare, solve, enforcement] = self.samples.map(|own| Timing::of(&own));
+        let [prepare, solve, enforcement, reported] = self.samples.map(|own| Timing::of(&own));
         let times = prepare.zip(solve).zip(enforcement);
         let times = times.map(|((prepare, solve), enforcement)| Times {
             prepare,
             solve,
             enforcement,
+            reported,
         });
         times.ok_or_else(|| Verdict::Crashed("a time that is not finite".into()))
     }

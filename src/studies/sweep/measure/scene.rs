@@ -1,6 +1,9 @@
 //! The discretised body of a cell. Neighbouring cells solve the same problem, so the last body is kept with its factor,
 //! and for the last friction coefficients the converged solution.
 
+use std::fs;
+use std::path::Path;
+
 use stickslip_methods::ContactSystem;
 
 use super::reference::References;
@@ -10,8 +13,9 @@ use crate::model::loading::Loading;
 use crate::run::choice::ChoiceError;
 use crate::run::run_case::{RunError, warm_up};
 use crate::run::verdict::Verdict;
+use crate::studies::exchange::problem_file::{OperatorSize, ProblemFile};
 use crate::studies::memory;
-use crate::studies::sweep::cell::Cell;
+use crate::studies::sweep::cell::{Cell, digest_of_bytes};
 
 /// Why a cell could not be measured; what a method does wrong is a verdict.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +29,12 @@ pub enum MeasureError {
     /// The contact space.
     #[error("unknown contact space `{0}`")]
     Space(String),
+    /// A problem file that no method is asked to solve.
+    #[error("{0}")]
+    File(String),
+    /// A problem file that cannot be read any more, or is not the one the sweep was planned with.
+    #[error("{0}")]
+    Gone(String),
 }
 
 impl From<BodyError> for MeasureError {
@@ -37,15 +47,18 @@ impl From<MeasureError> for Verdict {
     fn from(error: MeasureError) -> Self {
         match error {
             MeasureError::Run(RunError::Body(BodyError::Method(error))) => error.into(),
+            MeasureError::File(reason) => Verdict::Refused(reason),
             other => Verdict::Crashed(other.to_string()),
         }
     }
 }
 
-/// Keeps the last body.
+/// Keeps the last body, or the last problem file.
 #[derive(Default)]
 pub struct Bench {
     kept: Option<Kept>,
+    /// The last problem file, by name and digest.
+    file: Option<(String, String, ProblemFile, OperatorSize)>,
 }
 
 struct Kept {
@@ -85,6 +98,43 @@ pub struct Scene<'a> {
 }
 
 impl Bench {
+    /// The problem of a cell from its file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is refused.
+    pub fn problem(
+        &mut self,
+        cell: &Cell,
+        path: &Path,
+    ) -> Result<(&ProblemFile, &OperatorSize), MeasureError> {
+        let same = |kept: &(String, String, ProblemFile, OperatorSize)| {
+            (&kept.0, &kept.1) == (&cell.case, &cell.digest)
+        };
+        self.kept = None;
+        memory::reset_peak();
+        let kept = match self.file.take().filter(same) {
+            Some(kept) => kept,
+            None => {
+                let gone = |e| format!("cannot read `{}`: {e}", path.display());
+                let bytes = fs::read(path).map_err(|e| MeasureError::Gone(gone(e)))?;
+                if digest_of_bytes(&bytes) != cell.digest {
+                    let what = format!(
+                        "`{}` has changed since the sweep was planned",
+                        path.display()
+                    );
+                    return Err(MeasureError::Gone(what));
+                }
+                drop(bytes);
+                let problem = ProblemFile::read_as(path, cell.case.clone());
+                let problem = problem.map_err(|e| MeasureError::File(e.reason(path)))?;
+                let operator = problem.size().map_err(BodyError::from)?.operator;
+                (cell.case.clone(), cell.digest.clone(), problem, operator)
+            }
+        };
+        let (_, _, problem, operator) = self.file.insert(kept);
+        Ok((problem, operator))
+    }
+
     /// The scene of a cell.
     ///
     /// # Errors
@@ -104,6 +154,7 @@ impl Bench {
                 == (&cell.digest, cell.refine, &cell.space, needs)
         };
         memory::reset_peak();
+        self.file = None;
         // The old body goes before the new one comes: two would raise the peak of memory.
         let kept = match self.kept.take().filter(same) {
             Some(kept) => kept,

@@ -1,6 +1,6 @@
-//! Anderson acceleration of a fixed point a = G(a), a >= 0 (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715).
+//! Anderson acceleration of a fixed point a = G(a) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715).
 //! ```text
-//! f = G(a) − a,   γ = argmin |f − ΔF γ|,   a <- max(G(a) − ΔG γ, 0)
+//! f = G(a) − a,   γ = argmin |f − ΔF γ|,   a <- max(G(a) − ΔG γ, least)
 //! ```
 //! The columns of ΔF and ΔG are the last differences of f and G(a). Along a difference with Δf·Δa >= 0 the map expands and
 //! the secant would lead back to where the iteration flees from: then all differences are dropped and the plain step is taken.
@@ -19,6 +19,8 @@ const GROWTH: f64 = 2.0;
 pub(crate) struct Anderson {
     /// Differences kept; 0 leaves the iteration as it is.
     depth: usize,
+    /// Least entry of a.
+    least: f64,
     /// a whose image comes next; none before the first.
     a: Option<Vec<f64>>,
     /// (f, G(a)) of the image before.
@@ -28,10 +30,20 @@ pub(crate) struct Anderson {
 }
 
 impl Anderson {
-    /// Keeps `depth` differences.
+    /// Keeps `depth` differences of an iteration on numbers that are not negative.
     pub fn new(depth: usize) -> Self {
+        Self::above(0.0, depth)
+    }
+
+    /// The same for an iteration on any numbers.
+    pub fn unbounded(depth: usize) -> Self {
+        Self::above(f64::NEG_INFINITY, depth)
+    }
+
+    fn above(least: f64, depth: usize) -> Self {
         Self {
             depth,
+            least,
             a: None,
             last: None,
             differences: Vec::new(),
@@ -48,7 +60,7 @@ impl Anderson {
             for ((_, dg), gamma) in self.differences.iter().zip(gamma) {
                 next.iter_mut().zip(dg).for_each(|(a, dg)| *a -= gamma * dg);
             }
-            next.iter_mut().for_each(|a| *a = a.max(0.0));
+            next.iter_mut().for_each(|a| *a = a.max(self.least));
             self.last = Some((f, image));
         }
         self.a = Some(next.clone());

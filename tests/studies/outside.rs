@@ -1,0 +1,333 @@
+//! Programs as methods: whatever one does is a verdict, nothing it says of itself is believed, and nothing is left of it.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use stickslip::files::interchange::{Info, LocalProblem, Problem, SparseMatrix, fclib};
+use stickslip::run::choice::Choice;
+use stickslip::run::increment::{JudgedIncrement, Solver};
+use stickslip::studies::exchange::local_system;
+use stickslip::studies::sweep::record::Record;
+use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
+
+/// Source: hand calculation. r_n = 2/0.5 = 4 closes the gap; 3 N would hold the slip, the bound is 2 N.
+fn one_point() -> LocalProblem {
+    let w = [0.5, 0.2];
+    LocalProblem {
+        dim: 2,
+        w: SparseMatrix::from_dense(2, 2, |i, j| if i == j { w[i] } else { 0.0 }),
+        q: vec![-2.0, 0.6],
+        mu: vec![0.5],
+        equality: None,
+        info: Info::default(),
+        solution: None,
+        guesses: Vec::new(),
+    }
+}
+
+/// A name for the program of the tests.
+fn called(dir: &Path, name: &str) -> PathBuf {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/outside");
+    let path = dir.join(name);
+    symlink(own, &path).unwrap();
+    path
+}
+
+fn exec(path: &Path) -> String {
+    format!("exec:{}", path.display())
+}
+
+fn judged(choice: &Choice) -> JudgedIncrement {
+    let posed = local_system(&one_point()).unwrap();
+    let system = ContactSystem::new(posed.elastic, posed.friction).unwrap();
+    let (rest, start) = (Load::zero(system.elastic()), ContactState::zero(&system));
+    let increment = Increment {
+        system: &system,
+        load: &posed.load,
+        start_load: &rest,
+        start: &start,
+        index: 0,
+        tolerance: 1e-9,
+    };
+    Solver::new(choice, &system)
+        .unwrap()
+        .judge(&increment, 1e-9)
+}
+
+#[test]
+fn whatever_a_program_does_is_a_verdict() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, verdict) in [
+        ("honest", "solved"),
+        ("boastful", "solved"),
+        ("arguments", "solved"),
+        ("liar", "false-claim"),
+        ("crash", "crashed: exit status: 1: last words"),
+        ("killed", "crashed: signal: 9 (SIGKILL)"),
+        ("hungry", "out-of-memory"),
+        (
+            "short",
+            "crashed: 1 numbers for reactions, expected 2: 2 per point",
+        ),
+        (
+            "long",
+            "crashed: 3 numbers for reactions, expected 2: 2 per point",
+        ),
+        (
+            "nan",
+            "crashed: line 2 of the reactions: `nan` is no finite number",
+        ),
+        (
+            "garbage",
+            "crashed: no reactions: byte 0 is 0xFF, no UTF-8 text",
+        ),
+        (
+            "words",
+            "crashed: line 1 of the reactions: `four` is no finite number",
+        ),
+        (
+            "mute",
+            "crashed: no reactions: No such file or directory (os error 2)",
+        ),
+        (
+            "folder",
+            "crashed: no reactions: a directory, not a regular file",
+        ),
+        ("lots", "crashed: it printed `iterations = lots`"),
+        ("gives-up", "gave-up: unexplained"),
+        ("stalls", "gave-up: stalled"),
+        ("declines", "refused: ./problem.hdf5 is not for me"),
+    ] {
+        let choice = Choice::parse(&exec(&called(dir.path(), name))).unwrap();
+        assert_eq!(choice.label, format!("exec:{name}"));
+        let found = judged(&choice);
+        assert_eq!(found.verdict.to_string(), verdict, "{name}");
+        if name == "honest" {
+            let (work, judged) = (found.work.unwrap().solve, found.judged.unwrap());
+            assert_eq!(judged.outcome.counters.iterations, 7);
+            assert_eq!(work.reported_s, Some(1e-9));
+            // A process takes longer than that, and less than the call with its files.
+            assert!(1e-5 < work.enforcement_s && work.enforcement_s < work.total_s);
+        } else {
+            // Nor is a boast believed that the process itself refutes.
+            assert_eq!(found.work.unwrap().solve.reported_s, None, "{name}");
+        }
+    }
+}
+
+/// Goal: a program that never ends is ended in time, with what it started.
+#[test]
+fn silence_is_timed_out() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = called(dir.path(), "forever");
+    let choice = Choice::parse(&exec(&path)).unwrap().limited(0.2, None);
+    let clock = Instant::now();
+    assert_eq!(judged(&choice).verdict.to_string(), "timed-out");
+    assert!((0.2..10.0).contains(&clock.elapsed().as_secs_f64()));
+    let past = Some(Instant::now());
+    let late = Choice::parse(&exec(&path)).unwrap().limited(300.0, past);
+    assert_eq!(judged(&late).verdict.to_string(), "timed-out");
+
+    let child = fs::read_to_string(dir.path().join("forever.pid")).unwrap();
+    let stat = format!("/proc/{}/stat", child.trim());
+    let gone = || fs::read_to_string(&stat).map_or(true, |text| text.contains(") Z "));
+    if cfg!(target_os = "linux") {
+        while !gone() {
+            assert!(clock.elapsed() < Duration::from_secs(30), "{stat}");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+fn stickslip(dir: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = Command::new(PROGRAM)
+        .args(arguments)
+        .current_dir(dir)
+        .env("TMPDIR", dir.join("tmp"))
+        .output()
+        .unwrap();
+    // Whatever became of a call, its folder is gone.
+    assert_eq!(fs::read_dir(dir.join("tmp")).unwrap().count(), 0);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+/// A folder with the problem of one point, and one for what is temporary.
+fn folder() -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(dir.path().join("tmp")).unwrap();
+    let bytes = Problem::Local(one_point()).to_bytes().unwrap();
+    fs::write(dir.path().join("one.hdf5"), bytes).unwrap();
+    dir
+}
+
+#[test]
+fn it_is_tabulated_like_the_methods_here() {
+    let dir = folder();
+    for name in ["honest", "liar"] {
+        called(dir.path(), name);
+    }
+    let methods = ["-m", "b-newton", "-m", "exec:honest", "-m", "exec:./liar"];
+    let arguments = [&["solve", "one.hdf5"], &methods[..]].concat();
+    let (code, shown, complaints) = stickslip(dir.path(), &arguments);
+    assert_eq!(code, Some(1), "{complaints}");
+    assert!(
+        shown.contains("exec:honest") && shown.contains("exec:liar"),
+        "{shown}"
+    );
+    let mut runs = csv::Reader::from_path(dir.path().join("results/runs.csv")).unwrap();
+    let header = runs.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = runs.records().map(Result::unwrap).collect();
+    let of = |method: &str, column: &str| {
+        let at = |name: &str| header.iter().position(|h| h == name).unwrap();
+        let row = rows
+            .iter()
+            .find(|row| &row[at("method")] == method)
+            .unwrap();
+        row[at(column)].to_owned()
+    };
+    assert_eq!(of("exec:honest", "verdict"), "solved");
+    assert_eq!(of("exec:liar", "verdict"), "false-claim");
+    let reported = ["b-newton", "exec:honest", "exec:liar"].map(|m| of(m, "reported_s"));
+    assert_eq!(reported, ["NaN", "1e-9", "NaN"]);
+    assert_eq!(of("exec:liar", "enforcement_s"), "NaN");
+}
+
+#[test]
+fn what_is_no_program_is_refused() {
+    let dir = folder();
+    fs::write(dir.path().join("text"), "#!/bin/sh\n").unwrap();
+    for (argument, part) in [
+        ("exec:missing", "method exec:missing: No such file"),
+        ("exec:text", "method exec:text: it is not executable"),
+        ("exec:tmp", "method exec:tmp: a directory"),
+        ("exec:", "method exec:: "),
+    ] {
+        let arguments = ["solve", "one.hdf5", "-m", argument];
+        let (code, _, complaints) = stickslip(dir.path(), &arguments);
+        assert_eq!(code, Some(2), "{complaints}");
+        assert!(complaints.contains(part), "{complaints}");
+        assert!(!dir.path().join("results").exists());
+    }
+}
+
+#[test]
+fn the_conformance_kit_finds_who_does_not_conform() {
+    let dir = folder();
+    for name in ["liar", "declines"] {
+        called(dir.path(), name);
+    }
+    let (code, shown, _) = stickslip(dir.path(), &["conform", "hybrid", "nsgs"]);
+    assert_eq!(code, Some(0), "{shown}");
+    assert_eq!(shown.matches(" passed, 0 declined, 0 failed").count(), 2);
+    // None of it is the problem of one point.
+    let (code, shown, _) = stickslip(dir.path(), &["conform", "exec:liar"]);
+    assert_eq!(code, Some(1));
+    assert!(
+        shown.contains("exec:liar: 0 of 18 passed, 0 declined, 18 failed"),
+        "{shown}"
+    );
+    // Who declines everything has shown nothing.
+    let (code, shown, _) = stickslip(dir.path(), &["conform", "exec:declines"]);
+    assert_eq!(code, Some(1));
+    assert!(shown.contains("18 declined, 0 failed"), "{shown}");
+}
+
+/// Goal: in a study too every program has its verdict and an honest one its times; one that changes is measured again.
+#[test]
+fn a_study_outlives_its_programs_and_sees_when_they_change() {
+    let dir = folder();
+    let path = dir.path();
+    let export = [
+        "export",
+        "plate_mesh1",
+        "--friction",
+        "0.1",
+        "--out",
+        "problems",
+    ];
+    assert_eq!(stickslip(path, &export).0, Some(0));
+    let local = (fs::read_dir(path.join("problems")).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .find(|path| path.to_string_lossy().ends_with(".local.hdf5"))
+        .unwrap();
+    let Problem::Local(problem) = fclib::read(&local).unwrap() else {
+        panic!("a local problem");
+    };
+    let r = problem.solution.unwrap().r;
+    let numbers: Vec<String> = r.iter().map(|r| format!("{r:e}")).collect();
+    fs::write(path.join("r.txt"), numbers.join("\n") + "\n").unwrap();
+    let program = |name: &str, text: &str| {
+        let path = path.join(name);
+        fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let answer = format!("cat '{}' > \"$2\"", path.join("r.txt").display());
+    program("knows", &format!("echo seconds = 1e-6\n{answer}"));
+    program("halves", &format!("{answer}\necho 0 >> \"$2\""));
+    called(path, "forever");
+    called(path, "crash");
+    let sweep = "title = \"t\"\nrepeats = { least = 2, most = 2, seconds = 0.0 }\n[[cells]]\ncases = [\"plate_mesh1\"]\n\
+                 friction = [0.1]\ntolerances = [1e-6]\n\
+                 methods = [\"b-newton\", \"exec:knows\", \"exec:halves\", \"exec:forever\", \"exec:crash\"]\n";
+    fs::write(path.join("sweep.toml"), sweep).unwrap();
+    let study = || {
+        stickslip(
+            path,
+            &["study", "sweep.toml", "--time-limit", "1", "--out", "out"],
+        )
+    };
+    let record = |method: &str| -> Record {
+        let all = fs::read_dir(path.join("out/cells")).unwrap();
+        let read = |entry: fs::DirEntry| fs::read_to_string(entry.path()).unwrap();
+        let all = all.map(|entry| serde_json::from_str(&read(entry.unwrap())).unwrap());
+        all.into_iter()
+            .find(|r: &Record| r.found.method == method)
+            .unwrap()
+    };
+
+    let (code, shown, complaints) = study();
+    assert_eq!(code, Some(1), "{complaints}");
+    assert!(
+        shown.contains("5 cells: 0 measured before, 5 now, 0 left"),
+        "{shown}"
+    );
+    let knows = record("exec:knows");
+    assert_eq!(knows.found.verdict.to_string(), "solved");
+    let spent = knows.spent.unwrap();
+    assert_eq!(spent.reported.unwrap().median_s, 1e-6);
+    assert!(spent.enforcement.median_s > 1e-5 && spent.enforcement.samples == 2);
+    assert!(record("b-newton").spent.unwrap().reported.is_none());
+    let verdicts =
+        ["exec:halves", "exec:forever", "exec:crash"].map(|m| record(m).found.verdict.to_string());
+    let reason = format!(
+        "crashed: {} numbers for reactions, expected {}: 2 per point",
+        r.len() + 1,
+        r.len()
+    );
+    let crash = "crashed: exit status: 1: last words";
+    assert_eq!(verdicts, [&*reason, "timed-out", crash]);
+
+    program("halves", &format!("{answer}\nexit 3"));
+    let (_, shown, _) = study();
+    assert!(
+        shown.contains("5 cells: 4 measured before, 1 now, 0 left"),
+        "{shown}"
+    );
+    assert_eq!(
+        record("exec:halves").found.verdict.to_string(),
+        "gave-up: unexplained"
+    );
+}
