@@ -107,7 +107,7 @@ impl<'a> Solver<'a> {
         self.judge_fastest(increment, accepted, 1)
     }
 
-    /// The same, the time that of the fastest of so many solutions, or of as many as begin within [`REPEAT_S`]: all give the
+    /// The same, the time that of the fastest of so many solutions, or of as many as begin within five seconds: all give the
     /// same bits, the first one pays for cold caches.
     pub fn judge_fastest(
         &mut self,

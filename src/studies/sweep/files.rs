@@ -1,17 +1,11 @@
 //! Problem files as problems of a sweep: named by their place in the collection, told apart by the digest of their bytes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use stickslip_methods::Tier;
-
 use super::cell::{Cell, FROM_FILE, Named, Source, Task, digest_of_bytes};
-use super::measure::Repeats;
-use super::plan::Plan;
 use crate::files::interchange::{Problem, fclib};
-use crate::run::registry::methods;
 use crate::studies::exchange::collection::{CollectionError, Entry, entries};
-use crate::studies::exchange::problem_file::file_name;
 
 /// A problem file.
 #[derive(Debug, Clone)]
@@ -86,31 +80,5 @@ impl FileProblem {
             }
         };
         pairs.map(task).collect()
-    }
-}
-
-impl Plan {
-    /// Every method with its defaults at every tier on the problem files of a folder.
-    ///
-    /// # Errors
-    /// A folder that cannot be listed.
-    pub fn of_folder(folder: &Path) -> Result<Self, CollectionError> {
-        let files = FileProblem::all(&[folder.into()])?;
-        let methods: Vec<Named> = methods()
-            .iter()
-            .map(|m| Named {
-                argument: m.name.to_owned(),
-                program: None,
-            })
-            .collect();
-        let tolerances = Tier::ALL.map(Tier::tolerance);
-        let of_file = |file: &FileProblem| file.tasks(&methods, &tolerances);
-        let mut tasks: Vec<Task> = files.iter().flat_map(of_file).collect();
-        tasks.sort_by(|a, b| a.id.cmp(&b.id));
-        Ok(Self {
-            title: format!("Problems of {}", file_name(folder)),
-            repeats: Repeats::DEFAULT,
-            tasks,
-        })
     }
 }

@@ -19,9 +19,12 @@
 
 use std::path::Path;
 
+use stickslip_methods::Tier;
+
 use super::block::{Block, Random, Room, block};
 use super::bodies::FRICTION;
-use super::cell::Task;
+use super::cell::{Named, Task};
+use super::files::FileProblem;
 use super::measure::Repeats;
 use super::record::SCHEMA;
 use super::store::Contents;
@@ -30,6 +33,9 @@ use crate::case::parse::{document, read_text};
 use crate::case::reader::Value;
 use crate::case::{self, Case};
 use crate::model::body::Needs;
+use crate::run::registry::methods;
+use crate::studies::exchange::collection::CollectionError;
+use crate::studies::exchange::problem_file::file_name;
 use crate::studies::robustness::{RobustnessError, case_numbered};
 
 /// A sweep: its cells, sorted by id.
@@ -143,6 +149,30 @@ impl Plan {
     /// The first fault, with its place.
     pub fn parse(file: &Path, text: &str) -> Result<Self, PlanError> {
         Outline::parse(file, text)?.draw()
+    }
+
+    /// Every method with its defaults at every tier on the problem files of a folder.
+    ///
+    /// # Errors
+    /// A folder that cannot be listed.
+    pub fn of_folder(folder: &Path) -> Result<Self, CollectionError> {
+        let files = FileProblem::all(&[folder.into()])?;
+        let methods: Vec<Named> = methods()
+            .iter()
+            .map(|m| Named {
+                argument: m.name.to_owned(),
+                program: None,
+            })
+            .collect();
+        let tolerances = Tier::ALL.map(Tier::tolerance);
+        let of_file = |file: &FileProblem| file.tasks(&methods, &tolerances);
+        let mut tasks: Vec<Task> = files.iter().flat_map(of_file).collect();
+        tasks.sort_by(|a, b| a.id.cmp(&b.id));
+        Ok(Self {
+            title: format!("Problems of {}", file_name(folder)),
+            repeats: Repeats::DEFAULT,
+            tasks,
+        })
     }
 
     /// What a folder with the records of the sweep holds.
