@@ -134,8 +134,8 @@ fn solve(gauge: &Gauge<'_>, w: &[Vec<f64>], states: &[usize]) -> Option<Vec<f64>
         return None;
     }
     let slack = SLACK * scale.max(largest(&p));
-    let holds = rows.iter().zip(states).zip(gauge.friction());
-    let holds = holds.into_iter().all(|((own, &state), &mu)| {
+    let mut points = rows.iter().zip(states).zip(gauge.friction());
+    let holds = points.all(|((own, &state), &mu)| {
         let v = |k: usize| {
             let moved: f64 = (0..m).map(|j| w[j][k] * p[j]).sum();
             let rigid: f64 = (modes.iter().enumerate())

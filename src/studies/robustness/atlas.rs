@@ -60,6 +60,9 @@ pub struct StoppingRow {
     pub worst: Option<(usize, f64)>,
 }
 
+/// Runs on which a test was evaluated.
+type Watched<'a> = Vec<(&'a Trial, &'a Stop)>;
+
 /// The atlas: rows by method and cause.
 pub fn atlas(trials: &[Trial]) -> Vec<AtlasRow> {
     let mut groups: BTreeMap<(&str, Cause), Vec<(&Trial, &Explanation)>> = BTreeMap::new();
@@ -113,7 +116,7 @@ fn most_often<'a>(texts: impl Iterator<Item = &'a str>) -> Option<String> {
 
 /// Stopping tests: rows by dimension, method and test.
 pub fn stopping(trials: &[Trial]) -> Vec<StoppingRow> {
-    let mut groups: BTreeMap<(usize, &str, usize), Vec<(&Trial, &Stop)>> = BTreeMap::new();
+    let mut groups: BTreeMap<(usize, &str, usize), Watched<'_>> = BTreeMap::new();
     for trial in trials {
         for stop in &trial.stops {
             let place = CRITERIA.iter().position(|c| c.name == stop.criterion);
@@ -122,7 +125,7 @@ pub fn stopping(trials: &[Trial]) -> Vec<StoppingRow> {
             groups.entry(key).or_default().push((trial, stop));
         }
     }
-    let row = |((dimension, method, place), runs): ((usize, &str, usize), Vec<(&Trial, &Stop)>)| {
+    let row = |((dimension, method, place), runs): ((usize, &str, usize), Watched<'_>)| {
         let early = || runs.iter().filter(|(_, stop)| stop.decades > 0.0);
         let share = |count: usize| count as f64 / runs.len() as f64;
         let worst = early().max_by(|a, b| {
