@@ -1,5 +1,6 @@
 //! Studies: many runs, and what they say together.
 
+pub mod atlas;
 pub mod conformance;
 pub mod convergence;
 pub mod exchange;

@@ -7,6 +7,7 @@ pub(crate) mod branches;
 #[cfg(test)]
 pub(crate) mod fixture;
 pub(crate) mod forces;
+pub(crate) mod gauge;
 pub(crate) mod local;
 pub(crate) mod local_form;
 pub(crate) mod method;
@@ -20,6 +21,7 @@ pub(crate) mod sweeps;
 pub(crate) mod whole_body;
 
 pub use forces::{End, Ended, Forces};
+pub use gauge::Gauge;
 pub use local_form::LocalForm;
 pub use method::CondensedMethod;
 pub use problem::{Check, ContactProblem, Limits};

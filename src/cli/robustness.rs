@@ -12,6 +12,7 @@ use crate::report::table::readable;
 use crate::report::{Provenance, prepare_output, robustness as report};
 use crate::studies::robustness;
 use crate::studies::robustness::RobustnessPlan;
+use crate::studies::robustness::atlas::atlas;
 use crate::studies::robustness::summary::{RobustnessRow, rows};
 
 /// Arguments of the verb.
@@ -95,6 +96,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     }
     bundle.commit(&arguments.out)?;
     say(format_args!("{}", readable(&rows, "").terminal()));
+    let causes = atlas(&trials);
+    if !causes.is_empty() {
+        say(format_args!("{}", readable(&causes, "").terminal()));
+    }
     say(format_args!(
         "{}\nResults: {}",
         summary(&rows),

@@ -1,10 +1,11 @@
 //! The files of the random robustness study.
 
 use super::{Bundle, Provenance, ReportError, figures, table};
+use crate::studies::robustness::atlas::{atlas, stopping};
 use crate::studies::robustness::summary::{RobustnessRow, failures};
 use crate::studies::robustness::{RobustnessPlan, Trial};
 
-/// `robustness.*`, `failures.csv`, the figure, provenance.
+/// `robustness.*`, `failures.csv`, `atlas.*`, `stopping.*`, the figure, provenance.
 ///
 /// # Errors
 /// Those of [`table::add`] and of the figure.
@@ -17,6 +18,8 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     table::add(&mut bundle, rows, "")?;
     table::add(&mut bundle, &failures(plan, trials), "")?;
+    table::add(&mut bundle, &atlas(trials), "")?;
+    table::add(&mut bundle, &stopping(trials), "")?;
     figures::robustness::add(&mut bundle, rows)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)

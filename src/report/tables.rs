@@ -22,6 +22,7 @@ use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
+use crate::studies::robustness::atlas::{AtlasRow, StoppingRow};
 use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
 use crate::studies::spaces::patch::PatchRow;
 use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
@@ -193,6 +194,8 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     let robustness = vec![
         Description::of::<RobustnessRow>(),
         Description::of::<FailureRow>(),
+        Description::of::<AtlasRow>(),
+        Description::of::<StoppingRow>(),
     ];
     let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
     let spaces = vec![

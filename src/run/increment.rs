@@ -4,8 +4,8 @@
 use std::time::Instant;
 
 use stickslip_methods::{
-    ContactSystem, Enforcement, Increment, MethodError, Outcome, PointStatus, Residuals, Silent,
-    Status, conic::unbalanced, consistency, point_status, residuals_of,
+    ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, PointStatus, Residuals,
+    Silent, Status, conic::unbalanced, consistency, point_status, residuals_of,
 };
 
 use crate::model::body::Setup;
@@ -100,6 +100,18 @@ impl<'a> Solver<'a> {
         let (outcome, mut seconds) = timed(self.system, solve);
         seconds.reported_s = self.method.reported_s();
         (outcome, seconds)
+    }
+
+    /// Solves an increment under the eyes of a monitor, unjudged and not timed.
+    ///
+    /// # Errors
+    /// Input that no method could treat.
+    pub fn watched(
+        &mut self,
+        increment: &Increment<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError> {
+        self.method.solve(increment, monitor)
     }
 
     /// Solves an increment and judges the outcome against the violation accepted.

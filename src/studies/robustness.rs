@@ -3,7 +3,11 @@
 //! Problem k of a dimension is load k mod 4 on body k / 4. Bodies are drawn until one can be discretised, has enough
 //! contact points, and enough of its loads close the crack. Each is factored and condensed once for all its loads,
 //! friction coefficients and methods. Every increment starts from rest, so that one failure leaves the others alone.
+//!
+//! What gives up is explained ([`atlas`](crate::studies::atlas)), and on the first problem of every body all methods run a
+//! second time under the eyes of published stopping tests: a quarter of the problems, so that the study stays a study.
 
+pub mod atlas;
 pub mod random;
 pub mod summary;
 
@@ -24,6 +28,9 @@ use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
+use crate::studies::atlas::answers::Answers;
+use crate::studies::atlas::stopping::Stop;
+use crate::studies::atlas::{Explanation, explain, stops};
 use crate::studies::robustness::random::{Kind, Specimen, Stream};
 
 /// Problems on one body.
@@ -94,6 +101,11 @@ pub struct Trial {
     pub points: usize,
     /// Points the method found open, sticking and slipping.
     pub statuses: [usize; 3],
+    /// Why it gave up, if it did.
+    pub explanation: Option<Explanation>,
+    /// Where published stopping tests would have stopped it: on the first problem of every body alone, where the method runs
+    /// twice.
+    pub stops: Vec<Stop>,
 }
 
 /// Whether no method claimed what does not hold and none failed with an error. Giving up is a result like any other.
@@ -319,9 +331,10 @@ fn run_body(
         )?);
         let unique = contact_wise_margin(&system)? > 0.0;
         let start = ContactState::zero(&system);
+        let mut answers: Vec<Option<Answers>> = vec![None; loads.len()];
         for choice in choices {
             let mut solver = Solver::new(choice, &system);
-            for (problem, load) in &loads {
+            for ((problem, load), answers) in loads.iter().zip(&mut answers) {
                 let increment = Increment {
                     system: &system,
                     load,
@@ -339,6 +352,20 @@ fn run_body(
                     judged.filter(|status| **status == of).count()
                 };
                 let outcome = tried.judged.as_ref().map(|j| &j.outcome.counters);
+                let (mut explanation, mut stopped) = (None, Vec::new());
+                if let Ok(solver) = &mut solver {
+                    if problem % LOADS == 0 {
+                        stopped = stops(choice, solver, &increment)?;
+                    }
+                    if let Verdict::GaveUp(_) = tried.verdict {
+                        let known = match answers {
+                            Some(known) => known,
+                            None => answers.insert(Answers::of(&increment)?),
+                        };
+                        let verdict = &tried.verdict;
+                        explanation = Some(explain(choice, solver, &increment, verdict, known)?);
+                    }
+                }
                 trials.push(Trial {
                     dim,
                     problem: *problem,
@@ -354,6 +381,8 @@ fn run_body(
                     unique,
                     points: body.points.len(),
                     statuses: [PointStatus::Open, PointStatus::Stick, PointStatus::Slip].map(count),
+                    explanation,
+                    stops: stopped,
                     verdict: tried.verdict,
                 });
             }

@@ -139,6 +139,7 @@ fn every_kind_stands_in_every_table() {
             natural_map: f64::NAN,
             unique: true,
             points: 1,
+            explanation: None,
         };
         let patch = PatchRow {
             state: State::Stick,

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod atlas;
 mod converge;
 mod fclib;
 mod fuzz;

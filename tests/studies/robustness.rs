@@ -135,6 +135,8 @@ fn the_program_writes_the_same_files_whatever_the_threads() {
     for file in [
         "robustness.csv",
         "failures.csv",
+        "atlas.csv",
+        "stopping.csv",
         "robustness.md",
         "robustness.tex",
         "figures/robustness.svg",

@@ -93,7 +93,7 @@ impl Increment<'_> {
     }
 
     /// −Rᵀ f: what Nᵀ P must be.
-    fn resultant(&self) -> Vec<f64> {
+    pub(crate) fn resultant(&self) -> Vec<f64> {
         let motions = self.system.elastic().floating().iter();
         motions.map(|r| -dot(r, &self.load.force)).collect()
     }

@@ -358,7 +358,8 @@ impl<'a> ContactProblem<'a> {
         self.history.push(Iteration { violation, changes });
     }
 
-    /// Notes an iterate in the history; says whether the method ends there, and how. Otherwise counts an iteration.
+    /// Notes an iterate, which was shown to the monitor, in the history; says whether the method ends there, and how. Otherwise
+    /// counts an iteration.
     pub(crate) fn ends(
         &mut self,
         violation: f64,
@@ -400,6 +401,7 @@ impl<'a> ContactProblem<'a> {
         limits: Limits,
         monitor: &mut dyn Monitor,
     ) -> Result<Check, MethodError> {
+        monitor.iterate(&|| (p.to_vec(), self.jump(p, beta)));
         match self.ends(violation, changes, limits, monitor) {
             None => self.surface(violation, p, beta),
             Some(status) => self.confirm(status, p, beta),

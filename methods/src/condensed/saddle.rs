@@ -98,6 +98,7 @@ impl Saddle {
                 let v = problem.jump(&p, &beta);
                 violation = problem.violation(&p, &v);
             }
+            monitor.iterate(&|| self.seen(problem, x));
             let Some(status) = problem.ends(violation, changes, limits, monitor) else {
                 return Ok(None);
             };
@@ -107,6 +108,13 @@ impl Saddle {
             }
             self.refresh(problem, x);
         }
+    }
+
+    /// The nearest balanced forces and their jump, γ not yet updated.
+    fn seen(&self, problem: &ContactProblem<'_>, x: &Iterate) -> (Vec<f64>, Vec<f64>) {
+        let mut p = x.p.clone();
+        problem.rebalance(&mut p);
+        (p, x.v.clone())
     }
 
     /// Computes v afresh.

@@ -286,6 +286,21 @@ impl Violations {
         }
     }
 
+    /// The same as residuals of a pair that has no displacements, relative to P_ref and u_ref = P_ref/ρ.
+    pub(crate) fn residuals(&self, rho: f64, p_ref: f64) -> Residuals {
+        Residuals {
+            penetration: self.penetration,
+            adhesion: self.adhesion,
+            complementarity: self.complementarity,
+            cone: self.cone,
+            natural_map: self.natural_map,
+            violation: self.largest(),
+            reference_force: p_ref,
+            reference_jump: p_ref / rho,
+            ..Residuals::default()
+        }
+    }
+
     /// The largest; NaN if one is.
     pub(crate) fn largest(&self) -> f64 {
         let own_scales = [

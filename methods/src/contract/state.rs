@@ -179,6 +179,11 @@ pub struct Outcome {
 pub trait Monitor {
     /// Called once per iteration; `false` ends the method with [`Status::Stopped`].
     fn step(&mut self, iteration: usize, violation: f64) -> bool;
+
+    /// Shows every iterate that the history has an entry of, the last one included, before [`step`](Self::step): asked, it
+    /// gives P and v = (g, d) on the rows in use, as the violation is computed from them. Who does not ask makes nothing be
+    /// computed.
+    fn iterate(&mut self, _at: &dyn Fn() -> (Vec<f64>, Vec<f64>)) {}
 }
 
 /// A monitor that never stops anything.

@@ -349,6 +349,7 @@ pub(crate) fn recorded<'m>(
         let violation = problem.violation(&at.p, &v);
         problem.counters.iterations = problem.history.len();
         problem.note(violation, changes);
+        monitor.iterate(&|| (at.p.clone(), v.clone()));
         monitor.step(problem.counters.iterations, violation)
     }
 }

@@ -264,6 +264,7 @@ impl Barrier {
         let violation = problem.violation(&at.P, &v);
         problem.note(violation, changes);
         let iteration = problem.counters.iterations;
+        monitor.iterate(&|| (at.P.clone(), v.clone()));
         if !residual.is_finite() {
             return Some(Status::Diverged);
         }

@@ -3,6 +3,7 @@
 use stickslip_methods::Tier;
 
 use crate::run::verdict::{GIVE_UPS, Verdict};
+use crate::studies::atlas::Explanation;
 use crate::studies::robustness::{RobustnessPlan, Trial};
 use crate::studies::sweep::statistics::wilson;
 
@@ -76,10 +77,12 @@ pub struct FailureRow {
     pub unique: bool,
     /// Contact points.
     pub points: usize,
+    /// Why a run that gave up did so.
+    pub explanation: Option<Explanation>,
 }
 
 /// The smallest value that a fraction `q` of the values does not exceed; NaN of nothing.
-fn quantile(q: f64, values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn quantile(q: f64, values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     let rank = (q * sorted.len() as f64).ceil() as usize;
@@ -175,6 +178,7 @@ pub fn failures(plan: &RobustnessPlan, trials: &[Trial]) -> Vec<FailureRow> {
             natural_map: t.natural_map,
             unique: t.unique,
             points: t.points,
+            explanation: t.explanation.clone(),
         })
         .collect()
 }
