@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Makes everything anew in results/ and keeps in reports/ what is committed: the paper's tables, summaries, provenance, a figure of
 # every kind and one page. About half an hour on two cores; the machine should do nothing else. An argument names parts to run
-# instead of all: paper accuracy spaces stress robustness bench keep.
+# instead of all: paper accuracy spaces stress robustness sensitivity bench keep.
 set -euo pipefail
 shopt -s nullglob
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-parts=${*:-paper accuracy spaces stress robustness bench keep}
+parts=${*:-paper accuracy spaces stress robustness sensitivity bench keep}
 cargo build --locked --release
 stickslip=${CARGO_TARGET_DIR:-target}/release/stickslip
 
@@ -36,6 +36,8 @@ for part in $parts; do
         spaces) "$stickslip" spaces --out results/spaces ;;
         stress) "$stickslip" stress --out results/stress || [[ $? == 1 ]] ;; # 1: a scene fails, which the tables show
         robustness) "$stickslip" stress methods --problems 200 --out results/robustness ;;
+        # 1: some values of some options solve nothing, which the tables show
+        sensitivity) "$stickslip" study benches/sensitivity.toml --untimed --out results/sensitivity || [[ $? == 1 ]] ;;
         bench) cargo bench --locked ;;
         keep)
             # Written by hand: other programs on the same problems.
@@ -51,7 +53,8 @@ for part in $parts; do
             keep stress stress_causes stress_invariances stress_methods stress_ladders stress_options stress_scenes.csv \
                 stress_options.svg stress_iterations.svg
             cp -r results/stress/cases reports/stress/
-            keep robustness robustness failures.csv robustness.svg
+            keep robustness robustness atlas stopping failures.csv robustness.svg
+            keep sensitivity safe_windows sensitivity.csv sensitivity.svg
             keep study recommendations ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'
             keep bench timings

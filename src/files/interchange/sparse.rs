@@ -27,9 +27,8 @@ impl SparseMatrix {
     }
 
     /// The same for positions known to lie inside.
-    fn sorted(rows: usize, cols: usize, mut sorted: Vec<(usize, usize, f64)>) -> Self {
-        // Stable, so that sums have one order.
-        sorted.sort_by_key(|&(i, j, _)| (j, i));
+    fn sorted(rows: usize, cols: usize, triplets: Vec<(usize, usize, f64)>) -> Self {
+        let sorted = counted(cols, counted(rows, triplets, |t| t.0), |t| t.1);
         let mut matrix = Self {
             rows,
             cols,
@@ -207,6 +206,27 @@ impl SparseMatrix {
             Err(_) => 0.0,
         }
     }
+}
+
+/// Triplets in the order of one of their indices, and of several with the same in the order given, so that sums have one
+/// order. Counting takes time with their number; the full W of a large body has 10⁷ and more.
+fn counted(
+    size: usize,
+    triplets: Vec<(usize, usize, f64)>,
+    index: fn(&(usize, usize, f64)) -> usize,
+) -> Vec<(usize, usize, f64)> {
+    let mut next = vec![0; size + 1];
+    triplets.iter().for_each(|t| next[index(t) + 1] += 1);
+    for k in 0..size {
+        next[k + 1] += next[k];
+    }
+    let mut sorted = vec![(0, 0, 0.0); triplets.len()];
+    for triplet in triplets {
+        let place = &mut next[index(&triplet)];
+        sorted[*place] = triplet;
+        *place += 1;
+    }
+    sorted
 }
 
 #[cfg(test)]
