@@ -98,8 +98,10 @@ fn figures_stay_inside_their_paper_of_one_or_two_columns() {
         );
         let view = attributes(&svg, "svg", "viewBox")[0].split(' ').skip(2);
         let size: Vec<f64> = view.map(|n| n.parse().expect("a number")).collect();
-        for points in attributes(&svg, "polyline", "points") {
-            for pair in points.split_whitespace() {
+        let lines = attributes(&svg, "path", "d");
+        assert!(!lines.is_empty(), "{name}");
+        for points in lines {
+            for pair in points.split([' ', 'M']).filter(|pair| !pair.is_empty()) {
                 let (x, y) = pair.split_once(',').expect("a pair");
                 let at: [f64; 2] = [x, y].map(|n| n.parse().expect("a number"));
                 let inside = (0..2).all(|c| at[c] >= 0.0 && at[c] <= size[c]);

@@ -249,7 +249,8 @@ fn rgb([r, g, b]: Rgb) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// Size in millimetres, a title, text elements on one line each (a line end would count as a space), subscripts.
+/// Size in millimetres, a title, text elements on one line each (a line end would count as a space), subscripts; successive
+/// lines of one style as one path, because dashes are lines of their own.
 fn finish_svg(svg: &str, [width, height]: [f64; 2], title: &str) -> String {
     let escaped = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;")];
     let title = escaped
@@ -257,7 +258,22 @@ fn finish_svg(svg: &str, [width, height]: [f64; 2], title: &str) -> String {
         .fold(plain(title), |text, (c, name)| text.replace(*c, name));
     let mut out = String::with_capacity(svg.len());
     let mut lines = svg.lines();
+    let mut path = None;
     while let Some(line) = lines.next() {
+        let drawn = polyline(line);
+        if let Some((style, points)) = drawn {
+            if path != Some(style) {
+                out += if path.is_some() { PATH_END } else { "" };
+                out += &format!("<path {style} d=\"");
+                path = Some(style);
+            }
+            out.push('M');
+            out += points;
+            continue;
+        }
+        if path.take().is_some() {
+            out += PATH_END;
+        }
         if line.starts_with("<svg ") {
             let view = line.find("viewBox").map_or("", |at| &line[at..]);
             let size = format!("width=\"{width:.2}mm\" height=\"{height:.2}mm\"");
@@ -279,6 +295,15 @@ fn finish_svg(svg: &str, [width, height]: [f64; 2], title: &str) -> String {
     }
     // Opaque is what SVG does anyway.
     out.replace(" opacity=\"1\"", "")
+}
+
+/// What closes a path.
+const PATH_END: &str = "\"/>\n";
+
+/// Style and points of a line as plotters writes it.
+fn polyline(line: &str) -> Option<(&str, &str)> {
+    let (style, points) = line.strip_prefix("<polyline ")?.split_once(" points=\"")?;
+    Some((style, points.strip_suffix("\"/>")?.trim_end()))
 }
 
 /// Marks become `tspan` elements; a shift holds for all that follows, so it is taken back behind a subscript.
