@@ -1,7 +1,7 @@
 //! Failure atlas: why a run gave up, decided by what its iterates do, and which published stopping test lies on the way.
 //!
 //! A method that gives up says how it ended, not why. Its run is deterministic, so it is repeated under the eyes of a
-//! [`Watch`](watch::Watch), which sees P and v of every iterate; the method knows nothing of it. Files: `watch` records,
+//! [`Watch`], which sees P and v of every iterate; the method knows nothing of it. Files: `watch` records,
 //! `active` measures W and the tangent on the points in contact, `enumerate` and `answers` say which solutions there are,
 //! `cause` decides, `cure` finds what solves it, `stopping` evaluates criteria that are no residual of the contact laws.
 
