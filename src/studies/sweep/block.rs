@@ -120,11 +120,7 @@ impl Block {
                         tolerance: *tolerance,
                         program: method.program.clone(),
                     };
-                    tasks.push(Task {
-                        id: cell.id(),
-                        cell,
-                        source: source.clone(),
-                    });
+                    tasks.push(Task::new(cell, source.clone()));
                 }
             }
         }

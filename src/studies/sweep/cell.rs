@@ -103,6 +103,17 @@ pub struct Task {
     pub source: Arc<Source>,
 }
 
+impl Task {
+    /// A cell under its id.
+    pub fn new(cell: Cell, source: Arc<Source>) -> Self {
+        Self {
+            id: cell.id(),
+            cell,
+            source,
+        }
+    }
+}
+
 /// A method of some cells.
 pub(super) struct Named {
     /// As in [`Cell::method`].

@@ -73,11 +73,7 @@ impl FileProblem {
                 tolerance,
                 program: method.program.clone(),
             };
-            Task {
-                id: cell.id(),
-                cell,
-                source: source.clone(),
-            }
+            Task::new(cell, source.clone())
         };
         pairs.map(task).collect()
     }

@@ -14,7 +14,7 @@ use std::time::Instant;
 use stickslip_methods::PointStatus;
 
 use super::cell::Cell;
-use super::record::{Found, IncrementFound, Origin, ProblemSize, Record, SCHEMA, Spent};
+use super::record::{Found, IncrementFound, ProblemSize, Record, Spent};
 use super::statistics::Timing;
 use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
@@ -62,15 +62,7 @@ pub fn measure(
         found.solver_error = solver_error(&mut scene, &pass.snapshots, choice.name());
     }
     let spent = honest.then(|| spent_of(&pass.rows, output_s, peak_mb));
-    Ok(Record {
-        schema: SCHEMA,
-        id: cell.id(),
-        cell: cell.clone(),
-        origin: Origin::here(),
-        limits: None,
-        found,
-        spent: spent.flatten(),
-    })
+    Ok(Record::here(cell, found, spent.flatten()))
 }
 
 /// What the increments of one pass took; none without increments.

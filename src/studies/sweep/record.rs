@@ -39,6 +39,19 @@ pub struct Record {
 }
 
 impl Record {
+    /// What this program found and spent on this machine, under no limits.
+    pub(super) fn here(cell: &Cell, found: Found, spent: Option<Spent>) -> Self {
+        Self {
+            schema: SCHEMA,
+            id: cell.id(),
+            cell: cell.clone(),
+            origin: Origin::here(),
+            limits: None,
+            found,
+            spent,
+        }
+    }
+
     /// Texts that end up on terminals, in tables and in figures.
     pub(super) fn labels(&self) -> impl Iterator<Item = &str> {
         let cell = [&self.cell.case, &self.cell.method, &self.found.method];

@@ -11,7 +11,7 @@ use crate::run::choice::Choice;
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::memory;
 use crate::studies::sweep::cell::{Cell, FROM_FILE};
-use crate::studies::sweep::record::{Found, Origin, ProblemSize, Record, SCHEMA, Times};
+use crate::studies::sweep::record::{Found, ProblemSize, Record, Times};
 
 /// Measures a cell on the problem of a file; its times are those of one pass.
 ///
@@ -43,15 +43,7 @@ pub fn measure_file(
         ..Found::only(tried.verdict.clone(), choice.label.clone(), choice.exact())
     };
     let spent = honest.then(|| spent_of(&[row], 0.0, memory::peak_mb()));
-    Ok(Record {
-        schema: SCHEMA,
-        id: cell.id(),
-        cell: cell.clone(),
-        origin: Origin::here(),
-        limits: None,
-        found,
-        spent: spent.flatten(),
-    })
+    Ok(Record::here(cell, found, spent.flatten()))
 }
 
 /// Times of some methods on the problem of a file, as [`in_turn`](super::in_turn).
