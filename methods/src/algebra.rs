@@ -7,6 +7,7 @@ pub(crate) mod factor;
 pub(crate) mod floating;
 pub mod matrix;
 pub(crate) mod multifrontal;
+pub(crate) mod plain;
 pub(crate) mod rows;
 pub(crate) mod spectrum;
 pub mod square;

@@ -3,6 +3,7 @@
 #![allow(missing_docs, non_snake_case)]
 
 mod agreement;
+mod allocations;
 mod closed_form;
 mod conformance;
 mod honesty;

@@ -3,108 +3,78 @@
 use faer::linalg::triangular_solve::{
     solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Mat, MatMut, Par};
+use faer::{Mat, MatMut, MatRef, Par};
 
+use crate::algebra::plain::{self, Full, wide};
 use crate::algebra::strips::lu;
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
-/// Up to this size plain loops are faster than blocks, whose set-up costs more than it gains: a Newton step on 22 rows
-/// takes 4.3 µs with them, 5.2 with blocks.
+/// Up to this size plain loops are faster than blocks, whose set-up costs more than it gains.
 const PLAIN: usize = 48;
 
-/// LU factors of a regular matrix.
+/// LU factors of a regular matrix. The memory of one serves the next.
+#[derive(Default)]
 pub(crate) struct DenseLu {
-    factors: Mat<f64>,
+    factors: Full,
     /// Rows of the matrix in the order of the pivots.
     rows: Vec<usize>,
 }
 
 impl DenseLu {
     /// `None` if A is singular to working precision.
-    pub fn new(mut a: Mat<f64>) -> Option<Self> {
-        let rows = match a.nrows() {
-            0..=PLAIN => plain_lu(&mut a),
-            _ => lu(&mut a),
-        };
+    pub fn new(a: &Mat<f64>) -> Option<Self> {
+        let mut lu = Self::default();
+        let factors = lu.zeros(a.ncols());
+        (0..a.ncols()).for_each(|j| factors.column_mut(j).copy_from_slice(a.col_as_slice(j)));
+        lu.factor().then_some(lu)
+    }
+
+    /// n × n zeros in place of the factors: to be filled, then [factored](Self::factor).
+    pub fn zeros(&mut self, n: usize) -> &mut Full {
+        self.factors.clear(n);
+        &mut self.factors
+    }
+
+    /// Factors the matrix that stands in place of the factors; false if it is singular to working precision.
+    pub fn factor(&mut self) -> bool {
+        let (a, rows) = (&mut self.factors, &mut self.rows);
+        let n = a.size;
+        match n {
+            0..=PLAIN => plain::lu(a, rows),
+            _ => *rows = lu(MatMut::from_column_major_slice_mut(&mut a.values, n, n)),
+        }
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        for i in 0..a.nrows() {
+        for i in 0..n {
             let pivot = a[(i, i)].abs();
             if pivot.is_nan() {
-                return None;
+                return false;
             }
             (least, most) = (least.min(pivot), most.max(pivot));
         }
-        let regular = a.nrows() == 0 || least > SINGULAR * a.nrows() as f64 * most;
-        regular.then_some(Self { factors: a, rows })
+        n == 0 || least > SINGULAR * n as f64 * most
     }
 
     /// x with A x = b; `None` if it is not finite.
     pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
-        let mut x: Vec<f64> = self.rows.iter().map(|&i| b[i]).collect();
-        let (n, factors) = (b.len(), self.factors.as_ref());
+        let mut x = Vec::new();
+        self.solve_into(b, &mut x).then_some(x)
+    }
+
+    /// The same in place of what `x` holds; false if it is not finite.
+    pub fn solve_into(&self, b: &[f64], x: &mut Vec<f64>) -> bool {
+        x.clear();
+        x.extend(self.rows.iter().map(|&i| b[i]));
+        let n = self.factors.size;
         if n <= PLAIN {
-            plain_solve(&self.factors, &mut x);
-            return x.iter().all(|v| v.is_finite()).then_some(x);
+            plain::solve(&self.factors, x);
+        } else {
+            let factors = MatRef::from_column_major_slice(&self.factors.values, n, n);
+            let mut column = MatMut::from_column_major_slice_mut(x, n, 1);
+            solve_unit_lower_triangular_in_place(factors, column.as_mut(), Par::Seq);
+            solve_upper_triangular_in_place(factors, column, Par::Seq);
         }
-        let mut column = MatMut::from_column_major_slice_mut(&mut x, n, 1);
-        solve_unit_lower_triangular_in_place(factors, column.as_mut(), Par::Seq);
-        solve_upper_triangular_in_place(factors, column, Par::Seq);
-        x.iter().all(|v| v.is_finite()).then_some(x)
-    }
-}
-
-/// As [`lu`], of a matrix of at most [`PLAIN`] rows: one column after the other, all later ones updated at once.
-fn plain_lu(a: &mut Mat<f64>) -> Vec<usize> {
-    let n = a.nrows();
-    let mut rows: Vec<usize> = (0..n).collect();
-    let mut own = [0.0; PLAIN];
-    for k in 0..n {
-        let column = &mut a.col_as_slice_mut(k)[k..n];
-        let mut pivot = 0;
-        for (i, x) in column.iter().enumerate() {
-            if x.abs() > column[pivot].abs() {
-                pivot = i;
-            }
-        }
-        column.swap(0, pivot);
-        let (first, below) = (column[0], &mut column[1..]);
-        let own = &mut own[..below.len()];
-        if first != 0.0 {
-            below.iter_mut().for_each(|x| *x /= first);
-        }
-        own.copy_from_slice(below);
-        rows.swap(k, k + pivot);
-        for j in 0..n {
-            if j == k {
-                continue;
-            }
-            let column = &mut a.col_as_slice_mut(j)[k..n];
-            column.swap(0, pivot);
-            if j > k {
-                let (first, below) = (column[0], &mut column[1..]);
-                below
-                    .iter_mut()
-                    .zip(&*own)
-                    .for_each(|(x, l)| *x -= l * first);
-            }
-        }
-    }
-    rows
-}
-
-/// x := U⁻¹ L⁻¹ x.
-fn plain_solve(factors: &Mat<f64>, x: &mut [f64]) {
-    for k in 0..x.len() {
-        let (first, below) = x[k..].split_first_mut().expect("k < n");
-        let l = &factors.col_as_slice(k)[k + 1..];
-        below.iter_mut().zip(l).for_each(|(x, l)| *x -= l * *first);
-    }
-    for k in (0..x.len()).rev() {
-        let u = factors.col_as_slice(k);
-        x[k] /= u[k];
-        let (above, last) = x[..=k].split_at_mut(k);
-        above.iter_mut().zip(u).for_each(|(x, u)| *x -= u * last[0]);
+        x.iter().all(|v| v.is_finite())
     }
 }
 
@@ -113,12 +83,17 @@ pub(crate) fn solve_dense(a: Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
     if b.is_empty() {
         return Some(Vec::new());
     }
-    DenseLu::new(a)?.solve(b)
+    DenseLu::new(&a)?.solve(b)
 }
 
 /// x + t s.
 pub(crate) fn along(x: &[f64], t: f64, s: &[f64]) -> Vec<f64> {
     x.iter().zip(s).map(|(x, s)| x + t * s).collect()
+}
+
+/// x := x + t s.
+pub(crate) fn add(t: f64, s: &[f64], x: &mut [f64]) {
+    x.iter_mut().zip(s).for_each(|(x, s)| *x += t * s);
 }
 
 /// x − y.
@@ -136,13 +111,18 @@ pub(crate) fn mul_transpose_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
 /// y += A x for a full matrix.
 pub(crate) fn mul_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
     // Column sweep: columns are contiguous and zero forces of open points cost nothing.
-    for (j, &xj) in x.iter().enumerate() {
-        if xj != 0.0 {
-            for (y, a) in y.iter_mut().zip(a.col_as_slice(j)) {
-                *y += a * xj;
+    wide(
+        #[inline(always)]
+        || {
+            for (j, &xj) in x.iter().enumerate() {
+                if xj != 0.0 {
+                    for (y, a) in y.iter_mut().zip(a.col_as_slice(j)) {
+                        *y += a * xj;
+                    }
+                }
             }
-        }
-    }
+        },
+    );
 }
 
 /// Scalar product.
@@ -189,9 +169,9 @@ mod tests {
             for i in 0..n {
                 singular[(i, n - 1)] = if n == 1 { 0.0 } else { 2.0 * singular[(i, 0)] };
             }
-            assert!(DenseLu::new(singular).is_none(), "{n}");
+            assert!(DenseLu::new(&singular).is_none(), "{n}");
             let broken = Mat::from_fn(n, n, |i, j| if i == j { f64::NAN } else { 1.0 });
-            assert!(DenseLu::new(broken).is_none(), "{n}");
+            assert!(DenseLu::new(&broken).is_none(), "{n}");
         }
     }
 }

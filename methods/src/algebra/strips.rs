@@ -10,7 +10,7 @@ use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place,
 };
 use faer::reborrow::ReborrowMut;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 /// Columns of a strip.
@@ -137,14 +137,14 @@ fn cholesky_of_block(a: MatMut<'_, f64>) -> Result<(), Failure> {
 }
 
 /// A := L and U with L U = P A, partial pivoting; row k of P A is row `rows[k]` of A.
-pub(crate) fn lu(a: &mut Mat<f64>) -> Vec<usize> {
+pub(crate) fn lu(mut a: MatMut<'_, f64>) -> Vec<usize> {
     let n = a.nrows();
     let threads = (n * n) as f64 * n as f64 > WORTH_THREADS;
     let mut rows: Vec<usize> = (0..n).collect();
     let (mut to, mut from) = (vec![0usize; n], vec![0usize; n]);
     for k in (0..n).step_by(STRIP) {
         let width = STRIP.min(n - k);
-        let (done, later) = a.as_mut().split_at_col_mut(k + width);
+        let (done, later) = a.rb_mut().split_at_col_mut(k + width);
         let (earlier, block) = done.split_at_col_mut(k);
         let mut block = block.split_at_row_mut(k).1;
         let (to, from) = (&mut to[..n - k], &mut from[..n - k]);
@@ -209,6 +209,7 @@ pub(crate) fn permute_rows(mut a: MatMut<'_, f64>, order: &[usize]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use faer::Mat;
 
     fn matrix(n: usize) -> Mat<f64> {
         Mat::from_fn(n, n, |i, j| {
@@ -222,7 +223,7 @@ mod tests {
         for n in [1, 5, STRIP, 3 * STRIP + 17] {
             let a = matrix(n);
             let mut factors = a.clone();
-            let rows = lu(&mut factors);
+            let rows = lu(factors.as_mut());
             let (mut l, mut u) = (factors.clone(), factors);
             for j in 0..n {
                 for i in 0..n {
@@ -255,7 +256,7 @@ mod tests {
                 (0..n).for_each(|k| square[(k, k)] += 1.0);
                 cholesky(square.as_mut()).unwrap();
                 let mut general = a;
-                let rows = lu(&mut general);
+                let rows = lu(general.as_mut());
                 (square, general, rows)
             })
         };

@@ -7,6 +7,7 @@
 //!
 //! ```text
 //! x from the start of the increment
+//! y <- Newton from x, active sets                     on at most 48 rows, where a step costs no more than the sweeps
 //! for round = 0, 1, 2, …
 //!   x <- s sweeps from x,  s = first · 2^round        a globally sound, slow method
 //!   y <- Newton from x, active sets                   a locally fast one, stopped after 8 steps without progress
@@ -55,6 +56,7 @@ use crate::contract::law::{Branch, return_map};
 use crate::newton::b_newton::BEquations;
 use crate::newton::interior_point::{self, along_path};
 use crate::newton::iteration::{self, Newton, Scheme};
+use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::pdas::Sets;
 use crate::newton::step::Tangent;
 use crate::{
@@ -71,7 +73,7 @@ pub static METHOD: Method = Method {
     exact: true,
     options: Hybrid::OPTIONS,
     source: include_str!("hybrid.rs"),
-    build: |options| Box::new(Hybrid::new(options)),
+    build: |options| Box::new(Solver::new(Hybrid::new(options))),
 };
 
 options! {
@@ -82,6 +84,8 @@ options! {
     }
 }
 
+/// Rows up to which Newton's method is tried before any sweeps: a step costs less than the sweeps would.
+const FEW: usize = 150;
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;
 /// Most steps of a Newton run with another scale than the natural one.
@@ -102,12 +106,25 @@ const MAX_RESTARTS: usize = 8;
 /// Sweeps of the first round after a restart.
 const RESTART_SWEEPS: usize = 20;
 
-impl CondensedMethod for Hybrid {
+/// The method with what its Newton runs are computed in.
+struct Solver {
+    settings: Hybrid,
+    runs: NewtonRuns,
+}
+
+impl CondensedMethod for Solver {
     fn needs(&self) -> Needs {
         Needs::ANY_OPERATOR
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        self.runs.multiple = self.settings.r;
+        if problem.len() <= FEW {
+            let start = problem.start();
+            if let Some(end) = self.runs.from(start, AlartCurnier, problem, monitor)? {
+                return Ok(end);
+            }
+        }
         let mut rounds = Rounds::new(problem, self);
         loop {
             if let Some(end) = rounds.sweep(problem, monitor)? {
@@ -131,7 +148,7 @@ impl CondensedMethod for Hybrid {
 }
 
 /// The sweeps and what is tried from them.
-struct Rounds {
+struct Rounds<'s> {
     saddle: Saddle,
     sweeps: Sweeps,
     x: saddle::Iterate,
@@ -143,8 +160,7 @@ struct Rounds {
     reached: (f64, f64),
     /// Restarts so far.
     restarts: usize,
-    /// r of the next Newton run: as given, from the first that fails 1.
-    multiple: f64,
+    runs: &'s mut NewtonRuns,
     /// Whether the other methods were tried, and whether the interior-point method was.
     tried: bool,
     pathed: bool,
@@ -173,23 +189,78 @@ fn is_final(end: &End) -> bool {
     [Status::Converged, Status::Stopped].contains(&end.status)
 }
 
-impl Rounds {
-    fn new(problem: &ContactProblem<'_>, method: &Hybrid) -> Self {
+impl Solver {
+    fn new(settings: Hybrid) -> Self {
+        let runs = NewtonRuns {
+            multiple: settings.r,
+            max_iterations: settings.max_iterations,
+            tangent: Tangent::default(),
+        };
+        Self { settings, runs }
+    }
+}
+
+/// Runs of Newton's method, each stopped soon after it makes no progress.
+struct NewtonRuns {
+    /// r of the next one: as given, from the first that fails 1.
+    multiple: f64,
+    max_iterations: usize,
+    /// Its memory serves all runs.
+    tangent: Tangent,
+}
+
+impl NewtonRuns {
+    /// From `start`; how the method ends, if it does.
+    fn from<S: Scheme>(
+        &mut self,
+        start: Forces,
+        scheme: S,
+        problem: &mut ContactProblem<'_>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<End>, MethodError> {
+        problem.begin_phase();
+        let mut newton = self.newton(scheme);
+        if self.multiple != 1.0 {
+            let most = problem.counters.iterations + SCALED_STEPS;
+            let most = most.min(self.max_iterations);
+            newton.limits = Limits::new(most, NEWTON_PATIENCE);
+        }
+        let end = newton.run(problem, start, monitor);
+        (self.multiple, self.tangent) = (1.0, newton.tangent);
+        let end = end?;
+        Ok(is_final(&end).then_some(end))
+    }
+
+    fn newton<S: Scheme>(&mut self, scheme: S) -> Newton<S> {
+        Newton {
+            scheme,
+            multiple: self.multiple,
+            limits: Limits::new(self.max_iterations, NEWTON_PATIENCE),
+            line_search: true,
+            kinks: false,
+            rescue: false,
+            tangent: std::mem::take(&mut self.tangent),
+        }
+    }
+}
+
+impl<'s> Rounds<'s> {
+    fn new(problem: &ContactProblem<'_>, method: &'s mut Solver) -> Self {
         let saddle = Saddle::new(problem.operator.clone());
         Self {
             sweeps: Sweeps::new(problem, &saddle),
             x: saddle.start(problem),
             saddle,
             branches: vec![Branch::Open; problem.rows.points()],
-            count: method.first,
+            count: method.settings.first,
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
-            multiple: method.r,
+            runs: &mut method.runs,
             tried: false,
             pathed: false,
             best: problem.start(),
-            settings: *method,
+            settings: method.settings,
         }
     }
 
@@ -230,28 +301,7 @@ impl Rounds {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
-        problem.begin_phase();
-        let mut newton = self.newton_of(scheme);
-        if self.multiple != 1.0 {
-            let most = problem.counters.iterations + SCALED_STEPS;
-            let most = most.min(self.settings.max_iterations);
-            newton.limits = Limits::new(most, NEWTON_PATIENCE);
-        }
-        let end = newton.run(problem, self.best.clone(), monitor)?;
-        self.multiple = 1.0;
-        Ok(is_final(&end).then_some(end))
-    }
-
-    fn newton_of<S: Scheme>(&self, scheme: S) -> Newton<S> {
-        Newton {
-            scheme,
-            multiple: self.multiple,
-            limits: self.limits(NEWTON_PATIENCE),
-            line_search: true,
-            kinks: false,
-            rescue: false,
-            tangent: Tangent::Condensed,
-        }
+        self.runs.from(self.best.clone(), scheme, problem, monitor)
     }
 
     /// Iterations in all at which a method of another family is given up that begins now.
@@ -286,7 +336,7 @@ impl Rounds {
             line_search: false,
             rescue: true,
             limits: Limits::new(self.share(problem), iteration::PATIENCE),
-            ..self.newton_of(Sets)
+            ..self.runs.newton(Sets)
         };
         let start = problem.start();
         let mut end = newton.run(problem, start, monitor)?;

@@ -43,18 +43,30 @@ impl Anchor {
 impl ContactProblem<'_> {
     /// v = q + W P + Q β.
     pub fn jump(&self, p: &[f64], beta: &[f64]) -> Vec<f64> {
+        let mut v = Vec::new();
+        self.jump_into(p, beta, &mut v);
+        v
+    }
+
+    /// The same in place of what `v` holds.
+    pub(crate) fn jump_into(&self, p: &[f64], beta: &[f64], v: &mut Vec<f64>) {
         match &self.anchor {
-            Some(anchor) => self.jump_from(&anchor.v, &anchor.step_to(p, beta)),
-            None => self.jump_from(&self.q, &Forces::of(p, beta)),
+            Some(anchor) => {
+                let step = anchor.step_to(p, beta);
+                v.clone_from(&anchor.v);
+                self.add_jump(&step.p, &step.beta, v);
+            }
+            None => {
+                v.clone_from(&self.q);
+                self.add_jump(p, beta, v);
+            }
         }
     }
 
-    /// v + W δP + Q δβ.
-    fn jump_from(&self, v: &[f64], step: &Forces) -> Vec<f64> {
-        let mut v = v.to_vec();
-        self.operator.w.apply_add(&step.p, &mut v);
-        self.operator.modes.add(&step.beta, &mut v);
-        v
+    /// v := v + W δP + Q δβ.
+    fn add_jump(&self, p: &[f64], beta: &[f64], v: &mut [f64]) {
+        self.operator.w.apply_add(p, v);
+        self.operator.modes.add(beta, v);
     }
 
     /// Checks a converged iterate against K itself. If it falls short, the method goes on from its displacements.
@@ -124,40 +136,53 @@ impl ContactProblem<'_> {
         Ok(Check::GoOn)
     }
 
-    /// The jump at x + t step.
-    pub(crate) fn jump_after(&self, x: &Forces, t: f64, step: &Forces) -> Vec<f64> {
-        match &self.anchor {
-            Some(anchor) if anchor.at.p == x.p => self.jump_from(&anchor.v, &scaled(t, step)),
-            _ => {
-                let moved = x.moved(t, step);
-                self.jump(&moved.p, &moved.beta)
-            }
-        }
-    }
-
-    /// x + t step, balanced. If x is the anchor, its displacements go along: they follow from the step itself, whose
-    /// digits P + t step does not keep.
-    pub(crate) fn moved(
-        &mut self,
+    /// x + t step in place of what `moved` holds, and its jump in place of `v`.
+    pub(crate) fn jump_after(
+        &self,
         x: &Forces,
         t: f64,
         step: &Forces,
-    ) -> Result<Forces, MethodError> {
-        let mut moved = x.moved(t, step);
-        self.rebalance(&mut moved.p);
-        if self.anchor.as_ref().is_none_or(|anchor| anchor.at.p != x.p) {
-            return Ok(moved);
+        moved: &mut Forces,
+        v: &mut Vec<f64>,
+    ) {
+        moved.copy(x);
+        moved.move_along(t, step);
+        match &self.anchor {
+            Some(anchor) if anchor.at.p == x.p => {
+                let step = scaled(t, step);
+                v.clone_from(&anchor.v);
+                self.add_jump(&step.p, &step.beta, v);
+            }
+            _ => self.jump_into(&moved.p, &moved.beta, v),
         }
-        if let Some(u) = self.displaced(&scaled(t, step))? {
+    }
+
+    /// Whether [`move_along`](Self::move_along) gives anything but x + t step, with the jump of that.
+    pub(crate) fn corrects_steps(&self) -> bool {
+        self.modes() > 0 || self.anchor.is_some()
+    }
+
+    /// x := x + t step, balanced. If x is the anchor, its displacements go along: they follow from the step itself, whose
+    /// digits P + t step does not keep.
+    pub(crate) fn move_along(
+        &mut self,
+        x: &mut Forces,
+        t: f64,
+        step: &Forces,
+    ) -> Result<(), MethodError> {
+        let anchored = (self.anchor.as_ref()).is_some_and(|anchor| anchor.at.p == x.p);
+        x.move_along(t, step);
+        self.rebalance(&mut x.p);
+        if anchored && let Some(u) = self.displaced(&scaled(t, step))? {
             let v = self.slip_of(&u);
-            let p = self.balanced(&moved.p);
+            let p = self.balanced(&x.p);
             self.anchor = Some(Anchor {
-                at: moved.clone(),
+                at: x.clone(),
                 v,
                 state: ContactState { u, p },
             });
         }
-        Ok(moved)
+        Ok(())
     }
 
     /// From an iterate with its recovered displacements, and the rows found on them, all is computed relative to it.

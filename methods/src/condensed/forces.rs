@@ -1,11 +1,11 @@
 //! Iterates of methods on the condensed increment: contact forces with what goes with them.
 
-use crate::algebra::dense::along;
+use crate::algebra::dense::add;
 use crate::contract::state::Status;
 use crate::error::MethodError;
 
 /// Contact forces on the rows in use and amplitudes of the rigid motions, or a step of both.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Forces {
     /// P by row, in N (2D: N/m).
     pub p: Vec<f64>,
@@ -22,12 +22,16 @@ impl Forces {
         }
     }
 
-    /// self + t step.
-    pub fn moved(&self, t: f64, step: &Forces) -> Self {
-        Self {
-            p: along(&self.p, t, &step.p),
-            beta: along(&self.beta, t, &step.beta),
-        }
+    /// self := x, in the memory of self.
+    pub(crate) fn copy(&mut self, x: &Forces) {
+        self.p.clone_from(&x.p);
+        self.beta.clone_from(&x.beta);
+    }
+
+    /// self := self + t step.
+    pub fn move_along(&mut self, t: f64, step: &Forces) {
+        add(t, &step.p, &mut self.p);
+        add(t, &step.beta, &mut self.beta);
     }
 }
 

@@ -13,6 +13,7 @@ use faer::Mat;
 
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::DenseLu;
+use crate::algebra::plain::Full;
 use crate::condensed::problem::ContactProblem;
 
 /// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
@@ -50,60 +51,90 @@ pub(crate) enum Law<'a> {
     },
 }
 
-/// The factored system.
+/// The system, assembled and factored. The memory of one serves the next.
+#[derive(Default)]
 pub(crate) struct Bordered {
     lu: DenseLu,
     /// Unknowns are amplitudes times this.
     amplitude: f64,
     /// Right-hand sides of the balance are divided by this.
     balance: f64,
-    active: usize,
+    /// The active rows, each with the rows of its point.
+    active: Vec<(usize, Range<usize>)>,
+    /// C of the active rows, side by side for the loop over all entries.
+    laws: Vec<LawRow>,
+    right: Vec<f64>,
 }
 
 impl Bordered {
-    /// Assembles and factors it on the active rows, in increasing order; `None` if it is singular.
+    /// Assembled and factored on the active rows, in increasing order; `None` if it is singular.
     pub fn new(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
-        Self::on_spring(problem, active, law, 0.0)
+        let mut system = Self::default();
+        system.factor(problem, active, law).then_some(system)
+    }
+
+    /// The same, [held](Self::factor_held).
+    pub fn held(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
+        let mut system = Self::default();
+        system.factor_held(problem, active, law).then_some(system)
+    }
+
+    /// Assembles and factors it on the active rows, in increasing order; false if it is singular.
+    pub fn factor(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        active: &[usize],
+        law: &Law<'_>,
+    ) -> bool {
+        self.factor_on_spring(problem, active, law, 0.0)
     }
 
     /// The same; where the rows leave a piece loose, Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good
     /// a place as any; with one it moves until something is in its way.
-    pub fn held(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
-        /// ε. Answers do not depend on it; with 1e-10 … 1e-3 Newton methods take as many steps, with 1 more.
-        const SPRING: f64 = 1e-3;
-        let free = Self::new(problem, active, law);
-        free.or_else(|| match problem.modes() {
-            0 => None,
-            _ => Self::on_spring(problem, active, law, SPRING),
-        })
-    }
-
-    fn on_spring(
+    pub fn factor_held(
+        &mut self,
         problem: &ContactProblem<'_>,
         active: &[usize],
         law: &Law<'_>,
+    ) -> bool {
+        /// ε. Answers do not depend on it; with 1e-10 … 1e-3 Newton methods take as many steps, with 1 more.
+        const SPRING: f64 = 1e-3;
+        let springs = problem.modes() > 0;
+        self.factor(problem, active, law)
+            || (springs && self.factor_on_spring(problem, active, law, SPRING))
+    }
+
+    fn factor_on_spring(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        indices: &[usize],
+        law: &Law<'_>,
         spring: f64,
-    ) -> Option<Self> {
+    ) -> bool {
         let (w, q, rho) = (
             &*problem.operator.w,
             &problem.operator.modes.q,
             problem.operator.rho,
         );
-        // With the rows of its point.
-        let (indices, mut left) = (active, active.iter().peekable());
-        let mut active: Vec<(usize, Range<usize>)> = Vec::with_capacity(indices.len());
+        let mut left = indices.iter().peekable();
+        self.active.clear();
         for own in problem.rows.iter() {
             while let Some(&k) = left.next_if(|k| own.contains(k)) {
-                active.push((k, own.clone()));
+                self.active.push((k, own.clone()));
             }
         }
-        let (n, size) = (active.len(), active.len() + q.len());
-        let mut J = Mat::<f64>::zeros(size, size);
+        let active = &self.active;
+        let n = active.len();
+        let J = self.lu.zeros(n + q.len());
         match law {
-            Law::Rows { a, c } => rows(&mut J, w, &active, a, c),
+            Law::Rows { a, c } => {
+                self.laws.clear();
+                (self.laws).extend(active.iter().map(|(row, own)| law_row(own, &c[*row])));
+                rows(J, w, active, a, &self.laws);
+            }
             Law::Columns { unit, e, s, series } => {
                 (0..n).for_each(|k| J[(k, k)] = *unit);
-                columns(&mut J, w, *series, (indices, &active), e, s);
+                columns(J, w, *series, (indices, active), e, s);
             }
         }
         for (j, q) in q.iter().enumerate() {
@@ -123,51 +154,64 @@ impl Bordered {
                 }
             }
         }
-        let (amplitude, balance) = match law {
+        (self.amplitude, self.balance) = match law {
             Law::Rows { .. } => (rho, 1.0),
             Law::Columns { .. } => (1.0, rho),
         };
-        Some(Self {
-            lu: DenseLu::new(J)?,
-            amplitude,
-            balance,
-            active: n,
-        })
+        self.lu.factor()
     }
 
     /// (x, β) for right-hand sides f on the active rows and c; `None` if they are not finite.
-    pub fn solve(&self, f: &[f64], c: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let balance = c.iter().map(|c| c / self.balance);
-        let rhs: Vec<f64> = f.iter().copied().chain(balance).collect();
-        let mut x = self.lu.solve(&rhs)?;
-        let beta = x.split_off(self.active);
-        Some((x, beta.iter().map(|b| b / self.amplitude).collect()))
+    pub fn solve(&mut self, f: &[f64], c: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (mut x, mut beta) = (Vec::new(), Vec::new());
+        self.solve_into(f, c, &mut x, &mut beta)
+            .then_some((x, beta))
     }
+
+    /// The same in place of what `x` and `beta` hold; false if they are not finite.
+    pub fn solve_into(
+        &mut self,
+        f: &[f64],
+        c: &[f64],
+        x: &mut Vec<f64>,
+        beta: &mut Vec<f64>,
+    ) -> bool {
+        let balance = c.iter().map(|c| c / self.balance);
+        self.right.clear();
+        self.right.extend(f.iter().copied().chain(balance));
+        let finite = self.lu.solve_into(&self.right, x);
+        beta.clear();
+        beta.extend(x.drain(f.len()..).map(|b| b / self.amplitude));
+        finite
+    }
+}
+
+/// Row k of C: where the rows of its point stand in a column of W, and their coefficients; 0 behind those there are.
+type LawRow = ([usize; 3], [f64; 3]);
+
+fn law_row(own: &Range<usize>, c: &[f64; 3]) -> LawRow {
+    let last = own.end - 1;
+    let at = [0, 1, 2].map(|l| last.min(own.start + l));
+    (
+        at,
+        [0, 1, 2].map(|l| if l < own.len() { c[l] } else { 0.0 }),
+    )
 }
 
 /// A + C W on the active rows.
 fn rows(
-    J: &mut Mat<f64>,
+    J: &mut Full,
     w: &dyn Delassus,
     active: &[(usize, Range<usize>)],
     a: Blocks<'_>,
-    c: Blocks<'_>,
+    laws: &[LawRow],
 ) {
-    // Side by side, for the loop over all entries.
-    let laws: Vec<(Range<usize>, [f64; 3])> = (active.iter())
-        .map(|(row, own)| (own.clone(), c[*row]))
-        .collect();
     let mut work = Vec::new();
     for (column, (k, point)) in active.iter().enumerate() {
         let w = w.column(*k, &mut work);
-        let entries = &mut J.col_as_slice_mut(column)[..active.len()];
-        for (entry, (own, c)) in entries.iter_mut().zip(&laws) {
-            *entry = match &w[own.clone()] {
-                [n] => c[0] * n,
-                [n, a] => c[0] * n + c[1] * a,
-                [n, a, b] => c[0] * n + c[1] * a + c[2] * b,
-                own => unreachable!("a point of {} rows", own.len()),
-            };
+        let entries = &mut J.column_mut(column)[..active.len()];
+        for (entry, (at, c)) in entries.iter_mut().zip(laws) {
+            *entry = c[0] * w[at[0]] + c[1] * w[at[1]] + c[2] * w[at[2]];
         }
         // Active rows of one point follow each other.
         let before = (active[..column].iter().rev()).take_while(|(_, own)| own == point);
@@ -183,7 +227,7 @@ fn rows(
 
 /// E + (W + C) S on the active rows.
 fn columns(
-    J: &mut Mat<f64>,
+    J: &mut Full,
     w: &dyn Delassus,
     series: Option<&Mat<f64>>,
     (indices, active): (&[usize], &[(usize, Range<usize>)]),
@@ -193,7 +237,7 @@ fn columns(
     // Where all rows are active, whole columns are added.
     let (mut work, all) = (Vec::new(), active.len() == w.rows());
     for (b, (k, point)) in active.iter().enumerate() {
-        let column = &mut J.col_as_slice_mut(b)[..active.len()];
+        let column = &mut J.column_mut(b)[..active.len()];
         for l in point.clone() {
             let s = s[l][k - point.start];
             if s != 0.0 {

@@ -29,6 +29,9 @@ const MAX_RESCUES: usize = 6;
 /// Iterations without progress after which a Newton method is moved on.
 const STAGNATION: usize = 15;
 
+/// Iterations that most methods need at most: the history holds as many without asking for memory again.
+const EXPECTED: usize = 64;
+
 /// A violation counts as progress below this fraction of the best before.
 const IMPROVEMENT: f64 = 0.99;
 
@@ -177,7 +180,7 @@ impl<'a> ContactProblem<'a> {
             free_jump: free_jump(increment, &operator, &rows.restrict(&jump), &balance),
             q: slip_from(rows, dim, &jump, &increment.start_jump()),
             stop: STOP_FRACTION * increment.tolerance,
-            history: Vec::new(),
+            history: Vec::with_capacity(EXPECTED),
             increment,
             rows,
             rescues: 0,

@@ -8,6 +8,7 @@
 //! the iterates depend on the pins behind W. With P' = P + Q (c − Qᵀ P), the nearest balanced forces, and the updated γ
 //! the true jump of P' is q' + W' P + Q γ(old): judging the iterate costs nothing. Without rigid motions W' = W, q' = q.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -89,8 +90,7 @@ impl Saddle {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Status>, MethodError> {
         loop {
-            let mut p = x.p.clone();
-            problem.rebalance(&mut p);
+            let p = self.nearest(problem, &x.p);
             let mut violation = problem.violation(&p, &x.v);
             if violation <= problem.stop {
                 self.refresh(problem, x);
@@ -112,9 +112,16 @@ impl Saddle {
 
     /// The nearest balanced forces and their jump, γ not yet updated.
     fn seen(&self, problem: &ContactProblem<'_>, x: &Iterate) -> (Vec<f64>, Vec<f64>) {
-        let mut p = x.p.clone();
-        problem.rebalance(&mut p);
-        (p, x.v.clone())
+        (self.nearest(problem, &x.p).into_owned(), x.v.clone())
+    }
+
+    /// The nearest balanced forces: P itself unless the body floats.
+    fn nearest<'p>(&self, problem: &ContactProblem<'_>, p: &'p [f64]) -> Cow<'p, [f64]> {
+        let mut nearest = Cow::Borrowed(p);
+        if self.operator.modes.len() > 0 {
+            problem.rebalance(nearest.to_mut());
+        }
+        nearest
     }
 
     /// Computes v afresh.
@@ -163,11 +170,10 @@ impl Saddle {
 
     /// The nearest balanced forces P' and the amplitudes β for which v is their jump, γ not yet updated.
     pub fn balanced(&self, problem: &ContactProblem<'_>, x: &Iterate) -> (Vec<f64>, Vec<f64>) {
-        let mut p = x.p.clone();
+        let p = self.nearest(problem, &x.p).into_owned();
         if self.operator.modes.len() == 0 {
             return (p, Vec::new());
         }
-        problem.rebalance(&mut p);
         let zero = vec![0.0; problem.modes()];
         let fixed = problem.jump(&p, &zero);
         let rigid: Vec<f64> = x.v.iter().zip(&fixed).map(|(v, f)| v - f).collect();

@@ -68,7 +68,7 @@ impl GlobalStage {
         let factor = match cholesky {
             Some(factor) => Factor::Cholesky(factor),
             None => Factor::Lu(
-                DenseLu::new(a)
+                DenseLu::new(&a)
                     .ok_or_else(|| kernel("factorisation of I + k0 W", "it is singular".into()))?,
             ),
         };

@@ -160,7 +160,7 @@ pub(crate) fn tied_forces(problem: &ContactProblem<'_>) -> Option<Vec<f64>> {
                 .collect()
         };
         let (a, c) = (blocks(ridge), blocks(rho));
-        let system = Bordered::held(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        let mut system = Bordered::held(problem, &all, &Law::Rows { a: &a, c: &c })?;
         system.solve(&scaled, &problem.balance).map(|x| x.0)
     };
     tied(0.0).or_else(|| tied(RIDGE))

@@ -1,5 +1,9 @@
 //! Block Gauss–Seidel sweeps over the points: the contact law of each solved exactly with all others held.
 
+use std::ops::Range;
+
+use crate::algebra::delassus::Delassus;
+use crate::algebra::plain::wide;
 use crate::condensed::local::LocalOperator;
 use crate::condensed::problem::ContactProblem;
 use crate::condensed::saddle::{Iterate, Saddle};
@@ -8,6 +12,9 @@ use crate::contract::law::Branch;
 /// Proximal term on local problems, relative to 1/ρ: regularises points that do not move at all, and no fixed point
 /// notices.
 const PROXIMAL: f64 = 1e-10;
+
+/// Rows below which wide vectors do not pay.
+const SHORT: usize = 32;
 
 /// The local problems of all points.
 pub(crate) struct Sweeps {
@@ -47,8 +54,26 @@ impl Sweeps {
         branches: &mut [Branch],
     ) -> usize {
         problem.counters.local_solves += self.local.len();
-        let (w, mut work) = (saddle.w(), Vec::new());
-        let mut changes = 0;
+        let (problem, w) = (&*problem, saddle.w());
+        match w.rows() < SHORT {
+            true => self.points(problem, w, omega, x, branches),
+            false => wide(
+                #[inline(always)]
+                || self.points(problem, w, omega, x, branches),
+            ),
+        }
+    }
+
+    #[inline(always)]
+    fn points(
+        &self,
+        problem: &ContactProblem<'_>,
+        w: &dyn Delassus,
+        omega: f64,
+        x: &mut Iterate,
+        branches: &mut [Branch],
+    ) -> usize {
+        let (mut work, mut changes) = (Default::default(), 0);
         for (i, (local, block)) in self.local.iter().enumerate() {
             let rows = problem.rows.of(i);
             let mut q = [0.0; 3];
@@ -59,17 +84,46 @@ impl Sweeps {
                 }
             }
             let (p, branch) = local.solve(problem.friction(i), &q[..rows.len()]);
-            for (k, p) in rows.zip(p) {
-                let step = omega * (p - x.p[k]);
-                if step != 0.0 {
-                    x.p[k] += step;
-                    for (v, w) in x.v.iter_mut().zip(w.column(k, &mut work)) {
-                        *v += w * step;
-                    }
-                }
+            let mut step = [0.0; 3];
+            for ((k, p), step) in rows.clone().zip(p).zip(&mut step) {
+                *step = omega * (p - x.p[k]);
+                x.p[k] += *step;
+            }
+            if step != [0.0; 3] {
+                add_columns(w, rows, step, &mut work, &mut x.v);
             }
             changes += usize::from(std::mem::replace(&mut branches[i], branch) != branch);
         }
         changes
+    }
+}
+
+/// v += W δP of one point, in one pass.
+#[inline(always)]
+fn add_columns(
+    w: &dyn Delassus,
+    rows: Range<usize>,
+    step: [f64; 3],
+    work: &mut [Vec<f64>; 3],
+    v: &mut [f64],
+) {
+    let [first, second, third] = work;
+    let a = w.column(rows.start, first);
+    let more = rows.start + 1..rows.end;
+    let b = more.clone().next().map(|k| w.column(k, second));
+    let c = more.clone().nth(1).map(|k| w.column(k, third));
+    let v = v.iter_mut().zip(a);
+    match (b, c) {
+        (Some(b), Some(c)) => {
+            let entries = v.zip(b).zip(c);
+            entries.for_each(|(((v, a), b), c)| {
+                *v = ((*v + a * step[0]) + b * step[1]) + c * step[2];
+            });
+        }
+        (Some(b), None) => {
+            let entries = v.zip(b);
+            entries.for_each(|((v, a), b)| *v = (*v + a * step[0]) + b * step[1]);
+        }
+        _ => v.for_each(|(v, a)| *v += a * step[0]),
     }
 }

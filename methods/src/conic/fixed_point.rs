@@ -115,7 +115,7 @@ impl FixedPoint {
             line_search: true,
             kinks: false,
             rescue: false,
-            tangent: Tangent::Condensed,
+            tangent: Tangent::default(),
         };
         newton.run(problem, x, monitor)
     }

@@ -162,28 +162,18 @@ impl Scheme for BEquations {
     fn direction(
         &self,
         at: &mut At<'_, '_>,
-        pieces: &[Piece],
-    ) -> Result<Option<Forces>, MethodError> {
-        let kinks: Vec<Kink> = (0..pieces.len())
-            .map(|i| {
-                let own = at.problem.rows.of(i);
-                let (r, P) = (&at.r[own.clone()], &at.x.p[own.clone()]);
-                Kink::at(at.problem.friction(i), r, P, &at.v[own])
-            })
-            .collect();
-        let mut pieces = pieces.to_vec();
-        let mut step = None;
+        pieces: &mut [Piece],
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
         for _ in 0..BRANCH_ROUNDS {
-            let Some(solved) = at.step(self, &pieces)? else {
-                return Ok(None);
-            };
-            let contradicted = correct_pieces(at, &solved, &kinks, &mut pieces);
-            step = Some(solved);
-            if !contradicted {
+            if !at.step(self, pieces, step)? {
+                return Ok(false);
+            }
+            if !correct_pieces(at, step, pieces) {
                 break;
             }
         }
-        Ok(step)
+        Ok(true)
     }
 }
 
@@ -196,6 +186,17 @@ struct Kink {
 }
 
 impl Kink {
+    /// At point `i`.
+    fn of_point(at: &At<'_, '_>, i: usize) -> Self {
+        let own = at.problem.rows.of(i);
+        let (r, P) = (&at.r[own.clone()], &at.x.p[own.clone()]);
+        Self::at(at.problem.friction(i), r, P, &at.v[own])
+    }
+
+    fn any(&self) -> bool {
+        self.normal || self.bound || self.tangential
+    }
+
     fn at(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self {
         let (s, t) = bound_and_trial(mu, r, P, v);
         Kink {
@@ -213,32 +214,34 @@ fn bound_and_trial(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (f64, f64) {
 }
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.
-fn correct_pieces(at: &At<'_, '_>, step: &Forces, kinks: &[Kink], pieces: &mut [Piece]) -> bool {
-    if !kinks.iter().any(|k| k.normal || k.bound || k.tangential) {
+fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> bool {
+    if !(0..pieces.len()).any(|i| Kink::of_point(at, i).any()) {
         return false;
     }
-    let problem = &*at.problem;
-    let mut dv = vec![0.0; problem.len()];
-    problem.operator.w.apply_add(&step.p, &mut dv);
-    problem.operator.modes.add(&step.beta, &mut dv);
+    let dv = &mut at.work.jump;
+    dv.clear();
+    dv.resize(step.p.len(), 0.0);
+    at.problem.operator.w.apply_add(&step.p, dv);
+    at.problem.operator.modes.add(&step.beta, dv);
+    let (at, problem) = (&*at, &*at.problem);
     let mut contradicted = false;
     for (i, piece) in pieces.iter_mut().enumerate() {
-        let rows = problem.rows.of(i);
+        let (rows, kink) = (problem.rows.of(i), Kink::of_point(at, i));
         let (r, P, v) = (
             &at.r[rows.clone()],
             &at.x.p[rows.clone()],
             &at.v[rows.clone()],
         );
-        let (dP, dv) = (&step.p[rows.clone()], &dv[rows]);
+        let (dP, dv) = (&step.p[rows.clone()], &at.work.jump[rows]);
         let mu = problem.friction(i);
         let mut wanted = *piece;
-        if kinks[i].normal {
+        if kink.normal {
             wanted.closed = r[0] * dv[0] <= dP[0];
         }
-        if kinks[i].bound {
+        if kink.bound {
             wanted.bound_moves = dP[0] > 0.0;
         }
-        if kinks[i].tangential && P.len() > 1 {
+        if kink.tangential && P.len() > 1 {
             let (z, dz) = (trial(r, P, v), trial(r, dP, dv));
             let t = tangential_norm(&z[..P.len()]);
             let outward = if t > 0.0 {

@@ -138,16 +138,17 @@ impl Scheme for Complementarity {
     fn direction(
         &self,
         at: &mut At<'_, '_>,
-        pieces: &[Branch],
-    ) -> Result<Option<Forces>, MethodError> {
-        if let Some(step) = at.step(self, pieces)? {
-            return Ok(Some(step));
+        pieces: &mut [Branch],
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
+        if at.step(self, pieces, step)? {
+            return Ok(true);
         }
         let stiff = Self {
             bound_moves: false,
             ..*self
         };
-        at.step(&stiff, pieces)
+        at.step(&stiff, pieces, step)
     }
 
     fn prepare(&mut self, problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {

@@ -124,7 +124,8 @@ pub(crate) fn along_path(
             Iterate::inside(problem, &P, &beta, depth)
         });
         problem.counters.factorisations += 1;
-        let Some(step) = PathStep::new(problem, &x).and_then(|s| s.corrected(problem, &x)) else {
+        let Some(step) = PathStep::new(problem, &x).and_then(|mut s| s.corrected(problem, &x))
+        else {
             break problem.singular();
         };
         let t = x.step_length(problem, &step, fraction.max(1.0 - violation));
@@ -238,7 +239,7 @@ impl PathStep {
     }
 
     /// Mehrotra's direction: predictor, then the corrector that aims at σ ν.
-    fn corrected(&self, problem: &ContactProblem<'_>, x: &Iterate) -> Option<Iterate> {
+    fn corrected(&mut self, problem: &ContactProblem<'_>, x: &Iterate) -> Option<Iterate> {
         let products = x.products(problem);
         let lack = |nu: f64, second: &[Products]| -> Vec<Products> {
             let pairs = products.iter().zip(second);
@@ -255,7 +256,7 @@ impl PathStep {
 
     /// The direction that makes up for `lack` and for v ≠ q + W P + Q β, Qᵀ P ≠ c.
     fn direction(
-        &self,
+        &mut self,
         problem: &ContactProblem<'_>,
         x: &Iterate,
         lack: &[Products],

@@ -78,13 +78,15 @@ pub(crate) trait Scheme: Send {
     /// Called with every iterate and its violation before the next step, for what changes with them.
     fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {}
 
-    /// The Newton direction; `None` if the tangent is singular. `pieces` are those at x.
+    /// The Newton direction in place of what `step` holds; false if the tangent is singular. `pieces` are those at x, which may
+    /// be changed.
     fn direction(
         &self,
         at: &mut At<'_, '_>,
-        pieces: &[Self::Piece],
-    ) -> Result<Option<Forces>, MethodError> {
-        at.step(self, pieces)
+        pieces: &mut [Self::Piece],
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
+        at.step(self, pieces, step)
     }
 }
 
@@ -117,7 +119,7 @@ impl<S: Scheme> Newton<S> {
         }
     }
 
-    /// The loop, from `x` until it ends.
+    /// The loop, from `x` until it ends. Its steps ask for no memory.
     pub fn run(
         &mut self,
         problem: &mut ContactProblem<'_>,
@@ -128,15 +130,23 @@ impl<S: Scheme> Newton<S> {
         r.iter_mut().for_each(|r| *r *= self.multiple);
         let mut sharper = problem.operator.sharp / problem.operator.rho;
         let mut search = LineSearch::default();
-        let mut before: Vec<S::Piece> = Vec::new();
+        let (mut pieces, mut before) = (Vec::new(), Vec::new());
+        let (mut v, mut step) = (Vec::new(), Forces::default());
+        let mut work = Work::default();
+        // The merit of x where x was the last trial of a line search; its jump is at hand then too.
+        let mut tried = None;
         loop {
-            let v = problem.jump(&x.p, &x.beta);
-            let pieces = self.pieces(problem, &r, &x.p, &v);
+            match tried {
+                Some(_) => std::mem::swap(&mut v, &mut work.jump),
+                None => problem.jump_into(&x.p, &x.beta, &mut v),
+            }
+            self.pieces(problem, &r, &x.p, &v, &mut pieces);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
             let violation = problem.violation(&x.p, &v);
             match problem.check(violation, (&x.p, &x.beta), changes, self.limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => {
+                    tried = None;
                     // Where slender parts sway, the gaps that are left drown in the rounding of P − v/W_ii.
                     if sharper > 1.0 {
                         r.iter_mut().for_each(|r| *r *= sharper);
@@ -148,49 +158,56 @@ impl<S: Scheme> Newton<S> {
                 Check::End(status) => return Ok(End { status, at: x }),
             }
             self.scheme.prepare(problem, violation, &x);
+            before.clone_from(&pieces);
 
             let stuck = self.rescue && problem.stagnates();
-            let mut direction = match stuck {
-                true => None,
-                false => self.direction(problem, &r, &x, &v, &pieces, false)?,
-            };
-            if direction.is_none()
+            let mut found = !stuck
+                && self.direction(problem, &r, (&x, &v), &mut pieces, &mut work, &mut step)?;
+            if !found
                 && self.rescue
                 && problem.rescue_left()
                 && let Some(pair) = rescue(problem)?
             {
                 x = pair.into();
-                before = pieces;
+                tried = None;
                 continue;
             }
-            if direction.is_none() && !stuck {
-                direction = self.direction(problem, &r, &x, &v, &pieces, true)?;
+            if !found && !stuck {
+                work.hold = true;
+                pieces.clone_from(&before);
+                found = self.direction(problem, &r, (&x, &v), &mut pieces, &mut work, &mut step)?;
+                work.hold = false;
             }
-            before = pieces;
-            let Some(step) = direction else {
+            if !found {
                 let status = match stuck {
                     true => Status::Stalled,
                     false => problem.singular(),
                 };
                 return Ok(End { status, at: x });
-            };
+            }
 
             let mut t = 1.0;
             if self.kinks {
                 search.record(self.merit(problem, &r, &x.p, &v));
-                let dv = minus(&problem.jump_after(&x, 1.0, &step), &v);
+                problem.jump_after(&x, 1.0, &step, &mut work.trial, &mut work.jump);
+                let dv = minus(&work.jump, &v);
                 let kinks = self.kinks(problem, &r, (&x.p, &v), (&step.p, &dv));
                 t = search.exact(&kinks, |t| {
                     self.merit(problem, &r, &along(&x.p, t, &step.p), &along(&v, t, &dv))
                 });
             } else if self.line_search {
-                search.record(self.merit(problem, &r, &x.p, &v));
+                let now = tried.take();
+                search.record(now.unwrap_or_else(|| self.merit(problem, &r, &x.p, &v)));
+                let Work { trial, jump, .. } = &mut work;
+                let mut last = (f64::NAN, f64::NAN);
                 t = search.length(|t| {
-                    let v = problem.jump_after(&x, t, &step);
-                    self.merit(problem, &r, &x.moved(t, &step).p, &v)
+                    problem.jump_after(&x, t, &step, trial, jump);
+                    last = (t, self.merit(problem, &r, &trial.p, jump));
+                    last.1
                 });
+                tried = (last.0 == t && !problem.corrects_steps()).then_some(last.1);
             }
-            x = problem.moved(&x, t, &step)?;
+            problem.move_along(&mut x, t, &step)?;
         }
     }
 
@@ -198,21 +215,21 @@ impl<S: Scheme> Newton<S> {
         &mut self,
         problem: &mut ContactProblem<'_>,
         r: &[f64],
-        x: &Forces,
-        v: &[f64],
-        pieces: &[S::Piece],
-        hold: bool,
-    ) -> Result<Option<Forces>, MethodError> {
+        (x, v): (&Forces, &[f64]),
+        pieces: &mut [S::Piece],
+        work: &mut Work,
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
         let tangent = &mut self.tangent;
         let mut at = At {
             problem,
             tangent,
-            hold,
+            work,
             r,
             x,
             v,
         };
-        self.scheme.direction(&mut at, pieces)
+        self.scheme.direction(&mut at, pieces, step)
     }
 
     fn pieces(
@@ -221,13 +238,15 @@ impl<S: Scheme> Newton<S> {
         r: &[f64],
         P: &[f64],
         v: &[f64],
-    ) -> Vec<S::Piece> {
+        pieces: &mut Vec<S::Piece>,
+    ) {
         let points = problem.rows.iter().enumerate();
         let piece = |(i, own): (usize, std::ops::Range<usize>)| {
             let (r, P) = (&r[own.clone()], &P[own.clone()]);
             self.scheme.piece(problem.friction(i), r, P, &v[own])
         };
-        points.map(piece).collect()
+        pieces.clear();
+        pieces.extend(points.map(piece));
     }
 
     /// Where the pieces change along a step, in increasing order.
@@ -282,12 +301,22 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
     }
 }
 
+/// What steps are computed in.
+#[derive(Default)]
+pub(crate) struct Work {
+    /// Loose pieces are held by springs.
+    hold: bool,
+    rows: Vec<[PointRow; 3]>,
+    /// An iterate that is tried, and its jump.
+    trial: Forces,
+    pub jump: Vec<f64>,
+}
+
 /// Where the iteration stands.
 pub(crate) struct At<'p, 'i> {
     pub problem: &'p mut ContactProblem<'i>,
     pub tangent: &'p mut Tangent,
-    /// Loose pieces are held by springs.
-    pub hold: bool,
+    pub work: &'p mut Work,
     /// Scale by row that turns jumps into forces.
     pub r: &'p [f64],
     pub x: &'p Forces,
@@ -300,32 +329,35 @@ impl At<'_, '_> {
         &mut self,
         scheme: &S,
         pieces: &[S::Piece],
-    ) -> Result<Option<Forces>, MethodError> {
-        let mut rows = self.rows(scheme, pieces);
-        if let Some(step) = self
-            .tangent
-            .solve(self.problem, self.x, &mut rows, self.hold)?
-        {
-            return Ok(Some(step));
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
+        self.linearise(scheme, pieces);
+        if self.solve(step)? {
+            return Ok(true);
         }
-        let mut rows = self.rows(scheme, pieces);
+        self.linearise(scheme, pieces);
         let ridge = RIDGE / self.problem.operator.rho;
-        for row in rows.iter_mut().flatten() {
+        for row in self.work.rows.iter_mut().flatten() {
             for l in 0..3 {
                 row.a[l] += ridge * row.c[l];
             }
         }
-        self.tangent
-            .solve(self.problem, self.x, &mut rows, self.hold)
+        self.solve(step)
     }
 
-    fn rows<S: Scheme + ?Sized>(&self, scheme: &S, pieces: &[S::Piece]) -> Vec<[PointRow; 3]> {
+    fn solve(&mut self, step: &mut Forces) -> Result<bool, MethodError> {
+        let Work { rows, hold, .. } = &mut *self.work;
+        self.tangent.solve(self.problem, self.x, rows, *hold, step)
+    }
+
+    fn linearise<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) {
         let points = self.problem.rows.iter().enumerate();
         let row = |(i, own): (usize, std::ops::Range<usize>)| {
             let (r, P) = (&self.r[own.clone()], &self.x.p[own.clone()]);
             scheme.linearise(self.problem.friction(i), r, P, &self.v[own], pieces[i])
         };
-        points.map(row).collect()
+        self.work.rows.clear();
+        self.work.rows.extend(points.map(row));
     }
 }
 

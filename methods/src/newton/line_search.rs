@@ -1,7 +1,5 @@
 //! Non-monotone acceptance of Newton steps (Grippo, Lampariello & Lucidi 1986).
 
-use std::collections::VecDeque;
-
 /// A step may raise the merit as long as it stays below the largest of this many values before it.
 const MEMORY: usize = 5;
 /// Sufficient decrease asked of a shortened step (Armijo).
@@ -12,16 +10,15 @@ const HALVINGS: usize = 8;
 /// Merits of the last accepted iterates.
 #[derive(Debug, Default)]
 pub(crate) struct LineSearch {
-    recent: VecDeque<f64>,
+    /// The last one first; 0 where there is none, which bounds nothing.
+    recent: [f64; MEMORY],
 }
 
 impl LineSearch {
     /// Notes the merit of the current iterate.
     pub fn record(&mut self, merit: f64) {
-        if self.recent.len() == MEMORY {
-            self.recent.pop_front();
-        }
-        self.recent.push_back(merit);
+        self.recent.rotate_right(1);
+        self.recent[0] = merit;
     }
 
     /// Length of the step to take; `merit(t)` evaluates a trial. The full step is tried first, and shortened only if
@@ -38,7 +35,7 @@ impl LineSearch {
     }
 
     fn accepts(&self, t: f64, merit: f64) -> bool {
-        let bound = self.recent.iter().copied().fold(0.0, f64::max);
+        let bound = self.recent.into_iter().fold(0.0, f64::max);
         // Strictly below: a cycle of full steps between equal merits must not pass for ever.
         merit <= (1.0 - 2.0 * DECREASE * t) * bound
     }
@@ -47,9 +44,7 @@ impl LineSearch {
     /// increasing order, that is the vertex of a parabola.
     pub fn exact(&self, kinks: &[f64], mut merit: impl FnMut(f64) -> f64) -> f64 {
         let full = merit(1.0);
-        let Some(now) = self.recent.back().copied() else {
-            return 1.0;
-        };
+        let now = self.recent[0];
         if self.accepts(1.0, full) {
             return 1.0;
         }

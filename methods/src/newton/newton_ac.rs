@@ -81,13 +81,13 @@ impl Scheme for AlartCurnier {
             return rows;
         }
         rows[0].c[0] = r[0];
+        if piece == Branch::Stick {
+            (1..P.len()).for_each(|k| rows[k].c[k] = r[k]);
+            return rows;
+        }
         let z = trial(r, P, v);
         let (e, S) = ball_derivative(mu * z[0], &z[1..P.len()]);
         for k in 1..P.len() {
-            if piece == Branch::Stick {
-                rows[k].c[k] = r[k];
-                continue;
-            }
             rows[k].a[0] = -mu * e[k - 1];
             rows[k].c[0] = mu * e[k - 1] * r[0];
             rows[k].a[k] = 1.0;

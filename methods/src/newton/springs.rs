@@ -151,7 +151,7 @@ impl Springs<'_> {
             }
             let coupled = self.coupled.as_ref();
             let mut step = match tangent {
-                Tangent::Condensed => {
+                Tangent::Condensed(_) => {
                     direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::new)
                 }
                 Tangent::Monolithic(body) => {
@@ -165,7 +165,7 @@ impl Springs<'_> {
                 at = self.predict(problem, pair.into());
                 continue;
             }
-            if step.is_none() && matches!(tangent, Tangent::Condensed) {
+            if step.is_none() && matches!(tangent, Tangent::Condensed(_)) {
                 step = direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::held);
             }
             let Some((dz, dbeta)) = step else {
@@ -243,7 +243,7 @@ fn direction(
         series: coupled.map(|c| c.compliance),
     };
     let f: Vec<f64> = active.iter().map(|&k| -mismatch[k]).collect();
-    let system = factored(problem, &active, &law)?;
+    let mut system = factored(problem, &active, &law)?;
     let (solution, dbeta) = system.solve(&f, &problem.missing(&at.p))?;
 
     let mut y = vec![0.0; n];
@@ -285,7 +285,7 @@ fn whole_direction(
         let (size, first) = (own.len(), own.start);
         let unit = |a: usize, b: usize| f64::from(u8::from(a == b));
         // Mᵀ, since the rows of T M⁻¹ are wanted.
-        let Some(m) = DenseLu::new(Mat::from_fn(size, size, |b, a| {
+        let Some(m) = DenseLu::new(&Mat::from_fn(size, size, |b, a| {
             (unit(a, b) - t[a][b]) / r[first + a] + c[first + a] * t[a][b]
         })) else {
             return Ok(None);

@@ -17,13 +17,19 @@ use crate::{
 /// Where the linear problems of a method are solved.
 pub(crate) enum Tangent {
     /// On the contact rows, with W.
-    Condensed,
+    Condensed(Box<CondensedStep>),
     /// On all unknowns and contact forces; the pattern is analysed once per system. W is not formed.
     Monolithic(Option<Box<WholeBody>>),
 }
 
 options! {
     MONOLITHIC: Switch("monolithic", false): "1: factor the matrix of the whole body in every iteration instead of the condensed one";
+}
+
+impl Default for Tangent {
+    fn default() -> Self {
+        Self::Condensed(Box::default())
+    }
 }
 
 impl Tangent {
@@ -37,7 +43,7 @@ impl Tangent {
         if monolithic {
             Tangent::Monolithic(None)
         } else {
-            Tangent::Condensed
+            Tangent::default()
         }
     }
 
@@ -51,7 +57,7 @@ impl Tangent {
     /// What it needs of the body.
     pub fn needs(&self) -> Needs {
         let delassus = match self {
-            Tangent::Condensed => DelassusForm::Formed,
+            Tangent::Condensed(_) => DelassusForm::Formed,
             Tangent::Monolithic(_) => DelassusForm::Products,
         };
         Needs {
@@ -60,26 +66,28 @@ impl Tangent {
         }
     }
 
-    /// (δP, δβ); `None` if the tangent is singular. `hold`: loose pieces by springs, where W is at hand.
+    /// (δP, δβ) in place of what `step` holds; false if the tangent is singular. `hold`: loose pieces by springs, where W is at
+    /// hand.
     pub fn solve(
         &mut self,
         problem: &mut ContactProblem<'_>,
         x: &Forces,
         rows: &mut [[PointRow; 3]],
         hold: bool,
-    ) -> Result<Option<Forces>, MethodError> {
+        step: &mut Forces,
+    ) -> Result<bool, MethodError> {
         match self {
-            Tangent::Condensed => {
+            Tangent::Condensed(condensed) => {
                 problem.counters.factorisations += 1;
-                Ok(condensed_step(problem, x, rows, hold))
+                Ok(condensed.solve(problem, x, rows, hold, step))
             }
             Tangent::Monolithic(body) => {
-                let Pair { p, beta, .. } =
-                    match monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)? {
-                        Some(step) => step,
-                        None => return Ok(None),
-                    };
-                Ok(Some(Forces { p, beta }))
+                let found = monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)?;
+                let singular = found.is_none();
+                if let Some(Pair { p, beta, .. }) = found {
+                    *step = Forces { p, beta };
+                }
+                Ok(!singular)
             }
         }
     }
@@ -102,49 +110,95 @@ pub(crate) fn monolithic_step(
     body.step(problem, P, rows)
 }
 
-fn condensed_step(
-    problem: &ContactProblem<'_>,
-    x: &Forces,
-    rows: &[[PointRow; 3]],
-    hold: bool,
-) -> Option<Forces> {
-    let mut p = vec![0.0; problem.len()];
-    let (mut a, mut c) = (vec![[0.0; 3]; p.len()], vec![[0.0; 3]; p.len()]);
-    // Rows δP = −H are known, the others active.
-    let mut active = Vec::new();
-    for (own, of_point) in problem.rows.iter().zip(rows) {
-        for (k, row) in own.clone().zip(of_point) {
-            let local = k - own.start;
-            let alone = (0..own.len()).all(|l| row.c[l] == 0.0 && (l == local || row.a[l] == 0.0));
-            (a[k], c[k]) = (row.a, row.c);
-            if alone {
-                p[k] = -row.h / row.a[local];
-            } else {
-                active.push(k);
+/// The condensed problem of a step. Its memory serves all steps.
+#[derive(Default)]
+pub(crate) struct CondensedStep {
+    system: Bordered,
+    a: Vec<[f64; 3]>,
+    c: Vec<[f64; 3]>,
+    /// Rows that are not known beforehand.
+    active: Vec<usize>,
+    /// W δP of the rows that are.
+    known: Vec<f64>,
+    reached: Vec<f64>,
+    f: Vec<f64>,
+    solution: Vec<f64>,
+}
+
+impl CondensedStep {
+    fn solve(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        x: &Forces,
+        rows: &[[PointRow; 3]],
+        hold: bool,
+        step: &mut Forces,
+    ) -> bool {
+        let p = &mut step.p;
+        p.clear();
+        p.resize(problem.len(), 0.0);
+        for vector in [&mut self.a, &mut self.c] {
+            vector.clear();
+        }
+        // Rows δP = −H are known, the others active.
+        self.active.clear();
+        for (own, of_point) in problem.rows.iter().zip(rows) {
+            for (k, row) in own.clone().zip(of_point) {
+                let local = k - own.start;
+                let alone =
+                    (0..own.len()).all(|l| row.c[l] == 0.0 && (l == local || row.a[l] == 0.0));
+                self.a.push(row.a);
+                self.c.push(row.c);
+                if alone {
+                    p[k] = -row.h / row.a[local];
+                } else {
+                    self.active.push(k);
+                }
             }
         }
-    }
-    let mut known = vec![0.0; p.len()];
-    problem.operator.w.apply_add(&p, &mut known);
-    let factored = if hold { Bordered::held } else { Bordered::new };
-    let system = factored(problem, &active, &Law::Rows { a: &a, c: &c })?;
-
-    let mut f = Vec::with_capacity(active.len());
-    let mut next = active.iter().peekable();
-    for (own, of_point) in problem.rows.iter().zip(rows) {
-        while let Some(k) = next.next_if(|k| own.contains(k)) {
-            let row = &of_point[k - own.start];
-            // δP is still zero on active rows.
-            let lacking = |f: f64, l: usize| {
-                f - (row.a[l] * p[own.start + l] + row.c[l] * known[own.start + l])
-            };
-            f.push((0..own.len()).fold(-row.h, lacking));
+        self.known.clear();
+        self.known.resize(p.len(), 0.0);
+        problem.operator.w.apply_add(p, &mut self.known);
+        let law = Law::Rows {
+            a: &self.a,
+            c: &self.c,
+        };
+        let regular = match hold {
+            true => self.system.factor_held(problem, &self.active, &law),
+            false => self.system.factor(problem, &self.active, &law),
+        };
+        if !regular {
+            return false;
         }
+
+        self.f.clear();
+        let mut next = self.active.iter().peekable();
+        for (own, of_point) in problem.rows.iter().zip(rows) {
+            while let Some(k) = next.next_if(|k| own.contains(k)) {
+                let row = &of_point[k - own.start];
+                // δP is still zero on active rows.
+                let lacking = |f: f64, l: usize| {
+                    f - (row.a[l] * p[own.start + l] + row.c[l] * self.known[own.start + l])
+                };
+                self.f.push((0..own.len()).fold(-row.h, lacking));
+            }
+        }
+        self.reached.clear();
+        self.reached
+            .extend(x.p.iter().zip(&*p).map(|(x, step)| x + step));
+        let balance = problem.missing(&self.reached);
+        let Self {
+            system,
+            f,
+            solution,
+            ..
+        } = self;
+        if !system.solve_into(f, &balance, solution, &mut step.beta) {
+            return false;
+        }
+        for (&k, &value) in self.active.iter().zip(&self.solution) {
+            p[k] = value;
+        }
+        true
     }
-    let reached: Vec<f64> = x.p.iter().zip(&p).map(|(x, step)| x + step).collect();
-    let (solution, beta) = system.solve(&f, &problem.missing(&reached))?;
-    for (&k, &step) in active.iter().zip(&solution) {
-        p[k] = step;
-    }
-    Some(Forces { p, beta })
 }

@@ -166,7 +166,7 @@ impl CondensedMethod for Nitsche {
             let report = recorded(monitor, |problem, at| {
                 terms.jump(problem, &s, &at.p, &at.beta)
             });
-            let (round, tangent) = (left.min(ROUND), &mut Tangent::Condensed);
+            let (round, tangent) = (left.min(ROUND), &mut Tangent::default());
             let (status, end) = springs.solve(problem, start, stop, round, tangent, report)?;
             x = end.into();
             match status {
