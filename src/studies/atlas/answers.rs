@@ -46,6 +46,8 @@ pub struct Answers {
     pub solutions: usize,
     /// Largest difference of forces between them, over the largest force.
     pub apart: f64,
+    /// Forces of those that methods found, all rows of every point.
+    pub found: Vec<Vec<f64>>,
     /// Why there is none.
     pub none: Option<Proof>,
 }
@@ -98,6 +100,7 @@ impl Answers {
         Ok(Self {
             solutions: forces.len(),
             apart,
+            found: held.into_iter().map(|(state, _)| state.p).collect(),
             none,
         })
     }

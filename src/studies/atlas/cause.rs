@@ -68,7 +68,9 @@ causes! {
     /// The states of the points repeat with a period of at least 2, and the violation with them; or no state changes and the
     /// violation alone repeats. Measure: least violation at the end.
     Cycle = "cycle",
-    /// Still converging, at a rate that the condition of W on the loaded rows explains. Measure: that condition.
+    /// Still converging, at a rate that the condition of W on the loaded rows explains. Measure: that condition. Or at rest, and
+    /// what is missing to the nearest solution known is what W hardly feels. Measure: λ_max |ΔP|² / ΔPᵀ W ΔP, the condition
+    /// along ΔP.
     Conditioning = "conditioning",
     /// Still converging. Measure: least violation.
     Slow = "slow",
@@ -201,11 +203,18 @@ impl Diagnosis {
                 ..none
             };
         }
-        match wandering(e.watch) {
-            Some(flips) => Diagnosis {
+        if let Some(flips) = wandering(e.watch) {
+            return Diagnosis {
                 cause: Cause::Wandering,
                 measure: flips.len() as f64,
                 flips,
+                ..none
+            };
+        }
+        match along_error(e).filter(|&k| k >= CONDITION) {
+            Some(measure) => Diagnosis {
+                cause: Cause::Conditioning,
+                measure,
                 ..none
             },
             None => none,
@@ -302,6 +311,26 @@ fn falling(e: &Evidence<'_>) -> Option<(f64, f64)> {
     let here = of(seen.len().checked_sub(1)?).ln();
     let falls = slope * steps <= -std::f64::consts::LN_2;
     falls.then(|| (slope.exp(), ((0.5 * e.tolerance).ln() - here).min(0.0)))
+}
+
+/// λ_max |ΔP|² / ΔPᵀ W ΔP with ΔP from the last iterate to the nearest solution, λ_max that of W on the loaded rows. Both balance
+/// the load, so that no choice of pins changes it.
+fn along_error(e: &Evidence<'_>) -> Option<f64> {
+    let (gauge, states, (p, _)) = (e.watch.gauge, e.watch.states().back()?, e.watch.last()?);
+    let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let to = |solution: &Vec<f64>| -> Vec<f64> {
+        let solution = gauge.rows().restrict(solution);
+        solution.iter().zip(p).map(|(s, p)| s - p).collect()
+    };
+    let steps = e.answers.found.iter().map(to);
+    let step = steps.min_by(|a, b| square(a).total_cmp(&square(b)))?;
+    let columns = gauge.columns();
+    let product = |(column, x): (&Vec<f64>, &f64)| -> f64 {
+        x * column.iter().zip(&step).map(|(w, x)| w * x).sum::<f64>()
+    };
+    let energy: f64 = columns.iter().zip(&step).map(product).sum();
+    let largest = loaded(gauge, states)?.largest;
+    (energy > 0.0).then(|| largest * square(&step) / energy)
 }
 
 /// Whether a condition number is bad, and a rate no better than it allows.
