@@ -10,6 +10,9 @@ pub mod tip_frame;
 /// A point or vector in space; the third entry is 0 in 2D.
 pub type Point = [f64; 3];
 
+/// L points or vectors, coordinate by coordinate: loops over them work on several at once.
+pub type Points<const L: usize> = [[f64; L]; 3];
+
 /// a · b
 pub fn dot(a: &Point, b: &Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -3,6 +3,7 @@
 pub mod box_mesh;
 pub mod cell;
 pub mod grid_motion;
+pub mod inverter;
 pub mod neighbours;
 pub mod ordering;
 pub mod stream;

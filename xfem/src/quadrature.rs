@@ -8,6 +8,8 @@ pub mod graded;
 pub mod rational;
 pub mod slice;
 
+use std::sync::OnceLock;
+
 use crate::geometry::clip::tetrahedron_volume;
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
 use crate::mesh::cell::{CellKind, CellMap};
@@ -38,8 +40,19 @@ impl WeightedPoint {
     }
 }
 
-/// Gauss–Legendre points and weights on [−1, 1], exact to degree 2n − 1, by Newton's method on P_n.
+/// Gauss–Legendre points and weights on [−1, 1], exact to degree 2n − 1.
 pub fn gauss(n: usize) -> Vec<(f64, f64)> {
+    /// Rules asked for again and again are found once.
+    const KEPT: usize = 64;
+    static RULES: [OnceLock<Vec<(f64, f64)>>; KEPT] = [const { OnceLock::new() }; KEPT];
+    match RULES.get(n) {
+        Some(rule) => rule.get_or_init(|| gauss_rule(n)).clone(),
+        None => gauss_rule(n),
+    }
+}
+
+/// The same by Newton's method on P_n.
+fn gauss_rule(n: usize) -> Vec<(f64, f64)> {
     (0..n)
         .map(|i| {
             // Chebyshev-like start; Newton converges quadratically from it for every n.

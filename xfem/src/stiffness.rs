@@ -7,5 +7,6 @@ pub mod cell_matrix;
 pub mod consistent;
 pub mod dilatation;
 pub mod elasticity;
+pub mod lanes;
 pub mod near_front;
 pub mod orthonormal;

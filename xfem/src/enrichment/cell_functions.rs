@@ -1,7 +1,9 @@
 //! The functions of one cell, evaluated point by point.
 
+use std::mem::take;
+
 use crate::geometry::tip_frame::TipFrame;
-use crate::geometry::{Point, sub};
+use crate::geometry::{Point, Points, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
@@ -43,6 +45,16 @@ impl<'a> CellFunctions<'a> {
     /// Functions of a cell.
     pub fn new(mesh: &Mesh, enrichment: &'a Enrichment, cell: usize) -> Self {
         let nodes = mesh.cell(cell);
+        // Of one tip after the other.
+        let mut known: Option<(u32, u8)> = None;
+        let mut ramp = |tip: u32| match known {
+            Some((of, mask)) if of == tip => mask,
+            _ => {
+                let mask = enrichment.ramp(tip as usize, nodes);
+                known = Some((tip, mask));
+                mask
+            }
+        };
         let of = |&f: &u32| {
             let function = enrichment.functions[f as usize];
             let local = nodes.iter().position(|&n| n == function.node);
@@ -52,7 +64,7 @@ impl<'a> CellFunctions<'a> {
                 kind: function.kind,
                 shift: enrichment.shifts[f as usize],
                 ramp: match function.kind {
-                    FunctionKind::Branch { tip, .. } => enrichment.ramp(tip as usize, nodes),
+                    FunctionKind::Branch { tip, .. } => ramp(tip),
                     _ => u8::MAX,
                 },
             }
@@ -91,21 +103,35 @@ impl<'a> CellFunctions<'a> {
 
     /// Evaluates all functions at ξ (position x) in a region of the cell.
     pub fn evaluate(&mut self, xi: &Point, x: &Point, region: Region) {
-        let n = self.map.kind.shape(xi);
-        let dn = match &self.inverse {
-            Some(inverse) => self.map.gradients_by(xi, inverse),
-            None => self.map.gradients(xi).0,
-        };
-        let mut cached: Option<Branches> = None;
+        let (mut values, mut gradients) = (take(&mut self.values), take(&mut self.gradients));
+        let [xi, x] = [xi, x].map(|at| at.map(|v| [v]));
+        self.visit(&xi, &x, region, |f, [value], gradient| {
+            (values[f], gradients[f]) = (*value, gradient.map(|[g]| g));
+        });
+        (self.values, self.gradients) = (values, gradients);
+    }
+
+    /// Visits all functions with their values and gradients at L points ξ (positions x) in a region of the cell.
+    #[inline]
+    pub fn visit<const L: usize>(
+        &self,
+        xi: &Points<L>,
+        x: &Points<L>,
+        region: Region,
+        mut put: impl FnMut(usize, &[f64; L], &Points<L>),
+    ) {
+        let n = self.map.kind.shapes(xi);
+        let dn = self.map.slopes(xi, self.inverse.as_ref());
+        let mut cached: Option<Branches<L>> = None;
         let count = self.functions.len();
         let steps = &self.steps[region * count..(region + 1) * count];
-        let out = self.values.iter_mut().zip(&mut self.gradients);
-        for ((f, step), (value, gradient)) in self.functions.iter().zip(steps).zip(out) {
-            let (ni, dni) = (n[f.local], dn[f.local]);
+        for (place, (f, step)) in self.functions.iter().zip(steps).enumerate() {
+            let (ni, dni) = (&n[f.local], &dn[f.local]);
             match f.kind {
-                FunctionKind::Standard => (*value, *gradient) = (ni, dni),
+                FunctionKind::Standard => put(place, ni, dni),
                 FunctionKind::Piece { .. } => {
-                    (*value, *gradient) = (ni * step, dni.map(|d| d * step));
+                    let times = |v: [f64; L]| v.map(|v| v * step);
+                    put(place, &times(*ni), &dni.map(times));
                 }
                 FunctionKind::Branch { tip, order } => {
                     if cached.as_ref().is_some_and(|known| known.tip != tip) {
@@ -113,8 +139,9 @@ impl<'a> CellFunctions<'a> {
                     }
                     let branches = cached.get_or_insert_with(|| {
                         let side = (*step != 0.0).then_some(*step);
-                        let (values, gradients) = self.tips[tip as usize].branch(x, side);
-                        let (ramp, ramp_gradient) = ramp(f.ramp, &n, &dn);
+                        let (values, gradients) = self.tips[tip as usize].branches(x, side);
+                        let nodes = self.map.len();
+                        let (ramp, ramp_gradient) = ramp(f.ramp, &n[..nodes], &dn[..nodes]);
                         Branches {
                             tip,
                             values,
@@ -123,15 +150,63 @@ impl<'a> CellFunctions<'a> {
                             ramp_gradient,
                         }
                     });
-                    let l = order as usize;
-                    let (rho, h) = (branches.ramp, branches.values[l] - f.shift);
-                    *value = ni * h * rho;
-                    for a in 0..3 {
-                        let slope = branches.gradients[l][a] * rho + h * branches.ramp_gradient[a];
-                        gradient[a] = dni[a] * h * rho + ni * slope;
+                    let (g, dg) = (
+                        &branches.values[order as usize],
+                        &branches.gradients[order as usize],
+                    );
+                    let (rho, drho) = (&branches.ramp, &branches.ramp_gradient);
+                    let (mut value, mut gradient) = ([0.0; L], [[0.0; L]; 3]);
+                    for q in 0..L {
+                        value[q] = ni[q] * (g[q] - f.shift) * rho[q];
                     }
+                    for a in 0..3 {
+                        for q in 0..L {
+                            let h = g[q] - f.shift;
+                            let slope = dg[a][q] * rho[q] + h * drho[a][q];
+                            gradient[a][q] = dni[a][q] * h * rho[q] + ni[q] * slope;
+                        }
+                    }
+                    put(place, &value, &gradient);
                 }
             }
+        }
+    }
+
+    /// Visits the branch functions of a tip, or of all tips, at the nodes of a mask with their values at L points ξ (positions x)
+    /// in a region of the cell: on a face the others vanish.
+    #[inline]
+    pub fn visit_branches<const L: usize>(
+        &self,
+        (xi, x): (&Points<L>, &Points<L>),
+        region: Region,
+        (only, nodes): (Option<u32>, u8),
+        mut put: impl FnMut(usize, &[f64; L]),
+    ) {
+        let n = self.map.kind.shapes(xi);
+        let mut cached: Option<(u32, [[f64; L]; 4], [f64; L])> = None;
+        let count = self.functions.len();
+        let steps = &self.steps[region * count..(region + 1) * count];
+        for (place, (f, step)) in self.functions.iter().zip(steps).enumerate() {
+            let FunctionKind::Branch { tip, order } = f.kind else {
+                continue;
+            };
+            if only.is_some_and(|only| only != tip) || nodes & (1 << f.local) == 0 {
+                continue;
+            }
+            let (_, g, rho) = match &mut cached {
+                Some(known) if known.0 == tip => known,
+                other => {
+                    let side = (*step != 0.0).then_some(*step);
+                    let g = self.tips[tip as usize].branch_values(x, side);
+                    other.insert((tip, g, ramp_value(f.ramp, &n[..self.map.len()])))
+                }
+            };
+            let (g, ni) = (&g[order as usize], &n[f.local]);
+            let mut value = [0.0; L];
+            for q in 0..L {
+                value[q] = ni[q] * (g[q] - f.shift) * rho[q];
+            }
+            put(place, &value);
         }
     }
 
@@ -165,23 +240,40 @@ impl<'a> CellFunctions<'a> {
     }
 }
 
-/// Branch functions of one tip and their ramp at one point.
-struct Branches {
+/// Branch functions of one tip and their ramp at L points.
+struct Branches<const L: usize> {
     tip: u32,
-    values: [f64; 4],
-    gradients: [Point; 4],
-    ramp: f64,
-    ramp_gradient: Point,
+    values: [[f64; L]; 4],
+    gradients: [Points<L>; 4],
+    ramp: [f64; L],
+    ramp_gradient: Points<L>,
 }
 
-/// ρ = Σ N_i over the nodes of a mask, and its gradient; exactly 1 over all of them.
-fn ramp(mask: u8, n: &[f64], dn: &[Point]) -> (f64, Point) {
+/// ρ = Σ N_i over the nodes of a mask; exactly 1 over all of them.
+#[inline]
+fn ramp_value<const L: usize>(mask: u8, n: &[[f64; L]]) -> [f64; L] {
     let inside = |i: usize| mask & (1 << i) != 0;
     if (0..n.len()).all(inside) {
-        return (1.0, [0.0; 3]);
+        return [1.0; L];
     }
-    let nodes = (0..n.len()).filter(|&i| inside(i));
-    nodes.fold((0.0, [0.0; 3]), |(rho, slope), i| {
-        (rho + n[i], [0, 1, 2].map(|a| slope[a] + dn[i][a]))
-    })
+    let mut rho = [0.0; L];
+    for n in (0..n.len()).filter(|&i| inside(i)).map(|i| &n[i]) {
+        (0..L).for_each(|q| rho[q] += n[q]);
+    }
+    rho
+}
+
+/// ρ and its gradient.
+#[inline]
+fn ramp<const L: usize>(mask: u8, n: &[[f64; L]], dn: &[Points<L>]) -> ([f64; L], Points<L>) {
+    let inside = |i: usize| mask & (1 << i) != 0;
+    let mut slope = [[0.0; L]; 3];
+    if !(0..n.len()).all(inside) {
+        for dn in (0..n.len()).filter(|&i| inside(i)).map(|i| &dn[i]) {
+            for a in 0..3 {
+                (0..L).for_each(|q| slope[a][q] += dn[a][q]);
+            }
+        }
+    }
+    (ramp_value(mask, n), slope)
 }

@@ -10,7 +10,7 @@
 //! The bracket and the special cases are those of Eberly (2013), "Distance from a point to an ellipse"; the iteration is
 //! that of the trust-region problem (Reinsch 1971; Moré and Sorensen 1983), which has the same secular equation.
 
-use super::{Point, add_scaled, cross, dot, sub};
+use super::{Point, Points, add_scaled, cross, dot, sub};
 
 /// A flat ellipse in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,25 +46,43 @@ impl Ellipse {
 
     /// Nearest point of the front. Where several are equally near (evolute, centre) one is chosen by a fixed rule.
     pub fn nearest(&self, x: &Point) -> Nearest {
+        let first = |[v]: [f64; 1]| v;
+        let (psi, ahead, y) = self.nearests(&x.map(|v| [v]));
+        let y = y.map(first);
         let second = cross(&self.normal, &self.axis);
-        let from_centre = sub(x, &self.centre);
-        let x = [dot(&from_centre, &self.axis), dot(&from_centre, &second)];
-        let y = nearest_in_plane(self.half_axes, x);
-        let [a, b] = self.half_axes;
-        // (y₀/a₀², y₁/a₁²) times a₁.
-        let outward = [y[0] / a * (b / a), y[1] / b];
-        let length = outward[0].hypot(outward[1]);
-        let outward = [outward[0] / length, outward[1] / length];
-        let in_space = |v: [f64; 2]| {
-            let along = self.axis.map(|e| v[0] * e);
-            add_scaled(&along, v[1], &second)
-        };
+        let along = add_scaled(&self.centre, y[0], &self.axis);
         Nearest {
-            psi: (x[0] - y[0]) * outward[0] + (x[1] - y[1]) * outward[1],
-            point: add_scaled(&self.centre, 1.0, &in_space(y)),
-            ahead: in_space(outward),
-            parameter: [y[0] / a, y[1] / b],
+            psi: first(psi),
+            point: add_scaled(&along, y[1], &second),
+            ahead: ahead.map(first),
+            parameter: [y[0] / self.half_axes[0], y[1] / self.half_axes[1]],
         }
+    }
+
+    /// Distances of L points, directions ahead, and the nearest points in the plane's coordinates.
+    #[inline]
+    pub fn nearests<const L: usize>(&self, x: &Points<L>) -> ([f64; L], Points<L>, [[f64; L]; 2]) {
+        let second = cross(&self.normal, &self.axis);
+        let mut flat = [[0.0; L]; 2];
+        for q in 0..L {
+            let from_centre = sub(&x.map(|v| v[q]), &self.centre);
+            flat[0][q] = dot(&from_centre, &self.axis);
+            flat[1][q] = dot(&from_centre, &second);
+        }
+        let y = nearest_in_plane(self.half_axes, &flat);
+        let [a, b] = self.half_axes;
+        let (mut psi, mut ahead) = ([0.0; L], [[0.0; L]; 3]);
+        for q in 0..L {
+            // (y₀/a₀², y₁/a₁²) times a₁.
+            let outward = [y[0][q] / a * (b / a), y[1][q] / b];
+            let length = (outward[0] * outward[0] + outward[1] * outward[1]).sqrt();
+            let outward = [outward[0] / length, outward[1] / length];
+            psi[q] = (flat[0][q] - y[0][q]) * outward[0] + (flat[1][q] - y[1][q]) * outward[1];
+            for c in 0..3 {
+                ahead[c][q] = outward[0] * self.axis[c] + outward[1] * second[c];
+            }
+        }
+        (psi, ahead, y)
     }
 
     /// Point of the front at a parameter t.
@@ -110,60 +128,87 @@ impl Ellipse {
     }
 }
 
-/// Nearest point of the ellipse (a₀ cos t, a₁ sin t).
-fn nearest_in_plane(half_axes: [f64; 2], x: [f64; 2]) -> [f64; 2] {
-    let swap = half_axes[0] < half_axes[1];
-    let order = |v: [f64; 2]| if swap { [v[1], v[0]] } else { v };
-    let signs = x.map(|v| if v < 0.0 { -1.0 } else { 1.0 });
-    let y = nearest_in_quadrant(order(half_axes), order(x.map(f64::abs)));
-    let y = order(y);
-    [y[0] * signs[0], y[1] * signs[1]]
+/// Nearest points of the ellipse (a₀ cos t, a₁ sin t).
+#[inline]
+fn nearest_in_plane<const L: usize>(half_axes: [f64; 2], x: &[[f64; L]; 2]) -> [[f64; L]; 2] {
+    let long = usize::from(half_axes[0] < half_axes[1]);
+    let [i, j] = [long, 1 - long];
+    let y = nearest_in_quadrant(
+        [half_axes[i], half_axes[j]],
+        [x[i].map(f64::abs), x[j].map(f64::abs)],
+    );
+    let mut found = [[0.0; L]; 2];
+    for (k, y) in [i, j].into_iter().zip(y) {
+        for q in 0..L {
+            found[k][q] = if x[k][q] < 0.0 { -y[q] } else { y[q] };
+        }
+    }
+    found
 }
 
-/// The same for a₀ >= a₁ and a point of the first quadrant.
-fn nearest_in_quadrant([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+/// The same for a₀ >= a₁ and points of the first quadrant.
+#[inline]
+fn nearest_in_quadrant<const L: usize>([a, b]: [f64; 2], x: [[f64; L]; 2]) -> [[f64; L]; 2] {
     /// Distance from the long axis, in half axes, that counts as none: ψ is Lipschitz, so it changes by as little.
     const ON_AXIS: f64 = 1e-16;
     /// Newton steps; 3 to 8 are needed.
     const STEPS: usize = 60;
     let ratio = (a / b) * (a / b);
-    let (u, v) = (x / a, y / b);
-    if v <= ON_AXIS {
+    let (mut p, mut q) = ([0.0; L], [0.0; L]);
+    if a == b {
+        (p, q) = (x[0], x[1]);
+    } else {
+        let (u, v) = (x[0].map(|x| x / a), x[1].map(|y| y / b));
+        // With σ = 1 + s/a₁² > 0 and ϱ = a₀²/a₁²:  F = (ϱ u/(σ + ϱ − 1))² + (v/σ)².
+        let terms = |l: usize, sigma: f64| (ratio * u[l] / (sigma + (ratio - 1.0)), v[l] / sigma);
+        // F >= 1 here, so the root lies to the right.
+        let mut sigma = [0.0; L];
+        for l in 0..L {
+            sigma[l] = v[l].max(ratio * u[l] - (ratio - 1.0));
+        }
+        for _ in 0..STEPS {
+            let mut moved = false;
+            for l in 0..L {
+                let (p, q) = terms(l, sigma[l]);
+                let f = p * p + q * q;
+                let slope = p * p / (sigma[l] + (ratio - 1.0)) + q * q / sigma[l]; // −F'/2
+                let step = f * (f.sqrt() - 1.0) / slope;
+                // Monotone in exact arithmetic: the first step that does not go right is rounding.
+                let goes = step > 1e-16 * sigma[l];
+                sigma[l] += if goes { step } else { 0.0 };
+                moved |= goes;
+            }
+            if !moved {
+                break;
+            }
+        }
+        for l in 0..L {
+            (p[l], q[l]) = terms(l, sigma[l]);
+        }
+    }
+    let mut found = [[0.0; L]; 2];
+    for l in 0..L {
+        // On the ellipse also against rounding of σ.
+        let length = (p[l] * p[l] + q[l] * q[l]).sqrt();
+        (found[0][l], found[1][l]) = (a * (p[l] / length), b * (q[l] / length));
+    }
+    for l in 0..L {
+        if x[1][l] > ON_AXIS * b {
+            continue;
+        }
         // On the long axis: the foot leaves the vertex inside of the centre of curvature there.
         let c = if ratio > 1.0 {
-            ratio * u / (ratio - 1.0)
+            ratio * (x[0][l] / a) / (ratio - 1.0)
         } else {
             f64::INFINITY
         };
-        return if c < 1.0 {
-            [a * c, b * ((1.0 - c) * (1.0 + c)).sqrt()]
+        (found[0][l], found[1][l]) = if c < 1.0 {
+            (a * c, b * ((1.0 - c) * (1.0 + c)).sqrt())
         } else {
-            [a, 0.0]
+            (a, 0.0)
         };
     }
-    if a == b {
-        let r = x.hypot(y);
-        return [a * (x / r), a * (y / r)];
-    }
-    // With σ = 1 + s/a₁² > 0 and ϱ = a₀²/a₁²:  F = (ϱ u/(σ + ϱ − 1))² + (v/σ)².
-    let terms = |sigma: f64| (ratio * u / (sigma + (ratio - 1.0)), v / sigma);
-    // F >= 1 here, so the root lies to the right.
-    let mut sigma = v.max(ratio * u - (ratio - 1.0));
-    for _ in 0..STEPS {
-        let (p, q) = terms(sigma);
-        let f = p * p + q * q;
-        let slope = p * p / (sigma + (ratio - 1.0)) + q * q / sigma; // −F'/2
-        let step = f * (f.sqrt() - 1.0) / slope;
-        // Monotone in exact arithmetic: the first step that does not go right is rounding.
-        if step <= 1e-16 * sigma {
-            break;
-        }
-        sigma += step;
-    }
-    let (p, q) = terms(sigma);
-    // Back onto the ellipse against rounding of σ.
-    let length = p.hypot(q);
-    [a * p / length, b * q / length]
+    found
 }
 
 #[cfg(test)]

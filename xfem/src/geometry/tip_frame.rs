@@ -3,7 +3,7 @@
 use super::clip::Side;
 use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
-use super::{Point, add_scaled, cross, dot, norm, sub};
+use super::{Point, Points, add_scaled, cross, dot, norm, sub};
 
 /// A tip or front inside the body with its coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,7 +114,7 @@ impl TipFrame {
         let at = self.coordinates(x);
         match self.shape {
             FrontShape::Pair { half_length } => (at.psi.abs() - half_length).hypot(at.phi),
-            _ => at.psi.hypot(at.phi),
+            _ => (at.psi * at.psi + at.phi * at.phi).sqrt(),
         }
     }
 
@@ -171,76 +171,153 @@ impl TipFrame {
     ///
     /// `side` says on which face a point of the crack lies (θ = ±π); `None` takes the side from the position.
     pub fn branch(&self, x: &Point, side: Option<Side>) -> ([f64; 4], [Point; 4]) {
-        let TipCoordinates {
-            psi,
-            mut phi,
-            psi_gradient,
-            phi_gradient,
-        } = self.coordinates(x);
-        let on_crack = match self.shape {
-            FrontShape::Pair { half_length } => psi.abs() <= half_length,
-            _ => psi <= 0.0,
-        };
-        // Ahead of the tip the place tells.
-        match side.filter(|_| on_crack) {
-            Some(side) if side > 0.0 => phi = phi.max(0.0).abs(),
-            Some(_) => phi = -((-phi).max(0.0).abs()),
-            None => {}
-        }
-        if let FrontShape::Pair { half_length } = self.shape {
-            let (values, slopes) = pair_functions(half_length, psi, phi);
-            let gradients = slopes
-                .map(|[g1, g2]| [0, 1, 2].map(|a| g1 * psi_gradient[a] + g2 * phi_gradient[a]));
-            return (values, gradients);
-        }
-        let r = (psi * psi + phi * phi).sqrt();
-        let (root, [sin, cos], [s, c]) = (r.sqrt(), polar(psi, phi, r), half_polar(psi, phi, r));
-        let angular = [s, c, s * sin, c * sin];
-        let slope = [
-            0.5 * c,
-            -0.5 * s,
-            0.5 * c * sin + s * cos,
-            -0.5 * s * sin + c * cos,
-        ];
-        let values = angular.map(|f| root * f);
-        let mut gradients = [[0.0; 3]; 4];
-        if r > 0.0 {
-            for l in 0..4 {
-                // ∂g/∂r = f/(2√r), (1/r) ∂g/∂θ = f'/√r, turned into space
-                let (gr, gt) = (0.5 * angular[l] / root, slope[l] / root);
-                let (g1, g2) = (gr * cos - gt * sin, gr * sin + gt * cos);
+        let (values, gradients) = self.branches(&x.map(|v| [v]), side);
+        let first = |[v]: [f64; 1]| v;
+        (values.map(first), gradients.map(|g| g.map(first)))
+    }
+
+    /// ψ, φ, ∇ψ and ∇φ of L points, φ on the face of the crack that `side` says.
+    #[inline]
+    fn placed<const L: usize>(
+        &self,
+        x: &Points<L>,
+        side: Option<Side>,
+    ) -> ([[f64; L]; 2], [Points<L>; 2]) {
+        let (mut psi, mut phi) = ([0.0; L], [0.0; L]);
+        let (mut ahead, mut across) = ([[0.0; L]; 3], [[0.0; L]; 3]);
+        if let FrontShape::Ellipse(ellipse) = &self.shape {
+            (psi, ahead, _) = ellipse.nearests(x);
+            across = self.normal.map(|n| [n; L]);
+            for q in 0..L {
+                phi[q] = dot(&sub(&x.map(|v| v[q]), &self.position), &self.normal);
+            }
+        } else {
+            for q in 0..L {
+                let at = self.coordinates(&x.map(|v| v[q]));
+                (psi[q], phi[q]) = (at.psi, at.phi);
                 for a in 0..3 {
-                    gradients[l][a] = g1 * psi_gradient[a] + g2 * phi_gradient[a];
+                    ahead[a][q] = at.psi_gradient[a];
+                    across[a][q] = at.phi_gradient[a];
                 }
             }
         }
-        (values, gradients)
+        if let Some(side) = side {
+            let reach = match self.shape {
+                FrontShape::Pair { half_length } => Some(half_length),
+                _ => None,
+            };
+            for q in 0..L {
+                // Ahead of the tip the place tells.
+                if reach.map_or(psi[q] <= 0.0, |reach| psi[q].abs() <= reach) {
+                    phi[q] = if side > 0.0 {
+                        phi[q].max(0.0).abs()
+                    } else {
+                        -((-phi[q]).max(0.0).abs())
+                    };
+                }
+            }
+        }
+        ([psi, phi], [ahead, across])
+    }
+
+    /// Branch functions at L points on one side, by function and point.
+    #[inline]
+    pub fn branch_values<const L: usize>(
+        &self,
+        x: &Points<L>,
+        side: Option<Side>,
+    ) -> [[f64; L]; 4] {
+        let ([psi, phi], _) = self.placed(x, side);
+        let mut values = [[0.0; L]; 4];
+        for q in 0..L {
+            let own = match self.shape {
+                FrontShape::Pair { half_length } => pair_functions(half_length, psi[q], phi[q]).0,
+                _ => root_values(psi[q], phi[q]),
+            };
+            (0..4).for_each(|l| values[l][q] = own[l]);
+        }
+        values
+    }
+
+    /// The same with their gradients, by function, direction and point.
+    #[inline]
+    pub fn branches<const L: usize>(
+        &self,
+        x: &Points<L>,
+        side: Option<Side>,
+    ) -> ([[f64; L]; 4], [Points<L>; 4]) {
+        let ([psi, phi], [ahead, across]) = self.placed(x, side);
+        // By function: value, slope ahead, slope across.
+        let mut g = [[[0.0; L]; 3]; 4];
+        for q in 0..L {
+            let (values, slopes) = match self.shape {
+                FrontShape::Pair { half_length } => pair_functions(half_length, psi[q], phi[q]),
+                _ => root_functions(psi[q], phi[q]),
+            };
+            for l in 0..4 {
+                (g[l][0][q], g[l][1][q], g[l][2][q]) = (values[l], slopes[l][0], slopes[l][1]);
+            }
+        }
+        let mut gradients = [[[0.0; L]; 3]; 4];
+        for (gradient, [_, g1, g2]) in gradients.iter_mut().zip(&g) {
+            for a in 0..3 {
+                for q in 0..L {
+                    gradient[a][q] = g1[q] * ahead[a][q] + g2[q] * across[a][q];
+                }
+            }
+        }
+        (g.map(|g| g[0]), gradients)
     }
 }
 
-/// sin θ and cos θ of a point at distance r from the tip; those of θ = 0 at the tip itself.
-fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
-    if r > 0.0 {
-        [phi / r, psi / r]
-    } else {
-        [0.0, 1.0]
+/// √r times sin θ/2, cos θ/2, sin θ/2 sin θ, cos θ/2 sin θ. Without branches, so that several points go at once.
+#[inline]
+fn root_values(psi: f64, phi: f64) -> [f64; 4] {
+    let r = (psi * psi + phi * phi).sqrt();
+    let ([sin, _], [s, c]) = (polar(psi, phi, r), half_polar(psi, phi, r));
+    [s, c, s * sin, c * sin].map(|f| r.sqrt() * f)
+}
+
+/// The same with their derivatives ahead and across; these are 0 at the tip, for want of a limit.
+#[inline]
+fn root_functions(psi: f64, phi: f64) -> ([f64; 4], [[f64; 2]; 4]) {
+    let r = (psi * psi + phi * phi).sqrt();
+    let root = r.sqrt();
+    let inverse = if r > 0.0 { 1.0 / root } else { 0.0 };
+    let ([sin, cos], [s, c]) = (polar(psi, phi, r), half_polar(psi, phi, r));
+    let angular = [s, c, s * sin, c * sin];
+    let slope = [
+        0.5 * c,
+        -0.5 * s,
+        0.5 * c * sin + s * cos,
+        -0.5 * s * sin + c * cos,
+    ];
+    let mut slopes = [[0.0; 2]; 4];
+    for l in 0..4 {
+        // ∂g/∂r = f/(2√r), (1/r) ∂g/∂θ = f'/√r, turned into space
+        let (gr, gt) = (0.5 * angular[l] * inverse, slope[l] * inverse);
+        slopes[l] = [gr * cos - gt * sin, gr * sin + gt * cos];
     }
+    (angular.map(|f| root * f), slopes)
+}
+
+/// sin θ and cos θ of a point at distance r from the tip; those of θ = 0 at the tip itself.
+#[inline]
+fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
+    let (sin, cos) = (phi / r, psi / r);
+    if r > 0.0 { [sin, cos] } else { [0.0, 1.0] }
 }
 
 /// sin θ/2 and cos θ/2, −π <= θ <= π, the larger of both from (1 ± cos θ)/2, which cancels nothing, and the other from
 /// their product sin θ/2.
+#[inline]
 fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
-    if r == 0.0 {
-        return [0.0, 1.0];
-    }
     let larger = (0.5 * (1.0 + psi.abs() / r)).sqrt();
     let other = 0.5 * phi / (r * larger);
-    if psi >= 0.0 {
-        [other, larger]
-    } else {
-        // −0 is the lower face.
-        [larger.copysign(phi), other.abs()]
-    }
+    // −0 is the lower face.
+    let behind = [larger.copysign(phi), other.abs()];
+    let [s, c] = if psi >= 0.0 { [other, larger] } else { behind };
+    if r == 0.0 { [0.0, 1.0] } else { [s, c] }
 }
 
 /// Functions of both ends ± a of a straight crack and their derivatives along and across it (Westergaard 1939).

@@ -13,7 +13,9 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::geometry::{Point, dot, norm, sub};
+use crate::geometry::{Point, Points, dot, norm, sub};
+
+use super::inverter::Inverter;
 
 /// Most nodes of a cell.
 pub const MOST_NODES: usize = 8;
@@ -159,30 +161,54 @@ impl CellKind {
 
     /// N_i(ξ).
     pub fn shape(self, xi: &Point) -> Nodal<f64> {
-        Nodal::new(self.nodes(), |i| {
-            let c = &CORNERS[i];
-            let flat = 0.25 * (1.0 + xi[0] * c[0]) * (1.0 + xi[1] * c[1]);
-            match self {
-                CellKind::Quad4 => flat,
-                CellKind::Hex8 => flat * (0.5 * (1.0 + xi[2] * c[2])),
+        let n = self.shapes(&xi.map(|v| [v]));
+        Nodal::new(self.nodes(), |i| n[i][0])
+    }
+
+    /// N_i(ξ) at L points, by node.
+    #[inline]
+    pub fn shapes<const L: usize>(self, xi: &Points<L>) -> [[f64; L]; MOST_NODES] {
+        let mut n = [[0.0; L]; MOST_NODES];
+        for (n, c) in n.iter_mut().zip(&CORNERS).take(self.nodes()) {
+            for q in 0..L {
+                n[q] = 0.25 * (1.0 + xi[0][q] * c[0]) * (1.0 + xi[1][q] * c[1]);
             }
-        })
+            if self == CellKind::Hex8 {
+                for q in 0..L {
+                    n[q] *= 0.5 * (1.0 + xi[2][q] * c[2]);
+                }
+            }
+        }
+        n
     }
 
     /// ∂N_i/∂ξ_a.
-    fn reference_gradients(self, xi: &Point) -> Nodal<Point> {
-        Nodal::new(self.nodes(), |i| {
-            let c = &CORNERS[i];
-            let f = [1.0 + xi[0] * c[0], 1.0 + xi[1] * c[1], 1.0 + xi[2] * c[2]];
-            match self {
-                CellKind::Quad4 => [0.25 * c[0] * f[1], 0.25 * c[1] * f[0], 0.0],
-                CellKind::Hex8 => [
-                    0.125 * c[0] * f[1] * f[2],
-                    0.125 * c[1] * f[0] * f[2],
-                    0.125 * c[2] * f[0] * f[1],
-                ],
+    pub(super) fn reference_gradients(self, xi: &Point) -> Nodal<Point> {
+        let g = self.reference_slopes(&xi.map(|v| [v]));
+        Nodal::new(self.nodes(), |i| g[i].map(|v| v[0]))
+    }
+
+    /// ∂N_i/∂ξ_a at L points, by node and direction.
+    #[inline]
+    fn reference_slopes<const L: usize>(self, xi: &Points<L>) -> [Points<L>; MOST_NODES] {
+        let mut slopes = [[[0.0; L]; 3]; MOST_NODES];
+        for (g, c) in slopes.iter_mut().zip(&CORNERS).take(self.nodes()) {
+            for q in 0..L {
+                let f = [0, 1, 2].map(|a| 1.0 + xi[a][q] * c[a]);
+                let own = match self {
+                    CellKind::Quad4 => [0.25 * c[0] * f[1], 0.25 * c[1] * f[0], 0.0],
+                    CellKind::Hex8 => [
+                        0.125 * c[0] * f[1] * f[2],
+                        0.125 * c[1] * f[0] * f[2],
+                        0.125 * c[2] * f[0] * f[1],
+                    ],
+                };
+                for a in 0..3 {
+                    g[a][q] = own[a];
+                }
             }
-        })
+        }
+        slopes
     }
 }
 
@@ -257,9 +283,35 @@ impl CellMap {
         (self.in_space(reference, &inverse), det)
     }
 
-    /// Gradients ∂N_i/∂x [1/m] at ξ of a map whose ∂ξ/∂x is known.
-    pub fn gradients_by(&self, xi: &Point, inverse: &[Point; 3]) -> Nodal<Point> {
-        self.in_space(self.kind.reference_gradients(xi), inverse)
+    /// Gradients ∂N_i/∂x [1/m] at L points ξ, by node and direction; `inverse`: ∂ξ/∂x if it is the same everywhere.
+    #[inline]
+    pub fn slopes<const L: usize>(
+        &self,
+        xi: &Points<L>,
+        inverse: Option<&[Point; 3]>,
+    ) -> [Points<L>; MOST_NODES] {
+        let Some(inverse) = inverse else {
+            let mut slopes = [[[0.0; L]; 3]; MOST_NODES];
+            for q in 0..L {
+                let own = self.gradients(&xi.map(|v| v[q])).0;
+                for (slope, g) in slopes.iter_mut().zip(own.iter()) {
+                    (0..3).for_each(|a| slope[a][q] = g[a]);
+                }
+            }
+            return slopes;
+        };
+        let mut slopes = self.kind.reference_slopes(xi);
+        for g in slopes.iter_mut().take(self.len()) {
+            let own = *g;
+            for a in 0..self.kind.dim() {
+                for q in 0..L {
+                    g[a][q] = own[0][q] * inverse[0][a]
+                        + own[1][q] * inverse[1][a]
+                        + own[2][q] * inverse[2][a];
+                }
+            }
+        }
+        slopes
     }
 
     fn in_space(&self, mut reference: Nodal<Point>, inverse: &[Point; 3]) -> Nodal<Point> {
@@ -285,7 +337,7 @@ impl CellMap {
     }
 
     /// (∂ξ_b/∂x_a)[b][a] and det ∂x/∂ξ; in 2D the third direction is the identity.
-    fn inverse_jacobian(&self, reference: &[Point]) -> ([Point; 3], f64) {
+    pub(super) fn inverse_jacobian(&self, reference: &[Point]) -> ([Point; 3], f64) {
         let mut j = [[0.0; 3]; 3]; // j[a][b] = ∂x_a/∂ξ_b
         for (corner, grad) in self.iter().zip(reference) {
             for a in 0..3 {
@@ -319,14 +371,7 @@ impl CellMap {
 
     /// What finds the ξ of many points.
     pub fn inverter(&self) -> Inverter {
-        // From the first corner: far from the origin the coordinates themselves hold too few digits of the difference.
-        let origin = self[0];
-        let local = CellMap::new(self.kind, |i| sub(&self[i], &origin));
-        Inverter {
-            constant: local.constant_inverse(),
-            local,
-            origin,
-        }
+        Inverter::new(self)
     }
 
     /// True if the map is affine (parallelogram, parallelepiped) to rounding.
@@ -342,51 +387,6 @@ impl CellMap {
                 .into_iter()
                 .all(parallel),
         }
-    }
-}
-
-/// The inverse of a map, by Newton's method.
-pub struct Inverter {
-    /// The map seen from its first corner.
-    local: CellMap,
-    origin: Point,
-    constant: Option<[Point; 3]>,
-}
-
-impl Inverter {
-    /// ξ of a point in space; `None` if it does not converge (point far outside a distorted cell). One step is exact on affine
-    /// cells.
-    pub fn at(&self, x: &Point) -> Option<Point> {
-        /// Newton steps; bilinear maps need 3 to 6 inside the cell.
-        const STEPS: usize = 30;
-        /// In reference units, well above rounding and far below any quadrature error.
-        const TOLERANCE: f64 = 1e-14;
-        let (local, kind) = (&self.local, self.local.kind);
-        let x = sub(x, &self.origin);
-        let mut xi = [0.0; 3];
-        let mut last = f64::INFINITY;
-        for _ in 0..STEPS {
-            let residual = sub(&x, &local.at(&xi));
-            let inverse = self
-                .constant
-                .unwrap_or_else(|| local.inverse_jacobian(&kind.reference_gradients(&xi)).0);
-            let mut step: f64 = 0.0;
-            for b in 0..kind.dim() {
-                let delta = dot(&inverse[b], &residual);
-                xi[b] += delta;
-                step = step.max(delta.abs());
-            }
-            // A cell without measure has no inverse.
-            if !xi.iter().all(|x| x.is_finite()) {
-                return None;
-            }
-            // Converged, or the step has sunk into rounding and no longer shrinks.
-            if step <= TOLERANCE || (step < 1e-12 && step >= last) {
-                return Some(xi);
-            }
-            last = step;
-        }
-        None
     }
 }
 

@@ -167,14 +167,14 @@ impl<'a> CellIntegrator<'a> {
 
     /// Direct integration of all functions.
     fn by_functions(&self, cell: usize) -> Result<CellMatrix, CellError> {
-        let mut gram = Gram::zero(self.enrichment.cell(cell).len(), self.mesh.dim());
-        let points = self.evaluated(cell)?;
-        for p in &points {
-            gram.add(p.at.weight, &p.gradients);
-        }
         match self.lame.dilatation {
-            Dilatation::Full => Ok(gram.stiffness(self.lame)),
+            Dilatation::Full => Ok(self.gram(cell)?.stiffness(self.lame)),
             Dilatation::Mean => {
+                let points = self.evaluated(cell)?;
+                let mut gram = Gram::zero(self.enrichment.cell(cell).len(), self.mesh.dim());
+                for p in &points {
+                    gram.add(p.at.weight, &p.gradients);
+                }
                 let projected = ProjectedDilatation::of(self, cell, &points);
                 Ok(gram.projected_stiffness(self.lame, &projected.integrals()))
             }

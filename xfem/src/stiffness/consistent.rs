@@ -11,7 +11,7 @@
 //! distorted cells cost as many points as their energy needs, no more. Variationally consistent integration: Chen, Hillman &
 //! Rüter, Int. J. Numer. Meth. Engng 95 (2013) 387.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::partition::Partition;
 use crate::enrichment::basis::{FunctionKind, Region};
@@ -21,12 +21,15 @@ use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::{clip, fan};
 use crate::geometry::curve::turned;
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::{Point, Points, add_scaled, cross, dot, norm, sub, unit};
+use crate::mesh::cell::CellMap;
 use crate::quadrature::graded::{graded_segment, graded_triangles};
 use crate::quadrature::rational::rational_order;
 use crate::quadrature::{Quadrature, WeightedPoint, segment, triangle};
 
 use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+use super::elasticity::{Gram, Moments};
+use super::lanes::{LANES, in_lanes};
 
 /// A quadrature point with the gradients of all functions of its cell.
 pub struct EvaluatedPoint {
@@ -68,13 +71,54 @@ impl CellIntegrator<'_> {
             })
             .collect();
         if self.is_corrected(cell, &functions) {
-            self.correct_shapes(cell, &mut functions, &mut points)?;
-            if self.enrichment.has_branch(cell) {
-                let flux = self.flux(cell, &mut functions)?;
-                correct_branches(&functions, &flux, &mut points);
+            let none = Moments {
+                measure: 0.0,
+                gradients: vec![[0.0; 3]; functions.numbers.len()],
+            };
+            let mut moments = vec![none; self.enrichment.regions(cell)];
+            for p in &points {
+                let own = &mut moments[p.at.region];
+                own.measure += p.at.weight;
+                for (sum, g) in own.gradients.iter_mut().zip(&p.gradients) {
+                    *sum = add_scaled(sum, p.at.weight, g);
+                }
+            }
+            let corrections = self.corrections(cell, &functions, &moments)?;
+            for p in &mut points {
+                for (g, c) in p.gradients.iter_mut().zip(&corrections[p.at.region]) {
+                    *g = add_scaled(g, 1.0, c);
+                }
             }
         }
         Ok(points)
+    }
+
+    /// Their Gram matrix, without keeping them: the corrections are constants by region.
+    ///
+    /// # Errors
+    /// A cell that cannot be integrated.
+    pub fn gram(&self, cell: usize) -> Result<Gram, CellError> {
+        let functions = self.functions(cell);
+        let mut gram = Gram::zero(functions.numbers.len(), self.mesh.dim());
+        let mut moments = Vec::new();
+        let points = self.points(cell)?;
+        for region in 0..self.enrichment.regions(cell) {
+            let own = points.iter().filter(|p| p.region == region);
+            let own = own.map(|p| (p.xi, p.x, [p.weight]));
+            in_lanes(own, |xi, x, [weights]| {
+                functions.visit(xi, x, region, |f, _, g| gram.put(f, weights, g));
+                gram.end(weights);
+            });
+            moments.push(gram.take_moments());
+        }
+        let corrections = match self.is_corrected(cell, &functions) {
+            true => self.corrections(cell, &functions, &moments)?,
+            false => vec![vec![[0.0; 3]; functions.numbers.len()]; moments.len()],
+        };
+        for (moments, corrections) in moments.iter().zip(&corrections) {
+            gram.return_moments(moments, corrections);
+        }
+        Ok(gram)
     }
 
     /// Whether the rule of a cell leaves something to correct.
@@ -84,18 +128,55 @@ impl CellIntegrator<'_> {
             && (self.enrichment.has_branch(cell) || !functions.map.is_affine())
     }
 
-    /// Gives the shape functions their moments over every region: standard and piece functions follow.
-    fn correct_shapes(
+    /// What the gradients of all functions lack, by region, from the moments of the rule.
+    fn corrections(
         &self,
         cell: usize,
-        functions: &mut CellFunctions<'_>,
-        points: &mut [EvaluatedPoint],
-    ) -> Result<(), CellError> {
-        let map = functions.map;
-        let whole = Partition::whole(&map);
+        functions: &CellFunctions<'_>,
+        moments: &[Moments],
+    ) -> Result<Vec<Vec<Point>>, CellError> {
+        let exact = self.shape_moments(cell, &functions.map)?;
+        let nodes = functions.map.len();
+        let kinds = functions.are_branches();
+        let whole: f64 = moments.iter().map(|m| m.measure).sum();
+        // On a sliver the difference of border integrals is rounding, and what its rule misses is nothing to the cell.
+        let least = match functions.map.is_affine() {
+            true => 0.0,
+            false => SLIVER * whole,
+        };
+        let mut found = vec![vec![[0.0; 3]; kinds.len()]; moments.len()];
+        // Evenly over a region: piece functions follow the shape functions.
+        let regions = moments.iter().zip(&mut found).enumerate();
+        for (region, (own, found)) in regions.filter(|(_, (own, _))| own.measure > least) {
+            let mut missing = vec![[0.0; 3]; nodes];
+            // Standard functions come first.
+            for ((local, _), sum) in functions.steps(region).take(nodes).zip(&own.gradients) {
+                missing[local] = sub(&exact[region][local], sum);
+            }
+            for (f, (local, step)) in functions.steps(region).enumerate() {
+                if !kinds[f] {
+                    found[f] = missing[local].map(|v| step / own.measure * v);
+                }
+            }
+        }
+        if kinds.contains(&true) {
+            // Evenly over the cell.
+            let flux = self.flux(cell, functions)?;
+            for f in (0..kinds.len()).filter(|&f| kinds[f]) {
+                let sums = moments.iter().map(|m| &m.gradients[f]);
+                let missing = sums.fold(flux[f], |missing, sum| sub(&missing, sum));
+                let correction = missing.map(|v| v / whole);
+                found.iter_mut().for_each(|own| own[f] = correction);
+            }
+        }
+        Ok(found)
+    }
+
+    /// ∫ of the gradients of the shape functions over every region, by local node.
+    fn shape_moments(&self, cell: usize, map: &CellMap) -> Result<Vec<Vec<Point>>, CellError> {
+        let whole = Partition::whole(map);
         let partition = self.enrichment.partition(cell).unwrap_or(&whole);
-        let count = map.len();
-        let mut moments = vec![vec![[0.0; 3]; count]; partition.parts.len()];
+        let mut moments = vec![vec![[0.0; 3]; map.len()]; partition.parts.len()];
         if map.is_affine() {
             // Polynomials: exact.
             for (part, sums) in partition.parts.iter().zip(&mut moments) {
@@ -106,58 +187,35 @@ impl CellIntegrator<'_> {
                     }
                 }
             }
-        } else {
-            let mut add = |p: &WeightedPoint, region: usize, sign: f64, normal: &Point| {
-                let xi = map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
-                let shapes = map.kind.shape(&xi);
-                for (sum, value) in moments[region].iter_mut().zip(shapes.iter()) {
-                    *sum = add_scaled(sum, sign * p.weight * value, normal);
-                }
-                Ok::<(), CellError>(())
-            };
-            for local in map.kind.facets() {
-                let normal = outward(&map, local);
-                // Linear along an edge.
-                for (p, region) in self.border_points(cell, local, None) {
-                    add(&p, region, 1.0, &normal)?;
-                }
-            }
-            self.facet_points(cell, |p, regions, normal| {
-                add(p, regions[0], -1.0, normal)?;
-                add(p, regions[1], 1.0, normal)
-            })?;
-            for ([a, b], [one, two]) in partition.beyond.iter().zip(&partition.joined) {
-                let normal = turned(&unit(&sub(b, a)));
-                for p in segment(a, b, rational_order(&map, [a, b])) {
-                    add(&p, *one, -1.0, &normal)?;
-                    add(&p, *two, 1.0, &normal)?;
-                }
-            }
+            return Ok(moments);
         }
-        let mut measure = vec![0.0; moments.len()];
-        for p in points.iter() {
-            measure[p.at.region] += p.at.weight;
-            let g = map.gradients(&p.at.xi).0;
-            for (sum, g) in moments[p.at.region].iter_mut().zip(g.iter()) {
-                *sum = add_scaled(sum, -p.at.weight, g);
+        let mut add = |p: &WeightedPoint, region: usize, sign: f64, normal: &Point| {
+            let xi = map.inverse(&p.x).ok_or_else(|| lost(&p.x))?;
+            let shapes = map.kind.shape(&xi);
+            for (sum, value) in moments[region].iter_mut().zip(shapes.iter()) {
+                *sum = add_scaled(sum, sign * p.weight * value, normal);
             }
-        }
-        let kinds: Vec<bool> = functions.are_branches();
-        // On a sliver the difference of border integrals is rounding, and what its rule misses is nothing to the cell.
-        let least = match map.is_affine() {
-            true => 0.0,
-            false => SLIVER * measure.iter().sum::<f64>(),
+            Ok::<(), CellError>(())
         };
-        for p in points.iter_mut().filter(|p| measure[p.at.region] > least) {
-            let steps: Vec<(usize, f64)> = functions.steps(p.at.region).collect();
-            for ((g, (local, step)), branch) in p.gradients.iter_mut().zip(steps).zip(&kinds) {
-                if !branch {
-                    let missing = &moments[p.at.region][local];
-                    *g = add_scaled(g, step / measure[p.at.region], missing);
-                }
+        for local in map.kind.facets() {
+            let normal = outward(map, local);
+            // Linear along an edge.
+            for (p, region) in self.border_points(cell, local, None) {
+                add(&p, region, 1.0, &normal)?;
             }
         }
-        Ok(())
+        self.facet_points(cell, |p, regions, normal| {
+            add(p, regions[0], -1.0, normal)?;
+            add(p, regions[1], 1.0, normal)
+        })?;
+        for ([a, b], [one, two]) in partition.beyond.iter().zip(&partition.joined) {
+            let normal = turned(&unit(&sub(b, a)));
+            for p in segment(a, b, rational_order(map, [a, b])) {
+                add(&p, *one, -1.0, &normal)?;
+                add(&p, *two, 1.0, &normal)?;
+            }
+        }
+        Ok(moments)
     }
 
     /// Visits the points of the facets in a cell that jumps are integrated with: point, regions on side 1 and 2, normal.
@@ -184,32 +242,68 @@ impl CellIntegrator<'_> {
         Ok(())
     }
 
-    /// b_f of all functions of a cell.
-    fn flux(
-        &self,
-        cell: usize,
-        functions: &mut CellFunctions<'_>,
-    ) -> Result<Vec<Point>, CellError> {
-        let mesh = self.mesh;
-        let mut flux = vec![[0.0; 3]; functions.numbers.len()];
-        for local in mesh.kind.facets() {
-            let normal = outward(&functions.map, local);
-            self.visit_border(cell, local, functions, |f, p, _, value| {
-                flux[f] = add_scaled(&flux[f], p.weight * value, &normal);
-            })?;
-        }
-        let inverter = functions.map.inverter();
-        self.facet_points(cell, |p, regions, normal| {
-            let xi = inverter.at(&p.x).ok_or_else(|| lost(&p.x))?;
-            for (region, sign) in regions.into_iter().zip([-1.0, 1.0]) {
-                functions.evaluate(&xi, &p.x, region);
-                for (sum, value) in flux.iter_mut().zip(&functions.values) {
-                    *sum = add_scaled(sum, sign * p.weight * value, normal);
+    /// b_f of the branch functions of a cell.
+    fn flux(&self, cell: usize, functions: &CellFunctions<'_>) -> Result<Vec<Point>, CellError> {
+        let map = &functions.map;
+        let tips = self.tips_of(functions);
+        let inverter = map.inverter();
+        let mut flux = vec![[[0.0; LANES]; 3]; tips.len()];
+        // Points of a region with weights times normals; `which`: tip, nodes of a face.
+        let mut add = |points: &[(WeightedPoint, Point)], region, which: (Option<u32>, u8)| {
+            let place = |(p, normal): &(WeightedPoint, Point)| {
+                let xi = inverter.at(&p.x).ok_or_else(|| lost(&p.x))?;
+                Ok((xi, p.x, normal.map(|n| n * p.weight)))
+            };
+            let points: Vec<(Point, Point, [f64; 3])> =
+                points.iter().map(place).collect::<Result<_, _>>()?;
+            in_lanes(points, |xi, x, areas| {
+                functions.visit_branches((xi, x), region, which, |f, value| {
+                    for a in 0..3 {
+                        for q in 0..LANES {
+                            flux[f][a][q] += value[q] * areas[a][q];
+                        }
+                    }
+                });
+            });
+            Ok::<(), CellError>(())
+        };
+        let own: BTreeSet<u32> = tips.iter().copied().flatten().collect();
+        for local in map.kind.facets() {
+            let normal = outward(map, local);
+            let nodes = local.iter().fold(0, |mask, i| mask | 1 << i);
+            for &tip in &own {
+                let points = self.border_points(cell, local, Some(tip));
+                for side in points.chunk_by(|p, q| p.1 == q.1) {
+                    let points: Vec<_> = side.iter().map(|(p, _)| (*p, normal)).collect();
+                    add(&points, side[0].1, (Some(tip), nodes))?;
                 }
+            }
+        }
+        let mut facets: BTreeMap<Region, Vec<(WeightedPoint, Point)>> = BTreeMap::new();
+        self.facet_points(cell, |p, regions, normal| {
+            for (region, sign) in regions.into_iter().zip([-1.0, 1.0]) {
+                let own = facets.entry(region).or_default();
+                own.push((*p, normal.map(|n| sign * n)));
             }
             Ok(())
         })?;
-        Ok(flux)
+        for (region, points) in &facets {
+            add(points, *region, (None, u8::MAX))?;
+        }
+        let sum = |sums: Points<LANES>| sums.map(|s| s.iter().sum());
+        Ok(flux.into_iter().map(sum).collect())
+    }
+
+    /// The tip of every branch function of a cell.
+    fn tips_of(&self, functions: &CellFunctions<'_>) -> Vec<Option<u32>> {
+        let kind = |&f: &u32| self.enrichment.functions[f as usize].kind;
+        let kinds = functions.numbers.iter().map(kind);
+        kinds
+            .map(|kind| match kind {
+                FunctionKind::Branch { tip, .. } => Some(tip),
+                _ => None,
+            })
+            .collect()
     }
 
     /// Visits the functions of a cell at the points of one of its edges (2D) or faces that they are integrated with: number in
@@ -224,16 +318,7 @@ impl CellIntegrator<'_> {
         functions: &mut CellFunctions<'_>,
         mut visit: impl FnMut(usize, &WeightedPoint, Region, f64),
     ) -> Result<(), CellError> {
-        let kinds = functions
-            .numbers
-            .iter()
-            .map(|&f| self.enrichment.functions[f as usize].kind);
-        let tips: Vec<Option<u32>> = kinds
-            .map(|kind| match kind {
-                FunctionKind::Branch { tip, .. } => Some(tip),
-                _ => None,
-            })
-            .collect();
+        let tips = self.tips_of(functions);
         let own: BTreeSet<Option<u32>> = tips.iter().copied().chain([None]).collect();
         let inverter = functions.map.inverter();
         for tip in own {
@@ -347,7 +432,7 @@ impl CellIntegrator<'_> {
 }
 
 /// Outward unit normal of a facet of a cell, given by its local nodes.
-pub fn outward(map: &crate::mesh::cell::CellMap, local: &[usize]) -> Point {
+pub fn outward(map: &CellMap, local: &[usize]) -> Point {
     if let &[i, j] = local {
         let d = unit(&sub(&map[j], &map[i]));
         return [d[1], -d[0], 0.0];
@@ -361,22 +446,4 @@ pub fn outward(map: &crate::mesh::cell::CellMap, local: &[usize]) -> Point {
 
 fn lost(x: &Point) -> CellError {
     CellError::new(*x, "a point of a cell has no reference position")
-}
-
-/// Adds what the gradients of branch functions lack, evenly over the cell.
-fn correct_branches(functions: &CellFunctions<'_>, flux: &[Point], points: &mut [EvaluatedPoint]) {
-    let kinds = functions.are_branches();
-    let measure: f64 = points.iter().map(|p| p.at.weight).sum();
-    let branches: Vec<usize> = (0..flux.len()).filter(|&f| kinds[f]).collect();
-    let mut missing: Vec<Point> = branches.iter().map(|&f| flux[f]).collect();
-    for p in points.iter() {
-        for (missing, &f) in missing.iter_mut().zip(&branches) {
-            *missing = add_scaled(missing, -p.at.weight, &p.gradients[f]);
-        }
-    }
-    for p in points.iter_mut() {
-        for (missing, &f) in missing.iter().zip(&branches) {
-            p.gradients[f] = add_scaled(&p.gradients[f], 1.0 / measure, missing);
-        }
-    }
 }

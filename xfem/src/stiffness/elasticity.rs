@@ -15,24 +15,37 @@
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, MatMut, MatRef, Par};
 
-use crate::geometry::Point;
+use crate::geometry::{Point, Points};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::cell::CellMap;
 use crate::quadrature::gauss_cell;
 
+use super::lanes::LANES;
+
+/// Measure of a region, and ∫ of the gradients of all functions over it.
+#[derive(Debug, Clone, Default)]
+pub struct Moments {
+    /// Sum of the weights [m^dim].
+    pub measure: f64,
+    /// By function.
+    pub gradients: Vec<Point>,
+}
+
 /// Gram matrix of gradients, dense symmetric, rows (k, a) with a fastest.
 ///
-/// Points are gathered and added as one product of matrices: a cell at a crack front has 10⁴ points and 120 rows.
+/// Points are gathered and added as one product of matrices: a cell at a crack front has 4·10⁴ points and 120 rows.
 #[derive(Debug, Clone)]
 pub struct Gram {
     size: usize,
     dim: usize,
     /// Lower triangle, column by column; what is above the diagonal means nothing.
     values: Vec<f64>,
-    /// Gradients of the gathered points, one column each.
+    /// Gradients of the gathered points, row by row.
     gathered: Vec<f64>,
     /// The same times their weights.
     weighted: Vec<f64>,
+    /// How many are gathered.
+    count: usize,
     /// ∫ g of what is in `values`.
     integral: Vec<f64>,
     /// Sum of the weights.
@@ -40,8 +53,11 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Points added at once: long enough for the product, short enough for the cache.
+    /// Points of one product: enough for it to pay, few enough for the cache.
     const GATHER: usize = 128;
+
+    /// From row to row of the gathered points: a power of two would crowd them in the cache.
+    const STRIDE: usize = Self::GATHER + 8;
 
     /// Zero matrix for a number of scalar functions.
     pub fn zero(functions: usize, dim: usize) -> Self {
@@ -50,8 +66,9 @@ impl Gram {
             size,
             dim,
             values: vec![0.0; size * size],
-            gathered: Vec::new(),
-            weighted: Vec::new(),
+            gathered: vec![0.0; size * Self::STRIDE],
+            weighted: vec![0.0; size * Self::STRIDE],
+            count: 0,
             integral: vec![0.0; size],
             measure: 0.0,
         }
@@ -59,48 +76,96 @@ impl Gram {
 
     /// G += w g gᵀ; `g`: the gradients of all functions.
     pub fn add(&mut self, weight: f64, g: &[Point]) {
-        self.measure += weight;
-        let start = self.gathered.len();
-        self.gathered.resize(start + self.size, 0.0);
-        self.weighted.resize(start + self.size, 0.0);
-        // Number by number: copying two or three at once is a call each.
         for (k, gradient) in g.iter().enumerate() {
-            for (a, value) in gradient.iter().enumerate().take(self.dim) {
-                self.gathered[start + k * self.dim + a] = *value;
-                self.weighted[start + k * self.dim + a] = weight * value;
+            self.put(k, &[weight], &gradient.map(|v| [v]));
+        }
+        self.end(&[weight]);
+    }
+
+    /// Gradients of the k-th function at the next L <= [`LANES`] points; [`Gram::end`] adds the points, when all are put.
+    #[inline]
+    pub fn put<const L: usize>(&mut self, k: usize, weights: &[f64; L], g: &Points<L>) {
+        for (a, g) in g.iter().enumerate().take(self.dim) {
+            let start = (k * self.dim + a) * Self::STRIDE + self.count;
+            self.gathered[start..][..L].copy_from_slice(g);
+            for (slot, (g, w)) in self.weighted[start..][..L]
+                .iter_mut()
+                .zip(g.iter().zip(weights))
+            {
+                *slot = g * w;
             }
         }
-        if self.gathered.len() >= Self::GATHER * self.size {
+    }
+
+    /// Adds the points whose gradients are put.
+    #[inline]
+    pub fn end<const L: usize>(&mut self, weights: &[f64; L]) {
+        self.measure += weights.iter().sum::<f64>();
+        self.count += L;
+        if self.count + LANES > Self::GATHER {
             self.gather();
         }
     }
 
+    /// Takes ∫ g and the measure of what was added since the last time.
+    pub fn take_moments(&mut self) -> Moments {
+        self.gather();
+        let moments = Moments {
+            measure: self.measure,
+            gradients: (self.integral.chunks_exact(self.dim))
+                .map(|g| [0, 1, 2].map(|a| g.get(a).copied().unwrap_or(0.0)))
+                .collect(),
+        };
+        self.integral.fill(0.0);
+        self.measure = 0.0;
+        moments
+    }
+
+    /// Gives moments back with g + c, c by function, in the place of g: G += s cᵀ + c sᵀ + V c cᵀ, s = ∫ g.
+    pub fn return_moments(&mut self, moments: &Moments, c: &[Point]) {
+        let flat = |g: &[Point]| -> Vec<f64> {
+            g.iter()
+                .flat_map(|g| g[..self.dim].iter().copied())
+                .collect()
+        };
+        let (s, c, measure) = (flat(&moments.gradients), flat(c), moments.measure);
+        for (j, column) in self.values.chunks_exact_mut(self.size).enumerate() {
+            let half = s[j] + measure * c[j];
+            for i in j..self.size {
+                column[i] += s[i] * c[j] + c[i] * half;
+            }
+        }
+        for (sum, (s, c)) in self.integral.iter_mut().zip(s.iter().zip(&c)) {
+            *sum += s + measure * c;
+        }
+        self.measure += measure;
+    }
+
     /// Adds the gathered points.
     fn gather(&mut self) {
-        let count = self.gathered.len() / self.size.max(1);
+        let count = std::mem::take(&mut self.count);
         if count == 0 {
             return;
         }
-        let columns = |values| MatRef::from_column_major_slice(values, self.size, count);
+        let rows = |values| {
+            let rows = MatRef::from_row_major_slice(values, self.size, Self::STRIDE);
+            rows.subcols(0, count)
+        };
         matmul(
             MatMut::from_column_major_slice_mut(&mut self.values, self.size, self.size),
             BlockStructure::TriangularLower,
             Accum::Add,
-            columns(&self.gathered),
+            rows(&self.gathered),
             BlockStructure::Rectangular,
-            columns(&self.weighted).transpose(),
+            rows(&self.weighted).transpose(),
             BlockStructure::Rectangular,
             1.0,
             Par::Seq,
         );
-        for column in self.weighted.chunks_exact(self.size) {
-            self.integral
-                .iter_mut()
-                .zip(column)
-                .for_each(|(s, g)| *s += g);
+        let rows = self.weighted.chunks_exact(Self::STRIDE);
+        for (sum, row) in self.integral.iter_mut().zip(rows) {
+            *sum += total(&row[..count]);
         }
-        self.gathered.clear();
-        self.weighted.clear();
     }
 
     fn at(&self, i: usize, j: usize) -> f64 {
@@ -157,6 +222,17 @@ impl Gram {
         }
         k
     }
+}
+
+/// Sum of numbers, several side by side.
+fn total(values: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    let chunks = values.chunks_exact(LANES);
+    let rest = chunks.remainder();
+    for chunk in chunks {
+        sums.iter_mut().zip(chunk).for_each(|(s, v)| *s += v);
+    }
+    sums.iter().chain(rest).sum()
 }
 
 /// Dense square matrix of one cell, row by row [N/m].
