@@ -156,6 +156,7 @@ impl LoadPathRun<'_> {
                 load: &load,
                 start_load: &start_load,
                 start: &state,
+                guess: None,
                 index: increment - 1,
                 tolerance: accuracy.asked,
             };

@@ -135,6 +135,7 @@ impl<'a> Runner<'a> {
                 load: &load[1],
                 start_load: &load[0],
                 start: index.checked_sub(1).map_or(&path.rest, |i| &self.states[i]),
+                guess: None,
                 index,
                 tolerance: path.asked,
             };
