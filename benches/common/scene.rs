@@ -72,6 +72,7 @@ impl Scene {
             load: &self.load,
             start_load: &self.start_load,
             start: &self.start,
+            guess: None,
             index: self.index,
             tolerance: Tier::High.tolerance(),
         }

@@ -117,11 +117,6 @@ pub enum MethodError {
         /// Its own words.
         reason: String,
     },
-    /// An increment was to be solved from several starts by a method that does not claim the contact laws themselves.
-    #[error(
-        "the method solves laws of its own, to which the forces at the start are history: other starts are other problems"
-    )]
-    StartIsHistory,
     /// A method found out on the way that it cannot treat the system: what
     /// [`Enforcement::refuses`](super::Enforcement::refuses) would have said.
     #[error("{reason}")]

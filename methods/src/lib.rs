@@ -49,6 +49,7 @@
 //!     load: &load,
 //!     start_load: &rest,
 //!     start: &start,
+//!     guess: None,
 //!     index: 0,
 //!     tolerance: Tier::High.tolerance(),
 //! };

@@ -72,6 +72,41 @@ fn the_same_increment_twice_gives_the_same_bits() {
     }
 }
 
+/// Goal: where a method begins to iterate is no part of the problem. Laws that remember forces, the springs of `penalty`, take
+/// them from the start of the increment whatever the guess.
+#[test]
+fn answers_do_not_depend_on_the_guess() {
+    let (k, b, f, mut rng) = five(12);
+    let s = system(&elastic(3, &k, &b, vec![], false), 0.3);
+    let (first, second) = (force(&s, &f), force(&s, &rng.vector(k.len())));
+    let wild = rng.vector(15);
+    for m in general() {
+        let start = run(&m, &[], &s, &first, 1e-10).state;
+        let slips = |p: &[f64]| p[1].hypot(p[2]) > 0.0;
+        assert!(
+            start.p.chunks(3).any(slips),
+            "{}: nothing to forget",
+            m.name
+        );
+        let from = |guess: Option<&[f64]>| {
+            let i = increment(&s, &second, &first, &start, 1e-10);
+            let i = Increment { guess, ..i };
+            let outcome = build(&m, &[]).solve(&i, &mut Silent).unwrap();
+            converged(&m, &outcome).then_some(outcome)
+        };
+        let Some(warm) = from(None) else { continue };
+        assert_eq!(from(Some(&start.p)).as_ref(), Some(&warm), "{}", m.name);
+        let others = [vec![0.0; 15], wild.clone()];
+        let others = others.iter().filter_map(|guess| from(Some(guess)));
+        let others: Vec<Outcome> = others.collect();
+        for other in &others {
+            assert_same(&other.state, &warm.state, 1e-7, m.name);
+        }
+        let differ = |o: &Outcome| o.history[0] != warm.history[0];
+        assert!(others.iter().any(differ), "{} ignores it", m.name);
+    }
+}
+
 #[test]
 fn reordering_the_points_reorders_the_answer() {
     let (k, b, f, _) = five(9);

@@ -1,7 +1,7 @@
 //! Records of a sweep as tables and figures.
 //!
 //! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
-//! `success.*`, `sensitivity.*`, `safe_windows.*`. All others belong to the machine. Times stand beside honest verdicts only, see
+//! `success.*`, `sensitivity.*`, `safe_windows.*`, `starts.*`. All others belong to the machine. Times stand beside honest verdicts only, see
 //! [`published_times`](crate::studies::sweep::analysis::published_times).
 
 use stickslip_methods::Tier;
@@ -24,7 +24,7 @@ use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::ranking::ranking;
 use crate::studies::sweep::analysis::recommendation::recommendations;
 use crate::studies::sweep::analysis::scaling::growth;
-use crate::studies::sweep::analysis::sensitivity::sweeps;
+use crate::studies::sweep::analysis::sensitivity::{starts, sweeps};
 use crate::studies::sweep::analysis::series::{Series, series};
 use crate::studies::sweep::analysis::success::success;
 use crate::studies::sweep::analysis::test_set::TestSet;
@@ -53,6 +53,10 @@ pub fn bundle(
     add_files(&mut bundle, records, &caveat)?;
     table::add(&mut bundle, &success(records), &caveat)?;
     add_sensitivity(&mut bundle, records, &caveat)?;
+    let starts = starts(records);
+    if !starts.is_empty() {
+        table::add(&mut bundle, &starts, &caveat)?;
+    }
     table::add(&mut bundle, &profiles(&sets), "")?;
     table::add(&mut bundle, &rankings(&sets), &caveat)?;
     table::add(&mut bundle, &growth(records), &caveat)?;

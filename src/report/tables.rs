@@ -29,6 +29,7 @@ use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::scaling::Growth;
+use crate::studies::sweep::analysis::sensitivity::Starts;
 use crate::studies::sweep::analysis::success::SuccessRow;
 
 /// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
@@ -172,6 +173,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<SuccessRow>(),
         Description::of::<sensitivity::WindowRow<'_>>(),
         Description::of::<sensitivity::SensitivityRow<'_>>(),
+        Description::of::<Starts>(),
         Description::of::<sweep::SummaryRow>(),
         Description::of::<ranks::ProfileRow>(),
         Description::of::<ranks::PointRow<'_>>(),

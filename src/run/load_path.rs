@@ -49,6 +49,7 @@ impl<'a> Posed<'a> {
             friction: self.friction,
             choice,
             accuracy,
+            cold: false,
         }
     }
 }
@@ -68,6 +69,8 @@ pub struct LoadPathRun<'a> {
     pub choice: &'a Choice,
     /// Accuracy asked for.
     pub accuracy: Accuracy,
+    /// Whether methods begin every increment from no contact forces in place of those in which the one before ended.
+    pub cold: bool,
 }
 
 /// Is shown an increment, with the mechanics at its end where the verdict is honest.
@@ -142,7 +145,8 @@ impl LoadPathRun<'_> {
                 return end;
             }
         };
-        let mut state = ContactState::zero(system);
+        let rest = ContactState::zero(system);
+        let mut state = rest.clone();
         let mut before = Snapshot::virgin(body);
         let mut start_load = loading.at(0);
         for increment in 1..=last {
@@ -156,6 +160,7 @@ impl LoadPathRun<'_> {
                 load: &load,
                 start_load: &start_load,
                 start: &state,
+                guess: self.cold.then_some(&rest.p[..]),
                 index: increment - 1,
                 tolerance: accuracy.asked,
             };

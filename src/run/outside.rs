@@ -332,7 +332,7 @@ fn private(path: &Path) -> std::io::Result<()> {
     builder.create(path)
 }
 
-/// The problem with what methods here start from, as a guess: the contact forces at the start of the increment.
+/// The problem with what methods here start from, as a guess: contact forces, and the jumps at the start of the increment.
 fn problem(increment: &Increment<'_>, form: &LocalForm) -> LocalProblem {
     let info = Info {
         title: Some(format!("increment {}", increment.index + 1)),
@@ -342,7 +342,7 @@ fn problem(increment: &Increment<'_>, form: &LocalForm) -> LocalProblem {
     let guess = Solution {
         v: Vec::new(),
         u: local_velocity(increment, increment.start),
-        r: increment.start.p.clone(),
+        r: increment.guess().to_vec(),
         l: vec![0.0; form.modes.len()],
     };
     LocalProblem {

@@ -78,6 +78,7 @@ pub fn attempt(
         load: &posed.load,
         start_load: &rest,
         start: &start,
+        guess: None,
         index: 0,
         tolerance,
     };
@@ -165,6 +166,7 @@ mod tests {
                 load: &posed.load,
                 start_load: &rest,
                 start: &start,
+                guess: None,
                 index: 0,
                 tolerance: 1e-9,
             };

@@ -340,6 +340,7 @@ fn run_body(
                     load,
                     start_load: &rest,
                     start: &start,
+                    guess: None,
                     index: 0,
                     tolerance: plan.tier.tolerance(),
                 };

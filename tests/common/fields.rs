@@ -207,6 +207,7 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
         load: &held.at(1),
         start_load: &no_load(&body),
         start: &ContactState::zero(&system),
+        guess: None,
         index: 0,
         tolerance: TOLERANCE,
     };

@@ -149,6 +149,7 @@ pub fn solve_case(case: &Case, refine: usize, name: &str, tolerance: f64) -> Sol
         load: &loading.at(last),
         start_load: &no_load(&body),
         start: &ContactState::zero(&system),
+        guess: None,
         index: 0,
         tolerance,
     };

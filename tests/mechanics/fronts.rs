@@ -54,6 +54,7 @@ fn measure(body: &Body, text: &str) -> (Snapshot, Vec<Deviation>) {
         load: &loading.at(1),
         start_load: &no_load(body),
         start: &ContactState::zero(&system),
+        guess: None,
         index: 0,
         tolerance: TOLERANCE,
     };

@@ -49,6 +49,7 @@ impl Path {
             load: &loading.at(index + 1),
             start_load: &before,
             start,
+            guess: None,
             index,
             tolerance: self.case.tolerance,
         };

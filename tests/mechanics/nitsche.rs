@@ -59,6 +59,7 @@ fn solve_body(
         load,
         start_load: &no_load(body),
         start: &ContactState::zero(system),
+        guess: None,
         index: 0,
         tolerance,
     };

@@ -80,6 +80,7 @@ fn posed<T>(f: &Fixture, run: impl FnOnce(&ContactSystem, &Increment<'_>) -> T) 
         load: &load,
         start_load: &rest,
         start: &start,
+        guess: None,
         index: 0,
         tolerance: f.tolerance,
     };

@@ -31,6 +31,8 @@ fn cell(case: &str, friction: usize, method: &str, tolerance: f64) -> (Cell, Str
         refine: 1,
         space: None,
         friction: friction_values(&case)[friction].clone(),
+        increments: 1,
+        cold: false,
         method: method.into(),
         tolerance,
         program: None,
@@ -208,6 +210,34 @@ fn what_was_found_is_the_same_whoever_was_measured_before() {
     assert!(spent.solve.min_s > 0.0 && spent.solve.median_s >= spent.solve.min_s);
     let (all, own) = (&spent.solve, &spent.enforcement);
     assert!(own.min_s > 0.0 && own.median_s < all.median_s && own.samples == 7);
+}
+
+/// Goal: solver errors refer to the converged solution in the same increments, whoever was measured before, and a cold start
+/// forgets contact forces alone: at rest there are none, and the answers are those of a warm one.
+#[test]
+fn increments_have_a_converged_solution_of_their_own_and_starts_share_it() {
+    let (plain, text) = cell("cyclic", 0, "nsgs", 1e-6);
+    let choice = Choice::parse("nsgs").unwrap();
+    let mut bench = Bench::default();
+    let mut of = |increments: usize, cold: bool| {
+        let own = Cell {
+            increments,
+            cold,
+            ..plain.clone()
+        };
+        let after = measure(&mut bench, &own, &text, &choice).unwrap().found;
+        let alone = measure(&mut Bench::default(), &own, &text, &choice).unwrap();
+        assert_eq!(after, alone.found);
+        assert_eq!(after.increments.len(), 16 * increments);
+        let error = after.solver_error.as_ref().unwrap();
+        assert!(error.energy < 1e-5, "{increments} {cold}: {error:?}");
+        after
+    };
+    let [whole, thirds, cold] = [(1, false), (3, false), (3, true)].map(|(n, cold)| of(n, cold));
+    assert_eq!(of(1, false), whole);
+    assert_eq!(cold.increments[0], thirds.increments[0]);
+    let counts = [&thirds, &cold].map(|found| found.sum(|i| i.iterations));
+    assert!(counts[0] < counts[1], "{counts:?}");
 }
 
 /// Goal: in turn, one method that answers differently the second time leaves the times of the others alone.

@@ -54,6 +54,7 @@ fn judged(choice: &Choice) -> JudgedIncrement {
         load: &posed.load,
         start_load: &rest,
         start: &start,
+        guess: None,
         index: 0,
         tolerance: 1e-9,
     };

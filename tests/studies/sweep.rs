@@ -425,6 +425,21 @@ fn bad_sweep_files_are_refused_at_their_place() {
             "3:",
             "out of range",
         ),
+        (format!("{good}increments = [0]\n"), "4:15", "out of range"),
+        (format!("{good}increments = []\n"), "4:14", "empty list"),
+        (
+            format!("{good}start = [\"warm\", \"cool\"]\n"),
+            "4:18",
+            "did you mean `cold`?",
+        ),
+        (
+            good.replace(
+                "cases = [\"cyclic\"]",
+                "files = [\"x.hdf5\"]\nstart = [\"cold\"]",
+            ),
+            "4:9",
+            "one increment from rest",
+        ),
         (format!("{good}meshes = [1]\n"), "4:1", "unknown key"),
         (format!("{good}options = {{}}\n"), "4:11", "empty table"),
         (format!("{good}options.r = 1\n"), "4:13", "wrong type"),
@@ -562,6 +577,69 @@ fn options_of_methods_are_axes_of_a_sweep() {
     // Beside options that a method is given by name.
     let beside = "methods = [\"hybrid:first=3\"]\noptions.r = [2]";
     assert_eq!(listed(beside), ["hybrid-r=2e0-first=3e0"]);
+}
+
+/// Goal: both axes stand in ids; without them a cell has the id that it always had.
+#[test]
+fn increments_and_starts_are_axes_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = |block: &str| listed(folder.path(), &format!("methods = [\"pdas\"]\n{block}"));
+    assert_eq!(listed("increments = [1]\nstart = [\"warm\"]"), ["pdas"]);
+    let both = "increments = [10, 1]\nstart = [\"warm\", \"cold\"]";
+    let expected = [
+        "cold.pdas",
+        "increments-10.cold.pdas",
+        "increments-10.pdas",
+        "pdas",
+    ];
+    assert_eq!(listed(both), expected);
+}
+
+/// Goal: what they change, through the program: a path in more increments, other counts of iterations, the same answers.
+#[test]
+fn records_and_tables_tell_increments_and_starts_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (folder.path().join("sweep.toml"), folder.path().join("out"));
+    let text = "title = \"t\"\n[[cells]]\ncases = [\"cyclic\"]\nmethods = [\"nsgs\", \"penalty\"]\n\
+                increments = [1, 2]\nstart = [\"warm\", \"cold\"]\ntolerances = [1e-6]\n";
+    fs::write(&file, text).unwrap();
+    assert_eq!(code(study(&file, &out, &["--untimed"])), 0);
+    let records = found(&out);
+    assert_eq!(records.len(), 8);
+    for record in records.values() {
+        let (cell, found) = (&record.cell, &record.found);
+        assert_eq!(
+            found.increments.len(),
+            16 * cell.increments,
+            "{}",
+            record.id
+        );
+        assert!(found.verdict.is_honest(), "{}", record.id);
+        // Of the converged solution in the same increments: soft springs are off by their modelling error, from either start.
+        let error = found.solver_error.as_ref().unwrap().energy;
+        assert!(error < 1e-2, "{}: {error:e}", record.id);
+        let warm = |o: &&Record| {
+            !o.cell.cold && (&o.cell.method, o.cell.increments) == (&cell.method, cell.increments)
+        };
+        let twin = records.values().find(warm).unwrap();
+        let other = twin.found.solver_error.as_ref().unwrap().energy;
+        assert!(
+            (error - other).abs() < 1e-5,
+            "{}: {error:e} {other:e}",
+            record.id
+        );
+        if cell.cold && cell.method == "nsgs" {
+            let [cold, warm] = [found, &twin.found].map(|f| f.sum(|i| i.iterations));
+            assert!(cold > warm, "{}: {cold} {warm}", record.id);
+        }
+    }
+    let table = fs::read_to_string(out.join("starts.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    assert_eq!(rows.len(), 4, "{table}");
+    assert!(
+        rows[1].starts_with("cyclic,nsgs,1e-6,2,32,1,1,1,"),
+        "{table}"
+    );
 }
 
 /// Goal: whoever cannot write gets an error that names the path, and nothing half-written.

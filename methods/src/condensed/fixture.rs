@@ -23,6 +23,7 @@ pub(crate) fn with_contact<T>(
         load: &load,
         start_load: &Load::zero(body),
         start: &ContactState::zero(&system),
+        guess: None,
         index: 0,
         tolerance: 1e-9,
     };

@@ -213,9 +213,9 @@ impl<'a> ContactProblem<'a> {
         self.increment.system.friction()[i]
     }
 
-    /// Contact forces to start from: those of the start state, corrected by the least change that balances the load.
+    /// Contact forces to start from: the guess, corrected by the least change that balances the load.
     pub fn start_forces(&self) -> Vec<f64> {
-        let mut p = self.rows.restrict(&self.increment.start.p);
+        let mut p = self.rows.restrict(self.increment.guess());
         self.rebalance(&mut p);
         p
     }

@@ -7,7 +7,7 @@
 use crate::algebra::dense::{minus, norm};
 use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::problem::{Begin, ContactProblem};
-use crate::contract::judge::residuals;
+use crate::contract::judge::residuals_of;
 use crate::contract::law::tangential_norm;
 use crate::contract::operator::DelassusForm;
 use crate::contract::registry::Enforcement;
@@ -67,14 +67,11 @@ pub(crate) const RIDGE: f64 = 1e-10;
 /// force: the condition of the problem enlarges what the tolerance leaves open.
 const DIFFERENT: f64 = 1e4;
 
-/// Solves an increment from every start of [`Start::ALL`]; the history of slip is that of the increment's own start. Every
-/// claim is judged before it counts.
-///
-/// For methods that solve the contact laws themselves: to springs the forces of the start are history, so that every start
-/// would be another problem.
+/// Solves an increment with every start of [`Start::ALL`] as its guess: history is that of the increment's own start. Every
+/// claim is judged before it counts, by the laws that it is about.
 ///
 /// # Errors
-/// [`MethodError::StartIsHistory`] if the method claims anything but [`Claim::Exact`]; those of the method.
+/// Those of the method.
 pub fn from_all_starts(
     method: &mut dyn Enforcement,
     increment: &Increment<'_>,
@@ -90,20 +87,13 @@ pub fn from_all_starts(
             failed = failed.or(problem.as_deref().map(ContactProblem::singular));
             continue;
         };
-        let guess = ContactState {
-            u: increment.start.u.clone(),
-            p,
-        };
         let posed = Increment {
-            start: &guess,
+            guess: Some(&p),
             ..*increment
         };
         let outcome = method.solve(&posed, &mut Silent)?;
-        if outcome.claim != Claim::Exact {
-            return Err(MethodError::StartIsHistory);
-        }
         if outcome.status == Status::Converged {
-            let found = residuals(&posed, &outcome.state)?.violation;
+            let found = residuals_of(&posed, &outcome.state, outcome.claim)?.claimed;
             // A NaN is no solution.
             broken |= found.is_nan() || found > increment.tolerance;
         } else {

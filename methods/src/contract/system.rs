@@ -177,6 +177,9 @@ pub struct Increment<'a> {
     pub start_load: &'a Load,
     /// State at the start; slip is measured from its jump.
     pub start: &'a ContactState,
+    /// Contact forces that methods begin to iterate from, `dim` per point: none stands for those of the start. A guess, and
+    /// no part of the problem: laws that remember forces take them from the start.
+    pub guess: Option<&'a [f64]>,
     /// Number of the increment, from 0.
     pub index: usize,
     /// Natural map the method must reach.
@@ -192,6 +195,11 @@ impl Increment<'_> {
     /// `[[u]]` at the start of the increment, `dim` per point, in m.
     pub fn start_jump(&self) -> Vec<f64> {
         jump(self.system, self.start_load, &self.start.u)
+    }
+
+    /// Contact forces that methods begin to iterate from, `dim` per point.
+    pub fn guess(&self) -> &[f64] {
+        self.guess.unwrap_or(&self.start.p)
     }
 
     /// Whether nothing acts at the end of the increment.
@@ -216,6 +224,7 @@ impl Increment<'_> {
         check("start load offset", &self.start_load.offset, m)?;
         check("start displacements", &self.start.u, n)?;
         check("start contact forces", &self.start.p, m)?;
+        check("guessed contact forces", self.guess(), m)?;
         if self.tolerance > 0.0 && self.tolerance.is_finite() {
             Ok(())
         } else {

@@ -170,6 +170,7 @@ pub fn increment<'a>(
         load,
         start_load,
         start,
+        guess: None,
         index: 0,
         tolerance,
     }

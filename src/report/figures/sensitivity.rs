@@ -13,7 +13,8 @@ pub static KIND: Kind = Kind {
     file: "sensitivity.svg",
     question: "How do iterations and success depend on the parameter of a method?",
     shows: "Median iterations over an option of the methods, a multiple of its natural scale, by class of problems; hollow, \
-            with the share that is solved: values at which not every problem is.",
+            with the share that is solved: values at which not every problem is. Classes that a single method was put to have \
+            their table, where others compare methods.",
 };
 
 /// Least ratio of the ends of a range that is drawn: switches and counts have their table.
@@ -49,6 +50,10 @@ fn groups(sweeps: &[Sweep]) -> Vec<Group<'_>> {
                 sweeps: vec![sweep],
             }),
         }
+    }
+    // A curve alone compares nothing; it has its table.
+    if groups.iter().any(|group| group.sweeps.len() > 1) {
+        groups.retain(|group| group.sweeps.len() > 1);
     }
     // The classes at a tolerance next to each other.
     groups.sort_by(|a, b| b.tolerance.total_cmp(&a.tolerance));

@@ -3,7 +3,7 @@
 use super::words::METHOD;
 use crate::report::number;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::sweep::analysis::sensitivity::{FAST, Step, Sweep, Windows};
+use crate::studies::sweep::analysis::sensitivity::{FAST, Starts, Step, Sweep, Windows};
 
 /// A value as it is read: powers of ten where digits would have to be counted.
 fn value(x: f64) -> String {
@@ -67,10 +67,62 @@ impl Row for SensitivityRow<'_> {
             "false_claims" "" .named("false claims") = r.step.false_claims, "claims that the judge refuted";
             "iterations" "" .named("iterations").digits(4) = r.step.iterations, "of the whole path, median over the problems solved";
             "most_iterations" "" .named("most").digits(6) = r.step.most, "most on a problem solved";
+            "most_increment" "" = r.step.hardest, "most in one increment of a problem solved";
             "ratio" "–" .significant(4).named("over those at the default").digits(3) = r.step.ratio[0], "iterations over those at the default, median over the problems solved at both; `NaN` where the default was not tried";
             "most_ratio" "–" .significant(4).named("most").digits(3) = r.step.ratio[1], "largest such ratio";
             "spent" "" = r.step.spent, "iterations on the problems not solved, median; `NaN` without any";
             "violation" "–" .residual() = r.step.violation, "largest violation of the contact laws on a problem solved";
+        }
+    }
+}
+
+impl Starts {
+    /// Of warm starts, 0, or cold ones, 1.
+    fn of(&self, cold: usize, value: impl Fn(&Step) -> f64) -> f64 {
+        let steps = &self.sweep.steps;
+        let step = steps.iter().find(|step| step.value == cold as f64);
+        step.map_or(f64::NAN, value)
+    }
+
+    fn solved(&self, cold: usize) -> f64 {
+        self.of(cold, |step| step.solved as f64)
+    }
+
+    fn iterations(&self, cold: usize) -> f64 {
+        self.of(cold, |step| step.iterations)
+    }
+
+    fn each(&self, cold: usize) -> f64 {
+        self.iterations(cold) / self.increments as f64
+    }
+}
+
+impl Row for Starts {
+    const NAME: &'static str = "starts";
+    const TITLE: &'static str = "Iterations over the whole load path, every increment begun from the contact forces of the last one (warm) or from none (cold), in more and more increments";
+    const QUESTION: &'static str =
+        "What do a warm start and smaller increments save, in iterations, per method?";
+    const NOTES: &'static str = "Methods that were given cold starts, or increments of the case in equal parts. Slip is measured from the end of the last increment \
+         either way; a floating piece begins with the forces of least norm that balance its load. With friction the answer may \
+         depend on the number of increments.";
+    // They come by class, method and number of increments.
+    const ORDER: Order<Self> = Order::Given;
+
+    fn columns() -> Vec<Column<Self>> {
+        columns! { r: Self,
+            "class" "" .named("problems of") = class(&r.sweep), CLASS;
+            "method" "" .shown() = r.sweep.method.clone(), METHOD;
+            "tolerance" "–" .shown() = r.sweep.tolerance, TOLERANCE;
+            "parts" "" = r.parts, "equal increments that each of the case's is divided in";
+            "increments" "" .shown() = r.increments, "increments of the path";
+            "problems" "" = r.sweep.problems, "problems that were given every start";
+            "solved_warm" "" = r.solved(0), "problems solved from warm starts";
+            "solved_cold" "" = r.solved(1), "problems solved from cold starts; `NaN` where there are none, like the columns of cold starts that follow";
+            "warm" "" .named("warm").digits(6) = r.iterations(0), "iterations of the whole path from warm starts, median over the problems solved";
+            "cold" "" .named("cold").digits(6) = r.iterations(1), "from cold starts";
+            "cold_over_warm" "–" .significant(4).named("cold/warm").digits(3) = r.of(1, |step| step.ratio[0]), "cold over warm, median over the problems solved from both";
+            "warm_each" "" .significant(4).named("warm, each").digits(3) = r.each(0), "iterations per increment from warm starts";
+            "cold_each" "" .significant(4).named("cold, each").digits(3) = r.each(1), "from cold starts";
         }
     }
 }
@@ -112,7 +164,9 @@ impl<'a> WindowRow<'a> {
             problems,
             ..
         } = self.sweep;
-        let Windows { tried, safe, fast } = self.windows;
+        let Windows {
+            tried, safe, fast, ..
+        } = self.windows;
         let what = match (self.sweep.exact, problems) {
             (true, 1) => format!("the problem to {:e}", self.sweep.tolerance),
             (true, n) => format!("all {n} problems to {:e}", self.sweep.tolerance),
@@ -179,6 +233,7 @@ impl Row for WindowRow<'_> {
             "problems" "" .shown() = r.sweep.problems, PROBLEMS;
             "safe_from" "–" .named("safe from") = end(r.windows.safe, 0), "every problem is solved from this value on; `NaN` where the default does not solve them all";
             "safe_to" "–" .named("to") = end(r.windows.safe, 1), "up to this one";
+            "most_increment" "" .named("most per increment") = r.windows.hardest, "most iterations of one increment at any value between them";
             "fast_from" "–" .named("fast from") = end(r.windows.fast, 0), "and on no problem iterations exceed twice those at the default from this value on";
             "fast_to" "–" .named("to") = end(r.windows.fast, 1), "up to this one";
             "tried_from" "–" .named("tried from") = r.windows.tried[0], "least value tried";

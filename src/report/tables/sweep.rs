@@ -26,6 +26,8 @@ fn of_cell<R: OfCell>(own: Vec<Column<R>>) -> Vec<Column<R>> {
         "mesh" "" .shown() = size(r.record()).map_or("", |size| &size.mesh), "mesh label; empty where the cell ended before it had a mesh";
         "space" "" .shown() = size(r.record()).map_or(r.record().cell.space.as_deref().unwrap_or("own"), |size| &size.space), SPACE;
         "friction" "–" .named("μ") = r.record().cell.mu(), FRICTION;
+        "parts" "" = r.record().cell.increments, "equal increments that each of the case's is divided in";
+        "start" "" = if r.record().cell.cold { "cold" } else { "warm" }, "where methods begin an increment: from the contact forces at the end of the last one (`warm`), or from none (`cold`)";
         "method" "" .shown() = r.record().found.method.clone(), METHOD;
         "tolerance" "–" .shown() = r.record().cell.tolerance, "violation of the contact laws asked of the method and accepted by the judge";
     };

@@ -103,6 +103,7 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
         load: &posed.loading.at(wanted),
         start_load: &posed.loading.at(wanted - 1),
         start: &start,
+        guess: None,
         index: wanted - 1,
         tolerance: path.accuracy.asked,
     };

@@ -249,6 +249,7 @@ impl ProblemFile {
             load: &self.load,
             start_load: &self.rest,
             start: &self.start,
+            guess: None,
             index: 0,
             tolerance,
         }

@@ -115,10 +115,11 @@ pub fn compare_methods(a: &str, b: &str) -> Ordering {
     place(a).cmp(&place(b)).then_with(|| a.cmp(b))
 }
 
-/// Order of problems: case, refinement, contact space, friction.
+/// Order of problems: case, refinement, contact space, friction, increments, start.
 pub fn compare_problems(a: &Problem, b: &Problem) -> Ordering {
     fn key(p: &Problem) -> impl PartialOrd + '_ {
-        (&p.case, p.refine, &p.space, &p.digest, &p.friction)
+        let path = (p.increments, p.cold);
+        (&p.case, p.refine, &p.space, &p.digest, &p.friction, path)
     }
     // Coefficients of friction are numbers.
     key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal)
@@ -145,7 +146,8 @@ pub fn problem_names(problems: &[Problem]) -> Vec<String> {
     let short = |p: &Problem| {
         let space = p.space.as_deref().unwrap_or("own");
         let mu = p.friction.first().copied().unwrap_or(0.0);
-        format!("{}.r{}.{space}.mu-{mu}", p.case, p.refine)
+        let path = p.path_name();
+        format!("{}.r{}.{space}.mu-{mu}{path}", p.case, p.refine)
     };
     let name = |problem: &Problem| {
         let name = short(problem);

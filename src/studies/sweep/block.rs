@@ -26,6 +26,12 @@ const MAX_CASES: usize = 1000;
 /// Largest number of random problems of a block; all are drawn before anything is measured.
 const MAX_PROBLEMS: usize = 10_000;
 
+/// Most parts that an increment of a case is divided in.
+const MAX_PARTS: usize = 1000;
+
+/// Where methods begin an increment, and whether it is a cold start.
+const STARTS: [(&str, bool); 2] = [("warm", false), ("cold", true)];
+
 /// One `[[cells]]`: cases by name, and what is combined with each.
 pub(super) struct Block {
     pub cases: Vec<(String, Case)>,
@@ -33,6 +39,9 @@ pub(super) struct Block {
     refine: Option<Vec<usize>>,
     contact: Vec<Option<ContactSpace>>,
     pub friction: Option<Vec<f64>>,
+    increments: Vec<usize>,
+    /// Whether cold, by start.
+    start: Vec<bool>,
     pub methods: Vec<Named>,
     pub tolerances: Vec<f64>,
 }
@@ -90,6 +99,8 @@ impl Block {
             refine,
             friction,
             self.contact.len(),
+            self.increments.len(),
+            self.start.len(),
             self.methods.len(),
             self.tolerances.len(),
         ];
@@ -109,18 +120,22 @@ impl Block {
         let mut tasks = Vec::new();
         for &refine in self.refine.as_ref().unwrap_or(&case.sweep.refine) {
             for (contact, friction) in product(&self.contact, &friction) {
-                for (method, tolerance) in product(&self.methods, &self.tolerances) {
-                    let cell = Cell {
-                        case: name.to_owned(),
-                        digest: digest.clone(),
-                        refine,
-                        space: contact.map(|space| space.name().to_owned()),
-                        friction: friction.clone(),
-                        method: method.argument.clone(),
-                        tolerance: *tolerance,
-                        program: method.program.clone(),
-                    };
-                    tasks.push(Task::new(cell, source.clone()));
+                for (&increments, &cold) in product(&self.increments, &self.start) {
+                    for (method, &tolerance) in product(&self.methods, &self.tolerances) {
+                        let cell = Cell {
+                            case: name.to_owned(),
+                            digest: digest.clone(),
+                            refine,
+                            space: contact.map(|space| space.name().to_owned()),
+                            friction: friction.clone(),
+                            increments,
+                            cold,
+                            method: method.argument.clone(),
+                            tolerance,
+                            program: method.program.clone(),
+                        };
+                        tasks.push(Task::new(cell, source.clone()));
+                    }
                 }
             }
         }
@@ -147,6 +162,8 @@ pub(super) fn block(
         "refine",
         "contact",
         "friction",
+        "increments",
+        "start",
         "methods",
         "options",
         "tolerances",
@@ -162,9 +179,10 @@ pub(super) fn block(
         }
         ("bodies", sizes) => cases.extend(bodies(sizes, room)?),
         ("files", list) => {
-            for key in ["refine", "contact", "friction"] {
+            for key in ["refine", "contact", "friction", "increments", "start"] {
                 if let Some(value) = table.get(key) {
-                    let allowed = "no such key beside `files`: a problem file has its own";
+                    let allowed =
+                        "no such key beside `files`: a problem file is one increment from rest";
                     return Err(value.refuse(allowed, key));
                 }
             }
@@ -196,6 +214,12 @@ pub(super) fn block(
         friction: table.optional("friction", |v| {
             entries(v, |v| v.number_if("numbers >= 0", |mu| mu >= 0.0))
         })?,
+        increments: table
+            .optional("increments", |v| entries(v, |v| v.integer(1..=MAX_PARTS)))?
+            .unwrap_or(vec![1]),
+        start: table
+            .optional("start", |v| entries(v, |v| v.one_of(&STARTS)))?
+            .unwrap_or(vec![false]),
         methods: methods(&table, folder, &mut room.programs)?,
         tolerances: tolerances.unwrap_or_else(|| Tier::ALL.map(Tier::tolerance).to_vec()),
     };

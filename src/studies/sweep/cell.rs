@@ -1,4 +1,4 @@
-//! What is measured: one case on one mesh, with one contact space, friction, method and tolerance.
+//! What is measured: one case on one mesh, with one contact space, friction, number of increments, start, method and tolerance.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,6 +33,11 @@ pub struct Cell {
     pub space: Option<String>,
     /// Friction coefficient of every crack.
     pub friction: Vec<f64>,
+    /// Equal increments that each of the case's is divided in, from 1.
+    pub increments: usize,
+    /// Whether methods begin every increment from no contact forces in place of those in which the one before ended. Slip is
+    /// measured from there all the same.
+    pub cold: bool,
     /// Method as on the command line: `name` or `name:option=value,…`.
     pub method: String,
     /// Natural map asked of the method and accepted by the judge.
@@ -63,7 +68,8 @@ impl Cell {
         let space = self.space.as_deref().unwrap_or("own");
         let (case, mu) = (&self.case, self.mu());
         let how = format!("{}.tol-{:e}", self.method, self.tolerance);
-        let readable = format!("{case}.r{}.{space}.mu-{mu}.{how}", self.refine);
+        let path = self.problem().path_name();
+        let readable = format!("{case}.r{}.{space}.mu-{mu}{path}.{how}", self.refine);
         let exact = format!("{readable} {} {:?}", self.digest, self.friction);
         let safe = |c: char| if is_safe(c) { c } else { '-' };
         // The digest tells apart what is cut off.
@@ -71,7 +77,7 @@ impl Cell {
         format!("{name}.{}", &sha256(exact.as_bytes())[..8])
     }
 
-    /// What is solved, apart from how: the id without method and tolerance.
+    /// What methods are given alike: the id without method and tolerance.
     pub fn problem(&self) -> Problem {
         Problem {
             case: self.case.clone(),
@@ -79,6 +85,8 @@ impl Cell {
             refine: self.refine,
             space: self.space.clone(),
             friction: self.friction.clone(),
+            increments: self.increments,
+            cold: self.cold,
         }
     }
 }
@@ -131,7 +139,8 @@ impl Named {
     }
 }
 
-/// What several cells solve.
+/// What several cells solve. Methods are compared from the same start and in the same increments, so other ones make it another
+/// problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// As in [`Cell`].
@@ -144,9 +153,25 @@ pub struct Problem {
     pub space: Option<String>,
     /// As in [`Cell`].
     pub friction: Vec<f64>,
+    /// As in [`Cell`].
+    pub increments: usize,
+    /// As in [`Cell`].
+    pub cold: bool,
 }
 
 impl Problem {
+    /// How the path is followed, as a part of names: nothing where it is followed as the case says, from warm starts.
+    pub fn path_name(&self) -> String {
+        let mut name = match self.increments {
+            1 => String::new(),
+            many => format!(".increments-{many}"),
+        };
+        if self.cold {
+            name += ".cold";
+        }
+        name
+    }
+
     /// The same whatever the mesh.
     pub fn without_mesh(&self) -> Self {
         Self {
@@ -177,6 +202,8 @@ mod tests {
             refine: 2,
             space: None,
             friction: vec![0.1, 0.2],
+            increments: 1,
+            cold: false,
             method: "penalty:normal=1e2".into(),
             tolerance: 1e-6,
             program: None,
@@ -195,17 +222,25 @@ mod tests {
         let readable = "plate.r2.own.mu-0.1.penalty-normal=1e2.tol-1e-6.";
         assert!(id.starts_with(readable), "{id}");
         assert_eq!(id.len(), readable.len() + 8);
+        let path = Cell {
+            increments: 10,
+            cold: true,
+            ..cell()
+        };
+        assert!(path.id().contains(".mu-0.1.increments-10.cold.penalty"));
     }
 
     #[test]
     fn whatever_changes_a_cell_changes_its_id() {
-        let changes: [fn(&mut Cell); 8] = [
+        let changes: [fn(&mut Cell); 10] = [
             |c| c.case.push('x'),
             |c| c.digest = digest("other"),
             |c| c.refine = 3,
             |c| c.space = Some("star".into()),
             |c| c.friction[1] = 0.3,
             |c| c.friction[0] = 0.3,
+            |c| c.increments = 10,
+            |c| c.cold = true,
             |c| c.method = "penalty,normal=1e2".into(),
             |c| c.tolerance = 1e-7,
         ];
@@ -217,7 +252,7 @@ mod tests {
         }
         ids.sort();
         ids.dedup();
-        assert_eq!(ids.len(), 9);
+        assert_eq!(ids.len(), 11);
         assert_eq!(cell().id(), cell().id());
     }
 }

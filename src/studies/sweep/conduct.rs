@@ -256,12 +256,21 @@ fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<&Task>> {
             refine,
             space,
             friction,
+            increments,
+            cold,
             tolerance,
             ..
         } = &task.cell;
         let problem = (case.clone(), digest.clone(), *refine, space.clone());
         let coefficients: Vec<u64> = friction.iter().map(|mu| mu.to_bits()).collect();
-        (problem, traction(task), coefficients, tolerance.to_bits())
+        let path = (*increments, *cold);
+        (
+            problem,
+            traction(task),
+            coefficients,
+            path,
+            tolerance.to_bits(),
+        )
     };
     tasks.sort_by_cached_key(key);
     let same = |a: &&Task, b: &&Task| key(a) == key(b);

@@ -69,6 +69,8 @@ impl FileProblem {
                 refine: 1,
                 space: Some(FROM_FILE.into()),
                 friction: self.friction.clone(),
+                increments: 1,
+                cold: false,
                 method: method.argument.clone(),
                 tolerance,
                 program: method.program.clone(),

@@ -100,6 +100,7 @@ fn pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
         friction: cell.mu(),
         choice,
         accuracy: Accuracy::exactly(cell.tolerance),
+        cold: cell.cold,
     };
     let (mut rows, mut increments) = (Vec::new(), Vec::new());
     let mut snapshots = Vec::new();

@@ -12,6 +12,8 @@
 //! refine = [1, 2]                              # the case's own by default
 //! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
 //! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
+//! increments = [1, 10]                         # equal parts of every increment of the case; 1 by default
+//! start = ["warm", "cold"]                     # contact forces of the last increment to begin from, or none; warm by default
 //! methods = ["hybrid", "penalty:normal=1e2,tangential=1e2", "exec:mine.py"]      # all of the registry by default; programs beside this file
 //! # options.r = { from = 1e-3, to = 1e3, per_decade = 1 }   values of an option of the methods, also as a list; see `options`
 //! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the violation; the default

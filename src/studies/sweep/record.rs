@@ -17,7 +17,7 @@ use crate::studies::convergence::Value;
 use crate::studies::exchange::problem_file::OperatorSize;
 
 /// Version of the record files and of the tables made from them.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// One cell, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -102,6 +102,8 @@ fn an_id_is_the_name_of_a_file_however_long_the_name_of_the_case() {
         refine: 1,
         space: None,
         friction: vec![0.1],
+        increments: 1,
+        cold: false,
         method: "nsgs".into(),
         tolerance: 1e-6,
         program: None,

@@ -85,7 +85,7 @@ fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
     let size = found.problem.clone()?;
     Some(Sample {
         variant: Variant {
-            case: record.cell.case.clone(),
+            case: record.cell.case.clone() + &record.cell.problem().path_name(),
             space: size.space,
             tip: String::new(),
             method: found.method.clone(),

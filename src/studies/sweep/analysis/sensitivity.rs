@@ -16,7 +16,7 @@ use stickslip_methods::OptionSpec;
 use super::{claims, compare_methods, compare_problems, is_honest};
 use crate::run::choice::Choice;
 use crate::run::verdict::Verdict;
-use crate::studies::sweep::cell::Problem;
+use crate::studies::sweep::cell::{Cell, Problem};
 use crate::studies::sweep::record::Record;
 use crate::studies::sweep::statistics::{larger, median};
 
@@ -59,6 +59,8 @@ pub struct Step {
     pub iterations: f64,
     /// Most iterations on a problem solved; NaN without any.
     pub most: f64,
+    /// Most iterations of one increment of a problem solved; NaN without any.
+    pub hardest: f64,
     /// Median of the iterations over the problems not solved; NaN without any.
     pub spent: f64,
     /// Iterations over those at the default, of problems solved at both: median and largest; NaN without any.
@@ -74,6 +76,8 @@ pub struct Windows {
     pub tried: [f64; 2],
     /// In which every problem is solved; none where the default does not.
     pub safe: Option<[f64; 2]>,
+    /// Most iterations of one increment in there; NaN without.
+    pub hardest: f64,
     /// In which iterations on no problem exceed [`FAST`] times those at the default, too.
     pub fast: Option<[f64; 2]>,
 }
@@ -94,9 +98,13 @@ impl Sweep {
             Some([steps[low].value, steps[high].value])
         };
         let safe = |s: &Step| s.solved == self.problems;
+        let range = about(&safe);
+        let within = |s: &&Step| range.is_some_and(|[a, b]| (a..=b).contains(&s.value));
+        let hardest = steps.iter().filter(within).map(|s| s.hardest);
         Some(Windows {
             tried: [steps.first()?.value, steps.last()?.value],
-            safe: about(&safe),
+            safe: range,
+            hardest: hardest.reduce(f64::max).unwrap_or(f64::NAN),
             fast: about(&|s| safe(s) && s.ratio[1] <= FAST),
         })
     }
@@ -127,17 +135,77 @@ pub fn sweeps(records: &[Record]) -> Vec<Sweep> {
     for (key, (spec, own)) in &groups {
         let classes: BTreeSet<&str> = own.iter().map(|(_, r)| class(&r.cell.case)).collect();
         let several = classes.len() > 1;
-        let whole = several.then(|| sweep(key, spec, None, own)).flatten();
+        let of = |class, own: &[Setting<'_>]| {
+            let known = (spec.default().number(), fewest(spec));
+            sweep(key, known, class, own, Cell::problem)
+        };
+        let whole = several.then(|| of(None, own)).flatten();
         all.extend(whole);
         for name in classes {
             let of_class = |s: &&Setting<'_>| class(&s.1.cell.case) == name;
             let own: Vec<Setting<'_>> = own.iter().filter(of_class).copied().collect();
-            all.extend(sweep(key, spec, Some(name), &own));
+            all.extend(of(Some(name), &own));
         }
     }
     all.sort_by(|a, b| {
         let methods = compare_methods(&a.method, &b.method);
         methods.then(b.tolerance.total_cmp(&a.tolerance))
+    });
+    all
+}
+
+/// Warm starts, 0, beside cold ones, 1, where there are any: a method on a class of problems in so many increments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Starts {
+    /// Parts that every increment of the case is divided in.
+    pub parts: usize,
+    /// Increments of the path; the most where the problems of the class differ.
+    pub increments: usize,
+    /// Iterations from either start.
+    pub sweep: Sweep,
+}
+
+/// All of them, where a method was given cold starts or divided increments: by class, method, tolerance and number of parts.
+pub fn starts(records: &[Record]) -> Vec<Starts> {
+    type Group<'a> = BTreeMap<usize, Vec<Setting<'a>>>;
+    let mut groups: BTreeMap<(&str, Key), Group<'_>> = BTreeMap::new();
+    for record in records {
+        let key = Key {
+            method: record.found.method.clone(),
+            option: "start",
+            tolerance: record.cell.tolerance.to_bits(),
+        };
+        let group = groups.entry((class(&record.cell.case), key)).or_default();
+        let setting = (f64::from(u8::from(record.cell.cold)), record);
+        let parts = record.cell.increments;
+        group.entry(parts).or_default().push(setting);
+    }
+    let warm = |cell: &Cell| Problem {
+        cold: false,
+        ..cell.problem()
+    };
+    let mut all = Vec::new();
+    for ((class, key), group) in &groups {
+        let asked = |own: &Vec<Setting<'_>>| own.iter().any(|(cold, _)| *cold > 0.0);
+        if group.keys().all(|parts| *parts == 1) && !group.values().any(asked) {
+            continue;
+        }
+        for (parts, own) in group {
+            let increments = own.iter().map(|(_, r)| r.found.increments.len()).max();
+            all.extend(
+                sweep(key, (0.0, 1), Some(class), own, warm).map(|sweep| Starts {
+                    parts: *parts,
+                    increments: increments.unwrap_or(0),
+                    sweep,
+                }),
+            );
+        }
+    }
+    all.sort_by(|a, b| {
+        let (a, b) = (&a.sweep, &b.sweep);
+        let methods = compare_methods(&a.method, &b.method);
+        let classes = a.class.cmp(&b.class).then(methods);
+        classes.then(b.tolerance.total_cmp(&a.tolerance))
     });
     all
 }
@@ -188,35 +256,34 @@ fn fewest(spec: &OptionSpec) -> usize {
     }
 }
 
+/// `problem`: what the cells of a row share.
 fn sweep(
     key: &Key,
-    spec: &OptionSpec,
+    (default, fewest): (f64, usize),
     class: Option<&str>,
     settings: &[Setting<'_>],
+    problem: fn(&Cell) -> Problem,
 ) -> Option<Sweep> {
     let mut values: Vec<f64> = settings.iter().map(|s| s.0).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    if values.len() < fewest(spec) {
+    if values.len() < fewest {
         return None;
     }
     // Cells by problem and value.
-    let mut all: Vec<Problem> = settings.iter().map(|s| s.1.cell.problem()).collect();
+    let mut all: Vec<Problem> = settings.iter().map(|s| problem(&s.1.cell)).collect();
     all.sort_by(compare_problems);
     all.dedup();
     let mut table: Vec<Vec<Option<&Record>>> = vec![vec![None; values.len()]; all.len()];
     for (value, record) in settings {
-        let problem = record.cell.problem();
-        let row = all
-            .binary_search_by(|p| compare_problems(p, &problem))
-            .ok()?;
+        let own = problem(&record.cell);
+        let row = all.binary_search_by(|p| compare_problems(p, &own)).ok()?;
         let column = values.binary_search_by(|v| v.total_cmp(value)).ok()?;
         table[row][column] = Some(record);
     }
     let rows = table.iter().filter_map(|row| row.iter().copied().collect());
     let rows: Vec<Vec<&Record>> = rows.collect();
     let first = rows.first()?.first()?;
-    let default = spec.default().number();
     let place = values.iter().position(|v| *v == default);
     let step = |(column, value): (usize, &f64)| step(*value, &rows, column, place);
     Some(Sweep {
@@ -253,6 +320,8 @@ fn step(value: f64, rows: &[Vec<&Record>], column: usize, default: Option<usize>
     let lost = rows.iter().filter(|row| !is_solved(row[column]));
     let lost = lost.map(|row| iterations(row[column]));
     let wrong = |row: &&Vec<&Record>| row[column].found.verdict == Verdict::FalseClaim;
+    let each = solved().flat_map(|row| &row[column].found.increments);
+    let hardest = each.map(|increment| increment.iterations as f64);
     let violations = solved().map(|row| row[column].found.violation());
     Step {
         value,
@@ -260,6 +329,7 @@ fn step(value: f64, rows: &[Vec<&Record>], column: usize, default: Option<usize>
         false_claims: rows.iter().filter(wrong).count(),
         iterations: median(counts()),
         most: counts().reduce(f64::max).unwrap_or(f64::NAN),
+        hardest: hardest.reduce(f64::max).unwrap_or(f64::NAN),
         spent: median(lost),
         ratio: [
             median(ratios()),
@@ -273,6 +343,7 @@ fn step(value: f64, rows: &[Vec<&Record>], column: usize, default: Option<usize>
 mod tests {
     use super::super::support::{end_with, record};
     use super::*;
+    use crate::studies::sweep::record::IncrementFound;
 
     fn cell(case: &str, method: &str, iterations: usize) -> Record {
         let mut cell = record(case, method, 1e-6);
@@ -337,6 +408,55 @@ mod tests {
         // A switch has no more than two.
         let switch = ["b-newton", "b-newton:monolithic=1e0"].map(|m| cell("a", m, 10));
         assert_eq!(sweeps(&switch)[0].option, "monolithic");
+    }
+
+    /// Source: hand calculation. A case of two increments, whole and in halves, by one method from both starts; another method
+    /// from warm ones alone, in one number of increments, is not asked about.
+    #[test]
+    fn warm_and_cold_starts_stand_beside_each_other_by_number_of_increments() {
+        let of = |method: &str, parts: usize, cold: bool, each: &[usize]| {
+            let mut own = cell("a", method, 0);
+            (own.cell.increments, own.cell.cold) = (parts, cold);
+            let first = own.found.increments[0].clone();
+            let increment = |count: &usize| IncrementFound {
+                iterations: *count,
+                ..first.clone()
+            };
+            own.found.increments = each.iter().map(increment).collect();
+            own
+        };
+        let mut records = vec![
+            of("pdas", 1, false, &[4, 6]),
+            of("pdas", 1, true, &[4, 11]),
+            of("pdas", 2, false, &[3, 3, 3, 3]),
+            of("pdas", 2, true, &[3, 5, 8, 8]),
+            of("nsgs", 1, false, &[100, 100]),
+        ];
+        let found = |records: &[Record]| -> Vec<(usize, usize, Vec<f64>, Vec<f64>)> {
+            let all = starts(records);
+            assert!(all.iter().all(|own| own.sweep.method == "pdas"));
+            let steps =
+                |own: &Starts, of: fn(&Step) -> f64| own.sweep.steps.iter().map(of).collect();
+            let row = |s: &Starts| {
+                let ratios = steps(s, |s| s.ratio[0]);
+                (s.parts, s.increments, steps(s, |s| s.iterations), ratios)
+            };
+            all.iter().map(row).collect()
+        };
+        let expected = [
+            (1, 2, vec![10.0, 15.0], vec![1.0, 1.5]),
+            (2, 4, vec![12.0, 24.0], vec![1.0, 2.0]),
+        ];
+        assert_eq!(found(&records), expected);
+        // Increments alone: nothing stands beside the warm starts.
+        records.retain(|record| !record.cell.cold);
+        let alone =
+            expected.map(|(parts, count, i, r)| (parts, count, i[..1].to_vec(), r[..1].to_vec()));
+        assert_eq!(found(&records), alone);
+        records.retain(|record| record.cell.increments == 1);
+        assert_eq!(found(&records), []);
+        // Both are no options, and make no sweep of one.
+        assert_eq!(sweeps(&records), []);
     }
 
     #[test]

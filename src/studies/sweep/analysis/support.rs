@@ -31,6 +31,8 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
         refine: 1,
         space: None,
         friction: vec![0.3],
+        increments: 1,
+        cold: false,
         method: method.into(),
         tolerance,
         program: None,

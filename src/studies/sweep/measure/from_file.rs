@@ -62,6 +62,6 @@ pub fn file_in_turn(
     };
     let (problem, _) = bench.problem(cell, path)?;
     let loads: [Load; 2] = [problem.rest.clone(), problem.load.clone()];
-    let asked = (&problem.system, &loads[..], cell.tolerance);
+    let asked = (&problem.system, &loads[..], cell.tolerance, cell.cold);
     Ok(take_rounds(asked, choices, repeats))
 }

@@ -9,6 +9,9 @@
 //! of the Delassus operator: it stays small where forces are not unique but their effect is. It does not see a rigid
 //! motion of a floating piece, the third does.
 //!
+//! The converged solution follows the path in the increments of the cell: where friction remembers the path, that of other
+//! increments is the answer to another question. It begins each where the last one ended, whatever the cell does.
+//!
 //! No method is measured against itself: the converged solution for `hybrid` is that of the next method.
 
 use std::collections::BTreeMap;
@@ -111,6 +114,7 @@ fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
         friction: 0.0,
         choice: &choice,
         accuracy: Accuracy::exactly(TOLERANCE),
+        cold: false,
     };
     let (mut snapshots, mut natural_map) = (Vec::new(), 0.0_f64);
     path.follow(&mut |_, increment, now| {

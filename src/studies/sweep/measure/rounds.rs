@@ -64,13 +64,14 @@ pub fn in_turn(
     let loads: Vec<Load> = (0..=scene.case.path.increments)
         .map(|k| scene.loading.at(k))
         .collect();
-    let asked = (scene.system, &loads[..], cell.tolerance);
+    let asked = (scene.system, &loads[..], cell.tolerance, cell.cold);
     Ok(take_rounds(asked, choices, repeats))
 }
 
-/// Rounds of all methods on a system under some loads, that at the start first, at a tolerance.
+/// Rounds of all methods on a system under some loads, that at the start first, at a tolerance, from no contact forces where it
+/// is a cold start.
 pub(super) fn take_rounds(
-    (system, loads, tolerance): (&ContactSystem, &[Load], f64),
+    (system, loads, tolerance, cold): (&ContactSystem, &[Load], f64, bool),
     choices: &[Choice],
     repeats: Repeats,
 ) -> Vec<Result<Times, Verdict>> {
@@ -79,6 +80,7 @@ pub(super) fn take_rounds(
         loads,
         rest: ContactState::zero(system),
         asked: Accuracy::exactly(tolerance).asked,
+        cold,
     };
     let mut runners: Vec<Runner> = choices.iter().map(Runner::new).collect();
     while runners.iter().any(|own| own.goes_on(repeats)) {
@@ -97,6 +99,8 @@ struct Path<'a> {
     rest: ContactState,
     /// Accuracy asked for.
     asked: f64,
+    /// Whether every increment is begun from no contact forces.
+    cold: bool,
 }
 
 /// One method.
@@ -135,6 +139,7 @@ impl<'a> Runner<'a> {
                 load: &load[1],
                 start_load: &load[0],
                 start: index.checked_sub(1).map_or(&path.rest, |i| &self.states[i]),
+                guess: path.cold.then_some(&path.rest.p[..]),
                 index,
                 tolerance: path.asked,
             };

@@ -67,6 +67,8 @@ struct Kept {
     space: Option<String>,
     needs: Needs,
     case: Case,
+    /// Increments of the case itself.
+    increments: usize,
     body: Body,
     /// Peak of memory up to the factor [MB].
     peak_mb: Option<f64>,
@@ -75,13 +77,15 @@ struct Kept {
 
 struct PerFriction {
     friction: Vec<f64>,
+    /// Number of increments that the converged solutions follow the path in.
+    increments: usize,
     system: ContactSystem,
     references: References,
 }
 
 /// What a cell is solved on.
 pub struct Scene<'a> {
-    /// The case, with the contact space of the cell.
+    /// The case, with the contact space and the increments of the cell.
     pub case: &'a Case,
     /// Refinement factor.
     pub refine: usize,
@@ -161,7 +165,10 @@ impl Bench {
             None => Kept::new(cell, text, needs)?,
         };
         let kept = self.kept.insert(kept);
-        let known = kept.friction.take().filter(|f| f.friction == cell.friction);
+        let increments = kept.increments * cell.increments;
+        kept.case.path.increments = increments;
+        let same = |f: &PerFriction| f.friction == cell.friction && f.increments == increments;
+        let known = kept.friction.take().filter(same);
         let per_friction = match known {
             Some(known) => known,
             None => {
@@ -169,6 +176,7 @@ impl Bench {
                 let system = ContactSystem::new(kept.body.elastic.clone(), of_point.collect());
                 PerFriction {
                     friction: cell.friction.clone(),
+                    increments,
                     system: system.map_err(BodyError::from)?,
                     references: References::default(),
                 }
@@ -209,6 +217,7 @@ impl Kept {
             refine: cell.refine,
             space: cell.space.clone(),
             needs,
+            increments: case.path.increments,
             case,
             body,
             peak_mb: memory::peak_mb(),
