@@ -16,6 +16,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, Par};
+use rayon::prelude::*;
 
 use crate::MethodError;
 use crate::algebra::delassus::check_rows;
@@ -57,17 +58,8 @@ pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> 
     if !factor.contact_last() {
         return half.unsorted(&factor.condense(&half.entries, false).1);
     }
-    let mut squares = Vec::new();
-    let m = rows.len();
-    // As many strips at a time as there are threads.
-    let together = STRIP * rayon::current_num_threads();
-    let mut y = Mat::<f64>::zeros(half.height, together.min(m));
-    for begin in (0..m).step_by(together) {
-        let width = together.min(m - begin);
-        y.fill(0.0);
-        squares.extend(half.solve(begin, y.as_mut().subcols_mut(0, width)));
-    }
-    half.unsorted(&squares)
+    let strips = half.strips().map(|begin| half.solve(begin).1);
+    half.unsorted(&strips.collect::<Vec<_>>().concat())
 }
 
 /// The traction operator S condensed to some rows: T and X.
@@ -161,7 +153,13 @@ fn columns(
     rows.iter().map(column).collect()
 }
 
-/// Y with columns sorted by first non-zero, solved for panel by panel.
+/// Columns of Y from their first row that is not zero on.
+struct Strip {
+    top: usize,
+    y: Mat<f64>,
+}
+
+/// Y with columns sorted by first non-zero, solved for strip by strip.
 struct Half<'a> {
     factor: &'a Factor,
     /// Entries of (D B)ᵀ by sorted column: position in L, counted from the contact unknowns where these come last; value.
@@ -197,50 +195,59 @@ impl<'a> Half<'a> {
 
     /// Yᵀ Y, of which the upper triangle counts, and |y_k|².
     fn square(&self) -> Condensed {
-        let (m, c) = (self.sorted.len(), self.height);
-        // Y, then W in its place.
-        let mut w = Mat::<f64>::zeros(c.max(m), m);
-        let squares = self.solve(0, w.as_mut().subrows_mut(0, c));
-        // The last columns of Y are done with first.
-        let mut strip = Mat::<f64>::zeros(m, STRIP.min(m));
-        for begin in (0..m).step_by(STRIP).rev() {
-            let end = (begin + STRIP).min(m);
-            let top = self.first[begin].min(c);
-            let y = w.as_ref().subrows(top, c - top);
-            let own = y.subcols(begin, end - begin);
-            let mut product = strip.as_mut().submatrix_mut(0, 0, end, end - begin);
-            let parts = row_strips(product.rb_mut());
-            let threads = ((c - top) * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
+        let (m, solved) = (
+            self.sorted.len(),
+            self.strips().map(|begin| self.solve(begin)),
+        );
+        let (mut y, squares): (Vec<Strip>, Vec<Vec<f64>>) = solved.unzip();
+        let mut w = Mat::<f64>::zeros(m, m);
+        let mut rest = w.as_mut();
+        // The last columns of Y are done with first: they go while W grows.
+        while let Some(last) = y.pop() {
+            let begin = y.len() * STRIP;
+            let (others, own) = rest.split_at_col_mut(begin);
+            rest = others;
+            let end = m.min(begin + STRIP);
+            let threads = (last.y.nrows() * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
+            let parts = row_strips(own.subrows_mut(0, end), STRIP);
             for_all(parts, threads, |(row, part)| {
-                let others = y.subcols(row, part.nrows()).transpose();
-                matmul(part, Accum::Replace, others, own, 1.0, Par::Seq);
+                let other = y.get(row / STRIP).unwrap_or(&last);
+                let other = other.y.subrows(last.top - other.top, last.y.nrows());
+                matmul(
+                    part,
+                    Accum::Replace,
+                    other.transpose(),
+                    &last.y,
+                    1.0,
+                    Par::Seq,
+                );
             });
-            let mut place = w.as_mut().submatrix_mut(0, begin, end, end - begin);
-            place.copy_from(product);
         }
-        if c > m {
-            w = w.as_ref().subrows(0, m).to_owned();
-        }
-        (w, squares)
+        (w, squares.concat())
     }
 
-    /// The sorted columns of Y from `begin` on, as many as there are in `y`, which holds zeros; their |y_k|².
-    fn solve(&self, begin: usize, y: MatMut<'_, f64>) -> Vec<f64> {
-        let mut squares = vec![0.0; y.ncols()];
-        let strips = column_strips(y, STRIP).into_iter();
-        let strips: Vec<_> = strips.zip(squares.chunks_mut(STRIP)).collect();
-        for_all(strips, true, |((at, mut y), squares)| {
-            let columns = begin + at..begin + at + y.ncols();
-            for (k, entries) in self.entries[columns.clone()].iter().enumerate() {
-                (entries.iter()).for_each(|&(row, value)| y[(row, k)] += value);
-            }
-            let first = &self.first[columns];
-            forward_solve(self.factor, y.rb_mut(), first);
-            for (k, square) in squares.iter_mut().enumerate() {
-                *square = (first[k]..y.nrows()).map(|i| y[(i, k)].powi(2)).sum();
-            }
-        });
-        squares
+    /// First columns of strips of Y.
+    fn strips(&self) -> impl IndexedParallelIterator<Item = usize> + '_ {
+        (0..self.sorted.len()).into_par_iter().step_by(STRIP)
+    }
+
+    /// The sorted columns of Y from `begin` on, and their |y_k|².
+    fn solve(&self, begin: usize) -> (Strip, Vec<f64>) {
+        let end = self.sorted.len().min(begin + STRIP);
+        let first = &self.first[begin..end];
+        let blocks = self.factor.of_contact().map(|block| block.begin);
+        let top = blocks.take_while(|&row| row <= first[0]).last();
+        let top = top.unwrap_or(0);
+        let mut y = Mat::<f64>::zeros(self.height - top, end - begin);
+        for (k, entries) in self.entries[begin..end].iter().enumerate() {
+            (entries.iter()).for_each(|&(row, value)| y[(row - top, k)] += value);
+        }
+        forward_solve(self.factor, y.as_mut(), top, first);
+        let square = |(k, &first): (usize, &usize)| -> f64 {
+            y.col_as_slice(k)[first - top..].iter().map(|y| y * y).sum()
+        };
+        let squares = first.iter().enumerate().map(square).collect();
+        (Strip { top, y }, squares)
     }
 
     /// In the order of the rows.
@@ -251,8 +258,8 @@ impl<'a> Half<'a> {
     }
 }
 
-/// y <- L_cc⁻¹ y, supernode by supernode, in panels; column j is zero above `first[j]` (increasing in j).
-fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, first: &[usize]) {
+/// y <- L_cc⁻¹ y, a strip of L after the other, y from row `from` on; column j is zero above `first[j]` (increasing in j).
+fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, from: usize, first: &[usize]) {
     for Columns {
         begin,
         block,
@@ -260,47 +267,32 @@ fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, first: &[usize]) {
     } in factor.of_contact()
     {
         let own = block.ncols();
-        for a in (0..own).step_by(STRIP) {
-            let b = (a + STRIP).min(own);
-            let row = begin + a;
-            let columns = first.partition_point(|&f| f < begin + b);
-            if columns == 0 {
-                continue;
-            }
-            let (top, rest) = y
-                .as_mut()
-                .subcols_mut(0, columns)
-                .split_at_row_mut(begin + b);
-            let mut top = top.subrows_mut(row, b - a);
-            solve_lower_triangular_in_place(
-                block.submatrix(a, a, b - a, b - a),
-                top.as_mut(),
-                Par::Seq,
-            );
-            let (mut below, mut far) = rest.split_at_row_mut(own - b);
+        let columns = first.partition_point(|&f| f < begin + own);
+        if columns == 0 {
+            continue;
+        }
+        let begin = begin - from;
+        let (top, rest) = (y.rb_mut().subcols_mut(0, columns)).split_at_row_mut(begin + own);
+        let mut top = top.subrows_mut(begin, own);
+        let (triangle, low) = block.split_at_row(own);
+        solve_lower_triangular_in_place(triangle, top.rb_mut(), Par::Seq);
+        let (near, low) = low.split_at_row(low.nrows() - pattern.len());
+        let (below, mut far) = rest.split_at_row_mut(near.nrows());
+        matmul(below, Accum::Add, near, top.as_ref(), -1.0, Par::Seq);
+        if !pattern.is_empty() {
+            let mut update = Mat::<f64>::zeros(pattern.len(), columns);
             matmul(
-                below.as_mut(),
-                Accum::Add,
-                block.submatrix(b, a, own - b, b - a),
+                update.as_mut(),
+                Accum::Replace,
+                low,
                 top.as_ref(),
-                -1.0,
+                1.0,
                 Par::Seq,
             );
-            if !pattern.is_empty() {
-                let mut update = Mat::<f64>::zeros(pattern.len(), columns);
-                matmul(
-                    update.as_mut(),
-                    Accum::Replace,
-                    block.submatrix(own, a, pattern.len(), b - a),
-                    top.as_ref(),
-                    1.0,
-                    Par::Seq,
-                );
-                let before = factor.ordering.contact_begin + begin + own;
-                for j in 0..columns {
-                    for (k, &i) in pattern.iter().enumerate() {
-                        far[(i as usize - before, j)] -= update[(k, j)];
-                    }
+            let before = factor.ordering.contact_begin + from + begin + own + near.nrows();
+            for j in 0..columns {
+                for (k, &i) in pattern.iter().enumerate() {
+                    far[(i as usize - before, j)] -= update[(k, j)];
                 }
             }
         }

@@ -26,6 +26,7 @@ const SMALLEST_PIVOT: f64 = 1e-12;
 const MAX_REFINEMENTS: usize = 3;
 
 /// In which order the unknowns may be eliminated, and what is condensed to.
+#[derive(Default)]
 pub(crate) struct Elimination {
     /// Preferred order of those not in contact, then of those in contact.
     pub contact_last: Vec<usize>,
@@ -91,7 +92,7 @@ impl Factor {
     /// Of K without its pinned rows and columns.
     pub fn new(
         k: &SymmetricMatrix,
-        elimination: &Elimination,
+        elimination: Elimination,
         pins: Vec<usize>,
         balance: Arc<Balance>,
     ) -> Result<Self, MethodError> {
@@ -102,6 +103,7 @@ impl Factor {
             tree,
             entries,
         } = elimination.analysis(k, &balance);
+        drop(elimination);
         let analysis_s = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -206,13 +208,17 @@ impl Factor {
         self.cholesky.condense(b, formed)
     }
 
-    /// The part of L on the contact unknowns, supernode by supernode.
+    /// The part of L on the contact unknowns, strip by strip.
     pub fn of_contact(&self) -> impl Iterator<Item = Columns<'_>> {
         let tree = &self.cholesky.tree;
-        (tree.contact..tree.nodes.len()).map(|s| Columns {
-            begin: tree.nodes[s].columns.start - self.ordering.contact_begin,
-            block: self.cholesky.panel(s),
-            below: tree.pattern(s),
+        (tree.contact..tree.nodes.len()).flat_map(move |s| {
+            let begin = tree.nodes[s].columns.start - self.ordering.contact_begin;
+            let strips = self.cholesky.strips(s);
+            strips.map(move |(first, block)| Columns {
+                begin: begin + first,
+                block,
+                below: tree.pattern(s),
+            })
         })
     }
 }
@@ -221,9 +227,9 @@ impl Factor {
 pub(crate) struct Columns<'a> {
     /// First column.
     pub begin: usize,
-    /// Their own rows, of which the lower triangle counts, and the rows below.
+    /// Their own rows, of which the lower triangle counts, those of the later columns of the supernode, and the rows below.
     pub block: MatRef<'a, f64>,
-    /// Unknowns of the rows below, counted from the first of all.
+    /// Unknowns of the last of these, counted from the first of all.
     pub below: &'a [u32],
 }
 

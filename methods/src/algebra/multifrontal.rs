@@ -11,7 +11,7 @@ mod solve;
 mod tests;
 mod tree;
 
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use faer::MatRef;
 
@@ -19,13 +19,13 @@ use crate::algebra::strips::{Failure, WORTH_THREADS};
 
 pub(crate) use analysis::{Analysis, Entries, Ordering};
 use front::{Front, Update};
-use tree::AssemblyTree;
+use tree::{AssemblyTree, NONE};
 
 /// The factor.
 pub(crate) struct Cholesky {
     pub tree: AssemblyTree,
-    /// Rows of every supernode by its columns, column by column.
-    panels: Vec<Vec<f64>>,
+    /// The columns of every supernode, by strips: see [`Trapezoid`](crate::algebra::strips::Trapezoid).
+    values: Vec<f64>,
 }
 
 impl Cholesky {
@@ -35,30 +35,55 @@ impl Cholesky {
     /// The same whatever the number of threads: no memory, else the first column without a positive pivot.
     pub fn new(tree: AssemblyTree, entries: &Entries, values: &[f64]) -> Result<Self, Failure> {
         let nodes = &tree.nodes;
-        let panels: Vec<OnceLock<Vec<f64>>> = nodes.iter().map(|_| OnceLock::new()).collect();
+        let mut l = zeros(tree.entries())?;
+        let panels = parts(&mut l, nodes.iter().map(|node| node.entries.len()));
+        let fronts: Vec<Mutex<Begun>> = (panels.into_iter())
+            .map(|panel| Mutex::new(Begun::new(panel)))
+            .collect();
         let updates: Vec<Mutex<Option<Update>>> = nodes.iter().map(|_| Mutex::new(None)).collect();
         let failure = Mutex::new(None::<Failure>);
+        let begun = |s: usize| fronts[s].lock().unwrap_or_else(PoisonError::into_inner);
         let update_of = |s: usize| updates[s].lock().unwrap_or_else(PoisonError::into_inner);
-        let eliminate = |s: usize| -> Result<(), Failure> {
-            let node = &nodes[s];
-            let mut front = Front::zeros(node.columns.len(), node.height())?;
-            for (k, c) in node.columns.clone().enumerate() {
-                let column = &mut front.panel[k * node.height()..][..node.height()];
-                column[k] = 1.0;
+        let from_k = |s: usize, panel| -> Result<Front<'_>, Failure> {
+            let mut front = Front::new(panel, nodes[s].shape())?;
+            for (k, c) in nodes[s].columns.clone().enumerate() {
+                let column = front.column_mut(k);
+                column[0] = 1.0;
                 for e in entries.begin[c]..entries.begin[c + 1] {
-                    column[entries.place[e] as usize] = values[e];
+                    column[entries.place[e] as usize - k] = values[e];
                 }
             }
-            for &child in &tree.children[s] {
-                // Without an update of a child there is no factor.
+            Ok(front)
+        };
+        let eliminate = |s: usize| -> Result<(), Failure> {
+            let own = std::mem::take(&mut *begun(s));
+            // Without an update of a child there is no factor.
+            if own.children < tree.children[s].len() {
+                return Ok(());
+            }
+            let mut front = match own.front {
+                Some(front) => front,
+                None => from_k(s, own.panel)?,
+            };
+            front.eliminate()?;
+            let parent = nodes[s].parent;
+            if parent == NONE {
+                return Ok(());
+            }
+            // What goes into the front above is freed at once, in the order of the children.
+            *update_of(s) = Some(front.update);
+            let above = &mut *begun(parent);
+            while let Some(&child) = tree.children[parent].get(above.children) {
                 let Some(update) = update_of(child).take() else {
-                    return Ok(());
+                    break;
+                };
+                let front = match &mut above.front {
+                    Some(front) => front,
+                    none => none.insert(from_k(parent, std::mem::take(&mut above.panel))?),
                 };
                 front.extend_add(&update, tree.places(child));
+                above.children += 1;
             }
-            front.eliminate()?;
-            let _ = panels[s].set(front.panel);
-            *update_of(s) = Some(front.update);
             Ok(())
         };
         tree.upwards(tree.work() > WORTH_THREADS, |s| {
@@ -68,31 +93,74 @@ impl Cholesky {
                 *failure = Some(failure.map_or(own, |before| before.or(own)));
             }
         });
+        drop(fronts);
         match (failure.into_inner()).unwrap_or_else(PoisonError::into_inner) {
             Some(failure) => Err(failure),
-            None => Ok(Self {
-                panels: panels
-                    .into_iter()
-                    .map(|p| p.into_inner().unwrap_or_default())
-                    .collect(),
-                tree,
-            }),
+            None => Ok(Self { tree, values: l }),
         }
     }
 
     /// The first column whose pivot in A, l², is below a bound.
     pub fn pivot_below(&self, least: f64) -> Option<usize> {
         let first = |s: usize| {
-            let (panel, begin) = (self.panel(s), self.tree.nodes[s].columns.start);
-            let small = |&k: &usize| panel[(k, k)].powi(2) < least;
-            (0..panel.ncols()).find(small).map(|k| begin + k)
+            let (node, panel) = (&self.tree.nodes[s], self.panel(s));
+            let pivot = |k: usize| panel[node.shape().column(k).start];
+            let small = |&k: &usize| pivot(k).powi(2) < least;
+            let begin = node.columns.start;
+            (0..node.columns.len()).find(small).map(|k| begin + k)
         };
         (0..self.tree.nodes.len()).find_map(first)
     }
 
-    /// L of supernode `s`: the columns' own rows, the lower triangle of which counts, over those below.
-    pub fn panel(&self, s: usize) -> MatRef<'_, f64> {
-        let node = &self.tree.nodes[s];
-        MatRef::from_column_major_slice(&self.panels[s], node.height(), node.columns.len())
+    /// L of supernode `s`: the lower triangle of the columns' own rows, and the rows below.
+    fn panel(&self, s: usize) -> &[f64] {
+        &self.values[self.tree.nodes[s].entries.clone()]
     }
+
+    /// The columns of supernode `s` by strips, each with its first column.
+    pub fn strips(&self, s: usize) -> impl Iterator<Item = (usize, MatRef<'_, f64>)> {
+        self.tree.nodes[s].shape().strips(self.panel(s))
+    }
+}
+
+/// A front that waits for its children.
+#[derive(Default)]
+struct Begun<'a> {
+    /// Where it will be.
+    panel: &'a mut [f64],
+    front: Option<Front<'a>>,
+    /// How many children it has taken in.
+    children: usize,
+}
+
+impl<'a> Begun<'a> {
+    fn new(panel: &'a mut [f64]) -> Self {
+        Self {
+            panel,
+            ..Self::default()
+        }
+    }
+}
+
+/// Parts of these sizes, one after the other.
+fn parts(x: &mut [f64], sizes: impl Iterator<Item = usize>) -> Vec<&mut [f64]> {
+    let mut rest = x;
+    let part = |size: usize| {
+        let (own, others) = std::mem::take(&mut rest).split_at_mut(size);
+        rest = others;
+        own
+    };
+    sizes.map(part).collect()
+}
+
+/// Zeros, of which the system keeps no pages until they are written to.
+fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
+    // No memory is an answer here, where `vec!` would end the program.
+    let mut probe = Vec::<f64>::new();
+    let denied = probe.try_reserve_exact(len).is_err();
+    drop(probe);
+    if denied {
+        return Err(Failure::OutOfMemory);
+    }
+    Ok(vec![0.0; len])
 }

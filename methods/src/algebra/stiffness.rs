@@ -1,6 +1,6 @@
 //! What stands behind the contact points of a body: how displacements follow from forces.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::MethodError;
 use crate::algebra::condensation::{self, Condensed, Tractions};
@@ -69,7 +69,8 @@ pub(crate) const INDEFINITE: f64 = 1e-9;
 /// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
     k: SymmetricMatrix,
-    elimination: Elimination,
+    /// Until K is factored.
+    elimination: Mutex<Elimination>,
     pins: Vec<usize>,
     balance: Arc<Balance>,
     factor: OnceLock<Result<Factor, MethodError>>,
@@ -90,7 +91,7 @@ impl SparseStiffness {
         Ok(Self {
             k,
             balance,
-            elimination,
+            elimination: Mutex::new(elimination),
             pins,
             factor: OnceLock::new(),
         })
@@ -100,7 +101,8 @@ impl SparseStiffness {
     pub fn factor(&self) -> Result<&Factor, MethodError> {
         let build = || {
             let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            Factor::new(&self.k, &self.elimination, pins, balance)
+            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
+            Factor::new(&self.k, std::mem::take(&mut elimination), pins, balance)
         };
         self.factor
             .get_or_init(build)

@@ -1,6 +1,8 @@
 //! Dense kernels in strips that threads share. Strips are cut at the same places whatever the number of threads, so that
 //! the bits are the same.
 
+use std::ops::Range;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
@@ -66,17 +68,77 @@ pub(crate) fn column_strips(mut a: MatMut<'_, f64>, most: usize) -> Vec<(usize, 
     strips
 }
 
-/// Rows in strips, each with its first row.
-pub(crate) fn row_strips(mut a: MatMut<'_, f64>) -> Vec<(usize, MatMut<'_, f64>)> {
+/// Rows in strips of this height, each with its first row.
+pub(crate) fn row_strips(mut a: MatMut<'_, f64>, most: usize) -> Vec<(usize, MatMut<'_, f64>)> {
     let (mut strips, mut begin) = (Vec::new(), 0);
     while a.nrows() > 0 {
-        let height = a.nrows().min(2 * STRIP);
+        let height = a.nrows().min(most);
         let (strip, rest) = a.split_at_row_mut(height);
         strips.push((begin, strip));
         begin += height;
         a = rest;
     }
     strips
+}
+
+/// A lower trapezoid, kept by strips of its columns one after the other: a strip has the rows from its first column on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trapezoid {
+    pub columns: usize,
+    /// Rows of the first column.
+    pub height: usize,
+}
+
+impl Trapezoid {
+    /// Numbers it takes.
+    pub fn len(self) -> usize {
+        let whole = self.columns / STRIP;
+        self.begin(whole) + self.columns % STRIP * (self.height - whole * STRIP)
+    }
+
+    /// Where strip t begins.
+    fn begin(self, t: usize) -> usize {
+        STRIP * (t * self.height - STRIP * (t * t.saturating_sub(1) / 2))
+    }
+
+    /// Where rows j.. of column j stand.
+    pub fn column(self, j: usize) -> Range<usize> {
+        let (t, own) = (j / STRIP, j % STRIP);
+        let height = self.height - t * STRIP;
+        let begin = self.begin(t) + own * height;
+        begin + own..begin + height
+    }
+
+    /// First column of every strip, and where it stands.
+    fn places(self) -> impl Iterator<Item = (usize, Range<usize>)> {
+        (0..self.columns).step_by(STRIP).map(move |first| {
+            let size = STRIP.min(self.columns - first) * (self.height - first);
+            let begin = self.begin(first / STRIP);
+            (first, begin..begin + size)
+        })
+    }
+
+    /// The strips, each with its first column.
+    pub fn strips(self, values: &[f64]) -> impl Iterator<Item = (usize, MatRef<'_, f64>)> {
+        self.places().map(move |(first, own)| {
+            let height = self.height - first;
+            let own = &values[own];
+            let strip = MatRef::from_column_major_slice(own, height, own.len() / height);
+            (first, strip)
+        })
+    }
+
+    /// The strips.
+    pub fn strips_mut(self, values: &mut [f64]) -> Vec<MatMut<'_, f64>> {
+        let mut rest = values;
+        let strip = |(first, own): (usize, Range<usize>)| {
+            let (strip, others) = std::mem::take(&mut rest).split_at_mut(own.len());
+            rest = others;
+            let height = self.height - first;
+            MatMut::from_column_major_slice_mut(strip, height, own.len() / height)
+        };
+        self.places().map(strip).collect()
+    }
 }
 
 /// A −= X Xᵀ, lower triangle, for the leading columns of A and all rows of X.
@@ -101,26 +163,40 @@ pub(crate) fn subtract_square(a: MatMut<'_, f64>, x: MatRef<'_, f64>) {
     }
 }
 
-/// Columns of L with L Lᵀ = A on the rows and columns of a panel, which has as many rows more as there are below. A block
-/// of columns at a time, the later ones updated at once.
-pub(crate) fn cholesky(mut panel: MatMut<'_, f64>) -> Result<(), Failure> {
-    let (height, columns) = panel.shape();
+/// L with L Lᵀ = A, of which the lower triangle counts.
+pub(crate) fn cholesky(a: MatMut<'_, f64>) -> Result<(), Failure> {
+    let strips = column_strips(a, STRIP).into_iter();
+    let strips = strips.map(|(begin, strip)| strip.split_at_row_mut(begin).1);
+    cholesky_of_strips(strips.collect())
+}
+
+/// Columns of L with L Lᵀ = A on the rows and columns of a trapezoid, and on the rows below. A strip of columns at a time,
+/// the later ones updated at once.
+pub(crate) fn cholesky_of_strips(mut strips: Vec<MatMut<'_, f64>>) -> Result<(), Failure> {
+    let columns: usize = strips.iter().map(|s| s.ncols()).sum();
+    let height = strips.first().map_or(0, |s| s.nrows());
     let threads = (height * height * columns) as f64 > WORTH_THREADS;
-    for k in (0..columns).step_by(STRIP) {
-        let width = STRIP.min(columns - k);
-        let (done, later) = panel.rb_mut().split_at_col_mut(k + width);
-        let block = done.submatrix_mut(k, k, height - k, width);
-        let (mut top, mut below) = block.split_at_row_mut(width);
-        cholesky_of_block(top.rb_mut()).map_err(|failure| failure.behind(k))?;
+    for t in 0..strips.len() {
+        let (done, later) = strips.split_at_mut(t + 1);
+        let Some(block) = done.last_mut() else {
+            continue;
+        };
+        let width = block.ncols();
+        let (mut top, mut below) = block.rb_mut().split_at_row_mut(width);
+        cholesky_of_block(top.rb_mut()).map_err(|failure| failure.behind(t * STRIP))?;
         let top = top.as_ref();
-        for_all(row_strips(below.rb_mut()), threads, |(_, part)| {
-            solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq);
-        });
+        for_all(
+            row_strips(below.rb_mut(), 2 * STRIP),
+            threads,
+            |(_, part)| {
+                solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq);
+            },
+        );
         let below = below.as_ref();
-        let later = later.split_at_row_mut(k + width).1;
-        for_all(column_strips(later, STRIP), threads, |(begin, strip)| {
-            let own = below.subrows(begin, below.nrows() - begin);
-            subtract_square(strip.split_at_row_mut(begin).1, own);
+        let later = later.iter_mut().map(|strip| strip.rb_mut()).collect();
+        for_all(later, threads, |strip: MatMut<'_, f64>| {
+            let own = below.subrows(below.nrows() - strip.nrows(), strip.nrows());
+            subtract_square(strip, own);
         });
     }
     Ok(())

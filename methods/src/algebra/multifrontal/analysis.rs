@@ -10,7 +10,7 @@ use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::multifrontal::tree::{AssemblyTree, NONE, postorder, trapezoid};
 
 /// A child is joined to its parent if of the entries of both at most this part is zero, by the number of columns.
-const RELAXATION: [(usize, f64); 4] = [(16, 0.8), (48, 0.4), (96, 0.15), (usize::MAX, 0.05)];
+const RELAXATION: [(usize, f64); 4] = [(4, 0.8), (16, 0.3), (48, 0.1), (usize::MAX, 0.01)];
 
 /// A permutation of the unknowns: `forward[k]` is the k-th pivot.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -56,6 +56,38 @@ impl AssemblyTree {
     }
 }
 
+/// Y and what is left of F, for the columns of B that a supernode sees.
+struct Columns {
+    /// Rows of its own columns.
+    own: Mat<f64>,
+    /// Rows below.
+    below: Mat<f64>,
+}
+
+impl Columns {
+    fn zeros(node: &Supernode, width: usize) -> Self {
+        let (k, height) = (node.columns.len(), node.height());
+        Self {
+            own: Mat::zeros(k, width),
+            below: Mat::zeros(height - k, width),
+        }
+    }
+
+    /// Adds the update of a child, whose rows stand at `places` here; `from` and `to`: columns of B, increasing.
+    fn add(&mut self, update: &Mat<f64>, places: &[u32], from: &[u32], to: &[u32]) {
+        let (own, mut at) = (self.own.nrows(), 0);
+        let (first, second) = places.split_at(places.partition_point(|&p| (p as usize) < own));
+        for (j, &column) in from.iter().enumerate() {
+            at += to[at..].partition_point(|&c| c < column);
+            let (above, below) = update.col_as_slice(j).split_at(first.len());
+            let to = self.own.col_as_slice_mut(at);
+            (first.iter().zip(above)).for_each(|(&row, value)| to[row as usize] += value);
+            let to = self.below.col_as_slice_mut(at);
+            (second.iter().zip(below)).for_each(|(&row, value)| to[row as usize - own] += value);
+        }
+    }
+}
+
 impl Cholesky {
     /// W for the B with these columns, given by positions in L and values, if it is to be formed, of which the upper triangle
     /// counts; and its diagonal. The same bits for any number of threads, and for the diagonal whether W is formed or not.
@@ -73,47 +105,57 @@ impl Cholesky {
         let size = if formed { m } else { 0 };
         let mut w = Mat::<f64>::zeros(size, size);
         let mut squares = vec![0.0; m];
-        let mut updates: Vec<Mat<f64>> = tree.nodes.iter().map(|_| Mat::new()).collect();
+        let mut fronts: Vec<Option<Columns>> = tree.nodes.iter().map(|_| None).collect();
         for (s, node) in tree.nodes.iter().enumerate() {
             let columns = &seen[s];
             if columns.is_empty() {
                 continue;
             }
             let (k, height, width) = (node.columns.len(), node.height(), columns.len());
-            let mut y = Mat::<f64>::zeros(height, width);
+            let front = fronts[s].take();
+            let mut y = front.unwrap_or_else(|| Columns::zeros(node, width));
             for &(column, p, value) in &entries[s] {
                 let at = columns.partition_point(|&c| c < column);
-                y[(p - node.columns.start, at)] += value;
+                y.own[(p - node.columns.start, at)] += value;
             }
-            for &child in &tree.children[s] {
-                let update = std::mem::replace(&mut updates[child], Mat::new());
-                let mut at = 0;
-                for (j, &column) in seen[child].iter().enumerate() {
-                    at += columns[at..].partition_point(|&c| c < column);
-                    let (from, to) = (update.col_as_slice(j), y.col_as_slice_mut(at));
-                    let places = tree.places(child).iter();
-                    places
-                        .zip(from)
-                        .for_each(|(&row, value)| to[row as usize] += value);
-                }
-            }
-            let panel = self.panel(s);
-            let (top, low) = panel.split_at_row(k);
             let threads = (width * k * height) as f64 > WORTH_THREADS;
-            for_all(column_strips(y.as_mut(), STRIP), threads, |(_, strip)| {
-                let (mut own, below) = strip.split_at_row_mut(k);
-                solve_lower_triangular_in_place(top, own.rb_mut(), Par::Seq);
-                matmul(below, Accum::Add, low, own.as_ref(), -1.0, Par::Seq);
-            });
+            let strips = column_strips(y.own.as_mut(), STRIP).into_iter();
+            let strips = strips.zip(column_strips(y.below.as_mut(), STRIP));
+            for_all(
+                strips.collect(),
+                threads,
+                |((_, mut own), (_, mut below))| {
+                    for (first, columns) in self.strips(s) {
+                        let rows = own.rb_mut().split_at_row_mut(first).1;
+                        let (mut top, own) = rows.split_at_row_mut(columns.ncols());
+                        let (triangle, low) = columns.split_at_row(columns.ncols());
+                        solve_lower_triangular_in_place(triangle, top.rb_mut(), Par::Seq);
+                        let (near, far) = low.split_at_row(own.nrows());
+                        matmul(own, Accum::Add, near, top.as_ref(), -1.0, Par::Seq);
+                        matmul(
+                            below.rb_mut(),
+                            Accum::Add,
+                            far,
+                            top.as_ref(),
+                            -1.0,
+                            Par::Seq,
+                        );
+                    }
+                },
+            );
             for (j, &column) in columns.iter().enumerate() {
-                let own = &y.col_as_slice(j)[..k];
+                let own = y.own.col_as_slice(j);
                 squares[column as usize] += own.iter().map(|y| y * y).sum::<f64>();
             }
             if formed {
-                add_square(w.as_mut(), columns, y.as_ref().subrows(0, k));
+                add_square(w.as_mut(), columns, y.own.as_ref());
             }
-            if height > k {
-                updates[s] = y.as_ref().subrows(k, height - k).to_owned();
+            // What goes into the columns above is freed at once.
+            if let Some(parent) = tree.nodes.get(node.parent) {
+                let width = seen[node.parent].len();
+                let above =
+                    fronts[node.parent].get_or_insert_with(|| Columns::zeros(parent, width));
+                above.add(&y.below, tree.places(s), columns, &seen[node.parent]);
             }
         }
         (w, squares)

@@ -7,9 +7,12 @@
 
 use std::ops::Range;
 
-use faer::{MatMut, MatRef};
+use faer::MatMut;
+use faer::reborrow::ReborrowMut;
 
-use crate::algebra::strips::{Failure, STRIP, WORTH_THREADS, cholesky, for_all, subtract_square};
+use crate::algebra::strips::{
+    Failure, STRIP, Trapezoid, WORTH_THREADS, cholesky_of_strips, for_all, subtract_square,
+};
 
 /// U, the lower triangle by strips of columns.
 pub(super) struct Update {
@@ -49,28 +52,32 @@ impl Update {
 }
 
 /// A front under assembly, then its columns of L.
-pub(super) struct Front {
-    /// F₁₁ over F₂₁, later L₁₁ over L₂₁, column by column.
-    pub panel: Vec<f64>,
+pub(super) struct Front<'a> {
+    /// F₁₁ over F₂₁, later L₁₁ over L₂₁.
+    panel: &'a mut [f64],
+    shape: Trapezoid,
     pub update: Update,
-    height: usize,
-    columns: usize,
 }
 
-impl Front {
-    /// Zeros.
-    pub fn zeros(columns: usize, height: usize) -> Result<Self, Failure> {
+impl<'a> Front<'a> {
+    /// Of zeros, which is what `panel` holds.
+    pub fn new(panel: &'a mut [f64], shape: Trapezoid) -> Result<Self, Failure> {
+        let update = Update::zeros(shape.height - shape.columns)?;
         Ok(Self {
-            panel: zeros(columns * height)?,
-            update: Update::zeros(height - columns)?,
-            height,
-            columns,
+            panel,
+            shape,
+            update,
         })
+    }
+
+    /// Rows j.. of column j of the panel.
+    pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.panel[self.shape.column(j)]
     }
 
     /// Adds the update of a child whose rows stand at `places` here, increasing.
     pub fn extend_add(&mut self, child: &Update, places: &[u32]) {
-        let runs = runs(places);
+        let (runs, columns) = (runs(places), self.shape.columns);
         // The run that the diagonal is in.
         let mut current = 0;
         for j in 0..child.size {
@@ -78,14 +85,13 @@ impl Front {
                 current += 1;
             }
             let (from, at) = (child.column(j), places[j] as usize);
-            let (to, offset) = if at < self.columns {
-                (&mut self.panel[at * self.height..(at + 1) * self.height], 0)
-            } else {
-                (self.update.column_mut(at - self.columns), at)
+            let to = match at.checked_sub(columns) {
+                None => self.column_mut(at),
+                Some(at) => self.update.column_mut(at),
             };
             for &(begin, end) in &runs[current..] {
                 let begin = begin.max(j);
-                let place = places[begin] as usize - offset;
+                let place = places[begin] as usize - at;
                 let to = &mut to[place..place + end - begin];
                 for (to, from) in to.iter_mut().zip(&from[begin - j..end - j]) {
                     *to += from;
@@ -96,18 +102,23 @@ impl Front {
 
     /// Eliminates the own columns.
     pub fn eliminate(&mut self) -> Result<(), Failure> {
-        let (h, c) = (self.height, self.columns);
-        let threads = (h * h * c) as f64 > WORTH_THREADS;
-        cholesky(MatMut::from_column_major_slice_mut(&mut self.panel, h, c))?;
-        let below = MatRef::from_column_major_slice(&self.panel, h, c).subrows(c, h - c);
-        let strips: Vec<(usize, &mut [f64])> = (self.update.strips.iter_mut().enumerate())
-            .map(|(t, strip)| (t * STRIP, strip.as_mut_slice()))
-            .collect();
-        for_all(strips, threads, |(begin, strip)| {
-            let height = h - c - begin;
-            let strip = MatMut::from_column_major_slice_mut(strip, height, STRIP.min(height));
-            subtract_square(strip, below.subrows(begin, height));
-        });
+        let Trapezoid { columns, height } = self.shape;
+        let threads = (height * height * columns) as f64 > WORTH_THREADS;
+        cholesky_of_strips(self.shape.strips_mut(self.panel))?;
+        let panel: Vec<_> = self.shape.strips(self.panel).collect();
+        for_all(
+            self.update.strips.iter_mut().enumerate().collect(),
+            threads,
+            |(t, strip)| {
+                let height = height - columns - t * STRIP;
+                let mut strip =
+                    MatMut::from_column_major_slice_mut(strip, height, STRIP.min(height));
+                for (_, columns) in &panel {
+                    let below = columns.subrows(columns.nrows() - height, height);
+                    subtract_square(strip.rb_mut(), below);
+                }
+            },
+        );
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::algebra::multifrontal::Cholesky;
+use crate::algebra::multifrontal::{Cholesky, parts};
 
 /// Entries of L from which threads are worth it.
 const WORTH_THREADS: usize = 1_000_000;
@@ -15,7 +15,8 @@ impl Cholesky {
         let tree = &self.tree;
         let threads = tree.entries() > WORTH_THREADS;
         // Front by supernode: first the right-hand side with what came from below, then the solution.
-        let parts = self.parts(x);
+        let parts = parts(x, tree.nodes.iter().map(|node| node.columns.len()));
+        let parts: Vec<Mutex<&mut [f64]>> = parts.into_iter().map(Mutex::new).collect();
         let updates: Vec<OnceLock<Vec<f64>>> = tree.nodes.iter().map(|_| OnceLock::new()).collect();
         let own = |s: usize| parts[s].lock().unwrap_or_else(PoisonError::into_inner);
         tree.upwards(threads, |s| {
@@ -29,10 +30,12 @@ impl Cholesky {
                     front[place as usize] += value;
                 }
             }
-            for (k, column) in self.panels[s].chunks_exact(height).enumerate() {
+            let (panel, shape) = (self.panel(s), node.shape());
+            for k in 0..columns {
+                let column = &panel[shape.column(k)];
                 let (done, below) = front.split_at_mut(k + 1);
-                done[k] /= column[k];
-                for (below, l) in below.iter_mut().zip(&column[k + 1..]) {
+                done[k] /= column[0];
+                for (below, l) in below.iter_mut().zip(&column[1..]) {
                     *below -= l * done[k];
                 }
             }
@@ -42,29 +45,20 @@ impl Cholesky {
         let fronts: Vec<OnceLock<Vec<f64>>> = tree.nodes.iter().map(|_| OnceLock::new()).collect();
         tree.downwards(threads, |s| {
             let (node, mut x) = (&tree.nodes[s], own(s));
-            let (columns, height) = (node.columns.len(), node.height());
+            let columns = node.columns.len();
             let mut front = x.to_vec();
             let above = fronts.get(node.parent).and_then(OnceLock::get);
             let above = above.map_or(&[][..], Vec::as_slice);
             front.extend(tree.places(s).iter().map(|&place| above[place as usize]));
-            for (k, column) in self.panels[s].chunks_exact(height).enumerate().rev() {
+            let (panel, shape) = (self.panel(s), node.shape());
+            for k in (0..columns).rev() {
+                let column = &panel[shape.column(k)];
                 let (own, below) = front.split_at_mut(k + 1);
-                own[k] = (own[k] - dot(&column[k + 1..], below)) / column[k];
+                own[k] = (own[k] - dot(&column[1..], below)) / column[0];
             }
             x.copy_from_slice(&front[..columns]);
             let _ = fronts[s].set(front);
         });
-    }
-
-    /// The part of x of every supernode.
-    fn parts<'x>(&self, x: &'x mut [f64]) -> Vec<Mutex<&'x mut [f64]>> {
-        let mut rest = x;
-        let part = |node: &super::tree::Supernode| {
-            let (own, others) = std::mem::take(&mut rest).split_at_mut(node.columns.len());
-            rest = others;
-            Mutex::new(own)
-        };
-        self.tree.nodes.iter().map(part).collect()
     }
 }
 

@@ -251,7 +251,7 @@ fn one_thread_and_four_give_the_same_bits() {
             cholesky.solve(&mut x);
             let b = sparse_columns(n, 800, &mut Random(1));
             let (w, diagonal) = cholesky.condense(&b, true);
-            (cholesky.panels, x, w, diagonal)
+            (cholesky.values, x, w, diagonal)
         })
     };
     assert!(run(1) == run(4));

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::algebra::strips::Trapezoid;
+
 /// No parent.
 pub(crate) const NONE: usize = usize::MAX;
 
@@ -12,6 +14,8 @@ pub(crate) struct Supernode {
     pub columns: Range<usize>,
     /// Where its rows below the columns stand in [`AssemblyTree::rows`].
     pattern: Range<usize>,
+    /// Where its columns stand among the entries of L.
+    pub entries: Range<usize>,
     /// The supernode that takes its update, or [`NONE`].
     pub parent: usize,
     /// First supernode of its subtree, which ends with itself.
@@ -24,6 +28,14 @@ impl Supernode {
     /// Columns and rows below them.
     pub fn height(&self) -> usize {
         self.columns.len() + self.pattern.len()
+    }
+
+    /// Its columns of L.
+    pub fn shape(&self) -> Trapezoid {
+        Trapezoid {
+            columns: self.columns.len(),
+            height: self.height(),
+        }
     }
 }
 
@@ -60,8 +72,7 @@ impl AssemblyTree {
 
     /// Entries of L, zeros that were let in included.
     pub fn entries(&self) -> usize {
-        let of = |s: &Supernode| trapezoid(s.columns.len(), s.height());
-        self.nodes.iter().map(of).sum()
+        self.nodes.last().map_or(0, |s| s.entries.end)
     }
 
     /// Adds the next supernode; its children have been added before, `rows` are those below its columns, and `position`
@@ -91,13 +102,17 @@ impl AssemblyTree {
         let first = children
             .first()
             .map_or(self.nodes.len(), |&c| self.nodes[c].first);
-        self.nodes.push(Supernode {
+        let mut node = Supernode {
             columns,
             pattern: begin..begin + rows.len(),
+            entries: 0..0,
             parent: NONE,
             first,
             work,
-        });
+        };
+        let before = self.entries();
+        node.entries = before..before + node.shape().len();
+        self.nodes.push(node);
         self.children.push(children);
     }
 }
