@@ -33,7 +33,8 @@ fn requests(m: &Method, s: &ContactSystem, load: &Load, more: usize) -> u64 {
     count(3 + more) - count(3)
 }
 
-/// Goal: an iteration works in the memory of the one before. On 36 rows: larger dense factorisations borrow blocks.
+/// Goal: an iteration works in the memory of the one before. On 36 rows, where `hybrid` runs Newton's method: larger dense
+/// factorisations borrow blocks, and floating bodies balance forces.
 #[test]
 fn iterations_of_newton_methods_and_sweeps_ask_for_no_memory() {
     let mut rng = Random(33);

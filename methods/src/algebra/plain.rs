@@ -1,8 +1,8 @@
-//! Plain loops over columns, with vectors as wide as the machine has: what is too small for blocks.
+//! Plain loops over columns, with wide vectors where the machine has them: what is too small for blocks.
 
 use std::ops::{Index, IndexMut};
 
-/// Runs loops with the widest vectors that the machine has. Products and sums stay operations of their own, in their order: the bits
+/// Runs loops with vectors of 256 bits where the machine has them. Products and sums stay operations of their own, in their order: the bits
 /// are the same on every machine.
 #[inline(always)]
 pub(crate) fn wide<R>(act: impl FnOnce() -> R) -> R {
@@ -21,6 +21,7 @@ impl Full {
     pub fn clear(&mut self, n: usize) {
         self.size = n;
         self.values.clear();
+        self.values.reserve_exact(n * n);
         self.values.resize(n * n, 0.0);
     }
 

@@ -321,6 +321,28 @@ mod tests {
         }
     }
 
+    /// Goal: around whole strips, columns stand one after the other, and their diagonal where the strip says.
+    #[test]
+    fn columns_of_a_trapezoid_tile_its_strips() {
+        let columns = [1, STRIP - 1, STRIP, STRIP + 1, 2 * STRIP, 2 * STRIP + 1];
+        for (columns, more) in columns
+            .into_iter()
+            .flat_map(|c| [0, 1, STRIP].map(|m| (c, m)))
+        {
+            let height = columns + more;
+            let shape = Trapezoid { columns, height };
+            let values: Vec<f64> = (0..shape.len()).map(|k| k as f64).collect();
+            for (first, strip) in shape.strips(&values) {
+                for k in 0..strip.ncols() {
+                    let own = shape.column(first + k);
+                    assert_eq!(own.len(), height - first - k);
+                    assert_eq!(strip[(k, k)], values[own.start]);
+                }
+            }
+            assert_eq!(shape.column(columns - 1).end, shape.len());
+        }
+    }
+
     #[test]
     fn one_thread_and_three_give_the_same_bits() {
         let n = 3 * STRIP + 40;

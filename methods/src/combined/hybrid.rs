@@ -1,4 +1,4 @@
-//! Hybrid method: first-order sweeps choose the states of the points, Newton's method finishes.
+//! Hybrid method: Newton's method, at once on few rows, else after first-order sweeps have chosen the states of the points.
 //!
 //! Sweeps: Jourdan, Alart & Jean, Comput. Meth. Appl. Mech. Engng 155 (1998) 31 (see `nsgs`). Newton: Hüeber, Stadler &
 //! Wohlmuth 2008 (see `pdas`) and Christensen, Klarbring, Pang & Strömberg 1998 (see `b-newton`). That Newton methods should be
@@ -68,9 +68,9 @@ use crate::{
 /// Registry entry.
 pub static METHOD: Method = Method {
     name: "hybrid",
-    label: "Hybrid: sweeps, then Newton",
+    label: "Hybrid of Newton and sweeps",
     reference: "Acary, Brémond & Huber (2018), in Advanced Topics in Nonsmooth Dynamics, Springer",
-    summary: "a few Gauss-Seidel sweeps, then Newton's method, in rounds with ever more sweeps until one succeeds",
+    summary: "Newton's method, at once on few rows, else after a few Gauss-Seidel sweeps, in rounds with ever more of them until one succeeds",
     exact: true,
     options: Hybrid::OPTIONS,
     source: include_str!("hybrid.rs"),
@@ -125,6 +125,7 @@ impl CondensedMethod for Solver {
             if let Some(end) = self.runs.from(start, AlartCurnier, problem, monitor)? {
                 return Ok(end);
             }
+            problem.begin_again();
         }
         let mut rounds = Rounds::new(problem, self);
         loop {
@@ -340,7 +341,9 @@ impl<'s> Rounds<'s> {
             ..self.runs.newton(Sets)
         };
         let start = problem.start();
-        let mut end = newton.run(problem, start, monitor)?;
+        let end = newton.run(problem, start, monitor);
+        self.runs.tangent = newton.tangent;
+        let mut end = end?;
         // Cone programs are minimisations.
         if !is_final(&end) && problem.operator.w.symmetric() {
             problem.begin_again();

@@ -75,6 +75,9 @@ pub(crate) trait Scheme: Send {
         piece: Self::Piece,
     ) -> [PointRow; 3];
 
+    /// Called before the first iterate, for what must not outlast a run.
+    fn begin(&mut self) {}
+
     /// Called with every iterate and its violation before the next step, for what changes with them.
     fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {}
 
@@ -119,7 +122,7 @@ impl<S: Scheme> Newton<S> {
         }
     }
 
-    /// The loop, from `x` until it ends. Its steps ask for no memory.
+    /// The loop, from `x` until it ends. Every step works in the memory of the one before.
     pub fn run(
         &mut self,
         problem: &mut ContactProblem<'_>,
@@ -133,12 +136,13 @@ impl<S: Scheme> Newton<S> {
         let (mut pieces, mut before) = (Vec::new(), Vec::new());
         let (mut v, mut step) = (Vec::new(), Forces::default());
         let mut work = Work::default();
-        // The merit of x where x was the last trial of a line search; its jump is at hand then too.
-        let mut tried = None;
+        // Whether x was the last trial of a line search, and its jump is at hand.
+        let mut tried = false;
+        self.scheme.begin();
         loop {
-            match tried {
-                Some(_) => std::mem::swap(&mut v, &mut work.jump),
-                None => problem.jump_into(&x.p, &x.beta, &mut v),
+            match std::mem::take(&mut tried) {
+                true => std::mem::swap(&mut v, &mut work.jump),
+                false => problem.jump_into(&x.p, &x.beta, &mut v),
             }
             self.pieces(problem, &r, &x.p, &v, &mut pieces);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
@@ -146,7 +150,6 @@ impl<S: Scheme> Newton<S> {
             match problem.check(violation, (&x.p, &x.beta), changes, self.limits, monitor)? {
                 Check::GoOn => {}
                 Check::Corrected => {
-                    tried = None;
                     // Where slender parts sway, the gaps that are left drown in the rounding of P − v/W_ii.
                     if sharper > 1.0 {
                         r.iter_mut().for_each(|r| *r *= sharper);
@@ -169,7 +172,6 @@ impl<S: Scheme> Newton<S> {
                 && let Some(pair) = rescue(problem)?
             {
                 x = pair.into();
-                tried = None;
                 continue;
             }
             if !found && !stuck {
@@ -196,16 +198,15 @@ impl<S: Scheme> Newton<S> {
                     self.merit(problem, &r, &along(&x.p, t, &step.p), &along(&v, t, &dv))
                 });
             } else if self.line_search {
-                let now = tried.take();
-                search.record(now.unwrap_or_else(|| self.merit(problem, &r, &x.p, &v)));
+                search.record(self.merit(problem, &r, &x.p, &v));
                 let Work { trial, jump, .. } = &mut work;
-                let mut last = (f64::NAN, f64::NAN);
+                let mut last = f64::NAN;
                 t = search.length(|t| {
+                    last = t;
                     problem.jump_after(&x, t, &step, trial, jump);
-                    last = (t, self.merit(problem, &r, &trial.p, jump));
-                    last.1
+                    self.merit(problem, &r, &trial.p, jump)
                 });
-                tried = (last.0 == t && !problem.corrects_steps()).then_some(last.1);
+                tried = last == t && !problem.corrects_steps();
             }
             problem.move_along(&mut x, t, &step)?;
         }

@@ -269,13 +269,13 @@ impl Scheme for ConeFunction {
         rows
     }
 
+    fn begin(&mut self) {
+        self.epsilon = f64::INFINITY;
+    }
+
     fn prepare(&mut self, problem: &ContactProblem<'_>, violation: f64, x: &Forces) {
         let points = problem.rows.points() as f64;
         let force = problem.reference_force(&x.p) / points.sqrt();
-        // The instance may have solved another increment before.
-        if problem.counters.iterations <= 1 {
-            self.epsilon = f64::INFINITY;
-        }
         self.epsilon = match self.smoothed {
             true => self.epsilon.min(SMOOTHING * violation * force),
             false => 0.0,

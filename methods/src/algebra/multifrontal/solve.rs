@@ -4,7 +4,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use crate::algebra::multifrontal::{Cholesky, parts};
 
-/// Entries of L from which threads are worth it.
+/// Numbers in L from which threads are worth it.
 const WORTH_THREADS: usize = 1_000_000;
 /// Sums run in this many lanes.
 const LANES: usize = 8;

@@ -70,7 +70,7 @@ impl AssemblyTree {
         roots.map(|s| s.work).sum()
     }
 
-    /// Entries of L, zeros that were let in included.
+    /// Numbers that L is kept in: zeros that were let in and the upper triangles of strips included.
     pub fn entries(&self) -> usize {
         self.nodes.last().map_or(0, |s| s.entries.end)
     }
