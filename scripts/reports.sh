@@ -50,7 +50,7 @@ for part in $parts; do
                 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.von-mises.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
             keep spaces infsup_by_space patch_by_space.csv infsup.svg
-            keep stress stress_causes stress_invariances stress_methods stress_ladders stress_options stress_scenes.csv \
+            keep stress stress_causes stress_invariances stress_methods stress_ladders stress_rungs.csv stress_options stress_scenes.csv \
                 stress_options.svg stress_iterations.svg
             cp -r results/stress/cases reports/stress/
             keep robustness robustness atlas stopping failures.csv robustness.svg

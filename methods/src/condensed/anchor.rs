@@ -200,7 +200,7 @@ impl ContactProblem<'_> {
     /// Rows (g, d) of displacements.
     pub(crate) fn slip_of(&self, u: &[f64]) -> Vec<f64> {
         let (increment, dim) = (self.increment, self.increment.system.dim());
-        slip_from(self.rows, dim, &increment.jump(u), &increment.start_jump())
+        slip_from(self.rows, dim, &increment.jump(u), &self.start_jump)
     }
 
     /// q takes up the difference between the jump found on the body and the condensed one.

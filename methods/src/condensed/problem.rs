@@ -109,6 +109,8 @@ pub struct ContactProblem<'a> {
     /// What `Converged` stands for.
     pub(crate) claim: Claim,
     pub(crate) history: Vec<Iteration>,
+    /// `[[u]]` at the start of the increment.
+    pub(super) start_jump: Vec<f64>,
     /// |q| in P_ref.
     free_jump: f64,
     rescues: usize,
@@ -170,7 +172,7 @@ impl<'a> ContactProblem<'a> {
                 counters,
             }));
         }
-        let rows = system.row_set();
+        let (rows, start_jump) = (system.row_set(), increment.start_jump());
         let force = &increment.load.force;
         let resultant: Vec<f64> = (elastic.floating().iter())
             .map(|r| -resultant(r, force))
@@ -178,7 +180,8 @@ impl<'a> ContactProblem<'a> {
         let balance = operator.modes.balance(&resultant);
         Ok(Begin::Contact(Box::new(ContactProblem {
             free_jump: free_jump(increment, &operator, &rows.restrict(&jump), &balance),
-            q: slip_from(rows, dim, &jump, &increment.start_jump()),
+            q: slip_from(rows, dim, &jump, &start_jump),
+            start_jump,
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::with_capacity(EXPECTED),
             increment,
@@ -233,8 +236,8 @@ impl<'a> ContactProblem<'a> {
             return Vec::new();
         }
         let dim = self.increment.system.dim();
-        let start = self.increment.start_jump();
-        let target = slip_from(self.rows, dim, &start, &start);
+        let start = &self.start_jump;
+        let target = slip_from(self.rows, dim, start, start);
         let zero = vec![0.0; self.modes()];
         let v = self.jump(p, &zero);
         let distance: Vec<f64> = target.iter().zip(&v).map(|(t, v)| t - v).collect();
