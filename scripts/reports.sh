@@ -56,7 +56,7 @@ for part in $parts; do
             keep robustness robustness atlas stopping failures.csv robustness.svg
             keep sensitivity safe_windows starts sensitivity.svg
             keep study recommendations ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
-                'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg' 'stages.plate_mesh1*.svg'
+                'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
             keep bench timings
             "$stickslip" page reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
