@@ -16,4 +16,5 @@ mod random;
 mod robustness;
 mod stress;
 mod sweep;
+mod sweep_files;
 mod timings;

@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 
 use faer::MatRef;
 
-use crate::algebra::strips::{Failure, WORTH_THREADS};
+use crate::algebra::strips::{Failure, WORTH_THREADS, zeros};
 
 pub(crate) use analysis::{Analysis, Entries, Ordering};
 use front::{Front, Update};
@@ -151,16 +151,4 @@ fn parts(x: &mut [f64], sizes: impl Iterator<Item = usize>) -> Vec<&mut [f64]> {
         own
     };
     sizes.map(part).collect()
-}
-
-/// Zeros, of which the system keeps no pages until they are written to.
-fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
-    // No memory is an answer here, where `vec!` would end the program.
-    let mut probe = Vec::<f64>::new();
-    let denied = probe.try_reserve_exact(len).is_err();
-    drop(probe);
-    if denied {
-        return Err(Failure::OutOfMemory);
-    }
-    Ok(vec![0.0; len])
 }

@@ -81,6 +81,18 @@ pub(crate) fn row_strips(mut a: MatMut<'_, f64>, most: usize) -> Vec<(usize, Mat
     strips
 }
 
+/// Zeros, of which the system keeps no pages until they are written to.
+pub(crate) fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
+    // No memory is an answer here, where `vec!` would end the program.
+    let mut probe = Vec::<f64>::new();
+    let denied = probe.try_reserve_exact(len).is_err();
+    drop(probe);
+    if denied {
+        return Err(Failure::OutOfMemory);
+    }
+    Ok(vec![0.0; len])
+}
+
 /// A lower trapezoid, kept by strips of its columns one after the other: a strip has the rows from its first column on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trapezoid {
@@ -90,7 +102,12 @@ pub(crate) struct Trapezoid {
 }
 
 impl Trapezoid {
-    /// Numbers it takes.
+    /// Entries on and below the diagonal.
+    pub fn entries(self) -> usize {
+        self.columns * self.height - self.columns * self.columns.saturating_sub(1) / 2
+    }
+
+    /// Numbers it takes: strips keep what stands above the diagonal in them.
     pub fn len(self) -> usize {
         let whole = self.columns / STRIP;
         self.begin(whole) + self.columns % STRIP * (self.height - whole * STRIP)

@@ -74,7 +74,12 @@ pub static METHOD: Method = Method {
     exact: true,
     options: Hybrid::OPTIONS,
     source: include_str!("hybrid.rs"),
-    build: |options| Box::new(Solver::new(Hybrid::new(options))),
+    build: |options| {
+        Box::new(Solver {
+            settings: Hybrid::new(options),
+            tangent: Tangent::default(),
+        })
+    },
 };
 
 options! {
@@ -107,10 +112,10 @@ const MAX_RESTARTS: usize = 8;
 /// Sweeps of the first round after a restart.
 const RESTART_SWEEPS: usize = 20;
 
-/// The method with what its Newton runs are computed in.
+/// The method with the memory of its Newton runs.
 struct Solver {
     settings: Hybrid,
-    runs: NewtonRuns,
+    tangent: Tangent,
 }
 
 impl CondensedMethod for Solver {
@@ -119,15 +124,19 @@ impl CondensedMethod for Solver {
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
-        self.runs.multiple = self.settings.r;
+        let mut runs = NewtonRuns {
+            multiple: self.settings.r,
+            settings: self.settings,
+            tangent: &mut self.tangent,
+        };
         if problem.len() <= FEW {
             let start = problem.start();
-            if let Some(end) = self.runs.from(start, AlartCurnier, problem, monitor)? {
+            if let Some(end) = runs.from(start, AlartCurnier, problem, monitor)? {
                 return Ok(end);
             }
             problem.begin_again();
         }
-        let mut rounds = Rounds::new(problem, self);
+        let mut rounds = Rounds::new(problem, runs);
         loop {
             if let Some(end) = rounds.sweep(problem, monitor)? {
                 return Ok(end);
@@ -162,13 +171,12 @@ struct Rounds<'s> {
     reached: (f64, f64),
     /// Restarts so far.
     restarts: usize,
-    runs: &'s mut NewtonRuns,
+    runs: NewtonRuns<'s>,
     /// Whether the other methods were tried, and whether the interior-point method was.
     tried: bool,
     pathed: bool,
     /// Where the sweeps ended last.
     best: Forces,
-    settings: Hybrid,
 }
 
 /// Whether contact points are redundant: the matrix of all points tied is singular.
@@ -191,27 +199,16 @@ fn is_final(end: &End) -> bool {
     [Status::Converged, Status::Stopped].contains(&end.status)
 }
 
-impl Solver {
-    fn new(settings: Hybrid) -> Self {
-        let runs = NewtonRuns {
-            multiple: settings.r,
-            max_iterations: settings.max_iterations,
-            tangent: Tangent::default(),
-        };
-        Self { settings, runs }
-    }
-}
-
 /// Runs of Newton's method, each stopped soon after it makes no progress.
-struct NewtonRuns {
+struct NewtonRuns<'s> {
     /// r of the next one: as given, from the first that fails 1.
     multiple: f64,
-    max_iterations: usize,
+    settings: Hybrid,
     /// Its memory serves all runs.
-    tangent: Tangent,
+    tangent: &'s mut Tangent,
 }
 
-impl NewtonRuns {
+impl NewtonRuns<'_> {
     /// From `start`; how the method ends, if it does.
     fn from<S: Scheme>(
         &mut self,
@@ -224,11 +221,11 @@ impl NewtonRuns {
         let mut newton = self.newton(scheme);
         if self.multiple != 1.0 {
             let most = problem.counters.iterations + SCALED_STEPS;
-            let most = most.min(self.max_iterations);
+            let most = most.min(self.settings.max_iterations);
             newton.limits = Limits::new(most, NEWTON_PATIENCE);
         }
         let end = newton.run(problem, start, monitor);
-        (self.multiple, self.tangent) = (1.0, newton.tangent);
+        (self.multiple, *self.tangent) = (1.0, newton.tangent);
         let end = end?;
         Ok(is_final(&end).then_some(end))
     }
@@ -237,37 +234,36 @@ impl NewtonRuns {
         Newton {
             scheme,
             multiple: self.multiple,
-            limits: Limits::new(self.max_iterations, NEWTON_PATIENCE),
+            limits: Limits::new(self.settings.max_iterations, NEWTON_PATIENCE),
             line_search: true,
             kinks: false,
             rescue: false,
-            tangent: std::mem::take(&mut self.tangent),
+            tangent: std::mem::take(self.tangent),
         }
     }
 }
 
 impl<'s> Rounds<'s> {
-    fn new(problem: &ContactProblem<'_>, method: &'s mut Solver) -> Self {
+    fn new(problem: &ContactProblem<'_>, runs: NewtonRuns<'s>) -> Self {
         let saddle = Saddle::new(problem.operator.clone());
         Self {
             sweeps: Sweeps::new(problem, &saddle),
             x: saddle.start(problem),
             saddle,
             branches: vec![Branch::Open; problem.rows.points()],
-            count: method.settings.first,
+            count: runs.settings.first,
             relaxation: 1.0,
             reached: (f64::INFINITY, f64::INFINITY),
             restarts: 0,
-            runs: &mut method.runs,
             tried: false,
             pathed: false,
             best: problem.start(),
-            settings: method.settings,
+            runs,
         }
     }
 
     fn limits(&self, patience: usize) -> Limits {
-        Limits::new(self.settings.max_iterations, patience)
+        Limits::new(self.runs.settings.max_iterations, patience)
     }
 
     /// The sweeps of a round; how the method ends, if it does.
@@ -308,7 +304,7 @@ impl<'s> Rounds<'s> {
 
     /// Iterations in all at which a method of another family is given up that begins now.
     fn share(&self, problem: &ContactProblem<'_>) -> usize {
-        (problem.counters.iterations + SHARE).min(self.settings.max_iterations)
+        (problem.counters.iterations + SHARE).min(self.runs.settings.max_iterations)
     }
 
     /// Other methods from the start of the increment, before the first of the largest rounds; how the method ends, if it
@@ -319,7 +315,7 @@ impl<'s> Rounds<'s> {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
         let last_chance = !self.tried && 2 * self.count >= MAX_SWEEPS;
-        let second = self.count == EARLY * self.settings.first;
+        let second = self.count == EARLY * self.runs.settings.first;
         if !self.pathed && (last_chance || (second && redundant(problem))) {
             self.pathed = true;
             let limits = Limits::new(self.share(problem), interior_point::PATIENCE);
@@ -342,7 +338,7 @@ impl<'s> Rounds<'s> {
         };
         let start = problem.start();
         let end = newton.run(problem, start, monitor);
-        self.runs.tangent = newton.tangent;
+        *self.runs.tangent = newton.tangent;
         let mut end = end?;
         // Cone programs are minimisations.
         if !is_final(&end) && problem.operator.w.symmetric() {

@@ -215,9 +215,9 @@ fn bound_and_trial(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (f64, f64) {
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.
 fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> bool {
-    if !(0..pieces.len()).any(|i| Kink::of_point(at, i).any()) {
+    let Some(first) = (0..pieces.len()).find(|&i| Kink::of_point(at, i).any()) else {
         return false;
-    }
+    };
     let dv = &mut at.work.jump;
     dv.clear();
     dv.resize(step.p.len(), 0.0);
@@ -225,7 +225,7 @@ fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> b
     at.problem.operator.modes.add(&step.beta, dv);
     let (at, problem) = (&*at, &*at.problem);
     let mut contradicted = false;
-    for (i, piece) in pieces.iter_mut().enumerate() {
+    for (i, piece) in pieces.iter_mut().enumerate().skip(first) {
         let (rows, kink) = (problem.rows.of(i), Kink::of_point(at, i));
         let (r, P, v) = (
             &at.r[rows.clone()],

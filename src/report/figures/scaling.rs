@@ -123,29 +123,35 @@ fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
         times.guides = vec![Guide::new(2.0, 1.0, "")];
         panels.extend([times, panel_of(whole, share)]);
     }
-    // The sentence: what grows least among those that solve the largest bodies.
-    let largest = all.iter().map(|s| s.points).max().unwrap_or(0);
-    let names = distinct(all.iter().filter(|s| s.points == largest).map(|s| s.method));
-    let fastest = names.iter().map(|name| {
-        let there = all
-            .iter()
-            .filter(|s| s.method == *name && s.points == largest);
-        (median(there.map(|s| s.time)), *name)
-    });
-    let best = fastest.min_by(|a, b| a.0.total_cmp(&b.0));
-    let title = best.map_or(String::new(), |(seconds, name)| {
-        let own = all.iter().filter(|s| s.method == name);
-        let grows = exponent(own, |s| s.time);
-        let grows = grows.map_or(String::new(), |a| {
-            format!(", growing with the power {}", fixed(a, 1))
-        });
-        let seconds = significant(seconds, 2);
-        format!(
-            "{} takes least time on {largest} points: {seconds} s{grows}",
-            plain(name)
-        )
-    });
+    let leaders: Vec<String> = dimensions(all)
+        .into_iter()
+        .filter_map(|dim| leader(all, dim))
+        .collect();
+    let title = format!("Least time: {}", leaders.join("; "));
     Figure::new(&title, caption, 2, panels)
+}
+
+/// What takes least time on the largest bodies of a dimension, of the methods that solve most of them.
+fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
+    let own = || all.iter().filter(|s| s.dim == dim);
+    let largest = own().map(|s| s.points).max()?;
+    let there = |name: &str| {
+        let own = own().filter(|s| s.points == largest && s.method == name);
+        own.map(|s| s.time).collect::<Vec<f64>>()
+    };
+    let names = distinct(own().filter(|s| s.points == largest).map(|s| s.method));
+    let most = names.iter().map(|name| there(name).len()).max()?;
+    let (seconds, name) = names
+        .into_iter()
+        .filter(|name| there(name).len() == most)
+        .map(|name| (median(there(name)), name))
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let grows = exponent(own().filter(|s| s.method == name), |s| s.time);
+    let grows = grows.map_or(String::new(), |a| format!(", as N^{}", fixed(a, 1)));
+    let (seconds, name) = (significant(seconds, 2), plain(name));
+    Some(format!(
+        "{name} on {largest} points in {dim}D ({seconds} s{grows})"
+    ))
 }
 
 fn iterations(

@@ -7,7 +7,8 @@
 use std::ops::Range;
 
 use crate::algebra::matrix::SymmetricMatrix;
-use crate::algebra::multifrontal::tree::{AssemblyTree, NONE, postorder, trapezoid};
+use crate::algebra::multifrontal::tree::{AssemblyTree, NONE, postorder};
+use crate::algebra::strips::Trapezoid;
 
 /// A child is joined to its parent if of the entries of both at most this part is zero, by the number of columns.
 const RELAXATION: [(usize, f64); 4] = [(4, 0.8), (16, 0.3), (48, 0.1), (usize::MAX, 0.01)];
@@ -320,12 +321,16 @@ impl Groups {
         let (child, parent) = (&self.groups[c], &self.groups[p]);
         let (width, height) = (child.width + parent.width, child.width + parent.height);
         let new = child.width * (height - child.height);
+        let whole = Trapezoid {
+            columns: width,
+            height,
+        };
         let zeros = child.zeros + parent.zeros + new;
         let allowed = RELAXATION
             .iter()
             .find(|r| width <= r.0)
             .map_or(0.0, |r| r.1);
-        if new == 0 || zeros as f64 <= allowed * trapezoid(width, height) as f64 {
+        if new == 0 || zeros as f64 <= allowed * whole.entries() as f64 {
             self.groups[c].joined = p;
             let parent = &mut self.groups[p];
             (parent.width, parent.height, parent.zeros) = (width, height, zeros);

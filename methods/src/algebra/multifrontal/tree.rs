@@ -117,11 +117,6 @@ impl AssemblyTree {
     }
 }
 
-/// Entries on and below the diagonal of `columns` columns, the first of which has `height`.
-pub(super) fn trapezoid(columns: usize, height: usize) -> usize {
-    columns * height - columns * columns.saturating_sub(1) / 2
-}
-
 /// Postorder of a forest given by parents; a parent outside the slice makes a root. Children in increasing order.
 pub(super) fn postorder(parent: &[usize]) -> Vec<usize> {
     let n = parent.len();
