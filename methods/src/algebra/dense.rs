@@ -3,7 +3,7 @@
 use faer::linalg::triangular_solve::{
     solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, Par};
 
 use crate::algebra::plain::{self, Full, wide};
 use crate::algebra::strips::lu;
@@ -19,6 +19,8 @@ pub(crate) struct DenseLu {
     factors: Full,
     /// Rows of the matrix in the order of the pivots.
     rows: Vec<usize>,
+    /// Room for a column.
+    column: Vec<f64>,
 }
 
 impl DenseLu {
@@ -39,10 +41,10 @@ impl DenseLu {
     /// Factors the matrix that stands in place of the factors; false if it is singular to working precision.
     pub fn factor(&mut self) -> bool {
         let (a, rows) = (&mut self.factors, &mut self.rows);
-        let n = a.size;
+        let n = a.size();
         match n {
-            0..=PLAIN => plain::lu(a, rows),
-            _ => *rows = lu(MatMut::from_column_major_slice_mut(&mut a.values, n, n)),
+            0..=PLAIN => plain::lu(a, rows, &mut self.column),
+            _ => *rows = lu(a.view_mut()),
         }
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for i in 0..n {
@@ -65,11 +67,11 @@ impl DenseLu {
     pub fn solve_into(&self, b: &[f64], x: &mut Vec<f64>) -> bool {
         x.clear();
         x.extend(self.rows.iter().map(|&i| b[i]));
-        let n = self.factors.size;
+        let n = self.factors.size();
         if n <= PLAIN {
             plain::solve(&self.factors, x);
         } else {
-            let factors = MatRef::from_column_major_slice(&self.factors.values, n, n);
+            let factors = self.factors.view();
             let mut column = MatMut::from_column_major_slice_mut(x, n, 1);
             solve_unit_lower_triangular_in_place(factors, column.as_mut(), Par::Seq);
             solve_upper_triangular_in_place(factors, column, Par::Seq);

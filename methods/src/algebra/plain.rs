@@ -2,6 +2,8 @@
 
 use std::ops::{Index, IndexMut};
 
+use faer::{MatMut, MatRef};
+
 /// Runs loops with vectors of 256 bits where the machine has them. Products and sums stay operations of their own, in their order: the bits
 /// are the same on every machine.
 #[inline(always)]
@@ -9,25 +11,45 @@ pub(crate) fn wide<R>(act: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(act)
 }
 
-/// A square matrix, column by column.
+/// Numbers of a vector of 256 bits.
+const LANES: usize = 4;
+
+/// A square matrix, column by column. Columns are followed by zeros up to a whole number of vectors: loops have no rest.
 #[derive(Default)]
 pub(crate) struct Full {
-    pub size: usize,
-    pub values: Vec<f64>,
+    size: usize,
+    stride: usize,
+    values: Vec<f64>,
 }
 
 impl Full {
     /// n × n zeros.
     pub fn clear(&mut self, n: usize) {
-        self.size = n;
+        (self.size, self.stride) = (n, n.next_multiple_of(LANES));
         self.values.clear();
-        self.values.reserve_exact(n * n);
-        self.values.resize(n * n, 0.0);
+        self.values.reserve_exact(n * self.stride);
+        self.values.resize(n * self.stride, 0.0);
+    }
+
+    /// Rows and columns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// For blocked algorithms.
+    pub fn view(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice_with_stride(&self.values, self.size, self.size, self.stride)
+    }
+
+    /// The same, to be changed.
+    pub fn view_mut(&mut self) -> MatMut<'_, f64> {
+        let (n, stride) = (self.size, self.stride);
+        MatMut::from_column_major_slice_with_stride_mut(&mut self.values, n, n, stride)
     }
 
     /// Column `j`.
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
-        &mut self.values[j * self.size..][..self.size]
+        &mut self.values[j * self.stride..][..self.size]
     }
 }
 
@@ -35,66 +57,122 @@ impl Index<(usize, usize)> for Full {
     type Output = f64;
 
     fn index(&self, (i, j): (usize, usize)) -> &f64 {
-        &self.values[i + j * self.size]
+        &self.values[i + j * self.stride]
     }
 }
 
 impl IndexMut<(usize, usize)> for Full {
     fn index_mut(&mut self, (i, j): (usize, usize)) -> &mut f64 {
-        &mut self.values[i + j * self.size]
+        &mut self.values[i + j * self.stride]
     }
 }
 
 /// A := L and U with L U = P A, partial pivoting; row k of P A is row `rows[k]` of A. One column after the other, all later ones
-/// updated at once.
-pub(crate) fn lu(a: &mut Full, rows: &mut Vec<usize>) {
-    let n = a.size;
+/// updated at once. `multipliers`: room for a column of L, with zeros above, so that updates begin with a whole vector.
+pub(crate) fn lu(a: &mut Full, rows: &mut Vec<usize>, multipliers: &mut Vec<f64>) {
+    let (n, stride) = (a.size, a.stride);
     rows.clear();
     rows.extend(0..n);
+    multipliers.clear();
+    multipliers.resize(stride, 0.0);
     wide(
         #[inline(always)]
         || {
             for k in 0..n {
-                let (done, later) = a.values.split_at_mut((k + 1) * n);
-                let (earlier, column) = done.split_at_mut(k * n);
-                let mut pivot = k;
-                for i in k + 1..n {
-                    if column[i].abs() > column[pivot].abs() {
-                        pivot = i;
-                    }
-                }
+                let (done, later) = a.values.split_at_mut((k + 1) * stride);
+                let column = &mut done[k * stride..];
+                let pivot = k + largest(&column[k..n]);
                 if pivot != k {
                     rows.swap(k, pivot);
-                    column.swap(k, pivot);
-                    let others = earlier.chunks_exact_mut(n);
-                    (others.chain(later.chunks_exact_mut(n))).for_each(|c| c.swap(k, pivot));
+                    (done.chunks_exact_mut(stride)).for_each(|c| c.swap(k, pivot));
+                    (later.chunks_exact_mut(stride)).for_each(|c| c.swap(k, pivot));
                 }
-                let (first, own) = (column[k], &mut column[k + 1..]);
-                if first != 0.0 {
-                    own.iter_mut().for_each(|x| *x /= first);
+                let column = &mut done[k * stride..];
+                let divisor = if column[k] == 0.0 { 1.0 } else { column[k] };
+                multipliers[k] = 0.0;
+                for (x, l) in column[k + 1..].iter_mut().zip(&mut multipliers[k + 1..]) {
+                    *x /= divisor;
+                    *l = *x;
                 }
-                for column in later.chunks_exact_mut(n) {
-                    let (first, below) = (column[k], &mut column[k + 1..]);
-                    let pairs = below.iter_mut().zip(&*own);
-                    pairs.for_each(|(x, l)| *x -= l * first);
+                let begin = (k + 1) / LANES * LANES;
+                let (below, _) = multipliers[begin..].as_chunks();
+                let columns = later.chunks_exact_mut(stride);
+                match below.len() {
+                    0 => {}
+                    1 => subtract::<1>(below, k, columns),
+                    2 => subtract::<2>(below, k, columns),
+                    3 => subtract::<3>(below, k, columns),
+                    4 => subtract::<4>(below, k, columns),
+                    5 => subtract::<5>(below, k, columns),
+                    6 => subtract::<6>(below, k, columns),
+                    _ => columns.for_each(|column| {
+                        let (first, (own, _)) = (column[k], column[begin..].as_chunks_mut());
+                        own.iter_mut()
+                            .zip(below)
+                            .for_each(|(x, l)| minus(x, l, first));
+                    }),
                 }
             }
         },
     );
 }
 
+/// x −= l first.
+#[inline(always)]
+fn minus(x: &mut [f64; LANES], l: &[f64; LANES], first: f64) {
+    x.iter_mut().zip(l).for_each(|(x, l)| *x -= l * first);
+}
+
+/// Subtracts multiples of a column of L, their row k, from the last `N` vectors of columns; known at compilation, that loop costs
+/// nothing and L stays in registers.
+#[inline(always)]
+fn subtract<'a, const N: usize>(
+    l: &[[f64; LANES]],
+    k: usize,
+    columns: impl Iterator<Item = &'a mut [f64]>,
+) {
+    let l: [[f64; LANES]; N] = std::array::from_fn(|i| l[i]);
+    for column in columns {
+        let (first, (own, _)) = (column[k], column.as_chunks_mut());
+        if let Some(own) = own.last_chunk_mut::<N>() {
+            own.iter_mut().zip(&l).for_each(|(x, l)| minus(x, l, first));
+        }
+    }
+}
+
+/// Where the first entry of largest magnitude stands; 0 if all are NaN.
+#[inline(always)]
+fn largest(x: &[f64]) -> usize {
+    let larger = |most: &mut f64, x: &f64| *most = if x.abs() > *most { x.abs() } else { *most };
+    let mut most = [0.0; LANES];
+    let (vectors, rest) = x.as_chunks::<LANES>();
+    for vector in vectors {
+        most.iter_mut()
+            .zip(vector)
+            .for_each(|(most, x)| larger(most, x));
+    }
+    let mut all = 0.0;
+    (rest.iter().chain(&most)).for_each(|x| larger(&mut all, x));
+    x.iter().position(|x| x.abs() == all).unwrap_or(0)
+}
+
 /// x := U⁻¹ L⁻¹ x.
 pub(crate) fn solve(factors: &Full, x: &mut [f64]) {
-    let n = factors.size;
+    let columns = || {
+        factors
+            .values
+            .chunks_exact(factors.stride.max(1))
+            .enumerate()
+    };
     wide(
         #[inline(always)]
         || {
-            for (k, l) in factors.values.chunks_exact(n.max(1)).enumerate() {
+            for (k, l) in columns() {
                 let (first, below) = (x[k], &mut x[k + 1..]);
                 let pairs = below.iter_mut().zip(&l[k + 1..]);
                 pairs.for_each(|(x, l)| *x -= l * first);
             }
-            for (k, u) in factors.values.chunks_exact(n.max(1)).enumerate().rev() {
+            for (k, u) in columns().rev() {
                 x[k] /= u[k];
                 let (above, last) = x[..=k].split_at_mut(k);
                 above.iter_mut().zip(u).for_each(|(x, u)| *x -= u * last[0]);

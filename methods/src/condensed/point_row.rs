@@ -25,13 +25,13 @@ pub(crate) struct PointRow {
 }
 
 impl PointRow {
-    /// A row with a right-hand side and no coefficients yet.
-    pub fn reading(h: f64) -> Self {
-        Self {
-            a: [0.0; 3],
-            c: [0.0; 3],
-            h,
-        }
+    /// Rows of a point with right-hand sides and no coefficients yet.
+    #[inline(always)]
+    pub fn reading(h: [f64; 3]) -> [Self; 3] {
+        let (a, c) = ([0.0; 3], [0.0; 3]);
+        let mut rows = [Self { a, c, h: 0.0 }; 3];
+        rows.iter_mut().zip(h).for_each(|(row, h)| row.h = h);
+        rows
     }
 }
 
@@ -130,7 +130,10 @@ impl Bordered {
             Law::Rows { a, c } => {
                 self.laws.clear();
                 (self.laws).extend(active.iter().map(|(row, own)| law_row(own, &c[*row])));
-                rows(J, w, active, a, &self.laws);
+                match problem.increment.system.dim() {
+                    2 => rows::<2>(J, w, active, a, &self.laws),
+                    _ => rows::<3>(J, w, active, a, &self.laws),
+                }
             }
             Law::Columns { unit, e, s, series } => {
                 (0..n).for_each(|k| J[(k, k)] = *unit);
@@ -198,8 +201,8 @@ fn law_row(own: &Range<usize>, c: &[f64; 3]) -> LawRow {
     )
 }
 
-/// A + C W on the active rows.
-fn rows(
+/// A + C W on the active rows of a body of dimension `D`.
+fn rows<const D: usize>(
     J: &mut Full,
     w: &dyn Delassus,
     active: &[(usize, Range<usize>)],
@@ -211,7 +214,7 @@ fn rows(
         let w = w.column(*k, &mut work);
         let entries = &mut J.column_mut(column)[..active.len()];
         for (entry, (at, c)) in entries.iter_mut().zip(laws) {
-            *entry = c[0] * w[at[0]] + c[1] * w[at[1]] + c[2] * w[at[2]];
+            *entry = (0..D).map(|l| c[l] * w[at[l]]).sum();
         }
         // Active rows of one point follow each other.
         let before = (active[..column].iter().rev()).take_while(|(_, own)| own == point);

@@ -206,7 +206,7 @@ fn stage_rows(
     target: &[f64],
 ) -> Vec<[PointRow; 3]> {
     let of_point = |own: std::ops::Range<usize>| {
-        let mut rows = [0.0; 3].map(PointRow::reading);
+        let mut rows = PointRow::reading([0.0; 3]);
         for (l, k) in own.enumerate() {
             rows[l].a[l] = 1.0;
             rows[l].c[l] = k0;

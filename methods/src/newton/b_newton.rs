@@ -123,9 +123,15 @@ impl Scheme for BEquations {
     }
 
     /// The row of H' for each piece, as in the table above.
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Piece) -> [PointRow; 3] {
-        let H = self.equations(mu, r, P, v);
-        let mut rows = H.map(PointRow::reading);
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        piece: Piece,
+        rows: &mut [PointRow; 3],
+    ) {
         if piece.closed {
             rows[0].c[0] = r[0];
         } else {
@@ -155,7 +161,6 @@ impl Scheme for BEquations {
                 }
             }
         }
-        rows
     }
 
     /// The direction that asks for the pieces it was computed with.

@@ -115,23 +115,31 @@ impl Scheme for Complementarity {
         augmented_branch(mu, r, P, v)
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Branch) -> [PointRow; 3] {
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        piece: Branch,
+        rows: &mut [PointRow; 3],
+    ) {
         if !self.mapped {
-            return self.rows(mu, r, P, v, piece);
+            return self.coefficients(mu, r, P, v, piece, rows);
         }
         let mut mapped = [0.0; 3];
         let mapped = &mut mapped[..P.len()];
         mapped.copy_from_slice(P);
         return_map(mu, mapped);
         let piece = self.piece(mu, r, mapped, v);
-        let mut rows = self.rows(mu, r, mapped, v, piece);
+        *rows = PointRow::reading(self.equations(mu, r, mapped, v));
+        self.coefficients(mu, r, mapped, v, piece, rows);
         // The step counts from P.
-        for row in &mut rows {
+        for row in rows {
             row.h -= (0..P.len())
                 .map(|l| row.a[l] * (mapped[l] - P[l]))
                 .sum::<f64>();
         }
-        rows
     }
 
     /// Without (r_t d/b) δb where the tangent is singular: of redundant points it asks what contradicts itself.
@@ -151,23 +159,31 @@ impl Scheme for Complementarity {
         at.step(&stiff, pieces, step)
     }
 
-    fn prepare(&mut self, problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {
+    fn prepare(&mut self, problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) -> bool {
         self.mapped = match self.return_map {
             0 => false,
             1 => problem.idle() > SLOW,
             _ => problem.counters.iterations > 1,
         };
+        false
     }
 }
 
 impl Complementarity {
     /// The table.
-    fn rows(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Branch) -> [PointRow; 3] {
+    fn coefficients(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        piece: Branch,
+        rows: &mut [PointRow; 3],
+    ) {
         let size = P.len();
-        let mut rows = self.equations(mu, r, P, v).map(PointRow::reading);
         if piece == Branch::Open {
             (0..size).for_each(|k| rows[k].a[k] = 1.0);
-            return rows;
+            return;
         }
         rows[0].c[0] = r[0];
         let z = trial(r, P, v);
@@ -191,6 +207,5 @@ impl Complementarity {
             rows[k].a[0] = mu * bound;
             rows[k].c[0] = -mu * bound * r[0];
         }
-        rows
     }
 }

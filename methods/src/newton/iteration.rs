@@ -65,7 +65,8 @@ pub(crate) trait Scheme: Send {
     /// The piece at (P, v).
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
 
-    /// V (δP, δv) = −H on a piece.
+    /// V (δP, δv) = −H on a piece: sets the coefficients of `rows`, which are zero and have [`equations`](Self::equations) on
+    /// their right-hand sides.
     fn linearise(
         &self,
         mu: f64,
@@ -73,13 +74,16 @@ pub(crate) trait Scheme: Send {
         P: &[f64],
         v: &[f64],
         piece: Self::Piece,
-    ) -> [PointRow; 3];
+        rows: &mut [PointRow; 3],
+    );
 
     /// Called before the first iterate, for what must not outlast a run.
     fn begin(&mut self) {}
 
-    /// Called with every iterate and its violation before the next step, for what changes with them.
-    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) {}
+    /// Called with every iterate and its violation before the next step, for what changes with them; whether the equations do.
+    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) -> bool {
+        false
+    }
 
     /// The Newton direction in place of what `step` holds; false if the tangent is singular. `pieces` are those at x, which may
     /// be changed.
@@ -136,13 +140,14 @@ impl<S: Scheme> Newton<S> {
         let (mut pieces, mut before) = (Vec::new(), Vec::new());
         let (mut v, mut step) = (Vec::new(), Forces::default());
         let mut work = Work::default();
-        // Whether x was the last trial of a line search, and its jump is at hand.
-        let mut tried = false;
+        // The merit of x, where it was the last trial of a line search; then its jump is at hand, too.
+        let mut tried = None;
         self.scheme.begin();
         loop {
-            match std::mem::take(&mut tried) {
-                true => std::mem::swap(&mut v, &mut work.jump),
-                false => problem.jump_into(&x.p, &x.beta, &mut v),
+            let mut merit = tried.take();
+            match merit {
+                Some(_) => std::mem::swap(&mut v, &mut work.jump),
+                None => problem.jump_into(&x.p, &x.beta, &mut v),
             }
             self.pieces(problem, &r, &x.p, &v, &mut pieces);
             let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
@@ -160,7 +165,9 @@ impl<S: Scheme> Newton<S> {
                 }
                 Check::End(status) => return Ok(End { status, at: x }),
             }
-            self.scheme.prepare(problem, violation, &x);
+            if self.scheme.prepare(problem, violation, &x) {
+                merit = None;
+            }
             before.clone_from(&pieces);
 
             let stuck = self.rescue && problem.stagnates();
@@ -198,15 +205,15 @@ impl<S: Scheme> Newton<S> {
                     self.merit(problem, &r, &along(&x.p, t, &step.p), &along(&v, t, &dv))
                 });
             } else if self.line_search {
-                search.record(self.merit(problem, &r, &x.p, &v));
+                search.record(merit.unwrap_or_else(|| self.merit(problem, &r, &x.p, &v)));
                 let Work { trial, jump, .. } = &mut work;
-                let mut last = f64::NAN;
+                let mut last = (f64::NAN, f64::NAN);
                 t = search.length(|t| {
-                    last = t;
                     problem.jump_after(&x, t, &step, trial, jump);
-                    self.merit(problem, &r, &trial.p, jump)
+                    last = (t, self.merit(problem, &r, &trial.p, jump));
+                    last.1
                 });
-                tried = last == t && !problem.corrects_steps();
+                tried = (last.0 == t && !problem.corrects_steps()).then_some(last.1);
             }
             problem.move_along(&mut x, t, &step)?;
         }
@@ -352,13 +359,14 @@ impl At<'_, '_> {
     }
 
     fn linearise<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) {
-        let points = self.problem.rows.iter().enumerate();
-        let row = |(i, own): (usize, std::ops::Range<usize>)| {
-            let (r, P) = (&self.r[own.clone()], &self.x.p[own.clone()]);
-            scheme.linearise(self.problem.friction(i), r, P, &self.v[own], pieces[i])
-        };
-        self.work.rows.clear();
-        self.work.rows.extend(points.map(row));
+        let rows = &mut self.work.rows;
+        rows.resize(pieces.len(), PointRow::reading([0.0; 3]));
+        for (i, (own, rows)) in self.problem.rows.iter().zip(rows).enumerate() {
+            let (mu, r) = (self.problem.friction(i), &self.r[own.clone()]);
+            let (P, v) = (&self.x.p[own.clone()], &self.v[own]);
+            *rows = PointRow::reading(scheme.equations(mu, r, P, v));
+            scheme.linearise(mu, r, P, v, pieces[i], rows);
+        }
     }
 }
 

@@ -239,8 +239,15 @@ impl Scheme for ConeFunction {
         augmented_branch(mu, r, P, v)
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], _: Branch) -> [PointRow; 3] {
-        let mut rows = self.equations(mu, r, P, v).map(PointRow::reading);
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        _: Branch,
+        rows: &mut [PointRow; 3],
+    ) {
         let (x, y) = Self::pair(mu, r, P, v);
         let root = self.root(x, y);
         // Of |d|, smoothed.
@@ -266,20 +273,21 @@ impl Scheme for ConeFunction {
                 rows[k].c[l] = by_jump[k];
             }
         }
-        rows
     }
 
     fn begin(&mut self) {
         self.epsilon = f64::INFINITY;
     }
 
-    fn prepare(&mut self, problem: &ContactProblem<'_>, violation: f64, x: &Forces) {
+    fn prepare(&mut self, problem: &ContactProblem<'_>, violation: f64, x: &Forces) -> bool {
         let points = problem.rows.points() as f64;
         let force = problem.reference_force(&x.p) / points.sqrt();
+        let before = self.epsilon;
         self.epsilon = match self.smoothed {
-            true => self.epsilon.min(SMOOTHING * violation * force),
+            true => before.min(SMOOTHING * violation * force),
             false => 0.0,
         };
+        self.epsilon != before
     }
 }
 
@@ -311,10 +319,11 @@ mod tests {
             let root = f.root(x, y);
             prop_assume!(root.minus.min(root.plus) > 0.1 && (size == 1 || tangential_norm(&v[..size]) > 0.1));
             // |d| is smoothed in the derivative alone.
-            let rows = match f.smoothed && size > 1 {
-                true => return Ok(()),
-                false => f.linearise(mu, &r[..size], &P[..size], &v[..size], Branch::Open),
-            };
+            if f.smoothed && size > 1 {
+                return Ok(());
+            }
+            let mut rows = PointRow::reading([0.0; 3]);
+            f.linearise(mu, &r[..size], &P[..size], &v[..size], Branch::Open, &mut rows);
             let h = 1e-6;
             let at = |dp: f64, dv: f64| {
                 let (mut P, mut v) = (P, v);

@@ -73,17 +73,23 @@ impl Scheme for AlartCurnier {
         augmented_branch(mu, r, P, v)
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], piece: Branch) -> [PointRow; 3] {
-        let H = self.equations(mu, r, P, v);
-        let mut rows = H.map(PointRow::reading);
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        piece: Branch,
+        rows: &mut [PointRow; 3],
+    ) {
         if piece == Branch::Open {
             (0..P.len()).for_each(|k| rows[k].a[k] = 1.0);
-            return rows;
+            return;
         }
         rows[0].c[0] = r[0];
         if piece == Branch::Stick {
             (1..P.len()).for_each(|k| rows[k].c[k] = r[k]);
-            return rows;
+            return;
         }
         let z = trial(r, P, v);
         let (e, S) = ball_derivative(mu * z[0], &z[1..P.len()]);
@@ -96,6 +102,5 @@ impl Scheme for AlartCurnier {
                 rows[k].c[l] += S[k - 1][l - 1] * r[l];
             }
         }
-        rows
     }
 }

@@ -86,19 +86,26 @@ impl Scheme for Sets {
         augmented_branch(mu, r, P, v)
     }
 
-    fn linearise(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64], set: Branch) -> [PointRow; 3] {
+    fn linearise(
+        &self,
+        mu: f64,
+        r: &[f64],
+        P: &[f64],
+        v: &[f64],
+        set: Branch,
+        rows: &mut [PointRow; 3],
+    ) {
         let size = P.len();
-        let mut rows = self.equations(mu, r, P, v).map(PointRow::reading);
         if set == Branch::Open {
             (0..size).for_each(|k| rows[k].a[k] = 1.0);
-            return rows;
+            return;
         }
         rows[0].c[0] = r[0];
         let z = trial(r, P, v);
         let (s, t) = (mu * z[0], tangential_norm(&z[..size]));
         if set == Branch::Stick {
             (1..size).for_each(|k| rows[k].c[k] = r[k]);
-            return rows;
+            return;
         }
         let M = damped_tangent(s, t, &z[1..size], &P[1..]);
         for k in 1..size {
@@ -111,7 +118,6 @@ impl Scheme for Sets {
                 rows[k].c[l] += M[k - 1][l - 1] * r[l];
             }
         }
-        rows
     }
 }
 

@@ -290,7 +290,7 @@ fn whole_direction(
         })) else {
             return Ok(None);
         };
-        let mut of_point = [0.0; 3].map(PointRow::reading);
+        let mut of_point = PointRow::reading([0.0; 3]);
         for a in 0..size {
             let Some(slope) = m.solve(&t[a][..size]) else {
                 return Ok(None);
