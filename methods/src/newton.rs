@@ -14,5 +14,6 @@ pub(crate) mod central_path;
 pub(crate) mod iteration;
 pub(crate) mod kinks;
 pub(crate) mod line_search;
+pub(crate) mod reuse;
 pub(crate) mod springs;
 pub(crate) mod step;

@@ -21,6 +21,40 @@ fn problems() -> Vec<(Arc<Elastic>, f64, Vec<f64>, f64)> {
     problems
 }
 
+/// Goal: on many rows of which few change a step uses earlier factors, and is the same step.
+#[test]
+fn steps_with_earlier_factors_are_those_of_the_whole_body() {
+    let mut rng = Random(7);
+    let (k, b) = random_body(&mut rng, 2, 300, 10, 1.0);
+    let f = rng.vector(k.len());
+    // Where pieces of b-newton meet, rounding decides between them.
+    for name in ["newton-ac", "pdas"] {
+        let m = method(name).unwrap();
+        let [condensed, whole] = [0.0, 1.0].map(|monolithic| {
+            let s = system(&elastic(2, &k, &b, vec![], false), 0.3);
+            solved(m, &[("monolithic", monolithic)], &s, &force(&s, &f), 1e-10)
+        });
+        let steps = condensed.history.len() - 1;
+        assert!(steps >= 3, "{name}: {steps}");
+        let [dense, sparse] = [
+            condensed.counters.factorisations,
+            whole.counters.global_factorisations,
+        ];
+        assert!(
+            dense < steps && steps <= sparse,
+            "{name}: {dense} {steps} {sparse}"
+        );
+        for (a, b) in whole.history.iter().zip(&condensed.history) {
+            assert_near(a.violation, b.violation, 1e-9 * b.violation + 1e-12, name);
+            assert_eq!(a.changes, b.changes, "{name}");
+        }
+        assert!(
+            difference(&whole.state.p, &condensed.state.p) < 1e-9,
+            "{name}"
+        );
+    }
+}
+
 #[test]
 fn every_monolithic_variant_has_the_same_iterates() {
     let has = |m: &&Method| m.options.iter().any(|o| o.name() == "monolithic");

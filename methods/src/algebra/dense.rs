@@ -3,10 +3,11 @@
 use faer::linalg::triangular_solve::{
     solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
+use faer::reborrow::ReborrowMut;
 use faer::{Mat, MatMut, Par};
 
 use crate::algebra::plain::{self, Full, wide};
-use crate::algebra::strips::lu;
+use crate::algebra::strips::{lu, permute_rows};
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 const SINGULAR: f64 = 1e-15;
@@ -63,6 +64,13 @@ impl DenseLu {
         self.solve_into(b, &mut x).then_some(x)
     }
 
+    /// X := A⁻¹ X.
+    pub fn solve_in_place(&self, mut x: MatMut<'_, f64>) {
+        permute_rows(x.rb_mut(), &self.rows);
+        solve_unit_lower_triangular_in_place(self.factors.view(), x.rb_mut(), Par::Seq);
+        solve_upper_triangular_in_place(self.factors.view(), x, Par::Seq);
+    }
+
     /// The same in place of what `x` holds; false if it is not finite.
     pub fn solve_into(&self, b: &[f64], x: &mut Vec<f64>) -> bool {
         x.clear();
@@ -73,7 +81,7 @@ impl DenseLu {
         } else {
             let factors = self.factors.view();
             let mut column = MatMut::from_column_major_slice_mut(x, n, 1);
-            solve_unit_lower_triangular_in_place(factors, column.as_mut(), Par::Seq);
+            solve_unit_lower_triangular_in_place(factors, column.rb_mut(), Par::Seq);
             solve_upper_triangular_in_place(factors, column, Par::Seq);
         }
         x.iter().all(|v| v.is_finite())

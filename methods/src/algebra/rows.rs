@@ -36,6 +36,11 @@ impl RowSet {
         self.start[i]..self.start[i + 1]
     }
 
+    /// Rows of the point that has row `k`.
+    pub(crate) fn around(&self, k: usize) -> std::ops::Range<usize> {
+        self.of(self.start.partition_point(|&first| first <= k) - 1)
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.start.len() - 1

@@ -164,6 +164,11 @@ impl Bordered {
         self.lu.factor()
     }
 
+    /// The factors.
+    pub fn factors(&self) -> &DenseLu {
+        &self.lu
+    }
+
     /// (x, β) for right-hand sides f on the active rows and c; `None` if they are not finite.
     pub fn solve(&mut self, f: &[f64], c: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut x, mut beta) = (Vec::new(), Vec::new());

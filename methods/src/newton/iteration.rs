@@ -143,6 +143,7 @@ impl<S: Scheme> Newton<S> {
         // The merit of x, where it was the last trial of a line search; then its jump is at hand, too.
         let mut tried = None;
         self.scheme.begin();
+        self.tangent.begin();
         loop {
             let mut merit = tried.take();
             match merit {

@@ -10,6 +10,7 @@
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
+use crate::newton::reuse::{Factored, Rows};
 use crate::{
     ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, options,
 };
@@ -66,6 +67,13 @@ impl Tangent {
         }
     }
 
+    /// Called before the first step on a problem.
+    pub fn begin(&mut self) {
+        if let Tangent::Condensed(condensed) = self {
+            condensed.factored = None;
+        }
+    }
+
     /// (δP, δβ) in place of what `step` holds; false if the tangent is singular. `hold`: loose pieces by springs, where W is at
     /// hand.
     pub fn solve(
@@ -77,10 +85,7 @@ impl Tangent {
         step: &mut Forces,
     ) -> Result<bool, MethodError> {
         match self {
-            Tangent::Condensed(condensed) => {
-                problem.counters.factorisations += 1;
-                Ok(condensed.solve(problem, x, rows, hold, step))
-            }
+            Tangent::Condensed(condensed) => Ok(condensed.solve(problem, x, rows, hold, step)),
             Tangent::Monolithic(body) => {
                 let found = monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)?;
                 let singular = found.is_none();
@@ -114,6 +119,8 @@ pub(crate) fn monolithic_step(
 #[derive(Default)]
 pub(crate) struct CondensedStep {
     system: Bordered,
+    /// What is factored, where later steps may start from it.
+    factored: Option<Factored>,
     a: Vec<[f64; 3]>,
     c: Vec<[f64; 3]>,
     /// Rows that are not known beforehand.
@@ -128,7 +135,7 @@ pub(crate) struct CondensedStep {
 impl CondensedStep {
     fn solve(
         &mut self,
-        problem: &ContactProblem<'_>,
+        problem: &mut ContactProblem<'_>,
         x: &Forces,
         rows: &[[PointRow; 3]],
         hold: bool,
@@ -159,18 +166,6 @@ impl CondensedStep {
         self.known.clear();
         self.known.resize(p.len(), 0.0);
         problem.operator.w.apply_add(p, &mut self.known);
-        let law = Law::Rows {
-            a: &self.a,
-            c: &self.c,
-        };
-        let regular = match hold {
-            true => self.system.factor_held(problem, &self.active, &law),
-            false => self.system.factor(problem, &self.active, &law),
-        };
-        if !regular {
-            return false;
-        }
-
         self.f.clear();
         let mut next = self.active.iter().peekable();
         for (own, of_point) in problem.rows.iter().zip(rows) {
@@ -186,19 +181,50 @@ impl CondensedStep {
         self.reached.clear();
         self.reached
             .extend(x.p.iter().zip(&*p).map(|(x, step)| x + step));
-        let balance = problem.missing(&self.reached);
-        let Self {
-            system,
-            f,
-            solution,
-            ..
-        } = self;
-        if !system.solve_into(f, &balance, solution, &mut step.beta) {
+        if !self.solve_active(problem, hold, &mut step.beta) {
             return false;
         }
         for (&k, &value) in self.active.iter().zip(&self.solution) {
             p[k] = value;
         }
         true
+    }
+
+    /// The active rows and β, from the factors of an earlier step where that is possible.
+    fn solve_active(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        hold: bool,
+        beta: &mut Vec<f64>,
+    ) -> bool {
+        let Self {
+            system,
+            factored,
+            a,
+            c,
+            active,
+            f,
+            solution,
+            ..
+        } = self;
+        let (rows, law) = (Rows { active, a, c }, Law::Rows { a, c });
+        let earlier = factored.as_mut();
+        if let Some(found) = earlier.and_then(|old| old.solve(problem, system.factors(), rows, f)) {
+            *solution = found;
+            beta.clear();
+            return true;
+        }
+        *factored = None;
+        problem.counters.factorisations += 1;
+        let regular = match hold {
+            true => system.factor_held(problem, active, &law),
+            false => system.factor(problem, active, &law),
+        };
+        if !regular {
+            return false;
+        }
+        *factored = Factored::new(problem, rows);
+        let balance = problem.missing(&self.reached);
+        system.solve_into(f, &balance, solution, beta)
     }
 }
