@@ -2,8 +2,9 @@
 //! ```text
 //! A δP + C δv = −h  at every point,   δv = W δP + Q δβ,   Qᵀ (P + δP) = c
 //! ```
-//! Condensed: rows that read δP = const are eliminated, the rest is one dense LU. Monolithic: the same rows beside
-//! K δu = Bᵀ δP in one sparse LU, as papers usually run Newton methods. Both give the same step to rounding.
+//! Condensed: rows that read δP = const are eliminated, the rest is one dense LU, or few changes of an earlier one (`reuse.rs`).
+//! Monolithic: the same rows beside K δu = Bᵀ δP in one sparse LU, as papers usually run Newton methods. Both give the same step to
+//! rounding.
 
 #![allow(non_snake_case)]
 
