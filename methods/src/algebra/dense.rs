@@ -10,7 +10,7 @@ use crate::algebra::plain::{self, Full, wide};
 use crate::algebra::strips::{lu, permute_rows};
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
-const SINGULAR: f64 = 1e-15;
+pub(crate) const SINGULAR: f64 = 1e-15;
 /// Up to this size plain loops are faster than blocks, whose set-up costs more than it gains.
 const PLAIN: usize = 48;
 
@@ -56,6 +56,12 @@ impl DenseLu {
             (least, most) = (least.min(pivot), most.max(pivot));
         }
         n == 0 || least > SINGULAR * n as f64 * most
+    }
+
+    /// The least pivot, absolutely; infinite without any.
+    pub fn least_pivot(&self) -> f64 {
+        let pivots = (0..self.factors.size()).map(|i| self.factors[(i, i)].abs());
+        pivots.fold(f64::INFINITY, f64::min)
     }
 
     /// x with A x = b; `None` if it is not finite.

@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 
 use faer::MatRef;
 
-use crate::algebra::strips::{Failure, WORTH_THREADS, zeros};
+use crate::algebra::strips::{Failure, WORTH_THREADS};
 
 pub(crate) use analysis::{Analysis, Entries, Ordering};
 use front::{Front, Update};
@@ -35,7 +35,7 @@ impl Cholesky {
     /// The same whatever the number of threads: no memory, else the first column without a positive pivot.
     pub fn new(tree: AssemblyTree, entries: &Entries, values: &[f64]) -> Result<Self, Failure> {
         let nodes = &tree.nodes;
-        let mut l = zeros(tree.entries())?;
+        let mut l = lazy_zeros(tree.entries())?;
         let panels = parts(&mut l, nodes.iter().map(|node| node.entries.len()));
         let fronts: Vec<Mutex<Begun>> = (panels.into_iter())
             .map(|panel| Mutex::new(Begun::new(panel)))
@@ -151,4 +151,16 @@ fn parts(x: &mut [f64], sizes: impl Iterator<Item = usize>) -> Vec<&mut [f64]> {
         own
     };
     sizes.map(part).collect()
+}
+
+/// Zeros, of which the system keeps no pages until they are written to.
+fn lazy_zeros(len: usize) -> Result<Vec<f64>, Failure> {
+    // No memory is an answer here, where `vec!` would end the program; nobody else asks at this moment.
+    let mut probe = Vec::<f64>::new();
+    let denied = probe.try_reserve_exact(len).is_err();
+    drop(probe);
+    if denied {
+        return Err(Failure::OutOfMemory);
+    }
+    Ok(vec![0.0; len])
 }

@@ -109,7 +109,7 @@ pub(crate) fn lu(a: &mut Full, rows: &mut Vec<usize>, multipliers: &mut Vec<f64>
                         let (first, (own, _)) = (column[k], column[begin..].as_chunks_mut());
                         own.iter_mut()
                             .zip(below)
-                            .for_each(|(x, l)| minus(x, l, first));
+                            .for_each(|(x, l)| subtract_scaled(x, l, first));
                     }),
                 }
             }
@@ -119,7 +119,7 @@ pub(crate) fn lu(a: &mut Full, rows: &mut Vec<usize>, multipliers: &mut Vec<f64>
 
 /// x −= l first.
 #[inline(always)]
-fn minus(x: &mut [f64; LANES], l: &[f64; LANES], first: f64) {
+fn subtract_scaled(x: &mut [f64; LANES], l: &[f64; LANES], first: f64) {
     x.iter_mut().zip(l).for_each(|(x, l)| *x -= l * first);
 }
 
@@ -135,7 +135,9 @@ fn subtract<'a, const N: usize>(
     for column in columns {
         let (first, (own, _)) = (column[k], column.as_chunks_mut());
         if let Some(own) = own.last_chunk_mut::<N>() {
-            own.iter_mut().zip(&l).for_each(|(x, l)| minus(x, l, first));
+            own.iter_mut()
+                .zip(&l)
+                .for_each(|(x, l)| subtract_scaled(x, l, first));
         }
     }
 }
@@ -143,16 +145,16 @@ fn subtract<'a, const N: usize>(
 /// Where the first entry of largest magnitude stands; 0 if all are NaN.
 #[inline(always)]
 fn largest(x: &[f64]) -> usize {
-    let larger = |most: &mut f64, x: &f64| *most = if x.abs() > *most { x.abs() } else { *most };
+    let grow = |most: &mut f64, x: &f64| *most = if x.abs() > *most { x.abs() } else { *most };
     let mut most = [0.0; LANES];
     let (vectors, rest) = x.as_chunks::<LANES>();
     for vector in vectors {
         most.iter_mut()
             .zip(vector)
-            .for_each(|(most, x)| larger(most, x));
+            .for_each(|(most, x)| grow(most, x));
     }
     let mut all = 0.0;
-    (rest.iter().chain(&most)).for_each(|x| larger(&mut all, x));
+    (rest.iter().chain(&most)).for_each(|x| grow(&mut all, x));
     x.iter().position(|x| x.abs() == all).unwrap_or(0)
 }
 

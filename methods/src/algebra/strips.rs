@@ -81,18 +81,6 @@ pub(crate) fn row_strips(mut a: MatMut<'_, f64>, most: usize) -> Vec<(usize, Mat
     strips
 }
 
-/// Zeros, of which the system keeps no pages until they are written to.
-pub(crate) fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
-    // No memory is an answer here, where `vec!` would end the program.
-    let mut probe = Vec::<f64>::new();
-    let denied = probe.try_reserve_exact(len).is_err();
-    drop(probe);
-    if denied {
-        return Err(Failure::OutOfMemory);
-    }
-    Ok(vec![0.0; len])
-}
-
 /// A lower trapezoid, kept by strips of its columns one after the other: a strip has the rows from its first column on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trapezoid {

@@ -59,9 +59,7 @@ pub(crate) struct Bordered {
     amplitude: f64,
     /// Right-hand sides of the balance are divided by this.
     balance: f64,
-    /// The active rows, each with the rows of its point.
-    active: Vec<(usize, Range<usize>)>,
-    /// C of the active rows, side by side for the loop over all entries.
+    active: Vec<Place>,
     laws: Vec<LawRow>,
     right: Vec<f64>,
 }
@@ -116,23 +114,17 @@ impl Bordered {
             &problem.operator.modes.q,
             problem.operator.rho,
         );
-        let mut left = indices.iter().peekable();
-        self.active.clear();
-        for own in problem.rows.iter() {
-            while let Some(&k) = left.next_if(|k| own.contains(k)) {
-                self.active.push((k, own.clone()));
-            }
-        }
+        place(problem, indices, &mut self.active);
         let active = &self.active;
         let n = active.len();
         let J = self.lu.zeros(n + q.len());
         match law {
             Law::Rows { a, c } => {
-                self.laws.clear();
-                (self.laws).extend(active.iter().map(|(row, own)| law_row(own, &c[*row])));
-                match problem.increment.system.dim() {
-                    2 => rows::<2>(J, w, active, a, &self.laws),
-                    _ => rows::<3>(J, w, active, a, &self.laws),
+                law_rows(active, c, &mut self.laws);
+                let mut work = Vec::new();
+                for (j, place) in active.iter().enumerate() {
+                    let column = &mut J.column_mut(j)[..n];
+                    law_column(problem, place, (active, a, &self.laws), &mut work, column);
                 }
             }
             Law::Columns { unit, e, s, series } => {
@@ -194,42 +186,65 @@ impl Bordered {
     }
 }
 
-/// Row k of C: where the rows of its point stand in a column of W, and their coefficients; 0 behind those there are.
-type LawRow = ([usize; 3], [f64; 3]);
+/// A row with the rows of its point.
+pub(crate) type Place = (usize, Range<usize>);
 
-fn law_row(own: &Range<usize>, c: &[f64; 3]) -> LawRow {
-    let last = own.end - 1;
-    let at = [0, 1, 2].map(|l| last.min(own.start + l));
-    (
-        at,
-        [0, 1, 2].map(|l| if l < own.len() { c[l] } else { 0.0 }),
-    )
+/// Row k of C: where the rows of its point stand in a column of W, and their coefficients; 0 behind those there are. Side by side for
+/// the loop over all entries.
+pub(crate) type LawRow = ([usize; 3], [f64; 3]);
+
+/// Rows, in increasing order, in place of what `places` holds.
+pub(crate) fn place(problem: &ContactProblem<'_>, indices: &[usize], places: &mut Vec<Place>) {
+    let mut left = indices.iter().peekable();
+    places.clear();
+    for own in problem.rows.iter() {
+        while let Some(&k) = left.next_if(|k| own.contains(k)) {
+            places.push((k, own.clone()));
+        }
+    }
 }
 
-/// A + C W on the active rows of a body of dimension `D`.
-fn rows<const D: usize>(
-    J: &mut Full,
-    w: &dyn Delassus,
-    active: &[(usize, Range<usize>)],
-    a: Blocks<'_>,
-    laws: &[LawRow],
+/// C of these rows in place of what `laws` holds.
+pub(crate) fn law_rows(places: &[Place], c: Blocks<'_>, laws: &mut Vec<LawRow>) {
+    let law = |(row, own): &Place| {
+        let (last, c) = (own.end - 1, c[*row]);
+        let at = [0, 1, 2].map(|l| last.min(own.start + l));
+        (
+            at,
+            [0, 1, 2].map(|l| if l < own.len() { c[l] } else { 0.0 }),
+        )
+    };
+    laws.clear();
+    laws.extend(places.iter().map(law));
+}
+
+/// Column k of A + C W on some rows.
+pub(crate) fn law_column(
+    problem: &ContactProblem<'_>,
+    (k, point): &Place,
+    (places, a, laws): (&[Place], Blocks<'_>, &[LawRow]),
+    work: &mut Vec<f64>,
+    column: &mut [f64],
 ) {
-    let mut work = Vec::new();
-    for (column, (k, point)) in active.iter().enumerate() {
-        let w = w.column(*k, &mut work);
-        let entries = &mut J.column_mut(column)[..active.len()];
-        for (entry, (at, c)) in entries.iter_mut().zip(laws) {
-            *entry = (0..D).map(|l| c[l] * w[at[l]]).sum();
+    let w = problem.operator.w.column(*k, work);
+    match problem.increment.system.dim() {
+        2 => times::<2>(laws, w, column),
+        _ => times::<3>(laws, w, column),
+    }
+    // Rows of one point follow each other.
+    let first = places.partition_point(|(row, _)| *row < point.start);
+    for (entry, (row, own)) in column[first..].iter_mut().zip(&places[first..]) {
+        if own != point {
+            break;
         }
-        // Active rows of one point follow each other.
-        let before = (active[..column].iter().rev()).take_while(|(_, own)| own == point);
-        let first = column - before.count();
-        for (entry, (row, own)) in entries[first..].iter_mut().zip(&active[first..]) {
-            if own != point {
-                break;
-            }
-            *entry += a[*row][k - own.start];
-        }
+        *entry += a[*row][k - own.start];
+    }
+}
+
+/// C w, at most `D` rows a point.
+fn times<const D: usize>(laws: &[LawRow], w: &[f64], column: &mut [f64]) {
+    for (entry, (at, c)) in column.iter_mut().zip(laws) {
+        *entry = (0..D).map(|l| c[l] * w[at[l]]).sum();
     }
 }
 
@@ -238,7 +253,7 @@ fn columns(
     J: &mut Full,
     w: &dyn Delassus,
     series: Option<&Mat<f64>>,
-    (indices, active): (&[usize], &[(usize, Range<usize>)]),
+    (indices, active): (&[usize], &[Place]),
     e: Blocks<'_>,
     s: Blocks<'_>,
 ) {

@@ -66,7 +66,7 @@ pub(crate) trait Scheme: Send {
     fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
 
     /// V (δP, δv) = −H on a piece: sets the coefficients of `rows`, which are zero and have [`equations`](Self::equations) on
-    /// their right-hand sides.
+    /// their right-hand sides. A scheme that steps from other forces sets these, too.
     fn linearise(
         &self,
         mu: f64,
@@ -126,13 +126,25 @@ impl<S: Scheme> Newton<S> {
         }
     }
 
-    /// The loop, from `x` until it ends. Every step works in the memory of the one before.
+    /// From `x` until it ends.
     pub fn run(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        x: Forces,
+        monitor: &mut dyn Monitor,
+    ) -> Ended {
+        let end = self.steps(problem, x, monitor);
+        self.tangent.forget();
+        end
+    }
+
+    /// The loop. Every step works in the memory of the one before.
+    fn steps(
         &mut self,
         problem: &mut ContactProblem<'_>,
         mut x: Forces,
         monitor: &mut dyn Monitor,
-    ) -> Result<End, MethodError> {
+    ) -> Ended {
         let mut r = problem.scales(&vec![0.0; problem.len()]);
         r.iter_mut().for_each(|r| *r *= self.multiple);
         let mut sharper = problem.operator.sharp / problem.operator.rho;
@@ -143,7 +155,6 @@ impl<S: Scheme> Newton<S> {
         // The merit of x, where it was the last trial of a line search; then its jump is at hand, too.
         let mut tried = None;
         self.scheme.begin();
-        self.tangent.begin();
         loop {
             let mut merit = tried.take();
             match merit {

@@ -11,7 +11,7 @@
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
-use crate::newton::reuse::{Factored, Rows};
+use crate::newton::reuse::{Factored, Rows, Solved};
 use crate::{
     ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, options,
 };
@@ -68,10 +68,10 @@ impl Tangent {
         }
     }
 
-    /// Called before the first step on a problem.
-    pub fn begin(&mut self) {
+    /// Called after the last step of a run: what was factored serves no other.
+    pub fn forget(&mut self) {
         if let Tangent::Condensed(condensed) = self {
-            condensed.factored = None;
+            (condensed.factored, condensed.spoilt) = (None, false);
         }
     }
 
@@ -122,6 +122,8 @@ pub(crate) struct CondensedStep {
     system: Bordered,
     /// What is factored, where later steps may start from it.
     factored: Option<Factored>,
+    /// Rounding has spoilt that: every tangent is factored.
+    spoilt: bool,
     a: Vec<[f64; 3]>,
     c: Vec<[f64; 3]>,
     /// Rows that are not known beforehand.
@@ -201,6 +203,7 @@ impl CondensedStep {
         let Self {
             system,
             factored,
+            spoilt,
             a,
             c,
             active,
@@ -209,11 +212,16 @@ impl CondensedStep {
             ..
         } = self;
         let (rows, law) = (Rows { active, a, c }, Law::Rows { a, c });
-        let earlier = factored.as_mut();
-        if let Some(found) = earlier.and_then(|old| old.solve(problem, system.factors(), rows, f)) {
-            *solution = found;
-            beta.clear();
-            return true;
+        if let Some(earlier) = factored {
+            match earlier.solve(problem, system.factors(), rows, f) {
+                Solved::Step(found) => {
+                    *solution = found;
+                    beta.clear();
+                    return true;
+                }
+                Solved::TooManyChanges => {}
+                Solved::Spoilt => *spoilt = true,
+            }
         }
         *factored = None;
         problem.counters.factorisations += 1;
@@ -224,7 +232,9 @@ impl CondensedStep {
         if !regular {
             return false;
         }
-        *factored = Factored::new(problem, rows);
+        if !*spoilt {
+            *factored = Factored::new(problem, rows);
+        }
         let balance = problem.missing(&self.reached);
         system.solve_into(f, &balance, solution, beta)
     }

@@ -75,6 +75,7 @@ pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<()
         let first = ranking.standings.first().map_or("", |s| s.method);
         let others = match tied {
             0 | 1 => String::new(),
+            2 => " (not apart from one other)".to_owned(),
             _ => format!(" (not apart from {} others)", tied - 1),
         };
         (plain(first), format!("{}{others} at {tier}", plain(first)))

@@ -133,7 +133,7 @@ fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
 
 /// What takes least time on the largest bodies of a dimension, of the methods that solve most of them.
 fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
-    let own = || all.iter().filter(|s| s.dim == dim);
+    let own = || all.iter().filter(|s| s.dim == dim && s.time.is_finite());
     let largest = own().map(|s| s.points).max()?;
     let there = |name: &str| {
         let own = own().filter(|s| s.points == largest && s.method == name);
@@ -147,7 +147,9 @@ fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
         .map(|name| (median(there(name)), name))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let grows = exponent(own().filter(|s| s.method == name), |s| s.time);
-    let grows = grows.map_or(String::new(), |a| format!(", as N^{}", fixed(a, 1)));
+    let grows = grows.map_or(String::new(), |a| {
+        format!(", growing with the power {} of the unknowns", fixed(a, 1))
+    });
     let (seconds, name) = (significant(seconds, 2), plain(name));
     Some(format!(
         "{name} on {largest} points in {dim}D ({seconds} s{grows})"

@@ -11,7 +11,7 @@ use faer::MatMut;
 use faer::reborrow::ReborrowMut;
 
 use crate::algebra::strips::{
-    Failure, STRIP, Trapezoid, WORTH_THREADS, cholesky_of_strips, for_all, subtract_square, zeros,
+    Failure, STRIP, Trapezoid, WORTH_THREADS, cholesky_of_strips, for_all, subtract_square,
 };
 
 /// U, the lower triangle by strips of columns.
@@ -134,4 +134,14 @@ fn runs(places: &[u32]) -> Vec<(usize, usize)> {
         }
     }
     runs
+}
+
+/// Zeros, if there is memory: threads ask for it at the same time, so what was promised is what is filled.
+fn zeros(len: usize) -> Result<Vec<f64>, Failure> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(len)
+        .map_err(|_| Failure::OutOfMemory)?;
+    values.resize(len, 0.0);
+    Ok(values)
 }

@@ -1,0 +1,156 @@
+//! Steps with earlier factors against the factored system.
+
+use super::*;
+use crate::condensed::fixture::with_contact;
+use crate::condensed::point_row::{Bordered, Law};
+use crate::{Elastic, SymmetricMatrix};
+
+/// More rows than plain loops factor.
+const POINTS: usize = 17;
+const ROWS: usize = 3 * POINTS;
+
+fn number(i: usize, j: usize) -> f64 {
+    (12.9 * (i + 1) as f64 + 78.2 * ((i * j + 3 * j) as f64).sqrt()).sin()
+}
+
+/// Regular rows that are neither symmetric nor those of any law.
+fn law(seed: usize) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
+    let rows = |seed: usize| {
+        let unit = |k: usize, l: usize| if k % 3 == l { 3.0 } else { 0.0 };
+        let entry = |k: usize, l: usize| number(k + seed, l) + unit(k, l);
+        (0..ROWS).map(|k| [0, 1, 2].map(|l| entry(k, l))).collect()
+    };
+    (rows(seed), rows(seed + 70))
+}
+
+/// With a body of which `source[k]` names the row that row k moves like.
+fn with_body(source: impl Fn(usize) -> usize, test: impl FnOnce(&ContactProblem<'_>)) {
+    let entry = |i: usize, j: usize| {
+        let (i, j) = (source(i.max(j)), source(i.min(j)));
+        let (i, j) = (i.max(j), i.min(j));
+        if i == j { 12.0 } else { number(i, j) / 9.0 }
+    };
+    let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
+    for j in 0..ROWS {
+        row_idx.extend(j..ROWS);
+        values.extend((j..ROWS).map(|i| entry(i, j)));
+        col_ptr.push(values.len());
+    }
+    let w = SymmetricMatrix::new(ROWS, col_ptr, row_idx, values).unwrap();
+    let body = Elastic::from_delassus(3, w, vec![]).unwrap();
+    let load = (vec![-1.0; ROWS], vec![0.0; ROWS]);
+    with_contact(&body, vec![0.3; POINTS], load, |_, problem| test(&problem));
+}
+
+/// Source: the dense system of the step itself, factored. Tolerance: rounding, times its condition.
+#[test]
+fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
+    with_body(
+        |k| k,
+        |problem| {
+            let (mut a, mut c) = law(1);
+            let without =
+                |out: &[usize]| -> Vec<usize> { (0..ROWS).filter(|k| !out.contains(k)).collect() };
+            let first = without(&[4, 5, 16]);
+            let base = Bordered::new(problem, &first, &Law::Rows { a: &a, c: &c }).unwrap();
+            let rows = Rows {
+                active: &first,
+                a: &a,
+                c: &c,
+            };
+            let mut earlier = Factored::remember(problem, rows);
+            let f: Vec<f64> = (0..ROWS).map(|k| number(k, 2)).collect();
+            let others = law(5);
+            for (changed, active) in [
+                (vec![], first.clone()),
+                (vec![], without(&[4, 5, 16, 7])),
+                (vec![2, 11], first),
+                (vec![2, 12, 13], without(&[0, 7, 26])),
+                (vec![20], without(&[])),
+            ] {
+                for k in changed {
+                    (a[k], c[k]) = (others.0[k], others.1[k]);
+                }
+                let rows = Rows {
+                    active: &active,
+                    a: &a,
+                    c: &c,
+                };
+                let (law, f) = (Law::Rows { a: &a, c: &c }, &f[..active.len()]);
+                let changes = earlier.changes(rows);
+                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, f);
+                let mut whole = Bordered::new(problem, &active, &law).unwrap();
+                let (exact, _) = whole.solve(f, &[]).unwrap();
+                let off = largest(&minus(&found.unwrap(), &exact));
+                assert!(off < 1e-11 * largest(&exact), "{}: {off:e}", changes.len());
+            }
+            // Every column was solved for once.
+            let solved: Vec<Unknown> = earlier.solved.into_keys().collect();
+            let slack = [0, 2, 7, 11, 12, 13, 20, 26].map(Unknown::Slack);
+            let new = [4, 5, 16].map(Unknown::New);
+            assert_eq!(solved, [&slack[..], &new].concat());
+        },
+    );
+}
+
+/// Goal: where points are redundant the tangent is singular, and a right-hand side that one of its many solutions fulfils
+/// does not hide it.
+#[test]
+fn a_tangent_that_has_become_singular_is_told() {
+    let twin = |k: usize| if k >= ROWS - 3 { k - 3 } else { k };
+    with_body(twin, |problem| {
+        let (a, c) = (
+            vec![[0.0; 3]; ROWS],
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].repeat(POINTS),
+        );
+        let all: Vec<usize> = (0..ROWS).collect();
+        let first = &all[..ROWS - 3];
+        let law = Law::Rows { a: &a, c: &c };
+        assert!(Bordered::new(problem, &all, &law).is_none());
+        let base = Bordered::new(problem, first, &law).unwrap();
+        let mut earlier = Factored::remember(
+            problem,
+            Rows {
+                active: first,
+                a: &a,
+                c: &c,
+            },
+        );
+        let rows = Rows {
+            active: &all,
+            a: &a,
+            c: &c,
+        };
+        let f: Vec<f64> = (0..ROWS).map(|k| number(twin(k), 2)).collect();
+        let changes = earlier.changes(rows);
+        let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &f);
+        assert!(found.is_none(), "{found:?}");
+    });
+}
+
+/// Goal: few changes are worth it, many are not, and what is solved for already counts no more.
+#[test]
+fn a_step_costs_at_most_half_of_a_factorisation() {
+    with_body(
+        |k| k,
+        |problem| {
+            let (a, c) = law(1);
+            let all: Vec<usize> = (0..ROWS).collect();
+            let rows = Rows {
+                active: &all,
+                a: &a,
+                c: &c,
+            };
+            assert!(Factored::new(problem, rows).is_none(), "too few rows");
+            let mut earlier = Factored::remember(problem, rows);
+            let slack = |most: usize| (0..most).map(Unknown::Slack).collect::<Vec<_>>();
+            assert!(earlier.is_worth(&slack(6)));
+            assert!(!earlier.is_worth(&slack(10)));
+            for known in slack(10) {
+                earlier.solved.insert(known, vec![0.0; ROWS]);
+            }
+            assert!(earlier.is_worth(&slack(10)));
+            assert!(!earlier.is_worth(&slack(30)));
+        },
+    );
+}
