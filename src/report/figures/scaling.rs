@@ -57,7 +57,7 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
         let figure = time(
             &own,
             &fastest,
-            &caption("bodies with cracks all over or right through"),
+            &caption("bodies with cracks all over or right through, N contact unknowns"),
         );
         TIME.add(bundle, "", figure.svg()?)?;
         CLASSES.add(bundle, "", classes(&own, &fastest, caveat).svg()?)?;
@@ -148,7 +148,7 @@ fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let grows = exponent(own().filter(|s| s.method == name), |s| s.time);
     let grows = grows.map_or(String::new(), |a| {
-        format!(", growing with the power {} of the unknowns", fixed(a, 1))
+        format!(", as N^{}", fixed(a, 1))
     });
     let (seconds, name) = (significant(seconds, 2), plain(name));
     Some(format!(
