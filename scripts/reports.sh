@@ -57,7 +57,7 @@ for part in $parts; do
             keep sensitivity safe_windows starts sensitivity.svg
             keep study recommendations ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
-            keep bench timings
+            keep bench timings.csv timings.md
             "$stickslip" page reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
     esac
