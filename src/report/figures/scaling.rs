@@ -147,9 +147,7 @@ fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
         .map(|name| (median(there(name)), name))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let grows = exponent(own().filter(|s| s.method == name), |s| s.time);
-    let grows = grows.map_or(String::new(), |a| {
-        format!(", as N^{}", fixed(a, 1))
-    });
+    let grows = grows.map_or(String::new(), |a| format!(", as N^{}", fixed(a, 1)));
     let (seconds, name) = (significant(seconds, 2), plain(name));
     Some(format!(
         "{name} on {largest} points in {dim}D ({seconds} s{grows})"
