@@ -73,6 +73,11 @@ impl DenseLu {
     /// X := A⁻¹ X.
     pub fn solve_in_place(&self, mut x: MatMut<'_, f64>) {
         permute_rows(x.rb_mut(), &self.rows);
+        self.substitute(x);
+    }
+
+    /// X := U⁻¹ L⁻¹ X, by blocks.
+    fn substitute(&self, mut x: MatMut<'_, f64>) {
         solve_unit_lower_triangular_in_place(self.factors.view(), x.rb_mut(), Par::Seq);
         solve_upper_triangular_in_place(self.factors.view(), x, Par::Seq);
     }
@@ -85,10 +90,7 @@ impl DenseLu {
         if n <= PLAIN {
             plain::solve(&self.factors, x);
         } else {
-            let factors = self.factors.view();
-            let mut column = MatMut::from_column_major_slice_mut(x, n, 1);
-            solve_unit_lower_triangular_in_place(factors, column.rb_mut(), Par::Seq);
-            solve_upper_triangular_in_place(factors, column, Par::Seq);
+            self.substitute(MatMut::from_column_major_slice_mut(x, n, 1));
         }
         x.iter().all(|v| v.is_finite())
     }
