@@ -11,6 +11,7 @@ pub mod pdas;
 pub mod interior_point;
 
 pub(crate) mod central_path;
+pub(crate) mod contact_point;
 pub(crate) mod iteration;
 pub(crate) mod kinks;
 pub(crate) mod line_search;

@@ -58,7 +58,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
-use crate::newton::iteration::{At, Newton, Scheme, scheme_options, trial};
+use crate::newton::contact_point::ContactPoint;
+use crate::newton::iteration::{At, Newton, Scheme, scheme_options};
 use crate::{Forces, Method, MethodError, options};
 
 /// Registry entry.
@@ -97,8 +98,9 @@ impl Scheme for BEquations {
     type Piece = Piece;
 
     /// H_n = min(r_n g, P_n),  H_t = P_t − proj_s(P_t − r_t d),  s = μ max(P_n, 0)
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        let mut H = trial(r, P, v);
+    fn equations(&self, at: &ContactPoint<'_>) -> [f64; 3] {
+        let ContactPoint { mu, r, P, v } = *at;
+        let mut H = at.trial();
         H[0] = (r[0] * v[0]).min(P[0]);
         project_ball(mu * P[0].max(0.0), &mut H[1..P.len()]);
         for k in 1..P.len() {
@@ -107,14 +109,15 @@ impl Scheme for BEquations {
         H
     }
 
-    fn bound(&self, _r: &[f64], P: &[f64], _v: &[f64]) -> f64 {
-        P[0]
+    fn bound(&self, at: &ContactPoint<'_>) -> f64 {
+        at.P[0]
     }
 
     /// Closed and sticking on a kink.
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Piece {
-        let (closed, kink) = (r[0] * v[0] <= P[0], Kink::at(mu, r, P, v));
-        let (s, t) = bound_and_trial(mu, r, P, v);
+    fn piece(&self, at: &ContactPoint<'_>) -> Piece {
+        let ContactPoint { r, P, v, .. } = *at;
+        let (closed, kink) = (r[0] * v[0] <= P[0], Kink::of(at));
+        let (s, t) = bound_and_trial(at);
         Piece {
             closed,
             bound_moves: P[0] > 0.0 || (kink.bound && closed),
@@ -124,21 +127,14 @@ impl Scheme for BEquations {
     }
 
     /// The row of H' for each piece, as in the table above.
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        piece: Piece,
-        rows: &mut [PointRow; 3],
-    ) {
+    fn linearise(&self, at: &ContactPoint<'_>, piece: Piece, rows: &mut [PointRow; 3]) {
+        let ContactPoint { mu, r, P, .. } = *at;
         if piece.closed {
             rows[0].c[0] = r[0];
         } else {
             rows[0].a[0] = 1.0;
         }
-        let z = trial(r, P, v);
+        let z = at.trial();
         let z = &z[..P.len()];
         if !piece.slip {
             for k in 1..P.len() {
@@ -192,19 +188,13 @@ struct Kink {
 }
 
 impl Kink {
-    /// At point `i`.
-    fn of_point(at: &At<'_, '_>, i: usize) -> Self {
-        let own = at.problem.rows.of(i);
-        let (r, P) = (&at.r[own.clone()], &at.x.p[own.clone()]);
-        Self::at(at.problem.friction(i), r, P, &at.v[own])
-    }
-
     fn any(&self) -> bool {
         self.normal || self.bound || self.tangential
     }
 
-    fn at(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self {
-        let (s, t) = bound_and_trial(mu, r, P, v);
+    fn of(at: &ContactPoint<'_>) -> Self {
+        let ContactPoint { r, P, v, .. } = *at;
+        let (s, t) = bound_and_trial(at);
         Kink {
             normal: r[0] * v[0] == P[0],
             bound: P[0] == 0.0,
@@ -214,14 +204,14 @@ impl Kink {
 }
 
 /// s and |z_t|.
-fn bound_and_trial(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (f64, f64) {
-    let z = trial(r, P, v);
-    (mu * P[0].max(0.0), tangential_norm(&z[..P.len()]))
+fn bound_and_trial(at: &ContactPoint<'_>) -> (f64, f64) {
+    let bound = at.mu * at.P[0].max(0.0);
+    (bound, tangential_norm(&at.trial()[..at.size()]))
 }
 
 /// Switches every piece on a kink that the direction contradicts; says whether there was one.
 fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> bool {
-    let Some(first) = (0..pieces.len()).find(|&i| Kink::of_point(at, i).any()) else {
+    let Some(first) = (0..pieces.len()).find(|&i| Kink::of(&at.point(i)).any()) else {
         return false;
     };
     let dv = &mut at.work.jump;
@@ -232,14 +222,15 @@ fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> b
     let (at, problem) = (&*at, &*at.problem);
     let mut contradicted = false;
     for (i, piece) in pieces.iter_mut().enumerate().skip(first) {
-        let (rows, kink) = (problem.rows.of(i), Kink::of_point(at, i));
-        let (r, P, v) = (
-            &at.r[rows.clone()],
-            &at.x.p[rows.clone()],
-            &at.v[rows.clone()],
-        );
-        let (dP, dv) = (&step.p[rows.clone()], &at.work.jump[rows]);
-        let mu = problem.friction(i);
+        let point = at.point(i);
+        let change = ContactPoint::of(problem, i, at.r, (&step.p, &at.work.jump));
+        let ContactPoint {
+            mu,
+            r,
+            P: dP,
+            v: dv,
+        } = change;
+        let kink = Kink::of(&point);
         let mut wanted = *piece;
         if kink.normal {
             wanted.closed = r[0] * dv[0] <= dP[0];
@@ -247,13 +238,13 @@ fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> b
         if kink.bound {
             wanted.bound_moves = dP[0] > 0.0;
         }
-        if kink.tangential && P.len() > 1 {
-            let (z, dz) = (trial(r, P, v), trial(r, dP, dv));
-            let t = tangential_norm(&z[..P.len()]);
+        if kink.tangential && point.size() > 1 {
+            let (z, dz, size) = (point.trial(), change.trial(), point.size());
+            let t = tangential_norm(&z[..size]);
             let outward = if t > 0.0 {
-                (1..P.len()).map(|k| z[k] * dz[k]).sum::<f64>() / t
+                (1..size).map(|k| z[k] * dz[k]).sum::<f64>() / t
             } else {
-                tangential_norm(&dz[..P.len()])
+                tangential_norm(&dz[..size])
             };
             wanted.slip = outward > if piece.bound_moves { mu * dP[0] } else { 0.0 };
         }

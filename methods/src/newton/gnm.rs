@@ -61,7 +61,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, return_map, tangential_norm};
-use crate::newton::iteration::{At, Newton, Scheme, augmented_branch, scheme_options, trial};
+use crate::newton::contact_point::ContactPoint;
+use crate::newton::iteration::{At, Newton, Scheme, scheme_options};
 use crate::{ContactProblem, Forces, Method, MethodError, OptionSpec, options};
 
 /// Registry entry.
@@ -111,34 +112,26 @@ struct Complementarity {
 impl Scheme for Complementarity {
     type Piece = Branch;
 
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        augmented_branch(mu, r, P, v)
+    fn piece(&self, at: &ContactPoint<'_>) -> Branch {
+        at.branch()
     }
 
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        piece: Branch,
-        rows: &mut [PointRow; 3],
-    ) {
+    fn linearise(&self, at: &ContactPoint<'_>, piece: Branch, rows: &mut [PointRow; 3]) {
         if !self.mapped {
-            return self.coefficients(mu, r, P, v, piece, rows);
+            return self.coefficients(at, piece, rows);
         }
-        let mut mapped = [0.0; 3];
-        let mapped = &mut mapped[..P.len()];
-        mapped.copy_from_slice(P);
-        return_map(mu, mapped);
-        let piece = self.piece(mu, r, mapped, v);
-        *rows = PointRow::reading(self.equations(mu, r, mapped, v));
-        self.coefficients(mu, r, mapped, v, piece, rows);
-        // The step counts from P.
+        let (mut P, size) = ([0.0; 3], at.size());
+        P[..size].copy_from_slice(at.P);
+        return_map(at.mu, &mut P[..size]);
+        let mapped = ContactPoint {
+            P: &P[..size],
+            ..*at
+        };
+        *rows = PointRow::reading(self.equations(&mapped));
+        self.coefficients(&mapped, mapped.branch(), rows);
+        // The step counts from the forces before.
         for row in rows {
-            row.h -= (0..P.len())
-                .map(|l| row.a[l] * (mapped[l] - P[l]))
-                .sum::<f64>();
+            row.h -= (0..size).map(|l| row.a[l] * (P[l] - at.P[l])).sum::<f64>();
         }
     }
 
@@ -171,22 +164,13 @@ impl Scheme for Complementarity {
 
 impl Complementarity {
     /// The table.
-    fn coefficients(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        piece: Branch,
-        rows: &mut [PointRow; 3],
-    ) {
-        let size = P.len();
+    fn coefficients(&self, at: &ContactPoint<'_>, piece: Branch, rows: &mut [PointRow; 3]) {
         if piece == Branch::Open {
-            (0..size).for_each(|k| rows[k].a[k] = 1.0);
-            return;
+            return at.open(rows);
         }
+        let ContactPoint { mu, r, P, v } = *at;
+        let (z, size) = (at.trial(), at.size());
         rows[0].c[0] = r[0];
-        let z = trial(r, P, v);
         let (b, t) = (mu * z[0], tangential_norm(&z[..size]));
         for k in 1..size {
             // Coefficient of δb.

@@ -14,7 +14,8 @@ use crate::algebra::dense::{along, minus};
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
-use crate::contract::law::{Branch, return_map};
+use crate::contract::law::return_map;
+use crate::newton::contact_point::ContactPoint;
 use crate::newton::kinks::add_kinks;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{MONOLITHIC, Tangent};
@@ -42,40 +43,32 @@ pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 4] {
 /// Steps without progress after which an iteration counts as cycling.
 pub(crate) const PATIENCE: usize = 60;
 
-/// The equations of one point and the pieces of their derivative. `r`, `P`, `v` are the rows of the point.
+/// The equations of one point and the pieces of their derivative.
 pub(crate) trait Scheme: Send {
     /// Which smooth piece of H a point is on.
     type Piece: Copy + PartialEq;
 
     /// H; P − Π(P − r v), Π the return mapping, unless the scheme has its own: the equations of the augmented Lagrangian.
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        let mut H = trial(r, P, v);
-        return_map(mu, &mut H[..P.len()]);
-        for k in 0..P.len() {
-            H[k] = P[k] - H[k];
+    fn equations(&self, at: &ContactPoint<'_>) -> [f64; 3] {
+        let mut H = at.trial();
+        return_map(at.mu, &mut H[..at.size()]);
+        for (H, P) in H.iter_mut().zip(at.P) {
+            *H = P - *H;
         }
         H
     }
 
     /// The normal force that bounds friction, linear in P and v.
-    fn bound(&self, r: &[f64], P: &[f64], v: &[f64]) -> f64 {
-        trial(r, P, v)[0]
+    fn bound(&self, at: &ContactPoint<'_>) -> f64 {
+        at.trial()[0]
     }
 
     /// The piece at (P, v).
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Self::Piece;
+    fn piece(&self, at: &ContactPoint<'_>) -> Self::Piece;
 
     /// V (δP, δv) = −H on a piece: sets the coefficients of `rows`, which are zero and have [`equations`](Self::equations) on
     /// their right-hand sides. A scheme that steps from other forces sets these, too.
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        piece: Self::Piece,
-        rows: &mut [PointRow; 3],
-    );
+    fn linearise(&self, at: &ContactPoint<'_>, piece: Self::Piece, rows: &mut [PointRow; 3]);
 
     /// Called before the first iterate, for what must not outlast a run.
     fn begin(&mut self) {}
@@ -260,13 +253,9 @@ impl<S: Scheme> Newton<S> {
         v: &[f64],
         pieces: &mut Vec<S::Piece>,
     ) {
-        let points = problem.rows.iter().enumerate();
-        let piece = |(i, own): (usize, std::ops::Range<usize>)| {
-            let (r, P) = (&r[own.clone()], &P[own.clone()]);
-            self.scheme.piece(problem.friction(i), r, P, &v[own])
-        };
+        let point = |i| ContactPoint::of(problem, i, r, (P, v));
         pieces.clear();
-        pieces.extend(points.map(piece));
+        pieces.extend((0..problem.rows.points()).map(|i| self.scheme.piece(&point(i))));
     }
 
     /// Where the pieces change along a step, in increasing order.
@@ -274,19 +263,18 @@ impl<S: Scheme> Newton<S> {
         &self,
         problem: &ContactProblem<'_>,
         r: &[f64],
-        (P, v): (&[f64], &[f64]),
-        (dP, dv): (&[f64], &[f64]),
+        x: (&[f64], &[f64]),
+        step: (&[f64], &[f64]),
     ) -> Vec<f64> {
         let mut kinks = Vec::new();
-        for (i, own) in problem.rows.iter().enumerate() {
-            let (mu, range, r) = (problem.friction(i), own.clone(), &r[own.clone()]);
-            let of = |P: &[f64], v: &[f64]| {
-                let (P, v) = (&P[range.clone()], &v[range.clone()]);
-                (trial(r, P, v), self.scheme.bound(r, P, v))
+        for i in 0..problem.rows.points() {
+            let of = |x| {
+                let at = ContactPoint::of(problem, i, r, x);
+                (at.trial(), self.scheme.bound(&at))
             };
-            let ((z, bound), (dz, dbound)) = (of(P, v), of(dP, dv));
-            let (z, dz) = (&z[..own.len()], &dz[..own.len()]);
-            add_kinks(mu, (z, bound), (dz, dbound), &mut kinks);
+            let ((z, bound), (dz, dbound)) = (of(x), of(step));
+            let (mu, size) = (problem.friction(i), problem.rows.of(i).len());
+            add_kinks(mu, (&z[..size], bound), (&dz[..size], dbound), &mut kinks);
         }
         kinks.sort_by(f64::total_cmp);
         kinks.dedup();
@@ -296,11 +284,10 @@ impl<S: Scheme> Newton<S> {
     /// Σ H²/r over all rows, an energy.
     fn merit(&self, problem: &ContactProblem<'_>, r: &[f64], P: &[f64], v: &[f64]) -> f64 {
         let mut sum = 0.0;
-        for (i, own) in problem.rows.iter().enumerate() {
-            let (mu, range) = (problem.friction(i), own.clone());
-            let (r_i, P, v) = (&r[range.clone()], &P[range.clone()], &v[range]);
-            let H = self.scheme.equations(mu, r_i, P, v);
-            sum += own.zip(H).map(|(k, h)| h * h / r[k]).sum::<f64>();
+        for i in 0..problem.rows.points() {
+            let at = ContactPoint::of(problem, i, r, (P, v));
+            let H = self.scheme.equations(&at);
+            sum += at.r.iter().zip(H).map(|(r, h)| h * h / r).sum::<f64>();
         }
         sum
     }
@@ -344,6 +331,11 @@ pub(crate) struct At<'p, 'i> {
 }
 
 impl At<'_, '_> {
+    /// Point `i` of the iterate.
+    pub fn point(&self, i: usize) -> ContactPoint<'_> {
+        ContactPoint::of(self.problem, i, self.r, (&self.x.p, self.v))
+    }
+
     /// The step of the given pieces, regularised if their tangent is singular.
     pub fn step<S: Scheme + ?Sized>(
         &mut self,
@@ -371,27 +363,13 @@ impl At<'_, '_> {
     }
 
     fn linearise<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) {
+        let x = (&*self.x.p, self.v);
         let rows = &mut self.work.rows;
         rows.resize(pieces.len(), PointRow::reading([0.0; 3]));
-        for (i, (own, rows)) in self.problem.rows.iter().zip(rows).enumerate() {
-            let (mu, r) = (self.problem.friction(i), &self.r[own.clone()]);
-            let (P, v) = (&self.x.p[own.clone()], &self.v[own]);
-            *rows = PointRow::reading(scheme.equations(mu, r, P, v));
-            scheme.linearise(mu, r, P, v, pieces[i], rows);
+        for (i, (&piece, rows)) in pieces.iter().zip(rows).enumerate() {
+            let at = ContactPoint::of(self.problem, i, self.r, x);
+            *rows = PointRow::reading(scheme.equations(&at));
+            scheme.linearise(&at, piece, rows);
         }
     }
-}
-
-/// The branch of Π(P − r v).
-pub(crate) fn augmented_branch(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-    return_map(mu, &mut trial(r, P, v)[..P.len()])
-}
-
-/// z = P − r v at one point, the trial force of the augmented Lagrangian.
-pub(crate) fn trial(r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-    let mut z = [0.0; 3];
-    for k in 0..P.len() {
-        z[k] = P[k] - r[k] * v[k];
-    }
-    z
 }

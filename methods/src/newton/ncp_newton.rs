@@ -67,7 +67,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options};
+use crate::newton::contact_point::ContactPoint;
+use crate::newton::iteration::{Newton, Scheme, scheme_options};
 use crate::{ContactProblem, Forces, Method, OptionSpec, options};
 
 /// Registry entry.
@@ -189,7 +190,8 @@ impl ConeFunction {
     }
 
     /// x and y of a point.
-    fn pair(mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> (Spin, Spin) {
+    fn pair(at: &ContactPoint<'_>) -> (Spin, Spin) {
+        let ContactPoint { mu, r, P, v } = *at;
         let (mut x, mut y) = ([0.0; 3], [0.0; 3]);
         x[..P.len()].copy_from_slice(P);
         for k in 0..P.len() {
@@ -225,8 +227,8 @@ impl ConeFunction {
 impl Scheme for ConeFunction {
     type Piece = Branch;
 
-    fn equations(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> [f64; 3] {
-        let (x, y) = Self::pair(mu, r, P, v);
+    fn equations(&self, at: &ContactPoint<'_>) -> [f64; 3] {
+        let (x, y) = Self::pair(at);
         let sum = add(add(x, y), scale(-1.0, self.root(x, y).spin()));
         match self.burmeister {
             true => sum,
@@ -235,20 +237,13 @@ impl Scheme for ConeFunction {
     }
 
     /// For the history alone: Φ has one piece.
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        augmented_branch(mu, r, P, v)
+    fn piece(&self, at: &ContactPoint<'_>) -> Branch {
+        at.branch()
     }
 
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        _: Branch,
-        rows: &mut [PointRow; 3],
-    ) {
-        let (x, y) = Self::pair(mu, r, P, v);
+    fn linearise(&self, at: &ContactPoint<'_>, _: Branch, rows: &mut [PointRow; 3]) {
+        let ContactPoint { mu, r, P, v } = *at;
+        let (x, y) = Self::pair(at);
         let root = self.root(x, y);
         // Of |d|, smoothed.
         let last = r.len() - 1;
@@ -315,7 +310,8 @@ mod tests {
             let l = l % size;
             let f = function(kind, if kind % 2 == 1 { 0.3 } else { 0.0 });
             let r = [r[0], r[1], r[1]];
-            let (x, y) = ConeFunction::pair(mu, &r[..size], &P[..size], &v[..size]);
+            let at = ContactPoint { mu, r: &r[..size], P: &P[..size], v: &v[..size] };
+            let (x, y) = ConeFunction::pair(&at);
             let root = f.root(x, y);
             prop_assume!(root.minus.min(root.plus) > 0.1 && (size == 1 || tangential_norm(&v[..size]) > 0.1));
             // |d| is smoothed in the derivative alone.
@@ -323,15 +319,15 @@ mod tests {
                 return Ok(());
             }
             let mut rows = PointRow::reading([0.0; 3]);
-            f.linearise(mu, &r[..size], &P[..size], &v[..size], Branch::Open, &mut rows);
+            f.linearise(&at, Branch::Open, &mut rows);
             let h = 1e-6;
-            let at = |dp: f64, dv: f64| {
+            let moved = |dp: f64, dv: f64| {
                 let (mut P, mut v) = (P, v);
                 P[l] += dp;
                 v[l] += dv;
-                f.equations(mu, &r[..size], &P[..size], &v[..size])
+                f.equations(&ContactPoint { P: &P[..size], v: &v[..size], ..at })
             };
-            let (p_up, p_down, v_up, v_down) = (at(h, 0.0), at(-h, 0.0), at(0.0, h), at(0.0, -h));
+            let (p_up, p_down, v_up, v_down) = (moved(h, 0.0), moved(-h, 0.0), moved(0.0, h), moved(0.0, -h));
             for k in 0..size {
                 let (a, c) = ((p_up[k] - p_down[k]) / (2.0 * h), (v_up[k] - v_down[k]) / (2.0 * h));
                 prop_assert!((rows[k].a[l] - a).abs() < 1e-6, "{kind} {} {a}", rows[k].a[l]);
@@ -353,7 +349,7 @@ mod tests {
                 _ => ([p_n, -mu * p_n * e[0], -mu * p_n * e[1]], [0.0, size * e[0], size * e[1]]),
             };
             let worst = |P: [f64; 3], v: [f64; 3]| {
-                let H = f.equations(mu, &[1.0; 3], &P, &v);
+                let H = f.equations(&ContactPoint { mu, r: &[1.0; 3], P: &P, v: &v });
                 H.iter().fold(0.0, |m: f64, h| m.max(h.abs()))
             };
             prop_assert!(worst(P, v) < 1e-13 * (p_n + size) * (mu + 1.0 / mu), "{:e}", worst(P, v));

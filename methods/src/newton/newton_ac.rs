@@ -44,7 +44,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
-use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options, trial};
+use crate::newton::contact_point::ContactPoint;
+use crate::newton::iteration::{Newton, Scheme, scheme_options};
 use crate::{Method, options};
 
 /// Registry entry.
@@ -70,37 +71,18 @@ pub(crate) struct AlartCurnier;
 impl Scheme for AlartCurnier {
     type Piece = Branch;
 
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        augmented_branch(mu, r, P, v)
+    fn piece(&self, at: &ContactPoint<'_>) -> Branch {
+        at.branch()
     }
 
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        piece: Branch,
-        rows: &mut [PointRow; 3],
-    ) {
-        if piece == Branch::Open {
-            (0..P.len()).for_each(|k| rows[k].a[k] = 1.0);
-            return;
-        }
-        rows[0].c[0] = r[0];
-        if piece == Branch::Stick {
-            (1..P.len()).for_each(|k| rows[k].c[k] = r[k]);
-            return;
-        }
-        let z = trial(r, P, v);
-        let (e, S) = ball_derivative(mu * z[0], &z[1..P.len()]);
-        for k in 1..P.len() {
-            rows[k].a[0] = -mu * e[k - 1];
-            rows[k].c[0] = mu * e[k - 1] * r[0];
-            rows[k].a[k] = 1.0;
-            for l in 1..P.len() {
-                rows[k].a[l] -= S[k - 1][l - 1];
-                rows[k].c[l] += S[k - 1][l - 1] * r[l];
+    fn linearise(&self, at: &ContactPoint<'_>, piece: Branch, rows: &mut [PointRow; 3]) {
+        match piece {
+            Branch::Open => at.open(rows),
+            Branch::Stick => at.stick(rows),
+            Branch::Slip => {
+                let z = at.trial();
+                let (e, S) = ball_derivative(at.mu * z[0], &z[1..at.size()]);
+                at.slip(e, S, rows);
             }
         }
     }

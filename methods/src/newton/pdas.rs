@@ -51,7 +51,8 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
-use crate::newton::iteration::{Newton, Scheme, augmented_branch, scheme_options, trial};
+use crate::newton::contact_point::ContactPoint;
+use crate::newton::iteration::{Newton, Scheme, scheme_options};
 use crate::{Method, options};
 
 /// Registry entry.
@@ -83,40 +84,19 @@ pub(crate) struct Sets;
 impl Scheme for Sets {
     type Piece = Branch;
 
-    fn piece(&self, mu: f64, r: &[f64], P: &[f64], v: &[f64]) -> Branch {
-        augmented_branch(mu, r, P, v)
+    fn piece(&self, at: &ContactPoint<'_>) -> Branch {
+        at.branch()
     }
 
-    fn linearise(
-        &self,
-        mu: f64,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        set: Branch,
-        rows: &mut [PointRow; 3],
-    ) {
-        let size = P.len();
-        if set == Branch::Open {
-            (0..size).for_each(|k| rows[k].a[k] = 1.0);
-            return;
-        }
-        rows[0].c[0] = r[0];
-        let z = trial(r, P, v);
-        let (s, t) = (mu * z[0], tangential_norm(&z[..size]));
-        if set == Branch::Stick {
-            (1..size).for_each(|k| rows[k].c[k] = r[k]);
-            return;
-        }
-        let M = damped_tangent(s, t, &z[1..size], &P[1..]);
-        for k in 1..size {
-            let e = z[k] / t;
-            rows[k].a[0] = -mu * e;
-            rows[k].c[0] = mu * e * r[0];
-            rows[k].a[k] = 1.0;
-            for l in 1..size {
-                rows[k].a[l] -= M[k - 1][l - 1];
-                rows[k].c[l] += M[k - 1][l - 1] * r[l];
+    fn linearise(&self, at: &ContactPoint<'_>, set: Branch, rows: &mut [PointRow; 3]) {
+        match set {
+            Branch::Open => at.open(rows),
+            Branch::Stick => at.stick(rows),
+            Branch::Slip => {
+                let (z, size) = (at.trial(), at.size());
+                let (s, t) = (at.mu * z[0], tangential_norm(&z[..size]));
+                let M = damped_tangent(s, t, &z[1..size], &at.P[1..]);
+                at.slip([z[1] / t, z[2] / t], M, rows);
             }
         }
     }
