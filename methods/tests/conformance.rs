@@ -153,6 +153,23 @@ fn one_factorisation_serves_all_frictions_methods_and_increments() {
     assert_eq!((counters.factorisations, counters.condensations), (1, 1));
 }
 
+/// Goal: in 2D a tangent changes with the states of the points alone, and updates of multipliers that change none share its
+/// factors.
+#[test]
+fn a_tangent_that_stays_is_not_factored_again() {
+    let mut rng = Random(4);
+    let (k, b) = random_body(&mut rng, 2, 6, 8, 0.2);
+    let s = system(&elastic(2, &k, &b, vec![], false), 0.5);
+    let m = method("augmented-lagrangian").unwrap();
+    let load = force(&s, &rng.vector(k.len()));
+    let outcome = solved(m, &[("stiffness", 1.0)], &s, &load, 1e-9);
+    let (updates, factored) = (outcome.counters.iterations, outcome.counters.factorisations);
+    assert!(
+        factored > 0 && updates > 5 * factored,
+        "{updates} {factored}"
+    );
+}
+
 /// W⁻¹ has positive entries off the diagonal, so nothing keeps the active set method from a cycle of three sets.
 #[test]
 fn a_cycle_of_active_sets_without_friction_is_left() {

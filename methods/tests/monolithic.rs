@@ -93,8 +93,9 @@ fn every_monolithic_variant_has_the_same_iterates() {
             // A rescue factors its global stage, each in its own way.
             assert_eq!(other.global_factorisations, 0, "{at}");
             assert!(one.global_factorisations > 0, "{at}");
+            // A tangent that stays the same is not factored again where it is condensed.
             let sum = one.factorisations + one.global_factorisations;
-            assert_eq!(sum, other.factorisations, "{at}");
+            assert!((1..=sum).contains(&other.factorisations), "{at}");
         }
     }
 }

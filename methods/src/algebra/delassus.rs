@@ -1,5 +1,7 @@
 //! The Delassus operator W = B K⁻¹ Bᵀ: what it can be asked, and W as a full matrix.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
 use crate::MethodError;
@@ -160,6 +162,61 @@ impl Delassus for Dense {
 
     fn symmetric(&self) -> bool {
         self.symmetric
+    }
+}
+
+/// W + C, a compliance C in series with the body.
+pub(crate) struct Series {
+    w: Arc<dyn Delassus>,
+    compliance: Mat<f64>,
+    diagonal: Vec<f64>,
+}
+
+impl Series {
+    /// Both.
+    pub fn new(w: Arc<dyn Delassus>, compliance: Mat<f64>) -> Self {
+        let of_w = w.diagonal().iter().enumerate();
+        Self {
+            diagonal: of_w.map(|(k, w)| w + compliance[(k, k)]).collect(),
+            w,
+            compliance,
+        }
+    }
+
+    /// C.
+    pub fn compliance(&self) -> &Mat<f64> {
+        &self.compliance
+    }
+}
+
+impl Delassus for Series {
+    fn rows(&self) -> usize {
+        self.w.rows()
+    }
+
+    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
+        self.w.apply_add(p, v);
+        mul_add(&self.compliance, p, v);
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
+        let mut of_w = Vec::new();
+        let columns = (self.w.column(k, &mut of_w).iter()).zip(self.compliance.col_as_slice(k));
+        work.clear();
+        work.extend(columns.map(|(w, c)| w + c));
+        work
+    }
+
+    fn formed(&self) -> bool {
+        self.w.formed()
+    }
+
+    fn symmetric(&self) -> bool {
+        false
     }
 }
 

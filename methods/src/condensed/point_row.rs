@@ -9,8 +9,6 @@
 
 use std::ops::Range;
 
-use faer::Mat;
-
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::DenseLu;
 use crate::algebra::plain::Full;
@@ -42,13 +40,8 @@ pub(crate) type Blocks<'a> = &'a [[f64; 3]];
 pub(crate) enum Law<'a> {
     /// E = A, L = C, R = I.
     Rows { a: Blocks<'a>, c: Blocks<'a> },
-    /// L = I, R = S, E = `unit` I + e; `series` is a compliance added to W.
-    Columns {
-        unit: f64,
-        e: Blocks<'a>,
-        s: Blocks<'a>,
-        series: Option<&'a Mat<f64>>,
-    },
+    /// L = I, R = S.
+    Columns { e: Blocks<'a>, s: Blocks<'a> },
 }
 
 /// The system, assembled and factored. The memory of one serves the next.
@@ -84,7 +77,7 @@ impl Bordered {
         active: &[usize],
         law: &Law<'_>,
     ) -> bool {
-        self.factor_on_spring(problem, active, law, 0.0)
+        self.factor_on_spring(problem, &*problem.operator.w, active, law, 0.0)
     }
 
     /// The same; where the rows leave a piece loose, Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good
@@ -95,25 +88,35 @@ impl Bordered {
         active: &[usize],
         law: &Law<'_>,
     ) -> bool {
+        self.factor_with(problem, &*problem.operator.w, active, law, true)
+    }
+
+    /// The same with another W; loose pieces are held or not.
+    pub fn factor_with(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        w: &dyn Delassus,
+        active: &[usize],
+        law: &Law<'_>,
+        held: bool,
+    ) -> bool {
         /// ε. Answers do not depend on it; with 1e-10 … 1e-3 Newton methods take as many steps, with 1 more.
         const SPRING: f64 = 1e-3;
-        let springs = problem.modes() > 0;
-        self.factor(problem, active, law)
-            || (springs && self.factor_on_spring(problem, active, law, SPRING))
+        self.factor_on_spring(problem, w, active, law, 0.0)
+            || (held
+                && problem.modes() > 0
+                && self.factor_on_spring(problem, w, active, law, SPRING))
     }
 
     fn factor_on_spring(
         &mut self,
         problem: &ContactProblem<'_>,
+        w: &dyn Delassus,
         indices: &[usize],
         law: &Law<'_>,
         spring: f64,
     ) -> bool {
-        let (w, q, rho) = (
-            &*problem.operator.w,
-            &problem.operator.modes.q,
-            problem.operator.rho,
-        );
+        let (q, rho) = (&problem.operator.modes.q, problem.operator.rho);
         place(problem, indices, &mut self.active);
         let active = &self.active;
         let n = active.len();
@@ -124,13 +127,11 @@ impl Bordered {
                 let mut work = Vec::new();
                 for (j, place) in active.iter().enumerate() {
                     let column = &mut J.column_mut(j)[..n];
-                    law_column(problem, place, (active, a, &self.laws), &mut work, column);
+                    let rows = (&active[..], *a, &self.laws[..]);
+                    law_column(problem, w, place, rows, &mut work, column);
                 }
             }
-            Law::Columns { unit, e, s, series } => {
-                (0..n).for_each(|k| J[(k, k)] = *unit);
-                columns(J, w, *series, (indices, active), e, s);
-            }
+            Law::Columns { e, s } => columns(J, w, (indices, active), e, s),
         }
         for (j, q) in q.iter().enumerate() {
             J[(n + j, n + j)] = -spring;
@@ -221,12 +222,13 @@ pub(crate) fn law_rows(places: &[Place], c: Blocks<'_>, laws: &mut Vec<LawRow>) 
 /// Column k of A + C W on some rows.
 pub(crate) fn law_column(
     problem: &ContactProblem<'_>,
+    w: &dyn Delassus,
     (k, point): &Place,
     (places, a, laws): (&[Place], Blocks<'_>, &[LawRow]),
     work: &mut Vec<f64>,
     column: &mut [f64],
 ) {
-    let w = problem.operator.w.column(*k, work);
+    let w = w.column(*k, work);
     match problem.increment.system.dim() {
         2 => times::<2>(laws, w, column),
         _ => times::<3>(laws, w, column),
@@ -248,11 +250,10 @@ fn times<const D: usize>(laws: &[LawRow], w: &[f64], column: &mut [f64]) {
     }
 }
 
-/// E + (W + C) S on the active rows.
+/// E + W S on the active rows.
 fn columns(
     J: &mut Full,
     w: &dyn Delassus,
-    series: Option<&Mat<f64>>,
     (indices, active): (&[usize], &[Place]),
     e: Blocks<'_>,
     s: Blocks<'_>,
@@ -264,15 +265,13 @@ fn columns(
         for l in point.clone() {
             let s = s[l][k - point.start];
             if s != 0.0 {
-                let held = series.map(|c| c.col_as_slice(l));
-                for w in [Some(w.column(l, &mut work)), held].into_iter().flatten() {
-                    let entries = column.iter_mut();
-                    if all {
-                        entries.zip(w).for_each(|(entry, w)| *entry += w * s);
-                    } else {
-                        let own = entries.zip(indices);
-                        own.for_each(|(entry, &a)| *entry += w[a] * s);
-                    }
+                let w = w.column(l, &mut work);
+                let entries = column.iter_mut();
+                if all {
+                    entries.zip(w).for_each(|(entry, w)| *entry += w * s);
+                } else {
+                    let own = entries.zip(indices);
+                    own.for_each(|(entry, &a)| *entry += w[a] * s);
                 }
             }
             // Rows of one point follow each other, so row l of this point is active row b − k + l.

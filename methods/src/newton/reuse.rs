@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
+use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::{DenseLu, SINGULAR, larger, minus, mul_add};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
 use crate::condensed::point_row::{Blocks, LawRow, Place, law_column, law_rows, place};
@@ -36,9 +37,10 @@ const KEPT: usize = 2;
 /// Columns that are computed at once.
 const WIDTH: usize = 32;
 
-/// The tangent by row, of rows that are not active too: A δP + C δv.
+/// The tangent by row, of rows that are not active too: A δP + C δv, δv = W δP.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a> {
+    pub w: &'a dyn Delassus,
     /// Increasing.
     pub active: &'a [usize],
     pub a: Blocks<'a>,
@@ -54,15 +56,16 @@ enum Unknown {
     New(usize),
 }
 
-/// The tangent that was factored, and what was solved with it.
+/// The tangent that was factored, and what was solved with it. The memory of one serves the next.
+#[derive(Default)]
 pub(crate) struct Factored {
     /// S₀.
     active: Vec<usize>,
     a: Vec<[f64; 3]>,
     c: Vec<[f64; 3]>,
-    listed: Listed,
-    /// Columns of Z.
+    /// Columns of Z, and where their rows stand.
     solved: BTreeMap<Unknown, Vec<f64>>,
+    listed: Option<Listed>,
 }
 
 /// How [`Factored::solve`] ends.
@@ -76,21 +79,26 @@ pub(crate) enum Solved {
 }
 
 impl Factored {
-    /// To be remembered of a tangent that was factored; `None` where that is not worth it, or where pieces float, whose balance
-    /// stands beside the rows.
-    pub fn new(problem: &ContactProblem<'_>, rows: Rows<'_>) -> Option<Self> {
-        let worth = rows.active.len() >= FEWEST && problem.modes() == 0;
-        worth.then(|| Self::remember(problem, rows))
+    /// Remembers a tangent that was factored.
+    pub fn remember(&mut self, rows: Rows<'_>) {
+        self.active.clear();
+        self.active.extend(rows.active);
+        for (own, new) in [(&mut self.a, rows.a), (&mut self.c, rows.c)] {
+            own.clear();
+            own.extend(new);
+        }
+        self.solved.clear();
+        self.listed = None;
     }
 
-    fn remember(problem: &ContactProblem<'_>, rows: Rows<'_>) -> Self {
-        Self {
-            active: rows.active.to_vec(),
-            a: rows.a.to_vec(),
-            c: rows.c.to_vec(),
-            listed: Listed::new(problem, rows.active, rows.c),
-            solved: BTreeMap::new(),
-        }
+    /// Called after the last step of a run.
+    pub fn forget(&mut self) {
+        self.solved.clear();
+    }
+
+    /// Whether the factors are those of this tangent.
+    pub fn is_of(&self, rows: Rows<'_>) -> bool {
+        self.active == rows.active && self.a == rows.a && self.c == rows.c
     }
 
     /// x with J x = f on the active rows. `lu`: the factors of J₀.
@@ -101,6 +109,10 @@ impl Factored {
         rows: Rows<'_>,
         f: &[f64],
     ) -> Solved {
+        // The balance of floating pieces stands beside the rows.
+        if self.active.len() < FEWEST || problem.modes() > 0 {
+            return Solved::TooManyChanges;
+        }
         let changes = self.changes(rows);
         if !self.is_worth(&changes) {
             return Solved::TooManyChanges;
@@ -145,7 +157,7 @@ impl Factored {
         changes: &[Unknown],
         f: &[f64],
     ) -> Option<Vec<f64>> {
-        self.solve_columns(problem, lu, changes)?;
+        self.solve_columns(problem, lu, rows.w, changes)?;
         let step = Step::new(self, problem, lu, rows, changes)?;
         let mut x = step.solve(f)?;
         for corrections in 0..=CORRECTIONS {
@@ -166,9 +178,12 @@ impl Factored {
         &mut self,
         problem: &ContactProblem<'_>,
         lu: &DenseLu,
+        w: &dyn Delassus,
         changes: &[Unknown],
     ) -> Option<()> {
-        let n = self.active.len();
+        let (n, c) = (self.active.len(), &self.c);
+        let listed = self.listed.take();
+        let listed = listed.unwrap_or_else(|| Listed::new(problem, &self.active, c));
         let missing = changes
             .iter()
             .filter(|change| !self.solved.contains_key(change));
@@ -181,9 +196,12 @@ impl Factored {
             let column = Z.col_as_slice_mut(j);
             match change {
                 Unknown::Slack(k) => column[self.active.binary_search(k).ok()?] = 1.0,
-                Unknown::New(k) => self.listed.column(problem, &self.a, *k, &mut work, column),
+                Unknown::New(k) => {
+                    listed.column(problem, w, &self.a, *k, &mut work, column);
+                }
             }
         }
+        self.listed = Some(listed);
         let threads = (n * n) as f64 * missing.len() as f64 > WORTH_THREADS;
         let strips = column_strips(Z.as_mut(), WIDTH);
         for_all(strips, threads, |(_, strip)| lu.solve_in_place(strip));
@@ -213,13 +231,15 @@ impl Listed {
     fn column(
         &self,
         problem: &ContactProblem<'_>,
+        w: &dyn Delassus,
         a: Blocks<'_>,
         k: usize,
         work: &mut Vec<f64>,
         column: &mut [f64],
     ) {
         let rows = (&self.places[..], a, &self.laws[..]);
-        law_column(problem, &(k, problem.rows.around(k)), rows, work, column);
+        let place = (k, problem.rows.around(k));
+        law_column(problem, w, &place, rows, work, column);
     }
 }
 
@@ -265,7 +285,8 @@ impl<'s> Step<'s> {
         let (listed, mut work) = (Listed::new(problem, &others, rows.c), Vec::new());
         let mut G = Mat::zeros(others.len(), n);
         for (j, k) in base.active.iter().enumerate() {
-            listed.column(problem, rows.a, *k, &mut work, G.col_as_slice_mut(j));
+            let column = G.col_as_slice_mut(j);
+            listed.column(problem, rows.w, rows.a, *k, &mut work, column);
         }
 
         let mut schur = product(&G, &Z, size);
@@ -275,7 +296,7 @@ impl<'s> Step<'s> {
                 schur[(others.len() + i, j)] = Z[(at, j)];
             }
             if let Unknown::New(k) = change {
-                listed.column(problem, rows.a, *k, &mut work, &mut H);
+                listed.column(problem, rows.w, rows.a, *k, &mut work, &mut H);
                 (H.iter().enumerate()).for_each(|(i, h)| schur[(i, j)] -= h);
             }
         }
@@ -359,7 +380,7 @@ fn residual(problem: &ContactProblem<'_>, rows: Rows<'_>, f: &[f64], x: &[f64]) 
     let mut p = vec![0.0; problem.len()];
     rows.active.iter().zip(x).for_each(|(&k, x)| p[k] = *x);
     let mut v = vec![0.0; problem.len()];
-    problem.operator.w.apply_add(&p, &mut v);
+    rows.w.apply_add(&p, &mut v);
     let mut most = 0.0;
     let rest = |(&k, f): (&usize, &f64)| {
         let (mut rest, mut terms) = (*f, f.abs());

@@ -19,11 +19,14 @@
 //!
 //! Points with Π'(z) = 0 (open) are eliminated. Full steps first, then the non-monotone line search.
 
+#![allow(non_snake_case)]
+
 use faer::Mat;
 
-use crate::algebra::dense::{DenseLu, along, mul_add, ratio};
+use crate::algebra::delassus::Series;
+use crate::algebra::dense::{DenseLu, mul_add, ratio};
 use crate::condensed::pair::Pair;
-use crate::condensed::point_row::{Bordered, Law, PointRow};
+use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
@@ -34,250 +37,305 @@ use crate::{ContactProblem, Forces, MethodError, Monitor, Status};
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Penalty stiffnesses and anchor.
+/// The penalised laws.
 pub(crate) struct Springs<'a> {
-    pub normal: f64,
-    pub tangential: f64,
     /// A by row.
     pub anchor: Vec<f64>,
-    /// Only the condensed tangent knows them.
-    pub coupled: Option<Coupled<'a>>,
+    /// 1/k by row.
+    compliance: Vec<f64>,
+    /// r by row.
+    r: Vec<f64>,
+    coupled: Option<Coupled<'a>>,
 }
 
-/// Springs between all rows.
+/// Springs between all rows, which only the condensed tangent knows.
 pub(crate) struct Coupled<'a> {
-    /// C.
-    pub compliance: &'a Mat<f64>,
+    /// W + C.
+    pub series: &'a Series,
     /// c₀ by row.
     pub stretch: Vec<f64>,
 }
 
-/// Where the Newton iteration stands.
-#[derive(Clone)]
-pub(crate) struct Point {
-    pub z: Vec<f64>,
-    pub beta: Vec<f64>,
-    /// Π(z).
-    pub p: Vec<f64>,
-    pub branches: Vec<Branch>,
-}
-
-impl Springs<'_> {
-    /// Compliance 1/k by row.
-    fn compliance(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
-        problem.by_row(1.0 / self.normal, 1.0 / self.tangential)
-    }
-
-    /// r by row.
-    fn scales(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
-        let mut compliance = self.compliance(problem);
-        if let Some(coupled) = &self.coupled {
-            for (k, c) in compliance.iter_mut().enumerate() {
-                *c += coupled.compliance[(k, k)];
-            }
+impl<'a> Springs<'a> {
+    /// With stiffnesses k_n and k_t, in N/m.
+    pub fn new(
+        problem: &ContactProblem<'_>,
+        (normal, tangential): (f64, f64),
+        anchor: Vec<f64>,
+        coupled: Option<Coupled<'a>>,
+    ) -> Self {
+        let compliance = problem.by_row(1.0 / normal, 1.0 / tangential);
+        let mut all = compliance.clone();
+        if let Some(coupled) = &coupled {
+            let further = coupled.series.compliance();
+            (all.iter_mut().enumerate()).for_each(|(k, c)| *c += further[(k, k)]);
         }
-        problem.scales(&compliance)
+        Self {
+            r: problem.scales(&all),
+            anchor,
+            compliance,
+            coupled,
+        }
     }
 
-    /// v' by row.
-    fn stretched(&self, problem: &ContactProblem<'_>, p: &[f64], beta: &[f64]) -> Vec<f64> {
-        let mut v = problem.jump(p, beta);
-        for (k, c) in self.compliance(problem).into_iter().enumerate() {
+    /// v' by row in place of what `v` holds.
+    fn stretched(&self, problem: &ContactProblem<'_>, p: &[f64], beta: &[f64], v: &mut Vec<f64>) {
+        problem.jump_into(p, beta, v);
+        for (k, c) in self.compliance.iter().enumerate() {
             v[k] += c * (p[k] - self.anchor[k]);
         }
-        if let Some(coupled) = &self.coupled {
-            mul_add(coupled.compliance, p, &mut v);
-            v.iter_mut()
-                .zip(&coupled.stretch)
-                .for_each(|(v, c)| *v += c);
+        if let Some(Coupled { series, stretch }) = &self.coupled {
+            mul_add(series.compliance(), p, v);
+            v.iter_mut().zip(stretch).for_each(|(v, c)| *v += c);
         }
-        v
     }
+}
 
-    /// The trial z = P − r v' for given contact forces and rigid amplitudes.
-    pub fn predict(&self, problem: &ContactProblem<'_>, Forces { p, beta }: Forces) -> Point {
-        let r = self.scales(problem);
-        let v = self.stretched(problem, &p, &beta);
-        let z = (0..p.len()).map(|k| p[k] - r[k] * v[k]).collect();
-        Point::new(problem, z, beta)
-    }
-
+/// An iterate.
+#[derive(Default)]
+pub(crate) struct Trial {
+    z: Vec<f64>,
+    /// Π(z), β.
+    pub forces: Forces,
+    branches: Vec<Branch>,
     /// F by row, in m.
-    fn mismatch(&self, problem: &ContactProblem<'_>, r: &[f64], at: &Point) -> Vec<f64> {
-        let mut f = self.stretched(problem, &at.p, &at.beta);
-        for k in 0..f.len() {
-            f[k] += (at.z[k] - at.p[k]) / r[k];
-        }
-        f
+    mismatch: Vec<f64>,
+}
+
+impl Trial {
+    /// Takes z + t δz and β + t δβ.
+    fn take(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        springs: &Springs<'_>,
+        (z, beta): (&[f64], &[f64]),
+        (t, step): (f64, &Forces),
+    ) {
+        let moved = |x: &mut Vec<f64>, from: &[f64], step: &[f64]| {
+            x.clear();
+            x.extend(from.iter().zip(step).map(|(x, step)| x + t * step));
+        };
+        moved(&mut self.z, z, &step.p);
+        moved(&mut self.forces.beta, beta, &step.beta);
+        self.map(problem, springs);
     }
 
-    /// Newton's method from `at` until the residual is at most `stop`. The residual is F and the missing balance on
+    /// P and F of z and β.
+    fn map(&mut self, problem: &ContactProblem<'_>, springs: &Springs<'_>) {
+        let (z, Forces { p, beta }) = (&self.z, &mut self.forces);
+        p.clone_from(z);
+        let points = problem.rows.iter().enumerate();
+        self.branches.clear();
+        self.branches
+            .extend(points.map(|(i, own)| return_map(problem.friction(i), &mut p[own])));
+        springs.stretched(problem, p, beta, &mut self.mismatch);
+        for (k, f) in self.mismatch.iter_mut().enumerate() {
+            *f += (z[k] - p[k]) / springs.r[k];
+        }
+    }
+
+    /// Mismatch and missing balance on the scale of the natural map.
+    fn residual(&self, problem: &ContactProblem<'_>) -> f64 {
+        let (p, rho) = (&self.forces.p, problem.operator.rho);
+        let missing: f64 = problem.missing(p).iter().map(|c| c * c).sum();
+        let square: f64 = self.mismatch.iter().map(|f| (rho * f).powi(2)).sum();
+        ratio((square + missing).sqrt(), problem.reference_force(p))
+    }
+
+    /// Σ r F² plus the missing balance, an energy.
+    fn merit(&self, problem: &ContactProblem<'_>, r: &[f64]) -> f64 {
+        let missing = problem.missing(&self.forces.p);
+        let missing: f64 = missing.iter().map(|c| c * c / problem.operator.rho).sum();
+        let pairs = self.mismatch.iter().zip(r);
+        missing + pairs.map(|(f, r)| r * f * f).sum::<f64>()
+    }
+}
+
+/// Newton's method on penalised laws. Every step works in the memory of the one before.
+#[derive(Default)]
+pub(crate) struct SpringNewton {
+    pub tangent: Tangent,
+    /// Where it stands.
+    pub at: Trial,
+    before: Vec<Branch>,
+    /// An iterate that is tried.
+    trial: Trial,
+    rows: Vec<[PointRow; 3]>,
+    /// (δP, δβ), δv.
+    step: Forces,
+    jump: Vec<f64>,
+    /// (δz, δβ).
+    direction: Forces,
+}
+
+impl SpringNewton {
+    /// With the tangent that solves for its steps.
+    pub fn new(tangent: Tangent) -> Self {
+        Self {
+            tangent,
+            ..Self::default()
+        }
+    }
+
+    /// Starts from the trial z = P − r v' of given contact forces and rigid amplitudes.
+    pub fn start(&mut self, problem: &ContactProblem<'_>, springs: &Springs<'_>, x: &Forces) {
+        let at = &mut self.at;
+        springs.stretched(problem, &x.p, &x.beta, &mut at.z);
+        for (k, z) in at.z.iter_mut().enumerate() {
+            *z = x.p[k] - springs.r[k] * *z;
+        }
+        at.forces.beta.clone_from(&x.beta);
+        at.map(problem, springs);
+    }
+
+    /// Steps from where it stands until the residual is at most `stop`. The residual is F and the missing balance on
     /// the scale of the natural map. `report(iterate, changes)` is called for every iterate and may stop.
     pub fn solve(
-        &self,
+        &mut self,
         problem: &mut ContactProblem<'_>,
-        mut at: Point,
+        springs: &Springs<'_>,
         stop: f64,
         max_iterations: usize,
-        tangent: &mut Tangent,
-        mut report: impl FnMut(&mut ContactProblem<'_>, &Point, usize) -> bool,
-    ) -> Result<(Status, Point), MethodError> {
-        let (r, c) = (self.scales(problem), self.compliance(problem));
+        mut report: impl FnMut(&mut ContactProblem<'_>, &Forces, usize) -> bool,
+    ) -> Result<Status, MethodError> {
         let mut search = LineSearch::default();
-        let mut before = at.branches.clone();
+        self.before.clone_from(&self.at.branches);
         let mut last = f64::INFINITY;
         for iteration in 0.. {
-            let mismatch = self.mismatch(problem, &r, &at);
-            let residual = residual(problem, &at, &mismatch);
-            let pairs = at.branches.iter().zip(&before);
+            let residual = self.at.residual(problem);
+            let pairs = self.at.branches.iter().zip(&self.before);
             let changes = pairs.filter(|(a, b)| a != b).count();
             problem.counters.local_solves += problem.rows.points();
             if !residual.is_finite() {
-                return Ok((Status::Diverged, at));
+                return Ok(Status::Diverged);
             }
-            let go_on = report(problem, &at, changes);
+            let go_on = report(problem, &self.at.forces, changes);
             if residual <= stop {
-                return Ok((Status::Converged, at));
+                return Ok(Status::Converged);
             }
             if !go_on {
-                return Ok((Status::Stopped, at));
+                return Ok(Status::Stopped);
             }
             if residual <= ROUNDING && residual > 0.5 * last {
-                return Ok((Status::Stalled, at));
+                return Ok(Status::Stalled);
             }
             last = residual;
             if iteration == max_iterations {
                 break;
             }
-            let coupled = self.coupled.as_ref();
-            let mut step = match tangent {
-                Tangent::Condensed(_) => {
-                    direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::new)
-                }
-                Tangent::Monolithic(body) => {
-                    whole_direction(body, problem, &r, &c, &at, &mismatch)?
-                }
-            };
-            if step.is_none()
+            let mut found = self.direction(problem, springs, false)?;
+            if !found
                 && problem.rescue_left()
                 && let Some(pair) = rescue(problem)?
             {
-                at = self.predict(problem, pair.into());
+                self.start(problem, springs, &pair.into());
                 continue;
             }
-            if step.is_none() && matches!(tangent, Tangent::Condensed(_)) {
-                step = direction(problem, coupled, &r, &c, &at, &mismatch, Bordered::held);
+            if !found && matches!(self.tangent, Tangent::Condensed(_)) {
+                found = self.direction(problem, springs, true)?;
             }
-            let Some((dz, dbeta)) = step else {
-                return Ok((problem.singular(), at));
-            };
-            search.record(merit(problem, &r, &at, &mismatch));
+            if !found {
+                return Ok(problem.singular());
+            }
+            search.record(self.at.merit(problem, &springs.r));
+            let mut tried = f64::NAN;
             let t = search.length(|t| {
-                let trial = at.moved(problem, t, &dz, &dbeta);
-                let mismatch = self.mismatch(problem, &r, &trial);
-                merit(problem, &r, &trial, &mismatch)
+                tried = t;
+                self.try_step(problem, springs, t)
             });
-            before.clone_from(&at.branches);
-            at = at.moved(problem, t, &dz, &dbeta);
+            if t != tried {
+                self.try_step(problem, springs, t);
+            }
+            self.before.clone_from(&self.at.branches);
+            std::mem::swap(&mut self.at, &mut self.trial);
         }
-        Ok((Status::MaxIterations, at))
+        Ok(Status::MaxIterations)
+    }
+
+    /// The merit after a step of length t.
+    fn try_step(&mut self, problem: &ContactProblem<'_>, springs: &Springs<'_>, t: f64) -> f64 {
+        let (z, beta) = (&self.at.z, &self.at.forces.beta);
+        self.trial
+            .take(problem, springs, (z, beta), (t, &self.direction));
+        self.trial.merit(problem, &springs.r)
+    }
+
+    /// Newton's direction (δz, δβ); false if the tangent is singular. δz = δP − r (F + δv + C δP + δP/k); `hold`: loose pieces by
+    /// springs.
+    fn direction(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        springs: &Springs<'_>,
+        hold: bool,
+    ) -> Result<bool, MethodError> {
+        let (at, step, dv) = (&self.at, &mut self.step, &mut self.jump);
+        match &mut self.tangent {
+            Tangent::Condensed(condensed) => {
+                tangent_rows(problem, springs, at, &mut self.rows);
+                let w = problem.operator.w.clone();
+                let w = springs.coupled.as_ref().map_or(&*w, |c| c.series);
+                if !condensed.solve(problem, w, &at.forces.p, &self.rows, hold, step) {
+                    return Ok(false);
+                }
+                dv.clear();
+                dv.resize(problem.len(), 0.0);
+                w.apply_add(&step.p, dv);
+                problem.operator.modes.add(&step.beta, dv);
+            }
+            Tangent::Monolithic(body) => match whole_step(body, problem, springs, at)? {
+                Some(Pair { p, v, beta }) => (*step, *dv) = (Forces { p, beta }, v),
+                None => return Ok(false),
+            },
+        }
+        let Forces { p: dz, beta } = &mut self.direction;
+        dz.clear();
+        dz.extend((0..dv.len()).map(|k| {
+            let dp = step.p[k];
+            dp - springs.r[k] * (at.mismatch[k] + dv[k] + springs.compliance[k] * dp)
+        }));
+        beta.clone_from(&step.beta);
+        Ok(true)
     }
 }
 
-/// Mismatch and missing balance on the scale of the natural map.
-fn residual(problem: &ContactProblem<'_>, at: &Point, mismatch: &[f64]) -> f64 {
-    let rho = problem.operator.rho;
-    let missing: f64 = problem.missing(&at.p).iter().map(|c| c * c).sum();
-    let square: f64 = mismatch.iter().map(|f| (rho * f).powi(2)).sum();
-    ratio((square + missing).sqrt(), problem.reference_force(&at.p))
-}
-
-/// Σ r F² plus the missing balance, an energy.
-fn merit(problem: &ContactProblem<'_>, r: &[f64], at: &Point, mismatch: &[f64]) -> f64 {
-    let missing: f64 = problem
-        .missing(&at.p)
-        .iter()
-        .map(|c| c * c / problem.operator.rho)
-        .sum();
-    missing + mismatch.iter().zip(r).map(|(f, r)| r * f * f).sum::<f64>()
-}
-
-/// With loose pieces held or not.
-type Factored = fn(&ContactProblem<'_>, &[usize], &Law<'_>) -> Option<Bordered>;
-
-/// (δz, δβ).
-type SpringStep = (Vec<f64>, Vec<f64>);
-
-/// Newton step (δz, δβ); `None` if the tangent is singular.
-///
-/// With y = δz/r and δP = S y, S = Π'(z) r, the rows of active points read y + (W + C + 1/k − 1/r) S y + Q δβ = −F.
-fn direction(
-    problem: &mut ContactProblem<'_>,
-    coupled: Option<&Coupled<'_>>,
-    r: &[f64],
-    c: &[f64],
-    at: &Point,
-    mismatch: &[f64],
-    factored: Factored,
-) -> Option<SpringStep> {
-    problem.counters.factorisations += 1;
-    let n = problem.len();
-    let (mut active, mut e, mut s) = (Vec::new(), vec![[0.0; 3]; n], vec![[0.0; 3]; n]);
-    for (i, own) in problem.rows.iter().enumerate() {
-        if at.branches[i] == Branch::Open {
-            continue;
-        }
-        let d = return_map_derivative(problem.friction(i), &at.z[own.clone()], at.branches[i]);
-        active.extend(own.clone());
-        for (a, k) in own.clone().enumerate() {
-            for (b, l) in own.clone().enumerate() {
-                s[k][b] = d[a][b] * r[l];
-                e[k][b] = (c[k] - 1.0 / r[k]) * s[k][b];
+/// The step by row, T = Π'(z), from δP = T δz and the row of F:
+/// ```text
+/// (I − T + T r/k) δP + T r (δv + C δP) = −T r F
+/// ```
+fn tangent_rows(
+    problem: &ContactProblem<'_>,
+    springs: &Springs<'_>,
+    at: &Trial,
+    rows: &mut Vec<[PointRow; 3]>,
+) {
+    let of_point = |(i, own): (usize, std::ops::Range<usize>)| {
+        let mut rows = PointRow::reading([0.0; 3]);
+        let t = return_map_derivative(problem.friction(i), &at.z[own.clone()], at.branches[i]);
+        for (a, row) in rows[..own.len()].iter_mut().enumerate() {
+            for (b, k) in own.clone().enumerate() {
+                let tr = t[a][b] * springs.r[k];
+                row.a[b] = f64::from(u8::from(a == b)) - t[a][b] + tr * springs.compliance[k];
+                row.c[b] = tr;
+                row.h += tr * at.mismatch[k];
             }
         }
-    }
-    let law = Law::Columns {
-        unit: 1.0,
-        e: &e,
-        s: &s,
-        series: coupled.map(|c| c.compliance),
+        rows
     };
-    let f: Vec<f64> = active.iter().map(|&k| -mismatch[k]).collect();
-    let mut system = factored(problem, &active, &law)?;
-    let (solution, dbeta) = system.solve(&f, &problem.missing(&at.p))?;
-
-    let mut y = vec![0.0; n];
-    active.iter().zip(&solution).for_each(|(&k, x)| y[k] = *x);
-    let mut dp = vec![0.0; n];
-    for own in problem.rows.iter() {
-        for k in own.clone() {
-            dp[k] = own.clone().zip(s[k]).map(|(l, s)| s * y[l]).sum();
-        }
-    }
-    // Open rows follow: y = −F − (W + C) δP − Q δβ.
-    let mut dv = vec![0.0; n];
-    problem.operator.w.apply_add(&dp, &mut dv);
-    if let Some(coupled) = coupled {
-        mul_add(coupled.compliance, &dp, &mut dv);
-    }
-    problem.operator.modes.add(&dbeta, &mut dv);
-    let mut y: Vec<f64> = mismatch.iter().zip(&dv).map(|(f, dv)| -f - dv).collect();
-    active.iter().zip(&solution).for_each(|(&k, x)| y[k] = *x);
-    let dz = y.iter().zip(r).map(|(y, r)| y * r).collect();
-    Some((dz, dbeta))
+    rows.clear();
+    rows.extend(problem.rows.iter().enumerate().map(of_point));
 }
 
-/// The same step from the displacement form on the whole body, as papers usually run penalty methods.
+/// The same step (δP, δv, δβ) from the displacement form on the whole body, as papers usually run penalty methods; `None` if the
+/// tangent is singular.
 ///
 /// With T = Π'(z) and M = (I − T)/r + T/k, which never loses digits, the springs read δP = −T M⁻¹ (F + δv).
-fn whole_direction(
+fn whole_step(
     body: &mut Option<Box<WholeBody>>,
     problem: &mut ContactProblem<'_>,
-    r: &[f64],
-    c: &[f64],
-    at: &Point,
-    mismatch: &[f64],
-) -> Result<Option<SpringStep>, MethodError> {
+    springs: &Springs<'_>,
+    at: &Trial,
+) -> Result<Option<Pair>, MethodError> {
+    let (r, c, mismatch) = (&springs.r, &springs.compliance, &at.mismatch);
     let mut rows = Vec::with_capacity(problem.rows.points());
     for i in 0..problem.rows.points() {
         let own = problem.rows.of(i);
@@ -301,49 +359,18 @@ fn whole_direction(
         }
         rows.push(of_point);
     }
-    let step = monolithic_step(body, problem, &at.p, &mut rows, WholeBody::explicit)?;
-    let Some(Pair { p: dp, v: dv, beta }) = step else {
-        return Ok(None);
-    };
-    let dz = (0..dp.len())
-        .map(|k| dp[k] - r[k] * (mismatch[k] + dv[k] + c[k] * dp[k]))
-        .collect();
-    Ok(Some((dz, beta)))
+    let P = &at.forces.p;
+    monolithic_step(body, problem, P, &mut rows, WholeBody::explicit)
 }
 
-impl From<Point> for Forces {
-    fn from(Point { p, beta, .. }: Point) -> Self {
-        Self { p, beta }
-    }
-}
-
-impl Point {
-    fn new(problem: &ContactProblem<'_>, z: Vec<f64>, beta: Vec<f64>) -> Self {
-        let mut p = z.clone();
-        let branches = (0..problem.rows.points())
-            .map(|i| return_map(problem.friction(i), &mut p[problem.rows.of(i)]))
-            .collect();
-        Self {
-            z,
-            beta,
-            p,
-            branches,
-        }
-    }
-
-    fn moved(&self, problem: &ContactProblem<'_>, t: f64, dz: &[f64], dbeta: &[f64]) -> Self {
-        Self::new(problem, along(&self.z, t, dz), along(&self.beta, t, dbeta))
-    }
-}
-
-/// Adapts a [`Monitor`] and the history to the `report` argument of [`Springs::solve`]. What is noted is the violation
+/// Adapts a [`Monitor`] and the history to the `report` argument of [`SpringNewton::solve`]. What is noted is the violation
 /// of the contact laws, as for every method: it ends at the modelling error, not at zero.
 ///
 /// `jump(problem, iterate)` is v, without what lies in series.
 pub(crate) fn recorded<'m>(
     monitor: &'m mut dyn Monitor,
-    jump: impl Fn(&ContactProblem<'_>, &Point) -> Vec<f64> + 'm,
-) -> impl FnMut(&mut ContactProblem<'_>, &Point, usize) -> bool + 'm {
+    jump: impl Fn(&ContactProblem<'_>, &Forces) -> Vec<f64> + 'm,
+) -> impl FnMut(&mut ContactProblem<'_>, &Forces, usize) -> bool + 'm {
     move |problem, at, changes| {
         let v = jump(problem, at);
         let violation = problem.violation(&at.p, &v);

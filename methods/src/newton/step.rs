@@ -8,6 +8,7 @@
 
 #![allow(non_snake_case)]
 
+use crate::algebra::delassus::Delassus;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
@@ -71,7 +72,8 @@ impl Tangent {
     /// Called after the last step of a run: what was factored serves no other.
     pub fn forget(&mut self) {
         if let Tangent::Condensed(condensed) = self {
-            (condensed.factored, condensed.spoilt) = (None, false);
+            (condensed.factors, condensed.spoilt) = (None, false);
+            condensed.factored.forget();
         }
     }
 
@@ -86,7 +88,10 @@ impl Tangent {
         step: &mut Forces,
     ) -> Result<bool, MethodError> {
         match self {
-            Tangent::Condensed(condensed) => Ok(condensed.solve(problem, x, rows, hold, step)),
+            Tangent::Condensed(condensed) => {
+                let w = problem.operator.w.clone();
+                Ok(condensed.solve(problem, &*w, &x.p, rows, hold, step))
+            }
             Tangent::Monolithic(body) => {
                 let found = monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)?;
                 let singular = found.is_none();
@@ -120,8 +125,10 @@ pub(crate) fn monolithic_step(
 #[derive(Default)]
 pub(crate) struct CondensedStep {
     system: Bordered,
-    /// What is factored, where later steps may start from it.
-    factored: Option<Factored>,
+    /// Whether it is factored: with loose pieces held or not.
+    factors: Option<bool>,
+    /// What is factored: later steps may start from it.
+    factored: Factored,
     /// Rounding has spoilt that: every tangent is factored.
     spoilt: bool,
     a: Vec<[f64; 3]>,
@@ -136,10 +143,13 @@ pub(crate) struct CondensedStep {
 }
 
 impl CondensedStep {
-    fn solve(
+    /// (δP, δβ) from forces `P` in place of what `step` holds; false if the tangent is singular. `w` may be stiffer or softer than
+    /// the body; `hold`: loose pieces by springs.
+    pub fn solve(
         &mut self,
         problem: &mut ContactProblem<'_>,
-        x: &Forces,
+        w: &dyn Delassus,
+        P: &[f64],
         rows: &[[PointRow; 3]],
         hold: bool,
         step: &mut Forces,
@@ -168,7 +178,7 @@ impl CondensedStep {
         }
         self.known.clear();
         self.known.resize(p.len(), 0.0);
-        problem.operator.w.apply_add(p, &mut self.known);
+        w.apply_add(p, &mut self.known);
         self.f.clear();
         let mut next = self.active.iter().peekable();
         for (own, of_point) in problem.rows.iter().zip(rows) {
@@ -183,8 +193,8 @@ impl CondensedStep {
         }
         self.reached.clear();
         self.reached
-            .extend(x.p.iter().zip(&*p).map(|(x, step)| x + step));
-        if !self.solve_active(problem, hold, &mut step.beta) {
+            .extend(P.iter().zip(&*p).map(|(P, step)| P + step));
+        if !self.solve_active(problem, w, hold, &mut step.beta) {
             return false;
         }
         for (&k, &value) in self.active.iter().zip(&self.solution) {
@@ -197,23 +207,30 @@ impl CondensedStep {
     fn solve_active(
         &mut self,
         problem: &mut ContactProblem<'_>,
+        w: &dyn Delassus,
         hold: bool,
         beta: &mut Vec<f64>,
     ) -> bool {
         let Self {
             system,
+            factors,
             factored,
             spoilt,
             a,
             c,
             active,
             f,
+            reached,
             solution,
             ..
         } = self;
-        let (rows, law) = (Rows { active, a, c }, Law::Rows { a, c });
-        if let Some(earlier) = factored {
-            match earlier.solve(problem, system.factors(), rows, f) {
+        let (rows, law) = (Rows { w, active, a, c }, Law::Rows { a, c });
+        let balance = problem.missing(reached);
+        if *factors == Some(hold) && factored.is_of(rows) {
+            return system.solve_into(f, &balance, solution, beta);
+        }
+        if factors.is_some() && !*spoilt {
+            match factored.solve(problem, system.factors(), rows, f) {
                 Solved::Step(found) => {
                     *solution = found;
                     beta.clear();
@@ -223,19 +240,13 @@ impl CondensedStep {
                 Solved::Spoilt => *spoilt = true,
             }
         }
-        *factored = None;
         problem.counters.factorisations += 1;
-        let regular = match hold {
-            true => system.factor_held(problem, active, &law),
-            false => system.factor(problem, active, &law),
-        };
+        let regular = system.factor_with(problem, w, active, &law, hold);
+        *factors = regular.then_some(hold);
         if !regular {
             return false;
         }
-        if !*spoilt {
-            *factored = Factored::new(problem, rows);
-        }
-        let balance = problem.missing(&self.reached);
+        factored.remember(rows);
         system.solve_into(f, &balance, solution, beta)
     }
 }

@@ -352,10 +352,8 @@ fn direction(
     }
     let all: Vec<usize> = (0..n).collect();
     let law = Law::Columns {
-        unit: 0.0,
         e: &S,
         s: &minus_DS,
-        series: None,
     };
     let f: Vec<f64> = at.F.iter().map(|F| -F).collect();
     let excess: Vec<f64> = at.missing.iter().map(|c| -c).collect();

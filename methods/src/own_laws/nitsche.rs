@@ -51,8 +51,7 @@
 use std::sync::Arc;
 
 use crate::condensed::stages::rescue;
-use crate::newton::springs::recorded;
-use crate::newton::step::Tangent;
+use crate::newton::springs::{SpringNewton, recorded};
 use crate::own_laws::stabilisation::Stabilisation;
 use crate::{
     CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, MethodError, Monitor,
@@ -154,21 +153,20 @@ impl CondensedMethod for Nitsche {
         let stop = CLAIM_FRACTION * scale * problem.stop;
         let mut s = terms.free_stress(problem)?;
         let mut x = problem.start();
-        let mut corrections = 0;
+        let (mut newton, mut corrections) = (SpringNewton::default(), 0);
 
         let status = loop {
             let left = (self.settings.max_iterations).saturating_sub(problem.counters.iterations);
             if left == 0 {
                 break Status::MaxIterations;
             }
-            let springs = terms.springs(&s);
-            let start = springs.predict(problem, x);
+            let springs = terms.springs(problem, &s);
+            newton.start(problem, &springs, &x);
             let report = recorded(monitor, |problem, at| {
                 terms.jump(problem, &s, &at.p, &at.beta)
             });
-            let (round, tangent) = (left.min(ROUND), &mut Tangent::default());
-            let (status, end) = springs.solve(problem, start, stop, round, tangent, report)?;
-            x = end.into();
+            let status = newton.solve(problem, &springs, stop, left.min(ROUND), report)?;
+            x.copy(&newton.at.forces);
             match status {
                 // Stalled: solved to rounding, which may be enough.
                 Status::Converged | Status::Stalled => {

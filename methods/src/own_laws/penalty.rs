@@ -32,12 +32,12 @@
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
 //! to W as compliances 1/k.
 
-use crate::newton::springs::{Springs, recorded};
+use crate::newton::springs::{SpringNewton, Springs, recorded};
 use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
 use crate::{
-    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Method, Monitor,
-    Needs, Options, Status, options,
+    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, Monitor, Needs,
+    Options, Status, options,
 };
 
 /// Registry entry.
@@ -67,14 +67,14 @@ const CLAIM_FRACTION: f64 = 0.1;
 
 struct Penalty {
     settings: Settings,
-    tangent: Tangent,
+    newton: SpringNewton,
 }
 
 impl Penalty {
     fn new(options: &Options) -> Self {
         let settings = Settings::new(options);
         Self {
-            tangent: Tangent::new(settings.monolithic),
+            newton: SpringNewton::new(Tangent::new(settings.monolithic)),
             settings,
         }
     }
@@ -82,11 +82,11 @@ impl Penalty {
 
 impl CondensedMethod for Penalty {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        self.tangent.refuses(system)
+        self.newton.tangent.refuses(system)
     }
 
     fn needs(&self) -> Needs {
-        self.tangent.needs()
+        self.newton.tangent.needs()
     }
 
     fn claim(&self, rho: f64) -> Claim {
@@ -103,21 +103,17 @@ impl CondensedMethod for Penalty {
         for &row in problem.rows.normal() {
             anchor[row] = 0.0;
         }
-        let springs = Springs {
-            normal: self.settings.normal * rho,
-            tangential: self.settings.tangential * rho,
-            anchor,
-            coupled: None,
-        };
-
-        let mut start = springs.predict(problem, problem.start());
+        let stiffness = [self.settings.normal, self.settings.tangential].map(|k| k * rho);
+        let springs = Springs::new(problem, stiffness.into(), anchor, None);
+        let newton = &mut self.newton;
+        newton.tangent.forget();
+        newton.start(problem, &springs, &problem.start());
         let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
         loop {
             let left = (self.settings.max_iterations).saturating_sub(problem.history.len());
             let report = recorded(monitor, |problem, at| problem.jump(&at.p, &at.beta));
-            let tangent = &mut self.tangent;
-            let (status, end) = springs.solve(problem, start, stop, left, tangent, report)?;
-            let mut at = Forces::from(end);
+            let status = newton.solve(problem, &springs, stop, left, report)?;
+            let mut at = newton.at.forces.clone();
             problem.rebalance(&mut at.p);
             // Stalled: solved to rounding, which may be enough.
             if status != Status::Converged && status != Status::Stalled {
@@ -131,7 +127,7 @@ impl CondensedMethod for Penalty {
                 return Ok(End { status, at });
             }
             stop *= CLAIM_FRACTION;
-            start = springs.predict(problem, at);
+            newton.start(problem, &springs, &at);
         }
     }
 }

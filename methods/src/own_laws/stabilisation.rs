@@ -27,7 +27,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Accum, Mat, MatMut, Par, Side};
 
-use crate::algebra::delassus::Dense;
+use crate::algebra::delassus::{Dense, Series};
 use crate::algebra::dense::{mul_add, mul_transpose_add};
 use crate::algebra::factor::kernel;
 use crate::algebra::floating::ModeJumps;
@@ -49,8 +49,8 @@ pub(crate) struct Stabilisation {
     x: Mat<f64>,
     /// Cholesky factor of Γ − θ T.
     factor: Llt<f64>,
-    /// C.
-    compliance: Mat<f64>,
+    /// W + C.
+    series: Series,
 }
 
 impl Stabilisation {
@@ -98,6 +98,7 @@ impl Stabilisation {
             Par::Seq,
         );
         Ok(Self {
+            series: Series::new(operator.w.clone(), compliance),
             operator,
             theta,
             gamma,
@@ -105,7 +106,6 @@ impl Stabilisation {
             t,
             x,
             factor,
-            compliance,
         })
     }
 
@@ -133,19 +133,16 @@ impl Stabilisation {
     }
 
     /// The contact laws with C and c₀ in series.
-    pub fn springs(&self, s: &[f64]) -> Springs<'_> {
+    pub fn springs(&self, problem: &ContactProblem<'_>, s: &[f64]) -> Springs<'_> {
         let y = self.solve(s.to_vec());
         let mut stretch: Vec<f64> = y.iter().map(|y| -y).collect();
         mul_add(&self.x, &scaled(self.theta, &y), &mut stretch);
-        Springs {
-            normal: f64::INFINITY,
-            tangential: f64::INFINITY,
-            anchor: vec![0.0; s.len()],
-            coupled: Some(Coupled {
-                compliance: &self.compliance,
-                stretch,
-            }),
-        }
+        let coupled = Coupled {
+            series: &self.series,
+            stretch,
+        };
+        let rigid = (f64::INFINITY, f64::INFINITY);
+        Springs::new(problem, rigid, vec![0.0; s.len()], Some(coupled))
     }
 
     /// y for given contact forces.
@@ -314,7 +311,7 @@ mod tests {
                     |of: &dyn Fn(usize) -> f64| (0..n).map(|j| of(j) * u[(j, 0)]).sum::<f64>();
                 let mut v = vec![0.0; rows.len()];
                 operator.w.apply_add(&p, &mut v);
-                mul_add(&terms.compliance, &p, &mut v);
+                mul_add(terms.series.compliance(), &p, &mut v);
                 let y = terms.mismatch(&vec![0.0; rows.len()], &p);
                 for l in 0..rows.len() {
                     let expected = (times(&|j| s(rows[l], j)) - p[l]) / stiffness(l);

@@ -31,11 +31,11 @@
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
 use crate::condensed::acceleration::Acceleration;
-use crate::newton::springs::Springs;
+use crate::newton::springs::{SpringNewton, Springs};
 use crate::newton::step::Tangent;
 use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Limits, Method, Monitor,
-    Needs, Options, Status, options,
+    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Limits, Method,
+    Monitor, Needs, Options, Status, options,
 };
 
 /// Registry entry.
@@ -68,14 +68,14 @@ const PATIENCE: usize = 200;
 
 struct AugmentedLagrangian {
     settings: Settings,
-    tangent: Tangent,
+    newton: SpringNewton,
 }
 
 impl AugmentedLagrangian {
     fn new(options: &Options) -> Self {
         let settings = Settings::new(options);
         Self {
-            tangent: Tangent::new(settings.monolithic),
+            newton: SpringNewton::new(Tangent::new(settings.monolithic)),
             settings,
         }
     }
@@ -83,29 +83,26 @@ impl AugmentedLagrangian {
 
 impl CondensedMethod for AugmentedLagrangian {
     fn refuses(&self, system: &ContactSystem) -> Option<String> {
-        self.tangent.refuses(system)
+        self.newton.tangent.refuses(system)
     }
 
     fn needs(&self) -> Needs {
-        self.tangent.needs()
+        self.newton.tangent.needs()
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let k = self.settings.stiffness * problem.operator.rho;
         let outer = Limits::new(self.settings.max_outer, PATIENCE);
         let mut x = problem.start();
-        let mut springs = Springs {
-            normal: k,
-            tangential: k,
-            anchor: x.p.clone(),
-            coupled: None,
-        };
+        let mut springs = Springs::new(problem, (k, k), x.p.clone(), None);
+        let (newton, mut v) = (&mut self.newton, Vec::new());
+        newton.tangent.forget();
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;
         let mut acceleration = Acceleration::new(self.settings.anderson, || x.p.clone());
 
         let status = loop {
-            let v = problem.jump(&x.p, &x.beta);
+            problem.jump_into(&x.p, &x.beta, &mut v);
             let violation = problem.violation(&x.p, &v);
             match problem.check(violation, (&x.p, &x.beta), changes, outer, monitor)? {
                 Check::GoOn => {}
@@ -118,20 +115,20 @@ impl CondensedMethod for AugmentedLagrangian {
             {
                 springs.anchor = acceleration.next(problem, x.p.clone());
             }
-            let start = springs.predict(problem, x);
             changes = 0;
-            let (inner, end) = springs.solve(
+            let count = |_: &mut ContactProblem<'_>, _: &Forces, more: usize| {
+                changes += more;
+                true
+            };
+            newton.start(problem, &springs, &x);
+            let inner = newton.solve(
                 problem,
-                start,
+                &springs,
                 inner_stop,
                 self.settings.max_inner,
-                &mut self.tangent,
-                |_, _, c| {
-                    changes += c;
-                    true
-                },
+                count,
             )?;
-            x = end.into();
+            x.copy(&newton.at.forces);
             problem.rebalance(&mut x.p);
             // Stalled: solved to rounding, which the outer loop can still use.
             if !matches!(inner, Status::Converged | Status::Stalled) {

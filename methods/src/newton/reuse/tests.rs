@@ -42,6 +42,12 @@ fn with_body(source: impl Fn(usize) -> usize, test: impl FnOnce(&ContactProblem<
     with_contact(&body, vec![0.3; POINTS], load, |_, problem| test(&problem));
 }
 
+fn remembered(rows: Rows<'_>) -> Factored {
+    let mut factored = Factored::default();
+    factored.remember(rows);
+    factored
+}
+
 /// Source: the dense system of the step itself, factored. Tolerance: rounding, times its condition.
 #[test]
 fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
@@ -54,11 +60,12 @@ fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
             let first = without(&[4, 5, 16]);
             let base = Bordered::new(problem, &first, &Law::Rows { a: &a, c: &c }).unwrap();
             let rows = Rows {
+                w: &*problem.operator.w,
                 active: &first,
                 a: &a,
                 c: &c,
             };
-            let mut earlier = Factored::remember(problem, rows);
+            let mut earlier = remembered(rows);
             let f: Vec<f64> = (0..ROWS).map(|k| number(k, 2)).collect();
             let others = law(5);
             for (changed, active) in [
@@ -72,6 +79,7 @@ fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
                     (a[k], c[k]) = (others.0[k], others.1[k]);
                 }
                 let rows = Rows {
+                    w: &*problem.operator.w,
                     active: &active,
                     a: &a,
                     c: &c,
@@ -108,15 +116,14 @@ fn a_tangent_that_has_become_singular_is_told() {
         let law = Law::Rows { a: &a, c: &c };
         assert!(Bordered::new(problem, &all, &law).is_none());
         let base = Bordered::new(problem, first, &law).unwrap();
-        let mut earlier = Factored::remember(
-            problem,
-            Rows {
-                active: first,
-                a: &a,
-                c: &c,
-            },
-        );
+        let mut earlier = remembered(Rows {
+            w: &*problem.operator.w,
+            active: first,
+            a: &a,
+            c: &c,
+        });
         let rows = Rows {
+            w: &*problem.operator.w,
             active: &all,
             a: &a,
             c: &c,
@@ -137,12 +144,16 @@ fn a_step_costs_at_most_half_of_a_factorisation() {
             let (a, c) = law(1);
             let all: Vec<usize> = (0..ROWS).collect();
             let rows = Rows {
+                w: &*problem.operator.w,
                 active: &all,
                 a: &a,
                 c: &c,
             };
-            assert!(Factored::new(problem, rows).is_none(), "too few rows");
-            let mut earlier = Factored::remember(problem, rows);
+            let mut earlier = remembered(rows);
+            assert!(earlier.is_of(rows));
+            let lu = DenseLu::default();
+            let found = earlier.solve(problem, &lu, rows, &[0.0; ROWS]);
+            assert!(matches!(found, Solved::TooManyChanges), "too few rows");
             let slack = |most: usize| (0..most).map(Unknown::Slack).collect::<Vec<_>>();
             assert!(earlier.is_worth(&slack(6)));
             assert!(!earlier.is_worth(&slack(10)));
