@@ -139,7 +139,7 @@ impl Bordered {
                 let (k, own) = (*k, own.clone());
                 match law {
                     Law::Rows { c, .. } => {
-                        J[(b, n + j)] = own.zip(c[k]).map(|(l, c)| c * q[l] / rho).sum();
+                        J[(b, n + j)] = law_border(&(k, own), c, q, rho);
                         J[(n + j, b)] = q[k];
                     }
                     Law::Columns { s, .. } => {
@@ -241,6 +241,11 @@ pub(crate) fn law_column(
         }
         *entry += a[*row][k - own.start];
     }
+}
+
+/// C Q/ρ of a row and a rigid motion.
+pub(crate) fn law_border((k, own): &Place, c: Blocks<'_>, q: &[f64], rho: f64) -> f64 {
+    own.clone().zip(c[*k]).map(|(l, c)| c * q[l] / rho).sum()
 }
 
 /// C w, at most `D` rows a point.

@@ -38,7 +38,7 @@
 //!
 //! # Skips
 //! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
-//! On 256 active rows and more, of a body without floating pieces, a tangent of which few rows have changed is not factored again.
+//! On 256 active rows and more, a tangent of which few rows have changed is not factored again.
 //!
 //! # Failure modes
 //! Cycling or stalling for large μ, outside the range where the solution is unique (of 200 random, strongly coupled

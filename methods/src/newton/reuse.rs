@@ -8,7 +8,8 @@
 //!
 //! x₀ = z − Z u,   J₀ z = f₀,   J₀ Z = (B E),   u = (x₁, y):   [G Z − (H 0); e·Z] u = [G z − f₁; e·z]
 //! ```
-//! Woodbury's formula, with new rows as Schur's complement (W. Hager, SIAM Review 31 (1989) 221). Z is kept, so that a step pays for
+//! Woodbury's formula, with new rows as Schur's complement (W. Hager, SIAM Review 31 (1989) 221). The balance of floating pieces and
+//! their motions ρ β are rows and unknowns of J₀ that never change. Z is kept, so that a step pays for
 //! the rows alone that changed in it. What the detour loses is seen from f − J x, which corrects x. If that does not help, or if the
 //! small matrix is singular beside what was subtracted in it, the tangent is factored, and seen for what it is.
 
@@ -20,9 +21,9 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::{DenseLu, SINGULAR, larger, minus, mul_add};
+use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
-use crate::condensed::point_row::{Blocks, LawRow, Place, law_column, law_rows, place};
+use crate::condensed::point_row::{Blocks, LawRow, Place, law_border, law_column, law_rows, place};
 use crate::condensed::problem::ContactProblem;
 
 /// Active rows from which steps with earlier factors are worth their bookkeeping.
@@ -70,7 +71,7 @@ pub(crate) struct Factored {
 
 /// How [`Factored::solve`] ends.
 pub(crate) enum Solved {
-    /// x.
+    /// x, then ρ β.
     Step(Vec<f64>),
     /// Too many rows are others: to be factored.
     TooManyChanges,
@@ -101,7 +102,7 @@ impl Factored {
         self.active == rows.active && self.a == rows.a && self.c == rows.c
     }
 
-    /// x with J x = f on the active rows. `lu`: the factors of J₀.
+    /// x with J x = f on the active rows and the balance behind them. `lu`: the factors of J₀.
     pub fn solve(
         &mut self,
         problem: &ContactProblem<'_>,
@@ -109,8 +110,7 @@ impl Factored {
         rows: Rows<'_>,
         f: &[f64],
     ) -> Solved {
-        // The balance of floating pieces stands beside the rows.
-        if self.active.len() < FEWEST || problem.modes() > 0 {
+        if self.active.len() < FEWEST {
             return Solved::TooManyChanges;
         }
         let changes = self.changes(rows);
@@ -191,13 +191,16 @@ impl Factored {
         if KEPT * (self.solved.len() + missing.len()) > n {
             self.solved.retain(|kept, _| changes.contains(kept));
         }
-        let (mut Z, mut work) = (Mat::zeros(n, missing.len()), Vec::new());
+        let size = n + problem.modes();
+        let (mut Z, mut work) = (Mat::zeros(size, missing.len()), Vec::new());
         for (j, change) in missing.iter().enumerate() {
-            let column = Z.col_as_slice_mut(j);
+            let (column, balance) = Z.col_as_slice_mut(j).split_at_mut(n);
             match change {
                 Unknown::Slack(k) => column[self.active.binary_search(k).ok()?] = 1.0,
                 Unknown::New(k) => {
                     listed.column(problem, w, &self.a, *k, &mut work, column);
+                    let motions = balance.iter_mut().zip(&problem.operator.modes.q);
+                    motions.for_each(|(entry, q)| *entry = q[*k]);
                 }
             }
         }
@@ -277,7 +280,7 @@ impl<'s> Step<'s> {
         others.sort_unstable();
         let stood = |k: &usize| base.active.binary_search(k).ok();
         let gone: Vec<usize> = gone.iter().map(stood).collect::<Option<_>>()?;
-        let (n, size) = (base.active.len(), changes.len());
+        let (n, size) = (base.active.len() + problem.modes(), changes.len());
         let mut Z = Mat::zeros(n, size);
         for (j, change) in changes.iter().enumerate() {
             Z.col_as_slice_mut(j).copy_from_slice(&base.solved[change]);
@@ -287,6 +290,11 @@ impl<'s> Step<'s> {
         for (j, k) in base.active.iter().enumerate() {
             let column = G.col_as_slice_mut(j);
             listed.column(problem, rows.w, rows.a, *k, &mut work, column);
+        }
+        for (j, q) in (base.active.len()..).zip(&problem.operator.modes.q) {
+            for (i, place) in listed.places.iter().enumerate() {
+                G[(i, j)] = law_border(place, rows.c, q, problem.operator.rho);
+            }
         }
 
         let mut schur = product(&G, &Z, size);
@@ -316,8 +324,9 @@ impl<'s> Step<'s> {
         })
     }
 
-    /// x for a right-hand side on the active rows; `None` if it is not finite.
+    /// x, ρ β for a right-hand side on the active rows and the balance; `None` if they are not finite.
     fn solve(&self, f: &[f64]) -> Option<Vec<f64>> {
+        let (_, balance) = f.split_at(self.rows.active.len());
         let place = |k: &usize| self.rows.active.binary_search(k).ok();
         let of_row = |k: &usize| place(k).map_or(0.0, |i| f[i]);
         let mut f0: Vec<f64> = self.before.iter().map(of_row).collect();
@@ -326,6 +335,7 @@ impl<'s> Step<'s> {
                 f0[self.before.binary_search(k).ok()?] = 0.0;
             }
         }
+        f0.extend(balance);
         let z = self.lu.solve(&f0)?;
 
         let mut right = vec![0.0; self.changes.len()];
@@ -338,10 +348,12 @@ impl<'s> Step<'s> {
         let mut moved = vec![0.0; z.len()];
         mul_add(&self.Z, &u, &mut moved);
         let x0 = minus(&z, &moved);
-        let mut x = vec![0.0; f.len()];
+        let (x0, amplitudes) = x0.split_at(self.before.len());
+        let mut x = vec![0.0; self.rows.active.len()];
+        x.extend(amplitudes);
         for (k, x0) in self.before.iter().zip(x0) {
             if let Some(i) = place(k) {
-                x[i] = x0;
+                x[i] = *x0;
             }
         }
         for (change, u) in self.changes.iter().zip(u) {
@@ -375,12 +387,20 @@ fn row_sum(a: &Mat<f64>) -> f64 {
     largest(&sums)
 }
 
-/// f − J x on the active rows, and the largest sum of the magnitudes of its terms.
+/// f − J x, and the largest sum of the magnitudes of its terms.
 fn residual(problem: &ContactProblem<'_>, rows: Rows<'_>, f: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+    let modes = &problem.operator.modes;
+    let (x, amplitudes) = x.split_at(rows.active.len());
+    let (f, balance) = f.split_at(rows.active.len());
     let mut p = vec![0.0; problem.len()];
     rows.active.iter().zip(x).for_each(|(&k, x)| p[k] = *x);
     let mut v = vec![0.0; problem.len()];
     rows.w.apply_add(&p, &mut v);
+    let beta: Vec<f64> = amplitudes
+        .iter()
+        .map(|b| b / problem.operator.rho)
+        .collect();
+    modes.add(&beta, &mut v);
     let mut most = 0.0;
     let rest = |(&k, f): (&usize, &f64)| {
         let (mut rest, mut terms) = (*f, f.abs());
@@ -392,7 +412,12 @@ fn residual(problem: &ContactProblem<'_>, rows: Rows<'_>, f: &[f64], x: &[f64]) 
         most = larger(most, terms);
         rest
     };
-    let rest = rows.active.iter().zip(f).map(rest).collect();
+    let mut rest: Vec<f64> = rows.active.iter().zip(f).map(rest).collect();
+    for (q, c) in modes.q.iter().zip(balance) {
+        let terms = q.iter().zip(&p).map(|(q, p)| (q * p).abs()).sum::<f64>();
+        most = larger(most, c.abs() + terms);
+        rest.push(c - dot(q, &p));
+    }
     (rest, most)
 }
 

@@ -225,21 +225,25 @@ impl CondensedStep {
             ..
         } = self;
         let (rows, law) = (Rows { w, active, a, c }, Law::Rows { a, c });
-        let balance = problem.missing(reached);
+        let (balance, hold) = (problem.missing(reached), hold && problem.modes() > 0);
         if *factors == Some(hold) && factored.is_of(rows) {
             return system.solve_into(f, &balance, solution, beta);
         }
-        if factors.is_some() && !*spoilt {
+        if *factors == Some(false) && !hold && !*spoilt {
+            f.extend(balance.iter());
             match factored.solve(problem, system.factors(), rows, f) {
                 Solved::Step(found) => {
                     *solution = found;
+                    let amplitudes = solution.drain(active.len()..);
                     beta.clear();
+                    beta.extend(amplitudes.map(|b| b / problem.operator.rho));
                     return true;
                 }
                 Solved::TooManyChanges => {}
                 Solved::Spoilt => *spoilt = true,
             }
         }
+        f.truncate(active.len());
         problem.counters.factorisations += 1;
         let regular = system.factor_with(problem, w, active, &law, hold);
         *factors = regular.then_some(hold);

@@ -26,7 +26,8 @@
 //! before it is made; if it would be false, Newton's method goes on, at most three times, and then ends as `stalled`.
 //!
 //! # Skips
-//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
+//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows. On 256 active
+//! rows and more, a tangent of which few rows have changed is not factored again.
 //!
 //! # Failure modes
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added

@@ -23,8 +23,12 @@ fn law(seed: usize) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     (rows(seed), rows(seed + 70))
 }
 
-/// With a body of which `source[k]` names the row that row k moves like.
-fn with_body(source: impl Fn(usize) -> usize, test: impl FnOnce(&ContactProblem<'_>)) {
+/// With a body of which `source[k]` names the row that row k moves like, and that has these rigid motions.
+fn with_body(
+    source: impl Fn(usize) -> usize,
+    motions: Vec<Vec<f64>>,
+    test: impl FnOnce(&ContactProblem<'_>),
+) {
     let entry = |i: usize, j: usize| {
         let (i, j) = (source(i.max(j)), source(i.min(j)));
         let (i, j) = (i.max(j), i.min(j));
@@ -37,7 +41,7 @@ fn with_body(source: impl Fn(usize) -> usize, test: impl FnOnce(&ContactProblem<
         col_ptr.push(values.len());
     }
     let w = SymmetricMatrix::new(ROWS, col_ptr, row_idx, values).unwrap();
-    let body = Elastic::from_delassus(3, w, vec![]).unwrap();
+    let body = Elastic::from_delassus(3, w, motions).unwrap();
     let load = (vec![-1.0; ROWS], vec![0.0; ROWS]);
     with_contact(&body, vec![0.3; POINTS], load, |_, problem| test(&problem));
 }
@@ -51,8 +55,16 @@ fn remembered(rows: Rows<'_>) -> Factored {
 /// Source: the dense system of the step itself, factored. Tolerance: rounding, times its condition.
 #[test]
 fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
+    let motion = |j: usize| (0..ROWS).map(|k| number(k, j)).collect::<Vec<f64>>();
+    for motions in [vec![], vec![motion(3), motion(4)]] {
+        steps_with_earlier_factors(motions);
+    }
+}
+
+fn steps_with_earlier_factors(motions: Vec<Vec<f64>>) {
     with_body(
         |k| k,
+        motions,
         |problem| {
             let (mut a, mut c) = law(1);
             let without =
@@ -85,10 +97,12 @@ fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
                     c: &c,
                 };
                 let (law, f) = (Law::Rows { a: &a, c: &c }, &f[..active.len()]);
-                let changes = earlier.changes(rows);
-                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, f);
+                let (changes, balance) = (earlier.changes(rows), &[0.7, -0.2][..problem.modes()]);
+                let right = [f, balance].concat();
+                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &right);
                 let mut whole = Bordered::new(problem, &active, &law).unwrap();
-                let (exact, _) = whole.solve(f, &[]).unwrap();
+                let (mut exact, beta) = whole.solve(f, balance).unwrap();
+                exact.extend(beta.iter().map(|beta| beta * problem.operator.rho));
                 let off = largest(&minus(&found.unwrap(), &exact));
                 assert!(off < 1e-11 * largest(&exact), "{}: {off:e}", changes.len());
             }
@@ -106,7 +120,7 @@ fn changed_new_and_left_rows_are_solved_for_with_earlier_factors() {
 #[test]
 fn a_tangent_that_has_become_singular_is_told() {
     let twin = |k: usize| if k >= ROWS - 3 { k - 3 } else { k };
-    with_body(twin, |problem| {
+    with_body(twin, vec![], |problem| {
         let (a, c) = (
             vec![[0.0; 3]; ROWS],
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].repeat(POINTS),
@@ -140,6 +154,7 @@ fn a_tangent_that_has_become_singular_is_told() {
 fn a_step_costs_at_most_half_of_a_factorisation() {
     with_body(
         |k| k,
+        vec![],
         |problem| {
             let (a, c) = law(1);
             let all: Vec<usize> = (0..ROWS).collect();
