@@ -7,7 +7,8 @@
 //!
 //! ```text
 //! x from the start of the increment
-//! y <- Newton from x, Alart–Curnier                   on at most 150 rows: there a step costs less than the sweeps
+//! y <- Newton from x, Alart–Curnier                   where a step costs less than the sweeps: on at most 150 rows, and on
+//!                                                     floating pieces in 2D, with rescues
 //! for round = 0, 1, 2, …
 //!   x <- s sweeps from x,  s = first · 2^round        a globally sound, slow method
 //!   y <- Newton from x, active sets                   a locally fast one, stopped after 8 steps without progress
@@ -15,7 +16,8 @@
 //! until the natural map of y, or of x, is small
 //! ```
 //! After sweeps the damped tangent of the active sets comes first because undamped ones waste steps where many points in 3D turn their
-//! slip: on a slab of 1980 points 10 steps against 61 of Alart and Curnier's.
+//! slip: on a slab of 1980 points 10 steps against 61 of Alart and Curnier's. Floating pieces in 2D are slid through by rescues
+//! from the start, and few rows of the tangent change: three blocks with 242 points take 8 steps with 4 factorisations, not 31 with 49.
 //!
 //! A Newton run that fails leaves no trace: the sweeps go on from where they were, so that the method is never worse than
 //! the sweeps alone by more than a few Newton steps a round. Rounds grow to 640 sweeps. Before the first of that size
@@ -126,14 +128,19 @@ impl CondensedMethod for Solver {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut runs = NewtonRuns {
             multiple: self.settings.r,
+            rescue: false,
             settings: self.settings,
             tangent: &mut self.tangent,
         };
-        if problem.len() <= FEW {
+        let floats = problem.modes() > 0;
+        if problem.len() <= FEW || (floats && problem.increment.system.dim() == 2) {
             let start = problem.start();
+            // A tangent that leaves a piece loose is nothing that sweeps would mend.
+            runs.rescue = floats;
             if let Some(end) = runs.from(start, AlartCurnier, problem, monitor)? {
                 return Ok(end);
             }
+            runs.rescue = false;
             problem.begin_again();
         }
         let mut rounds = Rounds::new(problem, runs);
@@ -203,6 +210,8 @@ fn is_final(end: &End) -> bool {
 struct NewtonRuns<'s> {
     /// r of the next one: as given, from the first that fails 1.
     multiple: f64,
+    /// Whether it is moved on where it is stuck.
+    rescue: bool,
     settings: Hybrid,
     /// Its memory serves all runs.
     tangent: &'s mut Tangent,
@@ -237,7 +246,7 @@ impl NewtonRuns<'_> {
             limits: Limits::new(self.settings.max_iterations, NEWTON_PATIENCE),
             line_search: true,
             kinks: false,
-            rescue: false,
+            rescue: self.rescue,
             tangent: std::mem::take(self.tangent),
         }
     }

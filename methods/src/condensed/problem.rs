@@ -312,7 +312,7 @@ impl<'a> ContactProblem<'a> {
     /// The same, and forgets where iterates were measured from: the algorithm starts where the increment does.
     pub(crate) fn begin_again(&mut self) {
         self.begin_phase();
-        (self.anchor, self.corrections) = (None, 0);
+        (self.anchor, self.corrections, self.rescues) = (None, 0, 0);
     }
 
     /// Iterations since the violation last fell.
