@@ -36,7 +36,7 @@ fn requests(m: &Method, s: &ContactSystem, load: &Load, more: usize) -> u64 {
 /// Goal: an iteration works in the memory of the one before. On 36 rows, where `hybrid` runs Newton's method: larger dense
 /// factorisations borrow blocks, and floating bodies balance forces.
 #[test]
-fn iterations_of_newton_methods_and_sweeps_ask_for_no_memory() {
+fn iterations_of_newton_and_splitting_methods_ask_for_no_memory() {
     let mut rng = Random(33);
     let (k, b) = random_body(&mut rng, 3, 12, 10, 0.1);
     let s = system(&elastic(3, &k, &b, vec![], false), 0.6);
@@ -48,7 +48,12 @@ fn iterations_of_newton_methods_and_sweeps_ask_for_no_memory() {
         "gnm",
         "ncp-newton",
         "hybrid",
+        "interior-point",
         "nsgs",
+        "latin",
+        "admm",
+        "projection",
+        "accelerated-gradient",
     ] {
         let found = requests(method(name).unwrap(), &s, &load, 6);
         assert_eq!(found, 0, "{name}");

@@ -33,6 +33,15 @@ impl DenseLu {
         lu.factor().then_some(lu)
     }
 
+    /// With room for matrices of this size.
+    pub fn with_room(n: usize) -> Self {
+        let mut lu = Self::default();
+        // A first factorisation asks for all of it.
+        lu.zeros(n);
+        lu.factor();
+        lu
+    }
+
     /// n × n zeros in place of the factors: to be filled, then [factored](Self::factor).
     pub fn zeros(&mut self, n: usize) -> &mut Full {
         self.factors.clear(n);
@@ -112,6 +121,12 @@ pub(crate) fn along(x: &[f64], t: f64, s: &[f64]) -> Vec<f64> {
 /// x := x + t s.
 pub(crate) fn add(t: f64, s: &[f64], x: &mut [f64]) {
     x.iter_mut().zip(s).for_each(|(x, s)| *x += t * s);
+}
+
+/// x := these values, in the memory of x.
+pub(crate) fn refill<T>(x: &mut Vec<T>, values: impl IntoIterator<Item = T>) {
+    x.clear();
+    x.extend(values);
 }
 
 /// x − y.

@@ -51,14 +51,15 @@ impl Acceleration {
             return plain;
         }
         self.before = violation;
-        let next = self.anderson.next(image.clone());
+        let mut next = image.clone();
+        self.anderson.next(&mut next);
         self.plain = (next != image).then_some(image);
         next
     }
 }
 
-fn begun(depth: usize, start: Vec<f64>) -> Anderson {
+fn begun(depth: usize, mut start: Vec<f64>) -> Anderson {
     let mut anderson = Anderson::unbounded(depth);
-    anderson.next(start);
+    anderson.next(&mut start);
     anderson
 }

@@ -1,22 +1,35 @@
 //! Changes between open, stick and slip from one iterate to the next.
 
+use crate::algebra::dense::refill;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map};
 
 /// Branch of every point at the iterate before.
 #[derive(Debug, Default)]
-pub(crate) struct Branches(Vec<Branch>);
+pub(crate) struct Branches {
+    /// None before the first iterate.
+    before: Vec<Branch>,
+    /// Π(P − k v), Π the return mapping, of the last iterate by row.
+    pub image: Vec<f64>,
+}
 
 impl Branches {
     /// Points whose branch, that of the return mapping of P − ρ v, is another one than at the iterate before.
     pub fn changes(&mut self, problem: &ContactProblem<'_>, p: &[f64], v: &[f64]) -> usize {
-        let rho = problem.operator.rho;
-        let mut z: Vec<f64> = p.iter().zip(v).map(|(p, v)| p - rho * v).collect();
-        let now: Vec<Branch> = (0..problem.rows.points())
-            .map(|i| return_map(problem.friction(i), &mut z[problem.rows.of(i)]))
-            .collect();
-        let changes = now.iter().zip(&self.0).filter(|(a, b)| a != b).count();
-        self.0 = now;
+        self.map(problem, problem.operator.rho, p, v)
+    }
+
+    /// The same with another k in place of ρ.
+    pub fn map(&mut self, problem: &ContactProblem<'_>, k: f64, p: &[f64], v: &[f64]) -> usize {
+        let mut changes = 0;
+        refill(&mut self.image, p.iter().zip(v).map(|(p, v)| p - k * v));
+        for (i, own) in problem.rows.iter().enumerate() {
+            let branch = return_map(problem.friction(i), &mut self.image[own]);
+            match self.before.get_mut(i) {
+                Some(before) => changes += usize::from(std::mem::replace(before, branch) != branch),
+                None => self.before.push(branch),
+            }
+        }
         changes
     }
 }

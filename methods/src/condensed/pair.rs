@@ -6,6 +6,7 @@ use crate::contract::state::{Monitor, Status};
 use crate::error::MethodError;
 
 /// Contact forces, jump rows and rigid amplitudes that fulfil equilibrium.
+#[derive(Default)]
 pub(crate) struct Pair {
     pub p: Vec<f64>,
     pub v: Vec<f64>,
@@ -41,14 +42,14 @@ impl Pair {
         loop {
             let mut violation = problem.violation(&self.p, &self.v);
             if violation <= problem.stop {
-                self.v = problem.jump(&self.p, &self.beta);
+                problem.jump_into(&self.p, &self.beta, &mut self.v);
                 violation = problem.violation(&self.p, &self.v);
             }
             let at = (&self.p[..], &self.beta[..]);
             match problem.check(violation, at, changes, limits, monitor)? {
                 Check::GoOn => return Ok(None),
                 Check::End(status) => return Ok(Some(status)),
-                Check::Corrected => self.v = problem.jump(&self.p, &self.beta),
+                Check::Corrected => problem.jump_into(&self.p, &self.beta, &mut self.v),
             }
         }
     }

@@ -37,11 +37,20 @@ pub(crate) struct Saddle {
 }
 
 /// Forces P, multipliers γ and v = q' + W' P + Q γ.
-#[derive(Clone)]
+#[derive(Default)]
 pub(crate) struct Iterate {
     pub p: Vec<f64>,
     pub gamma: Vec<f64>,
     pub v: Vec<f64>,
+}
+
+impl Iterate {
+    /// self := x, in the memory of self.
+    pub fn copy(&mut self, x: &Iterate) {
+        self.p.clone_from(&x.p);
+        self.gamma.clone_from(&x.gamma);
+        self.v.clone_from(&x.v);
+    }
 }
 
 impl Saddle {

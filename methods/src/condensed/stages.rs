@@ -12,14 +12,14 @@ use std::sync::Arc;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
-use crate::algebra::dense::{DenseLu, along, dot, solve_dense};
+use crate::algebra::dense::{DenseLu, along, dot, refill, solve_dense};
 use crate::algebra::factor::kernel;
 use crate::algebra::spectrum::extremes;
+use crate::condensed::branches::Branches;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::condensed::whole_body::WholeBody;
-use crate::contract::law::{Branch, return_map};
 use crate::contract::operator::ContactOperator;
 use crate::error::MethodError;
 
@@ -72,8 +72,12 @@ impl GlobalStage {
                     .ok_or_else(|| kernel("factorisation of I + k0 W", "it is singular".into()))?,
             ),
         };
-        let columns = operator.modes.q.iter();
-        let border: Vec<Vec<f64>> = columns.map(|q| apply(&factor, q.clone())).collect();
+        let column = |q: &Vec<f64>| {
+            let mut column = Vec::new();
+            apply(&factor, q, &mut column);
+            column
+        };
+        let border: Vec<Vec<f64>> = operator.modes.q.iter().map(column).collect();
         let schur = Mat::from_fn(border.len(), border.len(), |i, j| {
             dot(&operator.modes.q[i], &border[j])
         });
@@ -96,38 +100,29 @@ impl GlobalStage {
         Arc::ptr_eq(&self.operator, operator)
     }
 
-    /// The [local stage](local_stage) along this direction.
-    pub fn local_stage(
+    /// The pair with P + k₀ v = `target`, in place of what `new` holds; false if the rigid motions move no row.
+    pub fn global_stage(
         &self,
-        problem: &mut ContactProblem<'_>,
-        pair: &Pair,
-    ) -> (Vec<f64>, Vec<Branch>) {
-        local_stage(self.k0, problem, pair)
-    }
-
-    /// The pair with P + k₀ v = `target`; `None` if the rigid motions move no row.
-    pub fn global_stage(&self, problem: &ContactProblem<'_>, target: &[f64]) -> Option<Pair> {
-        let rhs = target
-            .iter()
-            .zip(&problem.q)
-            .map(|(t, q)| t - self.k0 * q)
-            .collect();
-        let mut p = apply(&self.factor, rhs);
-        let excess: Vec<f64> = problem.missing(&p).iter().map(|c| -c).collect();
-        let k0_beta = solve_dense(self.schur.clone(), &excess)?;
+        problem: &ContactProblem<'_>,
+        target: &[f64],
+        new: &mut Pair,
+    ) -> bool {
+        let Pair { p, v, beta } = new;
+        // The right-hand side stands where v will.
+        let rows = target.iter().zip(&problem.q);
+        refill(v, rows.map(|(t, q)| t - self.k0 * q));
+        apply(&self.factor, v, p);
+        let excess: Vec<f64> = problem.missing(p).iter().map(|c| -c).collect();
+        let Some(k0_beta) = solve_dense(self.schur.clone(), &excess) else {
+            return false;
+        };
         for (column, b) in self.border.iter().zip(&k0_beta) {
             p.iter_mut().zip(column).for_each(|(p, c)| *p -= b * c);
         }
-        let v = target
-            .iter()
-            .zip(&p)
-            .map(|(t, p)| (t - p) / self.k0)
-            .collect();
-        Some(Pair {
-            p,
-            v,
-            beta: k0_beta.iter().map(|b| b / self.k0).collect(),
-        })
+        let rows = target.iter().zip(&*p);
+        refill(v, rows.map(|(t, p)| (t - p) / self.k0));
+        refill(beta, k0_beta.iter().map(|b| b / self.k0));
+        true
     }
 }
 
@@ -144,16 +139,17 @@ pub(crate) fn alternate(
     problem: &mut ContactProblem<'_>,
     sweeps: usize,
 ) -> Result<Option<Pair>, MethodError> {
-    let mut pair = Pair::start(problem);
+    let (mut pair, mut new) = (Pair::start(problem), Pair::default());
+    let (mut branches, mut target) = (Branches::default(), Vec::new());
     let k0 = best_direction(&problem.operator);
     if problem.operator.w.formed() {
         let stage = GlobalStage::along(problem.operator.clone(), k0)?;
         problem.counters.factorisations += 1;
         for _ in 0..sweeps {
-            let (target, _) = local_stage(k0, problem, &pair);
-            let Some(new) = stage.global_stage(problem, &target) else {
+            local_stage(k0, problem, &pair, &mut branches, &mut target);
+            if !stage.global_stage(problem, &target, &mut new) {
                 return Ok(None);
-            };
+            }
             pair.relax(problem, RESCUE_RELAXATION, &new);
         }
         return Ok(Some(pair));
@@ -163,7 +159,7 @@ pub(crate) fn alternate(
         return Ok(None);
     };
     for _ in 0..sweeps {
-        let (target, _) = local_stage(k0, problem, &pair);
+        local_stage(k0, problem, &pair, &mut branches, &mut target);
         let mut rows = stage_rows(k0, problem, &pair, &target);
         let Some(step) = stage.step(problem, &pair.p, &mut rows) else {
             return Ok(None);
@@ -184,18 +180,22 @@ fn best_direction(operator: &ContactOperator) -> f64 {
         .map_or(operator.rho, |(least, most)| 1.0 / (least * most).sqrt())
 }
 
-/// P̂ + k₀ v̂ = 2 P̂ − z by row, and the branch of each point.
-fn local_stage(k0: f64, problem: &mut ContactProblem<'_>, pair: &Pair) -> (Vec<f64>, Vec<Branch>) {
+/// P̂ + k₀ v̂ = 2 P̂ − z by row, in place of what `target` holds; how many points changed their branch.
+pub(crate) fn local_stage(
+    k0: f64,
+    problem: &mut ContactProblem<'_>,
+    pair: &Pair,
+    branches: &mut Branches,
+    target: &mut Vec<f64>,
+) -> usize {
     problem.counters.local_solves += problem.rows.points();
-    let z: Vec<f64> = (pair.p.iter().zip(&pair.v))
-        .map(|(p, v)| p - k0 * v)
-        .collect();
-    let mut p_hat = z.clone();
-    let branches = (0..problem.rows.points())
-        .map(|i| return_map(problem.friction(i), &mut p_hat[problem.rows.of(i)]))
-        .collect();
-    let target = p_hat.iter().zip(&z).map(|(p, z)| 2.0 * p - z);
-    (target.collect(), branches)
+    let changes = branches.map(problem, k0, &pair.p, &pair.v);
+    let rows = branches.image.iter().zip(&pair.p).zip(&pair.v);
+    refill(
+        target,
+        rows.map(|((p_hat, p), v)| 2.0 * p_hat - (p - k0 * v)),
+    );
+    changes
 }
 
 /// The global stage as rows of a step of the whole body: δP + k₀ δv = target − P − k₀ v.
@@ -217,14 +217,17 @@ fn stage_rows(
     problem.rows.iter().map(of_point).collect()
 }
 
-/// (I + k₀ W)⁻¹ x; NaN, which no judge accepts, where it left the finite range.
-fn apply(factor: &Factor, mut x: Vec<f64>) -> Vec<f64> {
-    let n = x.len();
+/// x := (I + k₀ W)⁻¹ b; NaN, which no judge accepts, where it left the finite range.
+fn apply(factor: &Factor, b: &[f64], x: &mut Vec<f64>) {
     match factor {
         Factor::Cholesky(factor) => {
-            factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, n, 1));
-            x
+            b.clone_into(x);
+            factor.solve_in_place(MatMut::from_column_major_slice_mut(x, b.len(), 1));
         }
-        Factor::Lu(factor) => factor.solve(&x).unwrap_or_else(|| vec![f64::NAN; n]),
+        Factor::Lu(factor) => {
+            if !factor.solve_into(b, x) {
+                x.fill(f64::NAN);
+            }
+        }
     }
 }

@@ -192,7 +192,8 @@ impl CondensedMethod for FixedPoint {
                 }
                 Check::End(status) => return Ok(End { status, at: x }),
             }
-            let a = anderson.next(self.parameters(problem, &x.p, &v));
+            let mut a = self.parameters(problem, &x.p, &v);
+            anderson.next(&mut a);
             let Some(next) = program.solve(problem, &a, accuracy.next(violation))? else {
                 // On a loose piece without load the cones have no interior.
                 if self.settings.polish && violation <= POLISH {

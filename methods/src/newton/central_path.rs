@@ -74,6 +74,22 @@ impl ConePoint<'_> {
         result
     }
 
+    /// The same after t times a step.
+    pub fn products_after(&self, t: f64, step: &ConePoint<'_>) -> Products {
+        let (mut P, mut v) = ([0.0; 3], [0.0; 3]);
+        for k in 0..self.P.len() {
+            P[k] = self.P[k] + t * step.P[k];
+            v[k] = self.v[k] + t * step.v[k];
+        }
+        let moved = ConePoint {
+            mu: self.mu,
+            P: &P[..self.P.len()],
+            v: &v[..self.P.len()],
+            lambda: self.lambda + t * step.lambda,
+        };
+        moved.products()
+    }
+
     /// τ = P_t/(μ P_n), component k.
     fn tau(&self, k: usize) -> f64 {
         self.P[k] / (self.mu * self.P[0])

@@ -40,7 +40,9 @@
 
 #![allow(non_snake_case)]
 
-use crate::algebra::dense::along;
+use std::ops::Range;
+
+use crate::algebra::dense::{add, refill};
 use crate::condensed::branches::Branches;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
@@ -78,6 +80,7 @@ const JAMMED: f64 = 0.02;
 const SHALLOWEST: f64 = 0.1;
 
 /// Unknowns of the method, or a step of them.
+#[derive(Default)]
 struct Iterate {
     P: Vec<f64>,
     beta: Vec<f64>,
@@ -98,44 +101,43 @@ impl CondensedMethod for InteriorPoint {
     }
 }
 
-/// The loop, from the start of the increment until it ends.
+/// The loop, from the start of the increment until it ends. Every step works in the memory of the one before.
 pub(crate) fn along_path(
     problem: &mut ContactProblem<'_>,
     fraction: f64,
     limits: Limits,
     monitor: &mut dyn Monitor,
 ) -> Ended {
-    let Forces { p: mut P, mut beta } = problem.start();
+    let (mut at, mut v) = (problem.start(), Vec::new());
     let mut branches = Branches::default();
-    let mut path: Option<Iterate> = None;
-    let mut depth = 0.0;
+    let (mut x, mut step) = (Iterate::default(), Iterate::default());
+    let mut equations = PathEquations::default();
+    let (mut on_path, mut depth) = (false, 0.0);
 
     let status = loop {
-        let v = problem.jump(&P, &beta);
-        let changes = branches.changes(problem, &P, &v);
-        let violation = problem.violation(&P, &v);
-        match problem.check(violation, (&P, &beta), changes, limits, monitor)? {
+        problem.jump_into(&at.p, &at.beta, &mut v);
+        let changes = branches.changes(problem, &at.p, &v);
+        let violation = problem.violation(&at.p, &v);
+        match problem.check(violation, (&at.p, &at.beta), changes, limits, monitor)? {
             Check::GoOn => {}
             Check::Corrected => continue,
             Check::End(status) => break status,
         }
-        let x = path.take().unwrap_or_else(|| {
-            depth = next_depth(depth, &P, violation);
-            Iterate::inside(problem, &P, &beta, depth)
-        });
+        if !on_path {
+            depth = next_depth(depth, &at.p, violation);
+            x.begin(problem, &at, &v, depth);
+        }
         problem.counters.factorisations += 1;
-        let Some(step) = PathStep::new(problem, &x).and_then(|mut s| s.corrected(problem, &x))
-        else {
+        if !equations.factor(problem, &x) || !equations.solve(problem, &x, &mut step) {
             break problem.singular();
-        };
+        }
         let t = x.step_length(problem, &step, fraction.max(1.0 - violation));
-        let x = x.moved(t, &step);
-        P.clone_from(&x.P);
-        problem.rebalance(&mut P);
-        beta.clone_from(&x.beta);
-        path = (t >= JAMMED).then_some(x);
+        x.move_along(t, &step);
+        at.p.clone_from(&x.P);
+        problem.rebalance(&mut at.p);
+        at.beta.clone_from(&x.beta);
+        on_path = t >= JAMMED;
     };
-    let at = Forces { p: P, beta };
     Ok(End { status, at })
 }
 
@@ -150,21 +152,20 @@ fn next_depth(before: f64, P: &[f64], violation: f64) -> f64 {
 }
 
 impl Iterate {
-    /// (P, β) and its jump, moved inside the cones by `depth` times the reference force per point.
-    fn inside(problem: &ContactProblem<'_>, P: &[f64], beta: &[f64], depth: f64) -> Self {
+    /// `start` and its jump, moved inside the cones by `depth` times the reference force per point.
+    fn begin(&mut self, problem: &ContactProblem<'_>, start: &Forces, jump: &[f64], depth: f64) {
         let points = problem.rows.points();
-        let force = depth * problem.reference_force(P) / (points as f64).sqrt();
+        let force = depth * problem.reference_force(&start.p) / (points as f64).sqrt();
         let length = force / problem.operator.rho;
-        let (mut P, mut v) = (P.to_vec(), problem.jump(P, beta));
-        let lambda = (0..points)
-            .map(|i| {
-                let rows = problem.rows.of(i);
-                let (P, v) = (&mut P[rows.clone()], &mut v[rows]);
-                move_inside(problem.friction(i), P, v, force, length)
-            })
-            .collect();
-        let beta = beta.to_vec();
-        Self { P, beta, v, lambda }
+        let Self { P, beta, v, lambda } = self;
+        P.clone_from(&start.p);
+        beta.clone_from(&start.beta);
+        jump.clone_into(v);
+        let point = |(i, own): (usize, Range<usize>)| {
+            let (P, v) = (&mut P[own.clone()], &mut v[own]);
+            move_inside(problem.friction(i), P, v, force, length)
+        };
+        refill(lambda, problem.rows.iter().enumerate().map(point));
     }
 
     fn at(&self, problem: &ContactProblem<'_>, i: usize) -> ConePoint<'_> {
@@ -177,19 +178,12 @@ impl Iterate {
         }
     }
 
-    fn moved(&self, t: f64, step: &Iterate) -> Iterate {
-        Iterate {
-            P: along(&self.P, t, &step.P),
-            beta: along(&self.beta, t, &step.beta),
-            v: along(&self.v, t, &step.v),
-            lambda: along(&self.lambda, t, &step.lambda),
-        }
-    }
-
-    /// Products of all points.
-    fn products(&self, problem: &ContactProblem<'_>) -> Vec<Products> {
-        let points = 0..problem.rows.points();
-        points.map(|i| self.at(problem, i).products()).collect()
+    /// self := self + t step.
+    fn move_along(&mut self, t: f64, step: &Iterate) {
+        add(t, &step.P, &mut self.P);
+        add(t, &step.beta, &mut self.beta);
+        add(t, &step.v, &mut self.v);
+        add(t, &step.lambda, &mut self.lambda);
     }
 
     /// min(1, `fraction` · longest step inside all cones).
@@ -202,26 +196,41 @@ impl Iterate {
     }
 }
 
-/// ν: the mean over all cones, two per point with friction and one per point without.
-fn mean(problem: &ContactProblem<'_>, products: &[Products]) -> f64 {
+/// ν: the mean of the points' products over all cones, two per point with friction and one per point without.
+fn mean(problem: &ContactProblem<'_>, products: impl Fn(usize) -> Products) -> f64 {
     let points = 0..problem.rows.points();
-    let cones: usize = points.map(|i| problem.rows.of(i).len().min(2)).sum();
-    products.iter().map(|p| p.normal + p.scalar).sum::<f64>() / cones as f64
+    let cones: usize = (points.clone())
+        .map(|i| problem.rows.of(i).len().min(2))
+        .sum();
+    let sum = |p: Products| p.normal + p.scalar;
+    points.map(|i| sum(products(i))).sum::<f64>() / cones as f64
 }
 
 /// Newton's equations at one iterate, condensed to (P, β) and factored.
-struct PathStep {
+#[derive(Default)]
+struct PathEquations {
     system: Bordered,
-    /// Coefficients of δv by row, scaled like all of the row to unit size.
+    /// All rows.
+    rows: Vec<usize>,
+    /// Coefficients of δP and δv by row, scaled like all of the row to unit size.
+    a: Vec<[f64; 3]>,
     c: Vec<[f64; 3]>,
     scale: Vec<f64>,
+    /// What v lacks to the jump of P and β.
+    dv: Vec<f64>,
+    /// By point, what the products lack to their targets.
+    lack: Vec<Products>,
+    /// Right-hand sides of a direction.
+    f: Vec<f64>,
 }
 
-impl PathStep {
-    /// `None` if the matrix is singular.
-    fn new(problem: &ContactProblem<'_>, x: &Iterate) -> Option<Self> {
-        let n = problem.len();
-        let (mut a, mut c, mut scale) = (Vec::new(), Vec::new(), Vec::with_capacity(n));
+impl PathEquations {
+    /// Assembles and factors them; false if the matrix is singular.
+    fn factor(&mut self, problem: &ContactProblem<'_>, x: &Iterate) -> bool {
+        let Self { a, c, scale, .. } = self;
+        a.clear();
+        c.clear();
+        scale.clear();
         for (i, own) in problem.rows.iter().enumerate() {
             for PathRow { a: of_p, c: of_v } in
                 x.at(problem, i).equations().into_iter().take(own.len())
@@ -233,61 +242,65 @@ impl PathStep {
                 scale.push(s);
             }
         }
-        let all: Vec<usize> = (0..n).collect();
-        let system = Bordered::held(problem, &all, &Law::Rows { a: &a, c: &c })?;
-        Some(Self { system, c, scale })
+        refill(&mut self.rows, 0..problem.len());
+        problem.jump_into(&x.P, &x.beta, &mut self.dv);
+        add(-1.0, &x.v, &mut self.dv);
+        (self.system).factor_held(problem, &self.rows, &Law::Rows { a, c })
     }
 
-    /// Mehrotra's direction: predictor, then the corrector that aims at σ ν.
-    fn corrected(&mut self, problem: &ContactProblem<'_>, x: &Iterate) -> Option<Iterate> {
-        let products = x.products(problem);
-        let lack = |nu: f64, second: &[Products]| -> Vec<Products> {
-            let pairs = products.iter().zip(second);
-            pairs.map(|(p, second)| p.lack(nu, second)).collect()
-        };
-        let none = vec![Products::default(); products.len()];
-        let affine = self.direction(problem, x, &lack(0.0, &none))?;
-        let t = x.step_length(problem, &affine, 1.0);
-        let nu = mean(problem, &products);
-        let after = mean(problem, &x.moved(t, &affine).products(problem));
+    /// Mehrotra's direction in place of `step`: predictor, then the corrector that aims at σ ν. False if it is not finite.
+    fn solve(&mut self, problem: &ContactProblem<'_>, x: &Iterate, step: &mut Iterate) -> bool {
+        let points = 0..problem.rows.points();
+        let now = |i: usize| x.at(problem, i).products();
+        let none = Products::default();
+        refill(
+            &mut self.lack,
+            points.clone().map(|i| now(i).lack(0.0, &none)),
+        );
+        if !self.direction(problem, x, step) {
+            return false;
+        }
+        let t = x.step_length(problem, step, 1.0);
+        let nu = mean(problem, now);
+        let after = mean(problem, |i| {
+            x.at(problem, i).products_after(t, &step.at(problem, i))
+        });
         let sigma = (after / nu).clamp(0.0, 1.0).powi(3);
-        self.direction(problem, x, &lack(sigma * nu, &affine.products(problem)))
+        let second = |i: usize| step.at(problem, i).products();
+        refill(
+            &mut self.lack,
+            points.map(|i| now(i).lack(sigma * nu, &second(i))),
+        );
+        self.direction(problem, x, step)
     }
 
-    /// The direction that makes up for `lack` and for v ≠ q + W P + Q β, Qᵀ P ≠ c.
-    fn direction(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        x: &Iterate,
-        lack: &[Products],
-    ) -> Option<Iterate> {
-        let jump = problem.jump(&x.P, &x.beta);
-        let mut dv: Vec<f64> = jump.iter().zip(&x.v).map(|(jump, v)| jump - v).collect();
-        let mut f = Vec::with_capacity(problem.len());
-        for ((i, own), lack) in problem.rows.iter().enumerate().zip(lack) {
+    /// The direction that makes up for the lack and for v ≠ q + W P + Q β, Qᵀ P ≠ c; false if it is not finite.
+    fn direction(&mut self, problem: &ContactProblem<'_>, x: &Iterate, step: &mut Iterate) -> bool {
+        self.f.clear();
+        for ((i, own), lack) in problem.rows.iter().enumerate().zip(&self.lack) {
             let h = x.at(problem, i).right_side(lack);
             for (k, h) in own.clone().zip(h) {
-                let known: f64 = dv[own.clone()]
+                let known: f64 = self.dv[own.clone()]
                     .iter()
                     .zip(self.c[k])
                     .map(|(v, c)| v * c)
                     .sum();
-                f.push(self.scale[k] * h - known);
+                self.f.push(self.scale[k] * h - known);
             }
         }
-        let (dP, beta) = self.system.solve(&f, &problem.missing(&x.P))?;
-        problem.operator.w.apply_add(&dP, &mut dv);
-        problem.operator.modes.add(&beta, &mut dv);
-        let lambda = problem.rows.iter().zip(lack).enumerate();
-        let lambda = lambda.map(|(i, (own, lack))| {
-            x.at(problem, i)
-                .lambda_step(lack, &dP[own.clone()], &dv[own])
-        });
-        Some(Iterate {
-            lambda: lambda.collect(),
-            P: dP,
-            beta,
-            v: dv,
-        })
+        let Iterate { P, beta, v, lambda } = step;
+        let balance = problem.missing(&x.P);
+        if !self.system.solve_into(&self.f, &balance, P, beta) {
+            return false;
+        }
+        v.clone_from(&self.dv);
+        problem.operator.w.apply_add(P, v);
+        problem.operator.modes.add(beta, v);
+        let points = problem.rows.iter().zip(&self.lack).enumerate();
+        let step_of = |(i, (own, lack)): (usize, (Range<usize>, &Products))| {
+            x.at(problem, i).lambda_step(lack, &P[own.clone()], &v[own])
+        };
+        refill(lambda, points.map(step_of));
+        true
     }
 }

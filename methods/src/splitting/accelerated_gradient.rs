@@ -51,7 +51,7 @@
 
 use std::collections::VecDeque;
 
-use crate::algebra::dense::{dot, minus};
+use crate::algebra::dense::{dot, refill};
 use crate::condensed::anderson::Anderson;
 use crate::condensed::saddle::{Iterate, REFRESH};
 use crate::contract::law::{Branch, tangential_norm};
@@ -120,12 +120,13 @@ impl CondensedMethod for AcceleratedGradient {
             } else if stale {
                 program.restart(&x);
             }
-            let branches = match self.step {
+            match self.step {
                 0 => program.accelerated(problem, &mut x),
                 _ => program.spectral(problem, &mut x),
-            };
+            }
+            let branches = &mut program.trial.branches;
             changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
-            before = branches;
+            std::mem::swap(&mut before, branches);
         };
         let (p, beta) = saddle.balanced(problem, &x);
         let at = Forces { p, beta };
@@ -149,113 +150,136 @@ struct Program<'g> {
     theta: f64,
     /// Objectives of the spectral steps less that of the first.
     recent: VecDeque<f64>,
+    /// The projected step tried last.
+    trial: Trial,
+    /// The shift of the iterate itself, and the projected step with it.
+    own_s: Vec<f64>,
+    shifted: Trial,
 }
 
-/// De Saxcé's shift of a jump by row.
-fn shift_of(problem: &ContactProblem<'_>, v: &[f64]) -> Vec<f64> {
-    let mut s = vec![0.0; v.len()];
+/// A projected step.
+#[derive(Default)]
+struct Trial {
+    /// Its end.
+    p: Vec<f64>,
+    branches: Vec<Branch>,
+    /// δP and W' δP.
+    dp: Vec<f64>,
+    dv: Vec<f64>,
+}
+
+impl Trial {
+    /// P <- proj(P − t r (v + s)) from `x`.
+    fn project(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        gradient: &Step,
+        x: &Iterate,
+        s: &[f64],
+        t: f64,
+    ) {
+        problem.counters.local_solves += problem.rows.points();
+        let (r, p) = (&gradient.r, &mut self.p);
+        refill(p, (0..s.len()).map(|k| x.p[k] - t * r[k] * (x.v[k] + s[k])));
+        let point = |(i, own): (usize, std::ops::Range<usize>)| {
+            gradient.project_point(problem.friction(i), &r[own.clone()], &mut p[own])
+        };
+        refill(
+            &mut self.branches,
+            problem.rows.iter().enumerate().map(point),
+        );
+    }
+
+    /// δP from where the step began, and W' δP.
+    fn multiply(&mut self, gradient: &Step, begin: &[f64]) {
+        refill(&mut self.dp, self.p.iter().zip(begin).map(|(p, b)| p - b));
+        self.dv.clear();
+        self.dv.resize(begin.len(), 0.0);
+        gradient.saddle.w().apply_add(&self.dp, &mut self.dv);
+    }
+}
+
+/// De Saxcé's shift of a jump by row, in place of what `s` holds.
+fn shift_of(problem: &ContactProblem<'_>, v: &[f64], s: &mut Vec<f64>) {
+    s.clear();
+    s.resize(v.len(), 0.0);
     for (i, own) in problem.rows.iter().enumerate() {
         s[own.start] = problem.friction(i) * tangential_norm(&v[own.clone()]);
     }
-    s
 }
 
 impl<'g> Program<'g> {
     fn new(problem: &ContactProblem<'_>, gradient: &'g Step, fraction: f64, x: &Iterate) -> Self {
-        let mut anderson = Anderson::new(SHIFTS);
-        Self {
+        let mut program = Self {
             gradient,
             fraction,
-            s: anderson.next(shift_of(problem, &x.v)),
-            anderson,
+            s: Vec::new(),
+            anderson: Anderson::new(SHIFTS),
             t: 1.0,
-            y: x.clone(),
+            y: Iterate::default(),
             theta: 1.0,
-            recent: VecDeque::from([0.0]),
-        }
+            recent: VecDeque::with_capacity(MEMORY),
+            trial: Trial::default(),
+            own_s: Vec::new(),
+            shifted: Trial::default(),
+        };
+        program.shift(problem, x);
+        program
     }
 
     /// Takes the shift of `x`.
     fn shift(&mut self, problem: &ContactProblem<'_>, x: &Iterate) {
-        self.s = self.anderson.next(shift_of(problem, &x.v));
+        shift_of(problem, &x.v, &mut self.s);
+        self.anderson.next(&mut self.s);
         self.restart(x);
     }
 
     /// Forgets all but the step length.
     fn restart(&mut self, x: &Iterate) {
-        self.y.clone_from(x);
+        self.y.copy(x);
         self.theta = 1.0;
-        self.recent = VecDeque::from([0.0]);
+        self.recent.clear();
+        self.recent.push_back(0.0);
     }
 
     /// Whether a step with the shift of `x` itself would do much more than one with the old.
-    fn solved(&self, problem: &mut ContactProblem<'_>, x: &Iterate) -> bool {
-        let (old, _) = self.project(problem, x, &self.s, 1.0);
-        let new = shift_of(problem, &x.v);
-        let (new, _) = self.project(problem, x, &new, 1.0);
+    fn solved(&mut self, problem: &mut ContactProblem<'_>, x: &Iterate) -> bool {
+        let gradient = self.gradient;
+        self.trial.project(problem, gradient, x, &self.s, 1.0);
+        shift_of(problem, &x.v, &mut self.own_s);
+        (self.shifted).project(problem, gradient, x, &self.own_s, 1.0);
         let missing = problem.missing(&x.p);
-        let kappa = self.gradient.saddle.kappa;
-        let unbalanced = kappa * dot(&missing, &missing);
-        let (left, shifted) = (minus(&old, &x.p), minus(&new, &old));
-        self.squared(&left)
-            <= (self.fraction * self.fraction) * (self.squared(&shifted) + unbalanced)
+        let unbalanced = gradient.saddle.kappa * dot(&missing, &missing);
+        let (old, new) = (&self.trial.p, &self.shifted.p);
+        self.squared(old, &x.p)
+            <= (self.fraction * self.fraction) * (self.squared(new, old) + unbalanced)
     }
 
-    /// |δP|²/r.
-    fn squared(&self, dp: &[f64]) -> f64 {
-        dp.iter()
-            .zip(&self.gradient.r)
-            .map(|(p, r)| p * p / r)
+    /// |δP|²/r between two forces.
+    fn squared(&self, to: &[f64], from: &[f64]) -> f64 {
+        let rows = to.iter().zip(from).zip(&self.gradient.r);
+        rows.map(|((to, from), r)| (to - from) * (to - from) / r)
             .sum()
     }
 
-    /// proj(P − t r (v + s)).
-    fn project(
-        &self,
-        problem: &mut ContactProblem<'_>,
-        x: &Iterate,
-        s: &[f64],
-        t: f64,
-    ) -> (Vec<f64>, Vec<Branch>) {
-        problem.counters.local_solves += problem.rows.points();
-        let r = &self.gradient.r;
-        let mut p: Vec<f64> = (0..s.len())
-            .map(|k| x.p[k] - t * r[k] * (x.v[k] + s[k]))
-            .collect();
-        let point = |(i, own): (usize, std::ops::Range<usize>)| {
-            let mu = problem.friction(i);
-            self.gradient
-                .project_point(mu, &r[own.clone()], &mut p[own])
-        };
-        let branches = problem.rows.iter().enumerate().map(point).collect();
-        (p, branches)
-    }
-
-    /// W' δP.
-    fn product(&self, dp: &[f64]) -> Vec<f64> {
-        let mut dv = vec![0.0; dp.len()];
-        self.gradient.saddle.w().apply_add(dp, &mut dv);
-        dv
-    }
-
     /// Nesterov's step.
-    fn accelerated(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) -> Vec<Branch> {
-        let (p, dv, branches) = loop {
-            let (p, branches) = self.project(problem, &self.y, &self.s, self.t);
-            let dp = minus(&p, &self.y.p);
-            let dv = self.product(&dp);
-            let (size, curvature) = (self.squared(&dp), dot(&dp, &dv));
+    fn accelerated(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) {
+        let gradient = self.gradient;
+        loop {
+            (self.trial).project(problem, gradient, &self.y, &self.s, self.t);
+            self.trial.multiply(gradient, &self.y.p);
+            let size = self.squared(&self.trial.p, &self.y.p);
+            let curvature = dot(&self.trial.dp, &self.trial.dv);
             // Forces at rest: any step will do.
             if curvature * self.t <= size || size == 0.0 {
-                break (p, dv, branches);
+                break;
             }
             self.t = (SHRINK * self.t).min(size / curvature);
-        };
-        let step = minus(&p, &x.p);
-        let slope: f64 = (0..p.len())
-            .map(|k| (self.y.v[k] + self.s[k]) * step[k])
+        }
+        let Self { y, s, trial, .. } = self;
+        let slope: f64 = (0..s.len())
+            .map(|k| (y.v[k] + s[k]) * (trial.p[k] - x.p[k]))
             .sum();
-        let v: Vec<f64> = self.y.v.iter().zip(&dv).map(|(v, dv)| v + dv).collect();
         let theta = self.theta;
         let next = 0.5 * theta * ((theta * theta + 4.0).sqrt() - theta);
         let mut beta = theta * (1.0 - theta) / (theta * theta + next);
@@ -263,23 +287,21 @@ impl<'g> Program<'g> {
         if slope > 0.0 {
             (beta, self.theta) = (0.0, 1.0);
         }
-        let momentum = |new: &[f64], old: &[f64]| -> Vec<f64> {
-            let pairs = new.iter().zip(old);
-            pairs.map(|(new, old)| new + beta * (new - old)).collect()
-        };
-        self.y.p = momentum(&p, &x.p);
-        self.y.v = momentum(&v, &x.v);
-        (x.p, x.v) = (p, v);
+        for k in 0..s.len() {
+            let (p, v) = (trial.p[k], y.v[k] + trial.dv[k]);
+            y.p[k] = p + beta * (p - x.p[k]);
+            y.v[k] = v + beta * (v - x.v[k]);
+            (x.p[k], x.v[k]) = (p, v);
+        }
         self.t *= GROW;
-        branches
     }
 
     /// The spectral step.
-    fn spectral(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) -> Vec<Branch> {
-        let (p, branches) = self.project(problem, x, &self.s, self.t);
-        let dp = minus(&p, &x.p);
-        let dv = self.product(&dp);
-        let (size, curvature) = (self.squared(&dp), dot(&dp, &dv));
+    fn spectral(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) {
+        (self.trial).project(problem, self.gradient, x, &self.s, self.t);
+        self.trial.multiply(self.gradient, &x.p);
+        let Trial { p, dp, dv, .. } = &self.trial;
+        let (size, curvature) = (self.squared(p, &x.p), dot(dp, dv));
         let slope: f64 = (0..dp.len()).map(|k| (x.v[k] + self.s[k]) * dp[k]).sum();
         let last = self.recent.back().copied().unwrap_or(0.0);
         let worst = self.recent.iter().copied().fold(last, f64::max);
@@ -300,6 +322,5 @@ impl<'g> Program<'g> {
             true => (size / curvature).clamp(STEPS[0], STEPS[1]),
             false => STEPS[1],
         };
-        branches
     }
 }

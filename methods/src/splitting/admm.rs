@@ -56,7 +56,7 @@
 
 use std::sync::Arc;
 
-use crate::algebra::dense::norm;
+use crate::algebra::dense::{norm, refill};
 use crate::algebra::spectrum::extremes;
 use crate::condensed::acceleration::Acceleration;
 use crate::condensed::pair::Pair;
@@ -176,9 +176,10 @@ impl CondensedMethod for Admm {
             false => (0, Balance::default()),
         };
         let mut stage = self.stage(problem, power)?;
-        let mut pair = Pair::start(problem);
+        let (mut pair, mut new) = (Pair::start(problem), Pair::default());
         let mut cone = Cone::start(problem, &pair, stage.k0());
         let (mut changes, mut alpha) = (0, self.settings.over_relaxation);
+        let mut target = Vec::new();
         let mut acceleration = Acceleration::new(self.settings.anderson, || cone.stacked());
 
         let status = loop {
@@ -202,10 +203,11 @@ impl CondensedMethod for Admm {
                     _ => acceleration.restart(cone.stacked()),
                 }
             }
-            match stage.global_stage(problem, &cone.target(problem)) {
-                Some(new) => pair = new,
-                None => break problem.singular(),
+            cone.target(problem, &mut target);
+            if !stage.global_stage(problem, &target, &mut new) {
+                break problem.singular();
             }
+            std::mem::swap(&mut pair, &mut new);
         };
         let at = pair.into();
         Ok(End { status, at })
@@ -217,8 +219,8 @@ enum Balance {
     /// By the mean of what was asked for, ever more rarely.
     Mean {
         next: usize,
-        /// log₂ of the growth asked for since the last look.
-        asked: Vec<f64>,
+        /// Sum of log₂ of the growth asked for since the last look, and in how many iterations.
+        asked: (f64, usize),
     },
     /// A small step whenever one residual is ten times the other.
     Spectral,
@@ -228,7 +230,7 @@ impl Default for Balance {
     fn default() -> Self {
         Self::Mean {
             next: FIRST_BALANCE,
-            asked: Vec::new(),
+            asked: (0.0, 0),
         }
     }
 }
@@ -240,12 +242,13 @@ impl Balance {
             let ratio = growth * growth;
             return i32::from(ratio > IMBALANCE) - i32::from(ratio < 1.0 / IMBALANCE);
         };
-        asked.push(growth.log2());
+        asked.0 += growth.log2();
+        asked.1 += 1;
         if iteration < *next {
             return 0;
         }
-        let mean = asked.iter().sum::<f64>() / asked.len() as f64;
-        asked.clear();
+        let mean = asked.0 / asked.1 as f64;
+        *asked = (0.0, 0);
         *next *= 2;
         // Where all points stick, the multiplier vanishes and the mean is infinite: the largest move is right, as v = 0
         // is then the fixed point of k = ∞. NaN casts to 0.
@@ -256,6 +259,8 @@ impl Balance {
 /// The copy of the forces in the cone and its multiplier.
 struct Cone {
     y: Vec<f64>,
+    /// y of the iteration before.
+    y_old: Vec<f64>,
     xi: Vec<f64>,
     k: f64,
     branches: Vec<Branch>,
@@ -272,6 +277,7 @@ impl Cone {
         }
         Self {
             y: pair.p.clone(),
+            y_old: pair.p.clone(),
             xi,
             k,
             branches: vec![Branch::Open; problem.rows.points()],
@@ -286,17 +292,18 @@ impl Cone {
         alpha: f64,
     ) -> (usize, f64) {
         problem.counters.local_solves += problem.rows.points();
-        let mut z: Vec<f64> = (0..self.y.len())
-            .map(|k| alpha * pair.p[k] + (1.0 - alpha) * self.y[k] + self.xi[k])
-            .collect();
-        self.xi.clone_from(&z);
+        std::mem::swap(&mut self.y, &mut self.y_old);
+        // z, which ξ keeps.
+        for k in 0..self.y.len() {
+            self.y[k] = alpha * pair.p[k] + (1.0 - alpha) * self.y_old[k] + self.xi[k];
+        }
+        self.xi.copy_from_slice(&self.y);
         let mut changes = 0;
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
-            let branch = project_cone(problem.friction(i), &mut z[rows]);
+            let branch = project_cone(problem.friction(i), &mut self.y[rows]);
             changes += usize::from(std::mem::replace(&mut self.branches[i], branch) != branch);
         }
-        let old = std::mem::replace(&mut self.y, z);
         self.xi.iter_mut().zip(&self.y).for_each(|(x, y)| *x -= y);
         let distance = |a: &[f64]| {
             let square = |(a, y): (&f64, &f64)| (a - y).powi(2);
@@ -304,7 +311,7 @@ impl Cone {
         };
         let relative = norm(&pair.p).max(norm(&self.y)) / norm(&self.xi);
         let scaled = problem.operator.rho / self.k;
-        let ratio = distance(&old) / distance(&pair.p) * (relative * scaled).sqrt();
+        let ratio = distance(&self.y_old) / distance(&pair.p) * (relative * scaled).sqrt();
         (changes, ratio.sqrt())
     }
 
@@ -328,14 +335,13 @@ impl Cone {
     }
 
     /// y − ξ − k s: what P + k v of the linear step has to be.
-    fn target(&self, problem: &ContactProblem<'_>) -> Vec<f64> {
-        let mut target: Vec<f64> = self.y.iter().zip(&self.xi).map(|(y, x)| y - x).collect();
+    fn target(&self, problem: &ContactProblem<'_>, target: &mut Vec<f64>) {
+        refill(target, self.y.iter().zip(&self.xi).map(|(y, x)| y - x));
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
             let d = tangential_norm(&self.xi[rows.clone()]);
             target[rows.start] -= problem.friction(i) * d;
         }
-        target
     }
 }
 

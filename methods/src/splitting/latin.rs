@@ -41,9 +41,9 @@
 use std::sync::Arc;
 
 use crate::condensed::acceleration::Acceleration;
+use crate::condensed::branches::Branches;
 use crate::condensed::pair::Pair;
-use crate::condensed::stages::GlobalStage;
-use crate::contract::law::Branch;
+use crate::condensed::stages::{GlobalStage, local_stage};
 use crate::{
     CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Needs,
     Options, options,
@@ -108,8 +108,8 @@ impl CondensedMethod for Latin {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
         let global = self.stage(problem)?;
-        let mut pair = Pair::start(problem);
-        let mut before: Vec<Branch> = Vec::new();
+        let (mut pair, mut new) = (Pair::start(problem), Pair::default());
+        let (mut branches, mut target) = (Branches::default(), Vec::new());
         let k0 = global.k0();
         let mut acceleration = Acceleration::new(self.settings.anderson, || pair.stacked(k0));
         let mut changes = 0;
@@ -118,12 +118,10 @@ impl CondensedMethod for Latin {
             if let Some(status) = pair.ends(problem, changes, limits, monitor)? {
                 break status;
             }
-            let (target, branches) = global.local_stage(problem, &pair);
-            changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
-            before = branches;
-            let Some(new) = global.global_stage(problem, &target) else {
+            changes = local_stage(k0, problem, &pair, &mut branches, &mut target);
+            if !global.global_stage(problem, &target, &mut new) {
                 break problem.singular();
-            };
+            }
             pair.relax(problem, self.settings.relaxation, &new);
             if let Some(acceleration) = &mut acceleration {
                 let next = acceleration.next(problem, pair.stacked(k0));

@@ -37,7 +37,7 @@
 //! Nothing is factored. v follows P by columns of W', without those whose force did not change; it is computed afresh
 //! only every now and then, and before anything is claimed.
 
-use crate::algebra::dense::minus;
+use crate::algebra::dense::{minus, refill};
 use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
@@ -85,6 +85,7 @@ impl CondensedMethod for Projection {
         let step = Step::new(problem, extragradient);
         let saddle = &step.saddle;
         let mut x = saddle.start(problem);
+        let (mut trial, mut second) = (Trial::default(), Trial::default());
         let (mut tau, mut changes) = (1.0, 0);
         let mut before = vec![Branch::Open; problem.rows.points()];
 
@@ -98,19 +99,32 @@ impl CondensedMethod for Projection {
             if problem.counters.iterations.is_multiple_of(REFRESH) {
                 saddle.refresh(problem, &mut x);
             }
-            let (trial, branches, next_tau) = step.adapted(problem, &x, &mut tau);
-            changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
-            before = branches;
-            x = match extragradient {
-                true => step.project(problem, &x, &trial, tau).0,
-                false => trial,
-            };
+            let next_tau = step.adapted(problem, &x, &mut tau, &mut trial);
+            let pairs = trial.branches.iter().zip(&before);
+            changes = pairs.filter(|(a, b)| a != b).count();
+            std::mem::swap(&mut before, &mut trial.branches);
+            if extragradient {
+                step.project(problem, &x, &trial.x, tau, &mut second);
+                std::mem::swap(&mut x, &mut second.x);
+            } else {
+                std::mem::swap(&mut x, &mut trial.x);
+            }
             tau = next_tau;
         };
         let (p, beta) = saddle.balanced(problem, &x);
         let at = Forces { p, beta };
         Ok(End { status, at })
     }
+}
+
+/// Where a step ends.
+#[derive(Default)]
+struct Trial {
+    /// (P̄, γ̄) and its v.
+    x: Iterate,
+    /// P̄ − P.
+    dp: Vec<f64>,
+    branches: Vec<Branch>,
 }
 
 /// What a step needs to know of the system.
@@ -142,36 +156,43 @@ impl Step {
         }
     }
 
-    /// (P̄, γ̄) with `tau` shortened until l <= 0.9, and the τ to begin the next step with.
+    /// The trial with `tau` shortened until l <= 0.9; returns the τ to begin the next step with.
     fn adapted(
         &self,
         problem: &mut ContactProblem<'_>,
         x: &Iterate,
         tau: &mut f64,
-    ) -> (Iterate, Vec<Branch>, f64) {
+        trial: &mut Trial,
+    ) -> f64 {
         loop {
-            let (trial, branches) = self.project(problem, x, x, *tau);
-            let l = *tau * self.lipschitz(problem, x, &trial);
+            self.project(problem, x, x, *tau, trial);
+            let l = *tau * self.lipschitz(problem, x, trial);
             if l < SMALLEST {
-                return (trial, branches, *tau / SHRINK);
+                return *tau / SHRINK;
             } else if l <= LARGEST || l.is_nan() {
-                return (trial, branches, *tau);
+                return *tau;
             }
             *tau *= SHRINK * f64::min(1.0, 1.0 / l);
         }
     }
 
-    /// The step from `x` against F at `at`.
+    /// The step from `x` against F at `at`, in place of what `trial` holds.
     fn project(
         &self,
         problem: &mut ContactProblem<'_>,
         x: &Iterate,
         at: &Iterate,
         tau: f64,
-    ) -> (Iterate, Vec<Branch>) {
+        trial: &mut Trial,
+    ) {
         problem.counters.local_solves += problem.rows.points();
-        let mut p = x.p.clone();
-        let mut branches = Vec::with_capacity(problem.rows.points());
+        let Trial {
+            x: Iterate { p, gamma, v },
+            dp,
+            branches,
+        } = trial;
+        p.clone_from(&x.p);
+        branches.clear();
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
             let mu = problem.friction(i);
@@ -181,16 +202,16 @@ impl Step {
             p[rows.start] -= tau * self.r[rows.start] * mu * tangential_norm(&at.v[rows.clone()]);
             branches.push(self.project_point(mu, &self.r[rows.clone()], &mut p[rows]));
         }
-        let mut gamma = x.gamma.clone();
+        gamma.clone_from(&x.gamma);
         if self.moves_gamma {
             for (gamma, missing) in gamma.iter_mut().zip(problem.missing(&at.p)) {
                 *gamma -= tau * self.saddle.kappa * missing;
             }
         }
-        let mut v = x.v.clone();
-        self.saddle.w().apply_add(&minus(&p, &x.p), &mut v);
-        problem.operator.modes.add(&minus(&gamma, &x.gamma), &mut v);
-        (Iterate { p, gamma, v }, branches)
+        refill(dp, p.iter().zip(&x.p).map(|(p, old)| p - old));
+        v.clone_from(&x.v);
+        self.saddle.w().apply_add(dp, v);
+        problem.operator.modes.add(&minus(gamma, &x.gamma), v);
     }
 
     /// Projects on the cone of one point, nearest in |P|²/r.
@@ -203,23 +224,26 @@ impl Step {
         branch
     }
 
-    /// |F(b) − F(a)| / |b − a|.
-    fn lipschitz(&self, problem: &ContactProblem<'_>, a: &Iterate, b: &Iterate) -> f64 {
-        let (dp, mut dv) = (minus(&b.p, &a.p), minus(&b.v, &a.v));
-        for i in 0..problem.rows.points() {
-            let rows = problem.rows.of(i);
+    /// |F(P̄, γ̄) − F(P, γ)| / |(P̄, γ̄) − (P, γ)|.
+    fn lipschitz(&self, problem: &ContactProblem<'_>, x: &Iterate, trial: &Trial) -> f64 {
+        let Trial { x: end, dp, .. } = trial;
+        let (mut forces, mut jumps) = (0.0, 0.0);
+        for (i, rows) in problem.rows.iter().enumerate() {
             let slip = |x: &Iterate| tangential_norm(&x.v[rows.clone()]);
-            dv[rows.start] += problem.friction(i) * (slip(b) - slip(a));
+            let mut dv = [0.0; 3];
+            for (dv, k) in dv.iter_mut().zip(rows.clone()) {
+                *dv = end.v[k] - x.v[k];
+            }
+            dv[0] += problem.friction(i) * (slip(end) - slip(x));
+            for (dv, k) in dv.into_iter().zip(rows.clone()) {
+                forces += dp[k] * dp[k] / self.r[k];
+                jumps += dv * dv * self.r[k];
+            }
         }
         let kappa = self.saddle.kappa;
-        let (mut forces, mut jumps) = (0.0, 0.0);
-        for k in 0..dp.len() {
-            forces += dp[k] * dp[k] / self.r[k];
-            jumps += dv[k] * dv[k] * self.r[k];
-        }
-        for (dgamma, dc) in minus(&b.gamma, &a.gamma)
+        for (dgamma, dc) in minus(&end.gamma, &x.gamma)
             .iter()
-            .zip(problem.operator.modes.components(&dp))
+            .zip(problem.operator.modes.components(dp))
         {
             forces += dgamma * dgamma / kappa;
             jumps += kappa * dc * dc;
