@@ -53,6 +53,7 @@ fn iterations_of_newton_and_splitting_methods_ask_for_no_memory() {
         "latin",
         "admm",
         "projection",
+        "augmented-lagrangian",
         "accelerated-gradient",
     ] {
         let found = requests(method(name).unwrap(), &s, &load, 6);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use crate::MethodError;
-use crate::algebra::dense::{dot, mul_add};
+use crate::algebra::dense::{dot, mul_add, refill};
 use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::square::{DelassusMatrix, SquareMatrix};
 
@@ -206,8 +206,7 @@ impl Delassus for Series {
     fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
         let mut of_w = Vec::new();
         let columns = (self.w.column(k, &mut of_w).iter()).zip(self.compliance.col_as_slice(k));
-        work.clear();
-        work.extend(columns.map(|(w, c)| w + c));
+        refill(work, columns.map(|(w, c)| w + c));
         work
     }
 

@@ -10,7 +10,7 @@
 
 #![allow(non_snake_case)]
 
-use crate::algebra::dense::{along, minus};
+use crate::algebra::dense::{along, minus, refill};
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
@@ -254,8 +254,8 @@ impl<S: Scheme> Newton<S> {
         pieces: &mut Vec<S::Piece>,
     ) {
         let point = |i| ContactPoint::of(problem, i, r, (P, v));
-        pieces.clear();
-        pieces.extend((0..problem.rows.points()).map(|i| self.scheme.piece(&point(i))));
+        let points = 0..problem.rows.points();
+        refill(pieces, points.map(|i| self.scheme.piece(&point(i))));
     }
 
     /// Where the pieces change along a step, in increasing order.

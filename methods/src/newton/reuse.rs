@@ -21,7 +21,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add};
+use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add, refill};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
 use crate::condensed::point_row::{Blocks, LawRow, Place, law_border, law_column, law_rows, place};
 use crate::condensed::problem::ContactProblem;
@@ -82,12 +82,9 @@ pub(crate) enum Solved {
 impl Factored {
     /// Remembers a tangent that was factored.
     pub fn remember(&mut self, rows: Rows<'_>) {
-        self.active.clear();
-        self.active.extend(rows.active);
-        for (own, new) in [(&mut self.a, rows.a), (&mut self.c, rows.c)] {
-            own.clear();
-            own.extend(new);
-        }
+        refill(&mut self.active, rows.active.iter().copied());
+        refill(&mut self.a, rows.a.iter().copied());
+        refill(&mut self.c, rows.c.iter().copied());
         self.solved.clear();
         self.listed = None;
     }

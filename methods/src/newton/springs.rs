@@ -24,7 +24,7 @@
 use faer::Mat;
 
 use crate::algebra::delassus::Series;
-use crate::algebra::dense::{DenseLu, mul_add, ratio};
+use crate::algebra::dense::{DenseLu, mul_add, ratio, refill};
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
@@ -112,8 +112,7 @@ impl Trial {
         (t, step): (f64, &Forces),
     ) {
         let moved = |x: &mut Vec<f64>, from: &[f64], step: &[f64]| {
-            x.clear();
-            x.extend(from.iter().zip(step).map(|(x, step)| x + t * step));
+            refill(x, from.iter().zip(step).map(|(x, step)| x + t * step));
         };
         moved(&mut self.z, z, &step.p);
         moved(&mut self.forces.beta, beta, &step.beta);
@@ -125,9 +124,8 @@ impl Trial {
         let (z, Forces { p, beta }) = (&self.z, &mut self.forces);
         p.clone_from(z);
         let points = problem.rows.iter().enumerate();
-        self.branches.clear();
-        self.branches
-            .extend(points.map(|(i, own)| return_map(problem.friction(i), &mut p[own])));
+        let branch = |(i, own)| return_map(problem.friction(i), &mut p[own]);
+        refill(&mut self.branches, points.map(branch));
         springs.stretched(problem, p, beta, &mut self.mismatch);
         for (k, f) in self.mismatch.iter_mut().enumerate() {
             *f += (z[k] - p[k]) / springs.r[k];
@@ -288,11 +286,11 @@ impl SpringNewton {
             },
         }
         let Forces { p: dz, beta } = &mut self.direction;
-        dz.clear();
-        dz.extend((0..dv.len()).map(|k| {
+        let of_row = |k: usize| {
             let dp = step.p[k];
             dp - springs.r[k] * (at.mismatch[k] + dv[k] + springs.compliance[k] * dp)
-        }));
+        };
+        refill(dz, (0..dv.len()).map(of_row));
         beta.clone_from(&step.beta);
         Ok(true)
     }
@@ -321,8 +319,7 @@ fn tangent_rows(
         }
         rows
     };
-    rows.clear();
-    rows.extend(problem.rows.iter().enumerate().map(of_point));
+    refill(rows, problem.rows.iter().enumerate().map(of_point));
 }
 
 /// The same step (δP, δv, δβ) from the displacement form on the whole body, as papers usually run penalty methods; `None` if the
