@@ -57,8 +57,10 @@ pub(super) struct Front<'a> {
 }
 
 impl<'a> Front<'a> {
-    /// Of zeros, which is what `panel` holds.
+    /// Of zeros.
     pub fn new(panel: &'a mut [f64], shape: Trapezoid) -> Result<Self, Failure> {
+        // Zeros already: but a page that is read before it is written to is given out twice, and the second time all cores wait.
+        panel.fill(0.0);
         let update = Update::zeros(shape.height - shape.columns)?;
         Ok(Self {
             panel,
