@@ -14,9 +14,6 @@ use crate::algebra::strips::{
     Failure, STRIP, Trapezoid, WORTH_THREADS, cholesky_of_strips, for_all, subtract_square,
 };
 
-/// What adding a number costs, in multiplications of a dense kernel: it is fetched from memory.
-const ADDITION: f64 = 32.0;
-
 /// U, the lower triangle by strips of columns.
 pub(super) struct Update {
     size: usize,
@@ -45,6 +42,12 @@ impl Update {
     fn column(&self, j: usize) -> &[f64] {
         let (strip, rows) = self.place(j);
         &self.strips[strip][rows]
+    }
+
+    /// Rows j.. of column j.
+    fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        let (strip, rows) = self.place(j);
+        &mut self.strips[strip][rows]
     }
 }
 
@@ -77,19 +80,26 @@ impl<'a> Front<'a> {
     /// Adds the update of a child whose rows stand at `places` here, increasing.
     pub fn extend_add(&mut self, child: &Update, places: &[u32]) {
         let (runs, columns) = (runs(places), self.shape.columns);
-        let threads = (child.size * child.size) as f64 * ADDITION > WORTH_THREADS;
-        let height = self.shape.height - columns;
-        let below = self.update.strips.iter_mut().enumerate();
-        let below = below.map(|(t, strip)| {
-            let height = height - t * STRIP;
-            let strip = MatMut::from_column_major_slice_mut(strip, height, STRIP.min(height));
-            (columns + t * STRIP, strip)
-        });
-        let panel = self.shape.strips_mut(self.panel).into_iter().enumerate();
-        let panel = panel.map(|(t, strip)| (t * STRIP, strip));
-        for_all(panel.chain(below).collect(), threads, |(first, strip)| {
-            add_to_strip(strip, first, child, places, &runs);
-        });
+        // The run that the diagonal is in.
+        let mut current = 0;
+        for j in 0..child.size {
+            if j >= runs[current].1 {
+                current += 1;
+            }
+            let (from, at) = (child.column(j), places[j] as usize);
+            let to = match at.checked_sub(columns) {
+                None => self.column_mut(at),
+                Some(at) => self.update.column_mut(at),
+            };
+            for &(begin, end) in &runs[current..] {
+                let begin = begin.max(j);
+                let place = places[begin] as usize - at;
+                let to = &mut to[place..place + end - begin];
+                for (to, from) in to.iter_mut().zip(&from[begin - j..end - j]) {
+                    *to += from;
+                }
+            }
+        }
     }
 
     /// Eliminates the own columns.
@@ -112,39 +122,6 @@ impl<'a> Front<'a> {
             },
         );
         Ok(())
-    }
-}
-
-/// Adds those columns of an update that belong to the strip whose rows and columns begin at place `first`.
-fn add_to_strip(
-    mut strip: MatMut<'_, f64>,
-    first: usize,
-    child: &Update,
-    places: &[u32],
-    runs: &[(usize, usize)],
-) {
-    let of_strip = |at: usize| places.partition_point(|&place| (place as usize) < at);
-    let own = of_strip(first)..of_strip(first + strip.ncols());
-    // The run that the diagonal is in.
-    let mut current = runs.partition_point(|run| run.1 <= own.start);
-    for j in own {
-        if j >= runs[current].1 {
-            current += 1;
-        }
-        let (from, at) = (child.column(j), places[j] as usize);
-        let to = strip.rb_mut().col_mut(at - first);
-        let Some(to) = to.try_as_col_major_mut() else {
-            continue;
-        };
-        let to = to.as_slice_mut();
-        for &(begin, end) in &runs[current..] {
-            let begin = begin.max(j);
-            let place = places[begin] as usize - first;
-            let to = &mut to[place..place + end - begin];
-            for (to, from) in to.iter_mut().zip(&from[begin - j..end - j]) {
-                *to += from;
-            }
-        }
     }
 }
 
