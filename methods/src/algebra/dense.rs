@@ -129,6 +129,12 @@ pub(crate) fn refill<T>(x: &mut Vec<T>, values: impl IntoIterator<Item = T>) {
     x.extend(values);
 }
 
+/// x := n zeros, in the memory of x.
+pub(crate) fn zero(x: &mut Vec<f64>, n: usize) {
+    x.clear();
+    x.resize(n, 0.0);
+}
+
 /// x − y.
 pub(crate) fn minus(x: &[f64], y: &[f64]) -> Vec<f64> {
     x.iter().zip(y).map(|(x, y)| x - y).collect()

@@ -1,4 +1,4 @@
-//! Hybrid method: Newton's method, at once on few rows, else after first-order sweeps have chosen the states of the points.
+//! Hybrid method: Newton's method, at once where its steps are cheap, else after first-order sweeps have chosen the states of the points.
 //!
 //! Sweeps: Jourdan, Alart & Jean, Comput. Meth. Appl. Mech. Engng 155 (1998) 31 (see `nsgs`). Newton: Hüeber, Stadler &
 //! Wohlmuth 2008 (see `pdas`) and Christensen, Klarbring, Pang & Strömberg 1998 (see `b-newton`). That Newton methods should be
@@ -8,7 +8,7 @@
 //! ```text
 //! x from the start of the increment
 //! y <- Newton from x, Alart–Curnier                   where a step costs less than the sweeps: on at most 150 rows, and on
-//!                                                     floating pieces in 2D, with rescues
+//!                                                     floating pieces in 2D; where pieces float, with rescues
 //! for round = 0, 1, 2, …
 //!   x <- s sweeps from x,  s = first · 2^round        a globally sound, slow method
 //!   y <- Newton from x, active sets                   a locally fast one, stopped after 8 steps without progress
@@ -72,7 +72,7 @@ pub static METHOD: Method = Method {
     name: "hybrid",
     label: "Hybrid of Newton and sweeps",
     reference: "Acary, Brémond & Huber (2018), in Advanced Topics in Nonsmooth Dynamics, Springer",
-    summary: "Newton's method, at once on few rows, else after a few Gauss-Seidel sweeps, in rounds with ever more of them until one succeeds",
+    summary: "Newton's method, at once where its steps are cheap, else after a few Gauss-Seidel sweeps, in rounds with ever more of them until one succeeds",
     exact: true,
     options: Hybrid::OPTIONS,
     source: include_str!("hybrid.rs"),
@@ -92,7 +92,7 @@ options! {
     }
 }
 
-/// Rows up to which Newton's method is tried before any sweeps.
+/// Rows up to which Newton's method is tried before any sweeps, whatever the body.
 const FEW: usize = 150;
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;
@@ -210,7 +210,7 @@ fn is_final(end: &End) -> bool {
 struct NewtonRuns<'s> {
     /// r of the next one: as given, from the first that fails 1.
     multiple: f64,
-    /// Whether it is moved on where it is stuck.
+    /// Whether it is moved on where its tangent is singular.
     rescue: bool,
     settings: Hybrid,
     /// Its memory serves all runs.

@@ -4,10 +4,10 @@ use crate::algebra::dense::refill;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map};
 
-/// Branch of every point at the iterate before.
+/// Branch of every point at the last iterate, and what it is read from.
 #[derive(Debug, Default)]
 pub(crate) struct Branches {
-    /// None before the first iterate.
+    /// Empty before the first iterate.
     before: Vec<Branch>,
     /// Π(P − k v), Π the return mapping, of the last iterate by row.
     pub image: Vec<f64>,

@@ -60,8 +60,9 @@ pub(crate) struct Bordered {
 impl Bordered {
     /// Assembled and factored on the active rows, in increasing order; `None` if it is singular.
     pub fn new(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
-        let mut system = Self::default();
-        system.factor(problem, active, law).then_some(system)
+        let (mut system, w) = (Self::default(), &*problem.operator.w);
+        let regular = system.factor_with(problem, w, active, law, false);
+        regular.then_some(system)
     }
 
     /// The same, [held](Self::factor_held).
@@ -70,18 +71,9 @@ impl Bordered {
         system.factor_held(problem, active, law).then_some(system)
     }
 
-    /// Assembles and factors it on the active rows, in increasing order; false if it is singular.
-    pub fn factor(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        active: &[usize],
-        law: &Law<'_>,
-    ) -> bool {
-        self.factor_on_spring(problem, &*problem.operator.w, active, law, 0.0)
-    }
-
-    /// The same; where the rows leave a piece loose, Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good
-    /// a place as any; with one it moves until something is in its way.
+    /// Assembles and factors it on the active rows, in increasing order; false if it is singular. Where the rows leave a piece loose,
+    /// Qᵀ R x − ε ρ β = c holds it. Without a load it stays where it is, as good a place as any; with one it moves until something is
+    /// in its way.
     pub fn factor_held(
         &mut self,
         problem: &ContactProblem<'_>,
@@ -91,7 +83,7 @@ impl Bordered {
         self.factor_with(problem, &*problem.operator.w, active, law, true)
     }
 
-    /// The same with another W; loose pieces are held or not.
+    /// The same with another W, and loose pieces held or not.
     pub fn factor_with(
         &mut self,
         problem: &ContactProblem<'_>,
@@ -131,7 +123,7 @@ impl Bordered {
                     law_column(problem, w, place, rows, &mut work, column);
                 }
             }
-            Law::Columns { e, s } => columns(J, w, (indices, active), e, s),
+            Law::Columns { e, s } => columns(J, w, active, e, s),
         }
         for (j, q) in q.iter().enumerate() {
             J[(n + j, n + j)] = -spring;
@@ -256,28 +248,16 @@ fn times<const D: usize>(laws: &[LawRow], w: &[f64], column: &mut [f64]) {
 }
 
 /// E + W S on the active rows.
-fn columns(
-    J: &mut Full,
-    w: &dyn Delassus,
-    (indices, active): (&[usize], &[Place]),
-    e: Blocks<'_>,
-    s: Blocks<'_>,
-) {
-    // Where all rows are active, whole columns are added.
-    let (mut work, all) = (Vec::new(), active.len() == w.rows());
+fn columns(J: &mut Full, w: &dyn Delassus, active: &[Place], e: Blocks<'_>, s: Blocks<'_>) {
+    let mut work = Vec::new();
     for (b, (k, point)) in active.iter().enumerate() {
         let column = &mut J.column_mut(b)[..active.len()];
         for l in point.clone() {
             let s = s[l][k - point.start];
             if s != 0.0 {
                 let w = w.column(l, &mut work);
-                let entries = column.iter_mut();
-                if all {
-                    entries.zip(w).for_each(|(entry, w)| *entry += w * s);
-                } else {
-                    let own = entries.zip(indices);
-                    own.for_each(|(entry, &a)| *entry += w[a] * s);
-                }
+                let entries = column.iter_mut().zip(active);
+                entries.for_each(|(entry, (a, _))| *entry += w[*a] * s);
             }
             // Rows of one point follow each other, so row l of this point is active row b − k + l.
             column[b + l - k] += e[l][k - point.start];

@@ -309,7 +309,8 @@ impl<'a> ContactProblem<'a> {
         self.best = (f64::INFINITY, self.counters.iterations);
     }
 
-    /// The same, and forgets where iterates were measured from: the algorithm starts where the increment does.
+    /// The same, and forgets where iterates were measured from and how often they were rescued: the algorithm starts where the
+    /// increment does.
     pub(crate) fn begin_again(&mut self) {
         self.begin_phase();
         (self.anchor, self.corrections, self.rescues) = (None, 0, 0);

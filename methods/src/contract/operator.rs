@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::MethodError;
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::dot;
+use crate::algebra::dense::{dot, zero};
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
@@ -112,8 +112,7 @@ impl Delassus for Products {
     fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
         let mut unit = vec![0.0; self.rows.len()];
         unit[k] = 1.0;
-        work.clear();
-        work.resize(self.rows.len(), 0.0);
+        zero(work, self.rows.len());
         self.apply_add(&unit, work);
         work
     }

@@ -56,6 +56,7 @@
 
 #![allow(non_snake_case)]
 
+use crate::algebra::dense::zero;
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
 use crate::newton::contact_point::ContactPoint;
@@ -215,8 +216,7 @@ fn correct_pieces(at: &mut At<'_, '_>, step: &Forces, pieces: &mut [Piece]) -> b
         return false;
     };
     let dv = &mut at.work.jump;
-    dv.clear();
-    dv.resize(step.p.len(), 0.0);
+    zero(dv, step.p.len());
     at.problem.operator.w.apply_add(&step.p, dv);
     at.problem.operator.modes.add(&step.beta, dv);
     let (at, problem) = (&*at, &*at.problem);

@@ -1,5 +1,5 @@
-//! Newton steps from the factors of an earlier one, where few rows of the tangent have changed since. With `b-newton`, `newton-ac`
-//! and `pdas` a row in 2D, and without friction, depends on the state of its point alone: near the solution hardly any changes.
+//! Newton steps from the factors of an earlier one, where few rows of the tangent have changed since. With `b-newton`, `newton-ac`,
+//! `pdas` and springs a row in 2D, and without friction, depends on the state of its point alone: near the solution hardly any changes.
 //! ```text
 //! J₀ = L U on the rows S₀ that were active; J on those that are
 //! rows of S₀                   J₀ x₀ + B x₁ + E y = f₀       x₁: rows active since, columns B; y: by how much changed rows fail
@@ -21,7 +21,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add, refill};
+use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
 use crate::condensed::point_row::{Blocks, LawRow, Place, law_border, law_column, law_rows, place};
 use crate::condensed::problem::ContactProblem;
@@ -38,7 +38,7 @@ const KEPT: usize = 2;
 /// Columns that are computed at once.
 const WIDTH: usize = 32;
 
-/// The tangent by row, of rows that are not active too: A δP + C δv, δv = W δP.
+/// The tangent by row, of rows that are not active too: A δP + C δv, δv = `w` δP.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a> {
     pub w: &'a dyn Delassus,
@@ -76,20 +76,20 @@ pub(crate) enum Solved {
     /// Too many rows are others: to be factored.
     TooManyChanges,
     /// Rounding spoils it, or J is singular: to be factored.
-    Spoilt,
+    Failed,
 }
 
 impl Factored {
     /// Remembers a tangent that was factored.
     pub fn remember(&mut self, rows: Rows<'_>) {
-        refill(&mut self.active, rows.active.iter().copied());
-        refill(&mut self.a, rows.a.iter().copied());
-        refill(&mut self.c, rows.c.iter().copied());
+        rows.active.clone_into(&mut self.active);
+        rows.a.clone_into(&mut self.a);
+        rows.c.clone_into(&mut self.c);
         self.solved.clear();
         self.listed = None;
     }
 
-    /// Called after the last step of a run.
+    /// Frees Z.
     pub fn forget(&mut self) {
         self.solved.clear();
     }
@@ -116,7 +116,7 @@ impl Factored {
         }
         match self.solve_changed(problem, lu, rows, &changes, f) {
             Some(x) => Solved::Step(x),
-            None => Solved::Spoilt,
+            None => Solved::Failed,
         }
     }
 
@@ -307,7 +307,7 @@ impl<'s> Step<'s> {
         }
         let schur = DenseLu::new(&schur)?;
         let of_z = (0..size).fold(0.0, |most, j| larger(most, largest(Z.col_as_slice(j))));
-        let rounding = SINGULAR * n as f64 * of_z * row_sum(&G).max(1.0);
+        let rounding = SINGULAR * n as f64 * of_z * row_sum(&G).max(of_z).max(1.0);
         (size == 0 || schur.least_pivot() > rounding).then_some(Self {
             lu,
             rows,

@@ -24,7 +24,7 @@
 use faer::Mat;
 
 use crate::algebra::delassus::Series;
-use crate::algebra::dense::{DenseLu, mul_add, ratio, refill};
+use crate::algebra::dense::{DenseLu, mul_add, ratio, refill, zero};
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
@@ -159,7 +159,7 @@ pub(crate) struct SpringNewton {
     /// An iterate that is tried.
     trial: Trial,
     rows: Vec<[PointRow; 3]>,
-    /// (δP, δβ), δv.
+    /// (δP, δβ), δv + C δP.
     step: Forces,
     jump: Vec<f64>,
     /// (δz, δβ).
@@ -275,8 +275,7 @@ impl SpringNewton {
                 if !condensed.solve(problem, w, &at.forces.p, &self.rows, hold, step) {
                     return Ok(false);
                 }
-                dv.clear();
-                dv.resize(problem.len(), 0.0);
+                zero(dv, problem.len());
                 w.apply_add(&step.p, dv);
                 problem.operator.modes.add(&step.beta, dv);
             }

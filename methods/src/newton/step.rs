@@ -9,6 +9,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::{refill, zero};
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
 use crate::condensed::whole_body::WholeBody;
@@ -72,7 +73,7 @@ impl Tangent {
     /// Called after the last step of a run: what was factored serves no other.
     pub fn forget(&mut self) {
         if let Tangent::Condensed(condensed) = self {
-            (condensed.factors, condensed.spoilt) = (None, false);
+            (condensed.held, condensed.spoilt) = (None, false);
             condensed.factored.forget();
         }
     }
@@ -125,8 +126,8 @@ pub(crate) fn monolithic_step(
 #[derive(Default)]
 pub(crate) struct CondensedStep {
     system: Bordered,
-    /// Whether it is factored: with loose pieces held or not.
-    factors: Option<bool>,
+    /// Whether loose pieces are held in what is factored; none where nothing is.
+    held: Option<bool>,
     /// What is factored: later steps may start from it.
     factored: Factored,
     /// Rounding has spoilt that: every tangent is factored.
@@ -143,8 +144,8 @@ pub(crate) struct CondensedStep {
 }
 
 impl CondensedStep {
-    /// (δP, δβ) from forces `P` in place of what `step` holds; false if the tangent is singular. `w` may be stiffer or softer than
-    /// the body; `hold`: loose pieces by springs.
+    /// (δP, δβ) from forces `P` in place of what `step` holds; false if the tangent is singular. `w`: W, or that with a compliance in
+    /// series; `hold`: loose pieces by springs.
     pub fn solve(
         &mut self,
         problem: &mut ContactProblem<'_>,
@@ -155,8 +156,7 @@ impl CondensedStep {
         step: &mut Forces,
     ) -> bool {
         let p = &mut step.p;
-        p.clear();
-        p.resize(problem.len(), 0.0);
+        zero(p, problem.len());
         for vector in [&mut self.a, &mut self.c] {
             vector.clear();
         }
@@ -176,8 +176,7 @@ impl CondensedStep {
                 }
             }
         }
-        self.known.clear();
-        self.known.resize(p.len(), 0.0);
+        zero(&mut self.known, p.len());
         w.apply_add(p, &mut self.known);
         self.f.clear();
         let mut next = self.active.iter().peekable();
@@ -191,9 +190,10 @@ impl CondensedStep {
                 self.f.push((0..own.len()).fold(-row.h, lacking));
             }
         }
-        self.reached.clear();
-        self.reached
-            .extend(P.iter().zip(&*p).map(|(P, step)| P + step));
+        refill(
+            &mut self.reached,
+            P.iter().zip(&*p).map(|(P, step)| P + step),
+        );
         if !self.solve_active(problem, w, hold, &mut step.beta) {
             return false;
         }
@@ -213,7 +213,7 @@ impl CondensedStep {
     ) -> bool {
         let Self {
             system,
-            factors,
+            held,
             factored,
             spoilt,
             a,
@@ -226,30 +226,32 @@ impl CondensedStep {
         } = self;
         let (rows, law) = (Rows { w, active, a, c }, Law::Rows { a, c });
         let (balance, hold) = (problem.missing(reached), hold && problem.modes() > 0);
-        if *factors == Some(hold) && factored.is_of(rows) {
+        if *held == Some(hold) && factored.is_of(rows) {
             return system.solve_into(f, &balance, solution, beta);
         }
-        if *factors == Some(false) && !hold && !*spoilt {
+        let mut failed = false;
+        if *held == Some(false) && !hold && !*spoilt {
             f.extend(balance.iter());
             match factored.solve(problem, system.factors(), rows, f) {
                 Solved::Step(found) => {
                     *solution = found;
                     let amplitudes = solution.drain(active.len()..);
-                    beta.clear();
-                    beta.extend(amplitudes.map(|b| b / problem.operator.rho));
+                    refill(beta, amplitudes.map(|b| b / problem.operator.rho));
                     return true;
                 }
                 Solved::TooManyChanges => {}
-                Solved::Spoilt => *spoilt = true,
+                Solved::Failed => failed = true,
             }
         }
         f.truncate(active.len());
         problem.counters.factorisations += 1;
         let regular = system.factor_with(problem, w, active, &law, hold);
-        *factors = regular.then_some(hold);
+        *held = regular.then_some(hold);
         if !regular {
             return false;
         }
+        // It was not the tangent's fault.
+        *spoilt |= failed;
         factored.remember(rows);
         system.solve_into(f, &balance, solution, beta)
     }

@@ -26,8 +26,8 @@
 //! before it is made; if it would be false, Newton's method goes on, at most three times, and then ends as `stalled`.
 //!
 //! # Skips
-//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows. On 256 active
-//! rows and more, a tangent of which few rows have changed is not factored again.
+//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows. A tangent that has
+//! not changed is not factored again; on 256 active rows and more, nor is one of which few rows have.
 //!
 //! # Failure modes
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
@@ -98,6 +98,15 @@ impl CondensedMethod for Penalty {
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let end = self.rounds(problem, monitor);
+        self.newton.tangent.forget();
+        end
+    }
+}
+
+impl Penalty {
+    /// Newton's method, again and more accurately where its claim would be false.
+    fn rounds(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let rho = problem.operator.rho;
         // Springs start unloaded along the normal, and loaded by the friction force of the start along the tangent.
         let mut anchor = problem.rows.restrict(&problem.increment.start.p);
@@ -107,7 +116,6 @@ impl CondensedMethod for Penalty {
         let stiffness = [self.settings.normal, self.settings.tangential].map(|k| k * rho);
         let springs = Springs::new(problem, stiffness.into(), anchor, None);
         let newton = &mut self.newton;
-        newton.tangent.forget();
         newton.start(problem, &springs, &problem.start());
         let (mut stop, mut corrections) = (CLAIM_FRACTION * problem.stop, 0);
         loop {

@@ -51,7 +51,7 @@
 
 use std::collections::VecDeque;
 
-use crate::algebra::dense::{dot, refill};
+use crate::algebra::dense::{dot, refill, zero};
 use crate::condensed::anderson::Anderson;
 use crate::condensed::saddle::{Iterate, REFRESH};
 use crate::contract::law::{Branch, tangential_norm};
@@ -193,16 +193,14 @@ impl Trial {
     /// δP from where the step began, and W' δP.
     fn multiply(&mut self, gradient: &Step, begin: &[f64]) {
         refill(&mut self.dp, self.p.iter().zip(begin).map(|(p, b)| p - b));
-        self.dv.clear();
-        self.dv.resize(begin.len(), 0.0);
+        zero(&mut self.dv, begin.len());
         gradient.saddle.w().apply_add(&self.dp, &mut self.dv);
     }
 }
 
 /// De Saxcé's shift of a jump by row, in place of what `s` holds.
 fn shift_of(problem: &ContactProblem<'_>, v: &[f64], s: &mut Vec<f64>) {
-    s.clear();
-    s.resize(v.len(), 0.0);
+    zero(s, v.len());
     for (i, own) in problem.rows.iter().enumerate() {
         s[own.start] = problem.friction(i) * tangential_norm(&v[own.clone()]);
     }

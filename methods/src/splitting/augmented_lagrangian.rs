@@ -25,8 +25,8 @@
 //! condensed inner problem stays well conditioned for large k, unlike K + k Bᵀ B.
 //!
 //! # Skips
-//! An open crack is one linear solve. Each inner problem starts from the last; open points leave its dense LU. Updates that change
-//! no state share the factors of a tangent; on 256 active rows and more, so do those that change few.
+//! An open crack is one linear solve. Each inner problem starts from the last; open points leave its dense LU. A tangent that
+//! has not changed is not factored again; on 256 active rows and more, nor is one of which few rows have.
 //!
 //! # Failure modes
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
@@ -92,12 +92,20 @@ impl CondensedMethod for AugmentedLagrangian {
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let end = self.updates(problem, monitor);
+        self.newton.tangent.forget();
+        end
+    }
+}
+
+impl AugmentedLagrangian {
+    /// The outer loop.
+    fn updates(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let k = self.settings.stiffness * problem.operator.rho;
         let outer = Limits::new(self.settings.max_outer, PATIENCE);
         let mut x = problem.start();
         let mut springs = Springs::new(problem, (k, k), x.p.clone(), None);
         let (newton, mut v) = (&mut self.newton, Vec::new());
-        newton.tangent.forget();
         let inner_stop = INNER_FRACTION * problem.stop;
         let mut changes = 0;
         let mut acceleration = Acceleration::new(self.settings.anderson, || x.p.clone());

@@ -149,6 +149,42 @@ fn a_tangent_that_has_become_singular_is_told() {
     });
 }
 
+/// Goal: a piece of which all rows have opened is loose, also where its rows were closed when the tangent was factored.
+#[test]
+fn a_piece_that_gets_loose_is_told() {
+    let rows_of_piece = 6;
+    let motion = (0..ROWS).map(|k| f64::from(u8::from(k < rows_of_piece)));
+    with_body(
+        |k| k,
+        vec![motion.collect()],
+        |problem| {
+            let (a, c) = law(1);
+            let all: Vec<usize> = (0..ROWS).collect();
+            let law = Law::Rows { a: &a, c: &c };
+            let base = Bordered::new(problem, &all, &law).unwrap();
+            let of = |active| Rows {
+                w: &*problem.operator.w,
+                active,
+                a: &a,
+                c: &c,
+            };
+            let mut earlier = remembered(of(&all));
+            for (first, regular) in [(rows_of_piece - 1, true), (rows_of_piece, false)] {
+                let rows = of(&all[first..]);
+                let right: Vec<f64> = (first..=ROWS).map(|k| number(k, 2)).collect();
+                let changes = earlier.changes(rows);
+                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &right);
+                let whole = Bordered::new(problem, rows.active, &law);
+                assert_eq!(
+                    (found.is_some(), whole.is_some()),
+                    (regular, regular),
+                    "{first}"
+                );
+            }
+        },
+    );
+}
+
 /// Goal: few changes are worth it, many are not, and what is solved for already counts no more.
 #[test]
 fn a_step_costs_at_most_half_of_a_factorisation() {
