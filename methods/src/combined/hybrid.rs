@@ -128,7 +128,6 @@ impl CondensedMethod for Solver {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut runs = NewtonRuns {
             multiple: self.settings.r,
-            rescue: false,
             settings: self.settings,
             tangent: &mut self.tangent,
         };
@@ -136,11 +135,9 @@ impl CondensedMethod for Solver {
         if problem.len() <= FEW || (floats && problem.increment.system.dim() == 2) {
             let start = problem.start();
             // A tangent that leaves a piece loose is nothing that sweeps would mend.
-            runs.rescue = floats;
-            if let Some(end) = runs.from(start, AlartCurnier, problem, monitor)? {
+            if let Some(end) = runs.from(start, AlartCurnier, floats, problem, monitor)? {
                 return Ok(end);
             }
-            runs.rescue = false;
             problem.begin_again();
         }
         let mut rounds = Rounds::new(problem, runs);
@@ -210,24 +207,26 @@ fn is_final(end: &End) -> bool {
 struct NewtonRuns<'s> {
     /// r of the next one: as given, from the first that fails 1.
     multiple: f64,
-    /// Whether it is moved on where its tangent is singular.
-    rescue: bool,
     settings: Hybrid,
     /// Its memory serves all runs.
     tangent: &'s mut Tangent,
 }
 
 impl NewtonRuns<'_> {
-    /// From `start`; how the method ends, if it does.
+    /// From `start`; how the method ends, if it does. `rescue`: move on where the tangent is singular.
     fn from<S: Scheme>(
         &mut self,
         start: Forces,
         scheme: S,
+        rescue: bool,
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
         problem.begin_phase();
-        let mut newton = self.newton(scheme);
+        let mut newton = Newton {
+            rescue,
+            ..self.newton(scheme)
+        };
         if self.multiple != 1.0 {
             let most = problem.counters.iterations + SCALED_STEPS;
             let most = most.min(self.settings.max_iterations);
@@ -246,7 +245,7 @@ impl NewtonRuns<'_> {
             limits: Limits::new(self.settings.max_iterations, NEWTON_PATIENCE),
             line_search: true,
             kinks: false,
-            rescue: self.rescue,
+            rescue: false,
             tangent: std::mem::take(self.tangent),
         }
     }
@@ -308,7 +307,8 @@ impl<'s> Rounds<'s> {
         problem: &mut ContactProblem<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<End>, MethodError> {
-        self.runs.from(self.best.clone(), scheme, problem, monitor)
+        let start = self.best.clone();
+        self.runs.from(start, scheme, false, problem, monitor)
     }
 
     /// Iterations in all at which a method of another family is given up that begins now.

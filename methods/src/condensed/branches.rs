@@ -4,6 +4,11 @@ use crate::algebra::dense::refill;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map};
 
+/// Points that are on another piece than before.
+pub(crate) fn changed<T: PartialEq>(now: &[T], before: &[T]) -> usize {
+    now.iter().zip(before).filter(|(a, b)| a != b).count()
+}
+
 /// Branch of every point at the last iterate, and what it is read from.
 #[derive(Debug, Default)]
 pub(crate) struct Branches {

@@ -11,6 +11,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::{along, minus, refill};
+use crate::condensed::branches::changed;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
@@ -155,7 +156,7 @@ impl<S: Scheme> Newton<S> {
                 None => problem.jump_into(&x.p, &x.beta, &mut v),
             }
             self.pieces(problem, &r, &x.p, &v, &mut pieces);
-            let changes = pieces.iter().zip(&before).filter(|(a, b)| a != b).count();
+            let changes = changed(&pieces, &before);
             let violation = problem.violation(&x.p, &v);
             match problem.check(violation, (&x.p, &x.beta), changes, self.limits, monitor)? {
                 Check::GoOn => {}

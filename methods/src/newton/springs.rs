@@ -25,6 +25,7 @@ use faer::Mat;
 
 use crate::algebra::delassus::Series;
 use crate::algebra::dense::{DenseLu, mul_add, ratio, refill, zero};
+use crate::condensed::branches::changed;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
@@ -201,8 +202,7 @@ impl SpringNewton {
         let mut last = f64::INFINITY;
         for iteration in 0.. {
             let residual = self.at.residual(problem);
-            let pairs = self.at.branches.iter().zip(&self.before);
-            let changes = pairs.filter(|(a, b)| a != b).count();
+            let changes = changed(&self.at.branches, &self.before);
             problem.counters.local_solves += problem.rows.points();
             if !residual.is_finite() {
                 return Ok(Status::Diverged);

@@ -48,6 +48,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::{along, ratio};
+use crate::condensed::branches::changed;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::stages::rescue;
@@ -180,8 +181,7 @@ impl CondensedMethod for Barrier {
         let (status, P) = loop {
             let mut at = Balance::of(problem, &law, &x);
             let residual = ratio(at.merit(rho).sqrt(), problem.reference_force(&at.P));
-            let pairs = at.branches.iter().zip(&before);
-            let changes = pairs.filter(|(a, b)| a != b).count();
+            let changes = changed(&at.branches, &before);
             before.clone_from(&at.branches);
             let solved = width == 1.0 && residual <= CLAIM_FRACTION * problem.stop;
             let found = (residual, solved);

@@ -53,6 +53,7 @@ use std::collections::VecDeque;
 
 use crate::algebra::dense::{dot, refill, zero};
 use crate::condensed::anderson::Anderson;
+use crate::condensed::branches::changed;
 use crate::condensed::saddle::{Iterate, REFRESH};
 use crate::contract::law::{Branch, tangential_norm};
 use crate::splitting::projection::Step;
@@ -125,7 +126,7 @@ impl CondensedMethod for AcceleratedGradient {
                 _ => program.spectral(problem, &mut x),
             }
             let branches = &mut program.trial.branches;
-            changes = branches.iter().zip(&before).filter(|(a, b)| a != b).count();
+            changes = changed(branches, &before);
             std::mem::swap(&mut before, branches);
         };
         let (p, beta) = saddle.balanced(problem, &x);

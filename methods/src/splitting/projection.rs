@@ -38,6 +38,7 @@
 //! only every now and then, and before anything is claimed.
 
 use crate::algebra::dense::{minus, refill};
+use crate::condensed::branches::changed;
 use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
@@ -100,8 +101,7 @@ impl CondensedMethod for Projection {
                 saddle.refresh(problem, &mut x);
             }
             let next_tau = step.adapted(problem, &x, &mut tau, &mut trial);
-            let pairs = trial.branches.iter().zip(&before);
-            changes = pairs.filter(|(a, b)| a != b).count();
+            changes = changed(&trial.branches, &before);
             std::mem::swap(&mut before, &mut trial.branches);
             if extragradient {
                 step.project(problem, &x, &trial.x, tau, &mut second);

@@ -46,6 +46,15 @@ fn with_body(
     with_contact(&body, vec![0.3; POINTS], load, |_, problem| test(&problem));
 }
 
+fn rows_of<'a>(
+    problem: &'a ContactProblem<'_>,
+    active: &'a [usize],
+    (a, c): (Blocks<'a>, Blocks<'a>),
+) -> Rows<'a> {
+    let w = &*problem.operator.w;
+    Rows { w, active, a, c }
+}
+
 fn remembered(rows: Rows<'_>) -> Factored {
     let mut factored = Factored::default();
     factored.remember(rows);
@@ -71,12 +80,7 @@ fn steps_with_earlier_factors(motions: Vec<Vec<f64>>) {
                 |out: &[usize]| -> Vec<usize> { (0..ROWS).filter(|k| !out.contains(k)).collect() };
             let first = without(&[4, 5, 16]);
             let base = Bordered::new(problem, &first, &Law::Rows { a: &a, c: &c }).unwrap();
-            let rows = Rows {
-                w: &*problem.operator.w,
-                active: &first,
-                a: &a,
-                c: &c,
-            };
+            let rows = rows_of(problem, &first, (&a, &c));
             let mut earlier = remembered(rows);
             let f: Vec<f64> = (0..ROWS).map(|k| number(k, 2)).collect();
             let others = law(5);
@@ -90,12 +94,7 @@ fn steps_with_earlier_factors(motions: Vec<Vec<f64>>) {
                 for k in changed {
                     (a[k], c[k]) = (others.0[k], others.1[k]);
                 }
-                let rows = Rows {
-                    w: &*problem.operator.w,
-                    active: &active,
-                    a: &a,
-                    c: &c,
-                };
+                let rows = rows_of(problem, &active, (&a, &c));
                 let (law, f) = (Law::Rows { a: &a, c: &c }, &f[..active.len()]);
                 let (changes, balance) = (earlier.changes(rows), &[0.7, -0.2][..problem.modes()]);
                 let right = [f, balance].concat();
@@ -130,18 +129,8 @@ fn a_tangent_that_has_become_singular_is_told() {
         let law = Law::Rows { a: &a, c: &c };
         assert!(Bordered::new(problem, &all, &law).is_none());
         let base = Bordered::new(problem, first, &law).unwrap();
-        let mut earlier = remembered(Rows {
-            w: &*problem.operator.w,
-            active: first,
-            a: &a,
-            c: &c,
-        });
-        let rows = Rows {
-            w: &*problem.operator.w,
-            active: &all,
-            a: &a,
-            c: &c,
-        };
+        let mut earlier = remembered(rows_of(problem, first, (&a, &c)));
+        let rows = rows_of(problem, &all, (&a, &c));
         let f: Vec<f64> = (0..ROWS).map(|k| number(twin(k), 2)).collect();
         let changes = earlier.changes(rows);
         let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &f);
@@ -162,12 +151,7 @@ fn a_piece_that_gets_loose_is_told() {
             let all: Vec<usize> = (0..ROWS).collect();
             let law = Law::Rows { a: &a, c: &c };
             let base = Bordered::new(problem, &all, &law).unwrap();
-            let of = |active| Rows {
-                w: &*problem.operator.w,
-                active,
-                a: &a,
-                c: &c,
-            };
+            let of = |active| rows_of(problem, active, (&a, &c));
             let mut earlier = remembered(of(&all));
             for (first, regular) in [(rows_of_piece - 1, true), (rows_of_piece, false)] {
                 let rows = of(&all[first..]);
@@ -194,12 +178,7 @@ fn a_step_costs_at_most_half_of_a_factorisation() {
         |problem| {
             let (a, c) = law(1);
             let all: Vec<usize> = (0..ROWS).collect();
-            let rows = Rows {
-                w: &*problem.operator.w,
-                active: &all,
-                a: &a,
-                c: &c,
-            };
+            let rows = rows_of(problem, &all, (&a, &c));
             let mut earlier = remembered(rows);
             assert!(earlier.is_of(rows));
             let lu = DenseLu::default();
