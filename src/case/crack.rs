@@ -35,6 +35,8 @@ pub struct CrackSpec {
     pub tip_span: Span,
     /// Contact space.
     pub contact: ContactSpace,
+    /// Where `contact` stands in the file, or the crack's table.
+    pub contact_span: Span,
 }
 
 /// A friction coefficient.
@@ -79,55 +81,62 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
         _ => ellipse(geometry)?,
     };
     let tip_value = table.get("tip");
+    let contact = contact(&table)?;
     Ok(CrackSpec {
         span: table.span(),
         geometry_span: geometry.span(),
-        tip: tip(tip_value, &shape)?,
+        tip: match contact {
+            ContactSpace::NodePairs => no_tip(tip_value, "node pairs have no branch functions")?,
+            _ => tip(tip_value, &shape)?,
+        },
         tip_span: tip_value.map_or(table.span(), |v| v.span()),
         geometry: shape,
         friction: friction(table.required("friction")?)?,
-        contact: contact(&table)?,
+        contact,
+        contact_span: table.get("contact").map_or(table.span(), |v| v.span()),
     })
 }
 
 /// `tip`; a plane goes through the whole solid and has none. By default a tip in the plane has branch functions within a
 /// radius that fits, a front in a solid those of its cells: there a radius costs more than it brings.
 fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
-    let endless = matches!(shape, CrackShape::Plane { .. });
+    if let CrackShape::Plane { .. } = shape {
+        return no_tip(value, "a plane goes through the whole solid and has no tip");
+    }
     let Some(value) = value else {
         return Ok(match shape {
-            CrackShape::Plane { .. } => Tip::None,
             CrackShape::Ellipse(_) => Tip::Branch,
-            CrackShape::Polyline(_) | CrackShape::Arc { .. } => Tip::Auto,
+            _ => Tip::Auto,
         });
     };
-    let tip = if value.any_table().is_ok() {
+    if value.any_table().is_ok() {
         let table = value.table(&["branch_radius_m"])?;
-        Tip::Radius(table.positive("branch_radius_m")?)
+        Ok(Tip::Radius(table.positive("branch_radius_m")?))
     } else if value.string().is_ok() {
         value.one_of(&[
             ("none", Tip::None),
             ("auto", Tip::Auto),
             ("branch", Tip::Branch),
-        ])?
+        ])
     } else {
-        return Err(value.refuse(
-            "none, auto, branch or { branch_radius_m = R }",
-            "wrong type",
-        ));
-    };
-    if endless && tip != Tip::None {
-        return Err(value.refuse(
-            "none",
-            "a plane goes through the whole solid and has no tip",
-        ));
+        let allowed = "none, auto, branch or { branch_radius_m = R }";
+        Err(value.refuse(allowed, "wrong type"))
     }
-    Ok(tip)
+}
+
+/// `tip` of a crack that can have no functions at one.
+fn no_tip(value: Option<Value<'_>>, why: &str) -> Result<Tip, CaseError> {
+    match value {
+        Some(value) if value.string().ok() != Some("none") => Err(value.refuse("none", why)),
+        _ => Ok(Tip::None),
+    }
 }
 
 /// `contact`.
 fn contact(table: &Table<'_>) -> Result<ContactSpace, CaseError> {
-    let named = ContactSpace::ALL.map(|space| (space.name(), space));
+    let all = ContactSpace::ALL.into_iter();
+    let all = all.chain([ContactSpace::NodePairs]);
+    let named: Vec<_> = all.map(|space| (space.name(), space)).collect();
     let given = table.optional("contact", |v| v.one_of(&named))?;
     Ok(given.unwrap_or(ContactSpace::Star))
 }

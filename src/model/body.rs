@@ -14,19 +14,20 @@ use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
 use stickslip_xfem::contact::{self, conforming, rank};
 use stickslip_xfem::cut::arms::arms;
 use stickslip_xfem::cut::crack::Crack;
+use stickslip_xfem::cut::off_facets::off_facets;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::material::{Dilatation, Lame};
+use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
-use stickslip_xfem::mesh::{Lengths, Mesh};
 use stickslip_xfem::stiffness::assembly::{Assembly, elimination_order};
 use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
 use stickslip_xfem::stiffness::cell_matrices::CellMatrices;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
-use crate::case::{Case, CaseError, Quadrature};
+use crate::case::{Case, CaseError, ContactSpace, CrackSpec, Quadrature};
 use crate::model::boundary::{Prescribed, held_sides, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
@@ -37,7 +38,7 @@ use crate::model::refusals::{cell_error, check_probes, check_supports, crack_err
 pub struct Body {
     /// Origin of all coordinates here in those of the case file: [`Case::origin`].
     pub origin: Point,
-    /// Mesh, with doubled nodes where a crack runs along cell facets.
+    /// Mesh, with doubled nodes where a crack of node pairs runs along its facets.
     pub mesh: Mesh,
     /// Cracks through cells.
     pub cracks: Vec<Crack>,
@@ -178,12 +179,8 @@ impl Body {
             faces(case, &integrator, doubled, &numbers, scaled)?;
         let samples = facet_samples(&integrator).map_err(unfilled)?;
         let jump = jump_rows(dim, &points);
-        let integrated: Vec<bool> = (case.cracks.iter().enumerate())
-            .map(|(number, spec)| {
-                let through = cracks.iter().any(|c| c.number == number);
-                through && spec.contact.is_integrated()
-            })
-            .collect();
+        let spaces = case.cracks.iter().map(|spec| spec.contact);
+        let integrated: Vec<bool> = spaces.map(ContactSpace::is_integrated).collect();
         let traction_clock = Instant::now();
         let traction = if needs.traction {
             traction(&integrated, &integrator, &points, &surface).map_err(unfilled)?
@@ -303,25 +300,25 @@ impl Body {
     }
 }
 
-/// Contact surfaces of all cracks, without points that no displacement can tell from others. `doubled`: those of cracks along
-/// cell facets; `scaled`: a row of the jump operator over the free unknowns of the solver, divided by the roots of their
+/// Contact surfaces of all cracks, without points that no displacement can tell from others. `doubled`: that of a
+/// crack that split the mesh; `scaled`: a row of the jump operator over the free unknowns of the solver, divided by the roots of their
 /// stiffness.
 fn faces(
     case: &Case,
     integrator: &CellIntegrator<'_>,
-    mut doubled: BTreeMap<usize, ContactSurface>,
+    doubled: Option<ContactSurface>,
     numbers: &[Option<u32>],
     scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)>,
 ) -> Result<ContactSurface, BodyError> {
     let (dim, cracks) = (integrator.mesh.dim(), integrator.cracks);
     let held = |unknown: usize| numbers[unknown].is_none();
-    let mut surface = ContactSurface::default();
+    let mut surface = match doubled {
+        Some(own) => own.retain(|point| point.acts(dim, held)),
+        None => ContactSurface::default(),
+    };
     // Points of the arms whose space is integrated.
     let mut arms: Vec<std::ops::Range<usize>> = Vec::new();
     for (number, spec) in case.cracks.iter().enumerate() {
-        if let Some(own) = doubled.remove(&number) {
-            surface.append(own.retain(|point| point.acts(dim, held)));
-        }
         // The arms of a crack one after the other.
         let own = (0..cracks.len()).filter(|&index| cracks[index].number == number);
         for index in own {
@@ -391,15 +388,9 @@ fn traction(
 /// Contact spaces of the cracks, each named once, with marks for inexact quadrature and for the mean dilatation.
 fn space_name(case: &Case, cracks: &[Crack], dilatation: Dilatation) -> String {
     let mut names: Vec<&str> = Vec::new();
-    for (number, spec) in case.cracks.iter().enumerate() {
-        let through = cracks.iter().any(|c| c.number == number);
-        let name = if through {
-            spec.contact.name()
-        } else {
-            "node-pairs"
-        };
-        if !names.contains(&name) {
-            names.push(name);
+    for spec in &case.cracks {
+        if !names.contains(&spec.contact.name()) {
+            names.push(spec.contact.name());
         }
     }
     let mut name = names.join("+");
@@ -412,36 +403,28 @@ fn space_name(case: &Case, cracks: &[Crack], dilatation: Dilatation) -> String {
     name
 }
 
-/// Cracks through cells, and the surfaces of the others by crack number.
-type PlacedCracks = (Vec<Crack>, BTreeMap<usize, ContactSurface>);
-
-/// Places the cracks: those along cell facets split the mesh, the others keep a level set.
-fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<PlacedCracks, CaseError> {
-    let place = |number: usize, mesh: &Mesh, lengths: &Lengths| {
-        let spec = &case.cracks[number];
-        Crack::new(number, &spec.geometry, spec.tip, mesh, lengths)
-    };
-    let mut doubled = BTreeMap::new();
-    let mut cracks = Vec::new();
-    let mut lengths = mesh.lengths();
-    for number in 0..case.cracks.len() {
-        let crack = place(number, mesh, &lengths);
-        match conforming::split(mesh, &crack).map_err(|e| crack_error(case, &e))? {
-            Some(surface) => {
-                doubled.insert(number, surface);
-                lengths = mesh.lengths();
-            }
-            None => cracks.push(crack),
+/// The arms of the cracks, and the surface of one that splits the mesh along its facets, if that was asked for.
+fn place_cracks(
+    case: &Case,
+    mesh: &mut Mesh,
+) -> Result<(Vec<Crack>, Option<ContactSurface>), CaseError> {
+    let refused = |e: EnrichmentError| crack_error(case, &e);
+    let lengths = mesh.lengths();
+    let pairs = |spec: &&CrackSpec| spec.contact == ContactSpace::NodePairs;
+    if let Some(spec) = case.cracks.iter().find(pairs) {
+        if case.cracks.len() > 1 {
+            let allowed = "edge-pairs, facet, star or p0 beside other cracks";
+            let message = "node pairs stand for a crack that is alone in its body";
+            return Err(case.refuse(&spec.contact_span, allowed, message));
         }
+        let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &lengths);
+        let surface = conforming::split(mesh, &crack).map_err(refused)?;
+        return Ok((Vec::new(), Some(surface)));
     }
-    if !doubled.is_empty() {
-        // Level sets belong to the final nodes.
-        for crack in &mut cracks {
-            *crack = place(crack.number, mesh, &lengths);
-        }
-    }
-    let cracks = arms(cracks, mesh).map_err(|e| crack_error(case, &e.into()))?;
-    Ok((cracks, doubled))
+    let cracks: Vec<_> = case.cracks.iter().map(|c| (&c.geometry, c.tip)).collect();
+    let cracks = off_facets(mesh, &lengths, &cracks).map_err(refused)?;
+    let cracks = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
+    Ok((cracks, None))
 }
 
 /// Numbers those that are kept, in their order, and counts them.

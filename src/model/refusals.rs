@@ -89,15 +89,18 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::Partition { crack, .. } => {
             (*crack, "a finer mesh, or cracks farther apart")
         }
-        EnrichmentError::Mixed { crack, .. } => (*crack, "all of it on cell edges, or none"),
-        EnrichmentError::ConformingTip { crack } => (
+        EnrichmentError::OffFacets { crack, .. } => (
             *crack,
-            "tip = \"none\", or a mesh whose edges the crack crosses",
+            "a contact space other than node-pairs, or a mesh with nodes along the crack",
+        ),
+        EnrichmentError::AlongFacet { crack, .. } => (
+            *crack,
+            "another number of cells, or a crack moved by a hundredth of a cell",
         ),
     };
     let spec = &case.cracks[crack];
     let span = match error {
-        EnrichmentError::ConformingTip { .. } => &spec.tip_span,
+        EnrichmentError::OffFacets { .. } => &spec.contact_span,
         _ => &spec.geometry_span,
     };
     let fitting = match (&spec.geometry, error) {

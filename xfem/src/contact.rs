@@ -34,6 +34,8 @@ pub enum ContactSpace {
     Star,
     /// One constant multiplier per cut cell.
     P0,
+    /// One point per pair of nodes of a crack along cell facets; by name only.
+    NodePairs,
 }
 
 impl ContactSpace {
@@ -48,6 +50,7 @@ impl ContactSpace {
             ContactSpace::Facet => 1,
             ContactSpace::P0 => 2,
             ContactSpace::EdgePairs => 3,
+            ContactSpace::NodePairs => 4,
         });
         spaces
     }
@@ -64,12 +67,13 @@ impl ContactSpace {
             ContactSpace::Facet => "facet",
             ContactSpace::Star => "star",
             ContactSpace::P0 => "p0",
+            ContactSpace::NodePairs => "node-pairs",
         }
     }
 
     /// Whether contact points are means over multiplier functions, not places.
     pub fn is_integrated(self) -> bool {
-        self != ContactSpace::EdgePairs
+        !matches!(self, ContactSpace::EdgePairs | ContactSpace::NodePairs)
     }
 }
 
@@ -88,5 +92,6 @@ pub fn surface(
         ContactSpace::Facet => integrated(integrator, index, held, facet_space),
         ContactSpace::Star => integrated(integrator, index, held, star_space),
         ContactSpace::P0 => integrated(integrator, index, held, constant_space),
+        ContactSpace::NodePairs => Ok(ContactSurface::default()),
     }
 }

@@ -4,6 +4,7 @@ pub mod arms;
 pub mod crack;
 pub mod flat;
 mod near;
+pub mod off_facets;
 pub mod part;
 pub mod partition;
 pub mod placement;

@@ -64,14 +64,14 @@ impl Enrichment {
     /// crack, on the side of it whose piece is the node's own; by default that is side 1.
     ///
     /// # Errors
-    /// A crack wholly outside, along cell facets in part, or one that leaves a cell no clean parts.
+    /// A crack wholly outside, along a cell facet, or one that leaves a cell no clean parts.
     pub fn new(
         mesh: &Mesh,
         cracks: &[Crack],
         beside: &BTreeMap<u32, Point>,
     ) -> Result<Self, EnrichmentError> {
         let trace = Trace::new(mesh, cracks).map_err(|e| match e {
-            TraceError::AlongEdge(arm, at) => EnrichmentError::Mixed {
+            TraceError::AlongEdge(arm, at) => EnrichmentError::AlongFacet {
                 crack: cracks[arm].number,
                 at,
             },

@@ -1,36 +1,54 @@
-//! Cracks on cell facets: doubled nodes, one contact point per pair.
+//! A crack of cell facets, by name only: doubled nodes, one contact point per pair. The founding paper's Model II.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Tip};
+use crate::cut::crack::{Crack, Geometry};
 use crate::cut::is_split;
 use crate::cut::placement::ends_inside;
 use crate::enrichment::EnrichmentError;
+use crate::geometry::ellipse::Ellipse;
 use crate::geometry::{Point, mean};
 use crate::mesh::{Facet, Mesh};
 
 use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
 
-/// Splits the mesh along a crack that runs along cell facets and returns its contact surface; `None` if the crack runs
-/// through cells. Side 1 gets the new nodes.
+/// Splits the mesh along a crack of facets, from node to node or to the border, and returns its contact surface. Side 1 gets
+/// the new nodes.
 ///
 /// The standard function of a node has the node's number, so the points' terms name nodes.
-pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, EnrichmentError> {
+///
+/// # Errors
+/// A crack that runs through a cell, or ends between nodes.
+pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, EnrichmentError> {
+    let off = |at: Point| EnrichmentError::OffFacets {
+        crack: crack.number,
+        at,
+    };
+    let cut =
+        |cell: &usize| is_split(&crack.cell_phi(mesh, *cell)) && centre_on(mesh, crack, *cell);
+    if let Some(cell) = (0..mesh.cell_count()).find(cut) {
+        return Err(off(mesh.centre(cell)));
+    }
+    // A node has one frame: a bend is no place for a pair.
+    let mut bends = crack
+        .path
+        .iter()
+        .skip(1)
+        .take(crack.path.len().saturating_sub(2));
+    let mut ends = ends_inside(mesh, crack).into_iter().map(|end| end.1);
+    let loose = bends
+        .next()
+        .map(|v| v.x)
+        .or_else(|| ends.find(|x| mesh.node_at(x).is_none()));
+    if let Some(x) = loose {
+        return Err(off(x));
+    }
     let facets = crack_facets(mesh, crack);
+    if let Geometry::Ellipse(Ellipse { centre, .. }) = crack.geometry {
+        return Err(off(centre));
+    }
     if facets.is_empty() {
-        return Ok(None);
-    }
-    for cell in 0..mesh.cell_count() {
-        if is_split(&crack.cell_phi(mesh, cell)) && centre_on(mesh, crack, cell) {
-            return Err(EnrichmentError::Mixed {
-                crack: crack.number,
-                at: mesh.centre(cell),
-            });
-        }
-    }
-    let asked = matches!(crack.tip, Tip::Branch | Tip::Radius(_));
-    if asked && !ends_inside(mesh, crack).is_empty() {
-        return Err(EnrichmentError::ConformingTip {
+        return Err(EnrichmentError::Outside {
             crack: crack.number,
         });
     }
@@ -77,7 +95,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
             }
         }
     }
-    Ok(Some(surface))
+    Ok(surface)
 }
 
 /// Facets of side-2 cells on the crack that a side-1 cell shares.

@@ -58,19 +58,21 @@ pub enum EnrichmentError {
         /// Centre of the cell [m].
         at: Point,
     },
-    /// The crack runs along cell facets in one part and through cells in another.
-    #[error("crack {} runs partly along cell edges and partly through cells, near {at:?}", crack + 1)]
-    Mixed {
+    /// A crack of node pairs that is not made of facets.
+    #[error("crack {} does not follow cell facets from node to node, near {at:?}", crack + 1)]
+    OffFacets {
         /// Crack number, from 0.
         crack: usize,
-        /// Centre of a cell it cuts [m].
+        /// Where it runs through a cell, or ends [m].
         at: Point,
     },
-    /// A crack on cell edges ends inside the body with branch functions asked for.
-    #[error("crack {} runs along cell edges and ends inside the body: branch functions need a tip inside a cell", crack + 1)]
-    ConformingTip {
+    /// It runs along a facet wherever it is moved by next to nothing.
+    #[error("crack {} runs along a facet near {at:?}, and beside that along others", crack + 1)]
+    AlongFacet {
         /// Crack number, from 0.
         crack: usize,
+        /// Where [m].
+        at: Point,
     },
 }
 
@@ -81,13 +83,13 @@ impl EnrichmentError {
             Self::Overlap(Overlap { at, .. })
             | Self::Lost { at, .. }
             | Self::Partition { at, .. }
-            | Self::Mixed { at, .. } => *at = add_scaled(at, 1.0, by),
+            | Self::OffFacets { at, .. }
+            | Self::AlongFacet { at, .. } => *at = add_scaled(at, 1.0, by),
             Self::Outside { .. }
             | Self::TooShort { .. }
             | Self::Undetermined { .. }
             | Self::Loose { .. }
-            | Self::Bent { .. }
-            | Self::ConformingTip { .. } => {}
+            | Self::Bent { .. } => {}
         }
         self
     }

@@ -34,6 +34,10 @@ use super::elasticity::{CellMatrix, CellView};
 /// square: K' carries the rounding of K divided by it.
 const DROPPED: f64 = 1e-8;
 
+/// A function is dropped, too, if its energy is smaller than this part of that of its node's standard function: on a sliver
+/// around a point, a junction next to a grid line say, the functions of all nodes of a cell are alike up to rounding.
+const SLIVER: f64 = 1e-12;
+
 /// The functions of one node.
 #[derive(Debug, Clone)]
 struct Block {
@@ -78,24 +82,30 @@ impl SolverBasis {
             let own = enrichment.enriched_of(node);
             let kind = |f: usize| enrichment.functions[f].kind;
             let branch = |f: usize| matches!(kind(f), FunctionKind::Branch { .. });
-            // Pieces are disjoint: their functions depend on no other.
-            let dependent = own.clone().any(branch);
             let free = [0, 1, 2].map(|a| a < dim && !own.clone().any(|f| held(f, a)));
-            if !dependent || free == [false; 3] {
+            if own.is_empty() || free == [false; 3] {
                 continue;
             }
+            let standard = gram(enrichment, dim, node..node + 1, users, &matrix)[0];
+            let gram = gram(enrichment, dim, own.clone(), users, &matrix);
+            let sliver = |i: usize| gram[i * own.len() + i] <= SLIVER * standard;
+            // Pieces are disjoint: of a node their functions depend on no other.
+            let dependent = own.clone().any(branch);
+            if !dependent && !(0..own.len()).any(sliver) {
+                continue;
+            }
+            stiffest = standard.max(stiffest);
             if basis.block_of.is_empty() {
                 basis.block_of = vec![None; enrichment.functions.len()];
             }
-            let standard = gram(enrichment, dim, node..node + 1, users, &matrix);
-            stiffest = standard[0].max(stiffest);
-            let gram = gram(enrichment, dim, own.clone(), users, &matrix);
             for f in own.clone() {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
             }
             basis.blocks.push(Block {
                 first: own.start,
-                t: inverse_factor(&gram, own.len(), |i| surplus.contains(&(own.start + i))),
+                t: inverse_factor(&gram, own.len(), |i| {
+                    sliver(i) || surplus.contains(&(own.start + i))
+                }),
                 count: own.len(),
                 free,
             });
