@@ -333,6 +333,9 @@ fn faces(
         let rows = jump_rows(dim, point);
         rows.iter().map(|row| scaled(row)).collect()
     };
+    let size = integrator.mesh.smallest_edge().powi(dim as i32 - 1);
+    let hairs = rank::hairs(&surface, &arms, size);
+    arms = rank::merge(&mut surface, &arms, &hairs).0;
     loop {
         let lost = rank::dependent(&arms, |k| rows(&surface.points[k..=k]));
         if lost.is_empty() {

@@ -30,6 +30,9 @@ pub const UNRESISTED: f64 = 1e-3;
 /// Pivots and eigenvalues below this are rounding. Between two cracks that nearly touch both fall with their distance.
 const SINGULAR: f64 = 1e-10;
 
+/// Areas below this, in facets of the smallest cell, carry no force of their own.
+const HAIR: f64 = 1e-6;
+
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
 
@@ -175,6 +178,15 @@ impl Factor {
         self.rows.push(row);
         true
     }
+}
+
+/// Points on next to nothing of a facet of given size [m^(dim − 1)], between a junction and a mesh edge a hair from it say: their
+/// traction would be a rounding over no area.
+pub fn hairs(surface: &ContactSurface, arms: &[std::ops::Range<usize>], size: f64) -> Vec<usize> {
+    let points = arms.iter().flat_map(|arm| arm.clone());
+    points
+        .filter(|&k| surface.points[k].weight <= HAIR * size)
+        .collect()
 }
 
 /// Merges points into the nearest others of their arms; what has no other stays. The arms, and how many points went.

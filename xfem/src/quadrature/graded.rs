@@ -187,7 +187,7 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<
                 // Half of the angles on every interval.
                 let rule = FanRule {
                     radial: n.max(6),
-                    angular: [2 * n + 8; 4],
+                    angular: 2 * n + 8,
                 };
                 points.extend(slice_points(
                     &own,

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::clip::fan;
+use crate::geometry::clip::{fan, rounding};
 use crate::geometry::polygon::edges;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, resolve, sub, unit};
 
@@ -63,16 +63,20 @@ fn outside_points(
     let e1 = cross(along, &e0);
     let flat: Vec<[f64; 2]> = from_tip.iter().map(|d| resolve(&[e0, e1], d)).collect();
     let angles: Vec<f64> = flat.iter().map(|d| d[1].atan2(d[0])).collect();
-    let mut breaks = angles.clone();
-    breaks.sort_by(f64::total_cmp);
+    // An edge that points at the tip lies between two angles that differ by rounding.
+    let lost = rounding(polygon);
+    let slack = |d: &[f64; 2]| 1e-13 + 2.0 * lost / d[0].hypot(d[1]);
+    let slacks = flat.iter().map(slack);
+    let mut breaks: Vec<(f64, f64)> = angles.iter().copied().zip(slacks).collect();
+    breaks.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Error (3 + √8)^−2n for simple poles, n points: 7e-10 for 6.
-    let angular = gauss(rule.angular[0] / 2);
+    let angular = gauss(rule.angular / 2);
     let radial = gauss(rule.radial);
     let mut points = Vec::new();
     let mut stack = Vec::new();
     for pair in breaks.windows(2) {
-        let (low, high) = (pair[0], pair[1]);
-        if high - low < 1e-13 {
+        let (low, high) = (pair[0].0, pair[1].0);
+        if high - low < pair[0].1.max(pair[1].1) {
             continue;
         }
         let centre = 0.5 * (low + high);

@@ -40,7 +40,7 @@ impl Effort {
             along: 6,
             fan: FanRule {
                 radial: 6,
-                angular: [10, 14, 20, 36],
+                angular: 10,
             },
         },
         nearer: 0.7,
