@@ -28,6 +28,7 @@ use self::basis::{Function, FunctionKind, Region, STEP};
 pub use self::error::EnrichmentError;
 use self::supports::{Pieces, Place, support_pieces};
 use self::tips::Tips;
+use self::tips::corners::Corner;
 
 /// All functions of the body and of every cell.
 #[derive(Debug, Clone)]
@@ -40,6 +41,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// 2D: where arms with branch functions bend or meet.
+    pub corners: Vec<Corner>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     cores: Vec<BTreeSet<u32>>,
     /// Divided cells.
@@ -138,6 +141,7 @@ impl Enrichment {
             shifts,
             tips: tips.frames,
             tip_cells: tips.cells,
+            corners: tips.corners,
             cores: tips.cores,
             partitions: tips.partitions,
             endings: tips.endings,
@@ -296,9 +300,12 @@ impl Enrichment {
         self.cores[tip].contains(&node)
     }
 
-    /// Where branch functions are singular in 2D: the tips that carry them [m].
+    /// Where branch functions are singular in 2D: the tips and corners that carry them [m].
     pub fn singular_points(&self) -> Vec<Point> {
-        self.tips.iter().flat_map(TipFrame::tips).collect()
+        let mut found: Vec<Point> = self.tips.iter().flat_map(TipFrame::tips).collect();
+        // The arms of a corner follow each other.
+        found.dedup();
+        found
     }
 
     /// Local nodes of a cell in the ramp of a tip, one bit each.

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::basis::{FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
-use crate::geometry::{norm, root, sub};
+use crate::geometry::tip_frame::FrontShape;
+use crate::geometry::{Point, norm, root, sub};
 use crate::stiffness::cell_matrix::CellIntegrator;
 
 use super::pairs::{AT_TIP, vertex_weights};
@@ -120,11 +121,13 @@ impl<'a> FreeJumps<'a> {
     /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
         let (mesh, tips) = (self.integrator.mesh, &self.integrator.enrichment.tips);
+        // At a corner other functions jump, too.
+        let tips = || tips.iter().filter(|tip| tip.shape != FrontShape::Corner);
         let mut numbers: BTreeMap<(u32, [usize; 2]), u32> = BTreeMap::new();
         let mut crossing = |corner: &Corner| {
             let [i, j] = corner.nodes?;
             let size = self.sizes[i as usize].min(self.sizes[j as usize]);
-            let mut distances = tips.iter().map(|tip| tip.distance(&corner.x));
+            let mut distances = tips().map(|tip| tip.distance(&corner.x));
             if distances.any(|distance| distance <= AT_TIP * size) {
                 return None;
             }
@@ -143,6 +146,36 @@ impl<'a> FreeJumps<'a> {
             })
         };
         self.facets.corners.iter().map(&mut crossing).collect()
+    }
+
+    /// Where the arm ends in corners, with the distance from there up to which it has multipliers of its own [m]: none on an
+    /// arm too short for it. The facets are parted there.
+    pub fn part_at_corners(&mut self) -> Vec<(Point, f64)> {
+        /// That distance, in edges of the mesh: it decides how far the overlap of a corner reaches. From 0.05 to 0.15 answers
+        /// are alike.
+        const OWN: f64 = 0.1;
+        /// Shortest arm, in edges.
+        const SHORTEST: f64 = 2.0;
+        let CellIntegrator {
+            enrichment, cracks, ..
+        } = self.integrator;
+        let length = cracks[self.index].range[1] - cracks[self.index].range[0];
+        let corners = enrichment.corners.iter();
+        let own = corners.filter(|c| c.arms.contains(&self.index) && length >= SHORTEST * c.size);
+        let own: Vec<(Point, f64)> = own.map(|c| (c.x, OWN * c.size)).collect();
+        for (x, d) in &own {
+            self.facets.part(x, *d);
+        }
+        own
+    }
+
+    /// Distance of a corner of facets from the nearer end of the arm, in edges of the mesh; 0 in a solid.
+    pub fn from_end(&self, corner: usize) -> f64 {
+        let path = &self.integrator.cracks[self.index].path;
+        let ends = path.first().into_iter().chain(path.last());
+        let away = ends.map(|end| norm(&sub(&self.facets.corners[corner].x, &end.x)));
+        let size = self.sizes.iter().copied().fold(f64::INFINITY, f64::min);
+        away.reduce(f64::min).unwrap_or(0.0) / size
     }
 
     /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.

@@ -25,11 +25,11 @@ pub fn integrated(
     integrator: &CellIntegrator<'_>,
     index: usize,
     held: impl Fn(usize) -> bool,
-    space: impl Fn(&FreeJumps<'_>) -> Multipliers,
+    space: impl Fn(&mut FreeJumps<'_>) -> Multipliers,
 ) -> Result<ContactSurface, CellError> {
     let crack = &integrator.cracks[index];
-    let free = FreeJumps::new(integrator, index, held);
-    let multipliers = space(&free);
+    let mut free = FreeJumps::new(integrator, index, held);
+    let multipliers = space(&mut free);
     let facets = &free.facets;
     let quadrature = surface_points(integrator, index, facets, &multipliers)?;
     let mut points = vec![Moments::default(); multipliers.count];

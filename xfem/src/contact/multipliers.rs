@@ -5,7 +5,9 @@
 //!
 //!   facet   every crossed mesh edge has a multiplier of its own
 //!   star    one multiplier per star of crossed edges; a crossed edge (i, j) that belongs to none, cut at the fraction w
-//!           from i, takes (1 − w) λ_star(i) + w λ_star(j)                      (Géniaut, Massin & Moës 2007)
+//!           from i, takes (1 − w) λ_star(i) + w λ_star(j)                      (Géniaut, Massin & Moës 2007);
+//!           an arm with branch functions at a corner has two of its own there: in the corner and a little way from it,
+//!           or the pressure of a corner would be that of the next crossing
 //!   p0      every facet has a constant multiplier
 //! ```
 //!
@@ -15,6 +17,7 @@
 use std::collections::BTreeMap;
 
 use crate::enrichment::facets::CrackFacets;
+use crate::geometry::{Point, norm, sub};
 
 use super::free_jumps::{Crossing, FreeJumps};
 use super::star_forest::star_forest;
@@ -39,24 +42,35 @@ pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
 }
 
 /// One multiplier per crossing.
-pub fn facet_space(free: &FreeJumps<'_>) -> Multipliers {
+pub fn facet_space(free: &mut FreeJumps<'_>) -> Multipliers {
     let crossings = free.crossings().into_iter();
     let (own, count) = numbered(crossings.map(|crossing| crossing.is_some()));
     complete(free, by_corner(&free.facets, own, count))
 }
 
-/// One multiplier per star of crossings.
-pub fn star_space(free: &FreeJumps<'_>) -> Multipliers {
+/// One multiplier per star of crossings, and two at the ends of arms in corners.
+pub fn star_space(free: &mut FreeJumps<'_>) -> Multipliers {
+    let ends = free.part_at_corners();
     let crossings = free.crossings();
-    let edges: Vec<(usize, Crossing)> = crossings
+    let near: Vec<_> = (0..crossings.len())
+        .filter_map(|corner| Some((corner, near_end(free, &ends, corner)?)))
+        .collect();
+    let mut edges: Vec<(usize, Crossing)> = crossings
         .iter()
         .enumerate()
+        .filter(|(corner, _)| near.binary_search_by_key(corner, |n| n.0).is_err())
         .filter_map(|(corner, crossing)| crossing.map(|c| (corner, c)))
         .collect();
-    let ends: Vec<_> = edges.iter().map(|(_, c)| c.ends).collect();
-    let stars = star_forest(&ends);
+    // Of equals the edge cut nearest its middle goes, then that nearest an end: however the crack is read.
+    edges.sort_by_cached_key(|(corner, crossing)| {
+        let rounded = |v: f64| (v * 1e9).round() as i64;
+        let from_middle = (crossing.fraction - 0.5).abs();
+        (rounded(from_middle), rounded(free.from_end(*corner)))
+    });
+    let pairs: Vec<_> = edges.iter().map(|(_, c)| c.ends).collect();
+    let stars = star_forest(&pairs);
     let mut star_of: BTreeMap<u32, u32> = BTreeMap::new();
-    for (pair, star) in ends.iter().zip(&stars) {
+    for (pair, star) in pairs.iter().zip(&stars) {
         if let Some(star) = star {
             star_of.extend(pair.iter().flatten().map(|&node| (node, *star as u32)));
         }
@@ -75,12 +89,38 @@ pub fn star_space(free: &FreeJumps<'_>) -> Multipliers {
             }
         });
     }
-    let count = stars.iter().flatten().max().map_or(0, |s| s + 1);
+    let mut count = stars.iter().flatten().max().map_or(0, |s| s + 1);
+    let mut number: BTreeMap<(usize, usize), u32> = BTreeMap::new();
+    for (corner, (k, share)) in near {
+        let shares = [(0, share), (1, 1.0 - share)]
+            .into_iter()
+            .filter(|s| s.1 > 0.0);
+        let numbered = shares.map(|(i, share)| {
+            let fresh = || {
+                count += 1;
+                count as u32 - 1
+            };
+            (*number.entry((k, i)).or_insert_with(fresh), share)
+        });
+        own[corner] = Some(numbered.collect());
+    }
     complete(free, by_corner(&free.facets, own, count))
 }
 
+/// The end of the arm to which a corner of facets is so near that its multipliers speak there, and the share of the one in
+/// the end itself: linear up to the distance of the other, which goes on from there as far again.
+fn near_end(free: &FreeJumps<'_>, ends: &[(Point, f64)], corner: usize) -> Option<(usize, f64)> {
+    let x = &free.facets.corners[corner].x;
+    let away = ends.iter().map(|(end, d)| norm(&sub(x, end)) / d);
+    let nearest = away.enumerate().filter(|(_, r)| *r < 2.0);
+    let (k, r) = nearest.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let share = (1.0 - r).clamp(0.0, 1.0);
+    // Rounding of places.
+    Some((k, if share < 1e-6 { 0.0 } else { share }))
+}
+
 /// One multiplier per facet that can carry one.
-pub fn constant_space(free: &FreeJumps<'_>) -> Multipliers {
+pub fn constant_space(free: &mut FreeJumps<'_>) -> Multipliers {
     let facets = &free.facets.facets;
     let (mut own, count) = numbered(facets.iter().map(|facet| free.carries(facet)));
     // Facets are neighbours if they share a corner.

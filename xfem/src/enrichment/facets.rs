@@ -7,7 +7,7 @@ use crate::cut::part::Face;
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::curve::turned;
 use crate::geometry::polygon::space_area;
-use crate::geometry::{Point, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -146,6 +146,32 @@ impl CrackFacets {
             }
         }
         found
+    }
+
+    /// Parts the segment in which a plane crack is at the distance d from a place [m].
+    pub fn part(&mut self, from: &Point, d: f64) {
+        /// Corners this near to it, in parts of d, are there.
+        const THERE: f64 = 1e-6;
+        for index in 0..self.facets.len() {
+            let &[p, q] = self.facets[index].corners.as_slice() else {
+                continue;
+            };
+            let [x, y] = [p, q].map(|c| self.corners[c].x);
+            let [low, high] = [&x, &y].map(|end| norm(&sub(end, from)) - d);
+            if low * high >= 0.0 || low.abs().min(high.abs()) <= THERE * d {
+                continue;
+            }
+            self.corners.push(Corner {
+                x: add_scaled(&x, low / (low - high), &sub(&y, &x)),
+                nodes: None,
+                place: (self.facets[index].cell, self.facets[index].regions),
+            });
+            let middle = self.corners.len() - 1;
+            let mut rest = self.facets[index].clone();
+            (self.facets[index].corners[1], rest.corners[0]) = (middle, middle);
+            self.facets.push(rest);
+            return;
+        }
     }
 
     /// Positions of the corners of a facet.

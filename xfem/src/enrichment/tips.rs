@@ -1,4 +1,4 @@
-//! Which tips and fronts carry branch functions, on which nodes, and how the cracks divide the cells.
+//! Which tips, fronts and corners carry branch functions, on which nodes, and how the cracks divide the cells.
 //!
 //! The first branch function jumps along the line behind its tip, as far as that goes. So only nodes carry it whose cells
 //! hold no part of that line but the crack itself: a bend, another crack, the other end are the end of a tip's room. A tip
@@ -7,8 +7,11 @@
 //!
 //! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards.
 
+pub mod corners;
+
 use std::collections::{BTreeMap, BTreeSet};
 
+use self::corners::{Corner, CornerFunctions};
 use crate::cut::crack::{Crack, End, Geometry, Tip};
 use crate::cut::flat;
 use crate::cut::partition::Partition;
@@ -16,7 +19,7 @@ use crate::cut::placement::{self, front_frame};
 use crate::cut::trace::{Chain, Trace, TracedTip};
 use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{add_scaled, norm, sub};
+use crate::geometry::{Point, add_scaled, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 
@@ -67,6 +70,8 @@ pub struct Tips {
     pub cores: Vec<BTreeSet<u32>>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
+    /// Corners with branch functions.
+    pub corners: Vec<Corner>,
 }
 
 impl Tips {
@@ -108,6 +113,9 @@ impl Tips {
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
             let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
+        }
+        for corner in search.corners() {
+            tips.add_corner(corner);
         }
         tips.partitions = search.partitions;
         tips.cells.sort_unstable();
@@ -189,20 +197,37 @@ impl Tips {
     fn add(&mut self, frame: TipFrame, cells: &[usize], zone: Zone) {
         let tip = self.frames.len();
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
-        let branch = |node: u32| {
-            (0..4).map(move |order| {
-                let kind = FunctionKind::Branch {
-                    tip: tip as u32,
-                    order,
-                };
-                Function { node, kind }
-            })
-        };
+        let nodes = zone.nodes.into_iter();
         self.functions
-            .extend(zone.nodes.into_iter().flat_map(branch));
+            .extend(nodes.flat_map(|node| branches(node, tip, 4)));
         self.cores.push(zone.core);
         self.frames.push(frame);
     }
+
+    /// Adds the branch functions of the arms of a corner.
+    fn add_corner(&mut self, found: CornerFunctions) {
+        let first = self.frames.len();
+        self.cells
+            .extend(found.cells.into_iter().map(|cell| (cell, first)));
+        let own = found.functions.into_iter();
+        self.functions
+            .extend(own.flat_map(|(node, arm, count)| branches(node, first + arm, count)));
+        self.cores
+            .extend(found.frames.iter().map(|_| found.core.clone()));
+        self.frames.extend(found.frames);
+        self.corners.push(found.corner);
+    }
+}
+
+/// The first branch functions of a tip at a node.
+fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> {
+    (0..count).map(move |order| {
+        let kind = FunctionKind::Branch {
+            tip: tip as u32,
+            order,
+        };
+        Function { node, kind }
+    })
 }
 
 /// The search for the tips of a 2D body that can carry branch functions.
@@ -404,44 +429,61 @@ impl Search<'_> {
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
     fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
-        let (mesh, near) = (self.mesh, &self.near);
-        let frame = self.frame(tip);
-        let at_tip = mesh.nodes_of(tip.cells.iter().copied());
-        let mut radius = match self.arms[tip.arm].tip {
+        let radius = match self.arms[tip.arm].tip {
             Tip::Radius(radius) => radius.min(room),
-            Tip::Auto => SHARE * room.min(self.clearance(tip)),
-            Tip::Branch | Tip::None => return Zone::plain(at_tip),
+            Tip::Auto => SHARE * room.min(self.clearance(&tip.x, &[tip.arm])),
+            Tip::Branch | Tip::None => 0.0,
         };
-        let smallest = near.nodes_around(&at_tip);
-        let size = mesh.map(tip.cells[0]).diagonal();
+        let ramped = matches!(self.arms[tip.arm].tip, Tip::Radius(_) | Tip::Auto);
+        let zone = ramped.then(|| self.within(radius, &[(self.frame(tip), room)], &tip.cells));
+        let plain = || Zone::plain(self.mesh.nodes_of(tip.cells.iter().copied()));
+        zone.flatten().unwrap_or_else(plain)
+    }
+
+    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
+    /// `arms`: their frames with the lengths that these know.
+    fn within(&self, mut radius: f64, arms: &[(TipFrame, f64)], cells: &[usize]) -> Option<Zone> {
+        let (mesh, near) = (self.mesh, &self.near);
+        let size = mesh.map(cells[0]).diagonal();
+        let smallest = near.nodes_around(&mesh.nodes_of(cells.iter().copied()));
+        let own = |p: &Partition| {
+            let mut faces = p.faces.iter();
+            faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
+        };
         loop {
-            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
+            let within = |n: &u32| arms[0].0.distance(&mesh.nodes[*n as usize]) <= radius;
             let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
-            let own = near.cells_around(&core);
-            let mut own = own.iter().filter_map(|cell| self.partitions.get(cell));
-            if own.all(|p| self.is_own(p, tip.arm)) && !self.is_blocked(&frame, room, &nodes) {
-                return Zone { nodes, core };
+            let cells = near.cells_around(&core);
+            let mut parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
+            if parted.all(own) && !self.any_blocked(arms, &nodes) {
+                return Some(Zone { nodes, core });
             }
             if radius < 0.5 * size {
-                return Zone::plain(at_tip);
+                return None;
             }
             radius *= 0.85;
         }
     }
 
-    /// Distance of a tip from other arms and from the border of the body [m].
-    fn clearance(&self, tip: &TracedTip) -> f64 {
+    /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
+    fn any_blocked(&self, arms: &[(TipFrame, f64)], nodes: &BTreeSet<u32>) -> bool {
+        let mut arms = arms.iter();
+        arms.any(|(frame, room)| self.is_blocked(frame, *room, nodes))
+    }
+
+    /// Distance of a place from arms other than its own and from the border of the body [m].
+    fn clearance(&self, x: &Point, own: &[usize]) -> f64 {
         let mesh = self.mesh;
         let facets = mesh.sides.values().flatten().map(|&facet| {
             let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
-            segment_distance(&tip.x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
+            segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
         });
-        let others = (0..self.arms.len()).filter(|&arm| arm != tip.arm);
+        let others = (0..self.arms.len()).filter(|arm| !own.contains(arm));
         let cracks = others.flat_map(|arm| {
             let path = self.arms[arm].path.windows(2);
-            path.map(|w| segment_distance(&tip.x, &w[0].x, &w[1].x))
+            path.map(|w| segment_distance(x, &w[0].x, &w[1].x))
         });
         facets.chain(cracks).fold(f64::INFINITY, f64::min)
     }

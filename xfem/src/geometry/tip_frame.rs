@@ -5,6 +5,9 @@ use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
 use super::{Point, Points, add_scaled, cross, dot, norm, sub};
 
+/// A point this near to the line of an arm lies on it, in parts of its distance from the corner.
+const ON_ARM: f64 = 1e-8;
+
 /// A tip or front inside the body with its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipFrame {
@@ -25,6 +28,8 @@ pub struct TipFrame {
 pub enum FrontShape {
     /// Straight.
     Straight,
+    /// Straight, up to a corner: other arms cross its line there, so that a side says nothing beyond the arm itself.
+    Corner,
     /// A circular arc.
     Arc {
         /// Its curve.
@@ -75,7 +80,7 @@ impl TipFrame {
     pub fn coordinates(&self, x: &Point) -> TipCoordinates {
         let d = sub(x, &self.position);
         match &self.shape {
-            FrontShape::Straight | FrontShape::Pair { .. } => TipCoordinates {
+            FrontShape::Straight | FrontShape::Corner | FrontShape::Pair { .. } => TipCoordinates {
                 psi: dot(&d, &self.ahead),
                 phi: dot(&d, &self.normal),
                 psi_gradient: self.ahead,
@@ -150,7 +155,9 @@ impl TipFrame {
     /// Tips of a 2D crack, where the branch functions are singular [m].
     pub fn tips(&self) -> Vec<Point> {
         match self.shape {
-            FrontShape::Straight | FrontShape::Arc { .. } => vec![self.position],
+            FrontShape::Straight | FrontShape::Corner | FrontShape::Arc { .. } => {
+                vec![self.position]
+            }
             FrontShape::Pair { half_length } => [half_length, -half_length]
                 .map(|s| add_scaled(&self.position, s, &self.ahead))
                 .to_vec(),
@@ -206,8 +213,16 @@ impl TipFrame {
                 FrontShape::Pair { half_length } => Some(half_length),
                 _ => None,
             };
+            // How far from its line a point still lies on the arm, in parts of r: rounding.
+            let width = match self.shape {
+                FrontShape::Corner => ON_ARM,
+                _ => f64::INFINITY,
+            };
             for q in 0..L {
-                // Ahead of the tip the place tells.
+                // Ahead of the tip, and beside an arm, the place tells.
+                if phi[q].abs() > width * psi[q].abs() {
+                    continue;
+                }
                 if reach.map_or(psi[q] <= 0.0, |reach| psi[q].abs() <= reach) {
                     phi[q] = if side > 0.0 {
                         phi[q].max(0.0).abs()
