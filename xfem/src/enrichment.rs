@@ -24,7 +24,7 @@ use crate::geometry::{Point, mean};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, MOST_NODES};
 
-use self::basis::{Function, FunctionKind, Region, STEP};
+use self::basis::{ABSENT, Function, FunctionKind, Region, STEP};
 pub use self::error::EnrichmentError;
 use self::supports::{Pieces, Place, support_pieces};
 use self::tips::Tips;
@@ -45,6 +45,8 @@ pub struct Enrichment {
     pub corners: Vec<Corner>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     cores: Vec<BTreeSet<u32>>,
+    /// Regions where the branch functions of every tip vanish, beyond other cracks.
+    cut_off: Vec<BTreeSet<Place>>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
     /// 2D: where arms cross mesh edges (lower node first) [m].
@@ -143,6 +145,7 @@ impl Enrichment {
             tip_cells: tips.cells,
             corners: tips.corners,
             cores: tips.cores,
+            cut_off: tips.cut_off,
             partitions: tips.partitions,
             endings: tips.endings,
             on_edges: trace.on_edges,
@@ -198,8 +201,18 @@ impl Enrichment {
                                 part.and_then(|p| p.sides.iter().find(of_crack))
                                     .map(|s| s.1)
                             };
-                            let sides = parts.iter().map(side);
-                            sides.map(|side| side.unwrap_or_else(elsewhere)).collect()
+                            let cut_off = &self.cut_off[tip as usize];
+                            let step = |(region, part): (usize, &Option<&Part>)| match cut_off
+                                .contains(&(cell, region))
+                            {
+                                true => ABSENT,
+                                false => side(part).unwrap_or_else(elsewhere),
+                            };
+                            let steps: Vec<f64> = parts.iter().enumerate().map(step).collect();
+                            if steps.iter().all(|&s| s == ABSENT) {
+                                continue;
+                            }
+                            steps
                         }
                         FunctionKind::Standard => continue,
                     };
@@ -251,7 +264,7 @@ impl Enrichment {
     }
 
     /// Constants of the functions of a cell, region by region and function by function: [`STEP`] on its piece and 0 elsewhere for a
-    /// piece function, the side of its crack for a branch function (0: by position), 1 for a standard one.
+    /// piece function, the side of its crack for a branch function (0: by position, [`ABSENT`]: none), 1 for a standard one.
     pub fn steps(&self, cell: usize) -> &[f64] {
         const STANDARD: [f64; MOST_NODES] = [1.0; MOST_NODES];
         let own = &self.steps[self.step_ptr[cell]..self.step_ptr[cell + 1]];
@@ -298,6 +311,12 @@ impl Enrichment {
     /// True for a node of the ramp of a tip.
     pub fn in_core(&self, tip: usize, node: u32) -> bool {
         self.cores[tip].contains(&node)
+    }
+
+    /// True if other cracks cut off something of a tip's functions in a cell.
+    pub fn is_cut_off(&self, tip: usize, cell: usize) -> bool {
+        let mut own = self.cut_off[tip].range((cell, 0)..(cell + 1, 0));
+        own.next().is_some()
     }
 
     /// Where branch functions are singular in 2D: the tips and corners that carry them [m].

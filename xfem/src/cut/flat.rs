@@ -121,7 +121,20 @@ pub fn divide(
     let mut pending: Vec<Pending> = chains.iter().map(|chain| Pending::new(chain)).collect();
     while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
     let mut dropped = Vec::new();
-    for chain in pending {
+    pending.reverse();
+    while let Some(mut chain) = pending.pop() {
+        if chain.loose && !chain.free {
+            // What is left of one with two free ends.
+            chain.reverse();
+            (chain.loose, chain.free) = (false, true);
+        }
+        if division.part_at_extensions(&mut chain) {
+            // Its way to the last of them is cut; what is free goes on from there.
+            let mut pieces = vec![chain];
+            division.insert(&mut pieces)?;
+            pending.extend(pieces);
+            continue;
+        }
         if chain.length() <= SHORT * division.size {
             dropped.extend(chain.arms.iter().map(|arm| arm.0));
         } else if chain.loose && chain.vertices.len() == 2 {
@@ -136,6 +149,15 @@ pub fn divide(
     let mut partition = division.finish(&mesh.map(cell))?;
     partition.dropped = dropped;
     Ok(partition)
+}
+
+/// Where a segment p q crosses another between its ends: how far from p, in parts of it, and the place.
+fn crossed([p, q]: [&Point; 2], [a, b]: [&Point; 2]) -> Option<(f64, Point)> {
+    let (d, e, from) = (sub(q, p), sub(b, a), sub(a, p));
+    let turn = cross(&d, &e)[2];
+    let [t, s] = [&e, &d].map(|v| cross(&from, v)[2] / turn);
+    let inside = |t: f64| t > HERE && t < 1.0 - HERE;
+    (inside(t) && inside(s)).then(|| (t, add_scaled(p, t, &d)))
 }
 
 impl Division {
@@ -301,6 +323,27 @@ impl Division {
             });
         }
         Ok(())
+    }
+
+    /// Gives a chain the places as vertices where it crosses what lies beyond free ends of others; whether there are any.
+    fn part_at_extensions(&mut self, chain: &mut Pending) -> bool {
+        let mut found = false;
+        let mut i = 0;
+        while i + 1 < chain.vertices.len() {
+            let [p, q] = [chain.vertices[i], chain.vertices[i + 1]];
+            let beyond = self.segments.iter().filter(|s| s.extension);
+            let places =
+                beyond.filter_map(|s| Some((crossed([&p, &q], [&s.ends[0], &s.ends[1]])?, s.ends)));
+            let nearest = places.min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+            if let Some(((_, x), ends)) = nearest {
+                self.add_corner(ends, x);
+                chain.vertices.insert(i + 1, x);
+                chain.arms.insert(i, chain.arms[i]);
+                found = true;
+            }
+            i += 1;
+        }
+        found
     }
 
     /// A loose chain from the border of its polygon on.

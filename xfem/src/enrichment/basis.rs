@@ -9,6 +9,8 @@
 //! one crack the paper's shifted Heaviside function N_j (H(x) − H(x_j)) but for its sign. ū_i is the displacement of node i itself.
 //! Of the branch functions only g_1 jumps: [[g_1]] = 2 √r.
 //!
+//! Beyond other cracks, which part a region from its tip, a branch function is 0: what a crack keeps apart shares no function.
+//!
 //! Within a radius of a tip the branch functions are multiplied by a ramp ρ = Σ N_i over the nodes inside the radius, and all
 //! nodes of their cells carry them: ρ is 1 inside, falls to 0 in the cells at the rim, and no cell is left with some of its
 //! nodes enriched, which would spoil the order (T.-P. Fries, Int. J. Numer. Meth. Engng 75 (2008) 503). The inside holds at
@@ -16,6 +18,9 @@
 
 /// Value of a piece function beside N_j: the jump of the paper's step H, so that unknowns have its scale.
 pub const STEP: f64 = 2.0;
+
+/// Constant of a branch function in a region that another crack parts from its tip: it is 0 there.
+pub const ABSENT: f64 = f64::INFINITY;
 
 /// Kind of a scalar function; its node is kept beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
 use super::Enrichment;
-use super::basis::{FunctionKind, Region};
+use super::basis::{ABSENT, FunctionKind, Region};
 
 /// One scalar function of one cell.
 #[derive(Debug, Clone, Copy)]
@@ -133,6 +133,9 @@ impl<'a> CellFunctions<'a> {
                     let times = |v: [f64; L]| v.map(|v| v * step);
                     put(place, &times(*ni), &dni.map(times));
                 }
+                FunctionKind::Branch { .. } if *step == ABSENT => {
+                    put(place, &[0.0; L], &[[0.0; L]; 3])
+                }
                 FunctionKind::Branch { tip, order } => {
                     if cached.as_ref().is_some_and(|known| known.tip != tip) {
                         cached = None;
@@ -190,7 +193,8 @@ impl<'a> CellFunctions<'a> {
             let FunctionKind::Branch { tip, order } = f.kind else {
                 continue;
             };
-            if only.is_some_and(|only| only != tip) || nodes & (1 << f.local) == 0 {
+            let elsewhere = only.is_some_and(|only| only != tip) || nodes & (1 << f.local) == 0;
+            if elsewhere || *step == ABSENT {
                 continue;
             }
             let (_, g, rho) = match &mut cached {

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cut::crack::Crack;
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
-use crate::geometry::polygon::space_area;
+use crate::geometry::polygon::{self, border_distance, space_area};
 use crate::geometry::{Point, norm, root, sub};
 use crate::mesh::Mesh;
 
@@ -87,6 +87,71 @@ pub fn support_pieces(
         }
     }
     found
+}
+
+/// What of some cells a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
+/// than some arms.
+pub fn parted_from(
+    mesh: &Mesh,
+    arms: &[usize],
+    x: &Point,
+    cells: &BTreeSet<usize>,
+    trace: &Trace,
+    partitions: &BTreeMap<usize, Partition>,
+) -> BTreeSet<Place> {
+    let divided = || cells.iter().filter_map(|c| Some((*c, partitions.get(c)?)));
+    let own = |crack: usize| arms.contains(&crack);
+    if divided().all(|(_, p)| p.faces.iter().all(|f| own(f.crack))) {
+        return BTreeSet::new();
+    }
+    let joiner = Joiner {
+        mesh,
+        cracks: &[],
+        trace,
+        partitions,
+        beside: &BTreeMap::new(),
+    };
+    let places: Vec<Place> = (cells.iter())
+        .flat_map(|&cell| (0..joiner.regions(cell)).map(move |region| (cell, region)))
+        .collect();
+    let number = |place: &Place| places.binary_search(place).unwrap_or_default();
+    let mut parent: Vec<usize> = (0..places.len()).collect();
+    let mut join = |[one, two]: [Place; 2]| {
+        let [a, b] = [one, two].map(|place| root(&mut parent, number(&place)));
+        parent[a.max(b)] = a.min(b);
+    };
+    let mut facets: BTreeMap<FacetKey, usize> = BTreeMap::new();
+    for &cell in cells {
+        for local in mesh.kind.facets() {
+            let facet = key(local.iter().map(|&i| mesh.cell(cell)[i]));
+            if let Some(other) = facets.insert(facet, cell) {
+                joiner
+                    .over(&facet, [other, cell])
+                    .into_iter()
+                    .for_each(&mut join);
+            }
+        }
+    }
+    for (cell, partition) in divided() {
+        let faces = partition.faces.iter().filter(|f| own(f.crack));
+        let pairs = faces
+            .map(|f| f.parts)
+            .chain(partition.joined.iter().copied());
+        pairs.for_each(|pair| join(pair.map(|region| (cell, region))));
+    }
+    let near = |&&(cell, region): &&Place| {
+        let map = mesh.map(cell);
+        let outline = match partitions.get(&cell) {
+            None => &map[..],
+            Some(partition) => &partition.parts[region].polygon,
+        };
+        polygon::contains(outline, x) || border_distance(outline, x) <= 1e-9 * map.diagonal()
+    };
+    let held: BTreeSet<usize> = (places.iter().filter(near))
+        .map(|place| root(&mut parent, number(place)))
+        .collect();
+    let away = |place: &Place| !held.contains(&root(&mut parent, number(place)));
+    places.iter().copied().filter(away).collect()
 }
 
 fn key(nodes: impl Iterator<Item = u32>) -> FacetKey {

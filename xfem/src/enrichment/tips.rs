@@ -25,6 +25,7 @@ use crate::mesh::neighbours::Neighbours;
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
+use super::supports::{Place, parted_from};
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
@@ -35,6 +36,8 @@ struct Zone {
     nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
     core: BTreeSet<u32>,
+    /// Regions of its cells that other cracks part from the tip.
+    cut_off: BTreeSet<Place>,
 }
 
 impl Zone {
@@ -43,6 +46,7 @@ impl Zone {
         Zone {
             nodes,
             core: BTreeSet::new(),
+            cut_off: BTreeSet::new(),
         }
     }
 }
@@ -68,6 +72,8 @@ pub struct Tips {
     pub cells: Vec<(usize, usize)>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     pub cores: Vec<BTreeSet<u32>>,
+    /// Regions where the functions of every tip vanish, beyond other cracks.
+    pub cut_off: Vec<BTreeSet<Place>>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
     /// Corners with branch functions.
@@ -183,6 +189,7 @@ impl Tips {
                     Zone {
                         nodes: near.nodes_around(&core),
                         core,
+                        cut_off: BTreeSet::new(),
                     }
                 }
                 _ => Zone::plain(at_front),
@@ -201,6 +208,7 @@ impl Tips {
         self.functions
             .extend(nodes.flat_map(|node| branches(node, tip, 4)));
         self.cores.push(zone.core);
+        self.cut_off.push(zone.cut_off);
         self.frames.push(frame);
     }
 
@@ -214,6 +222,8 @@ impl Tips {
             .extend(own.flat_map(|(node, arm, count)| branches(node, first + arm, count)));
         self.cores
             .extend(found.frames.iter().map(|_| found.core.clone()));
+        self.cut_off
+            .extend(found.frames.iter().map(|_| found.cut_off.clone()));
         self.frames.extend(found.frames);
         self.corners.push(found.corner);
     }
@@ -364,14 +374,9 @@ impl Search<'_> {
     fn has_room(&self, number: usize) -> bool {
         let tip = &self.trace.tips[number];
         let divided = |cell: &usize| self.partitions.get(cell);
-        // A tip inside a cell divides it; another crack there leaves the functions no meaning.
+        // A tip inside a cell divides it.
         let parted = tip.cells.len() > 1
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
-        let alone = tip
-            .cells
-            .iter()
-            .filter_map(divided)
-            .all(|p| self.is_own(p, tip.arm));
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let size = self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
@@ -382,23 +387,46 @@ impl Search<'_> {
         };
         let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
         let slender = aspects.any(|aspect| aspect > longest);
-        parted && alone && !slender && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
+        let frame = [(self.frame(tip), self.room(number))];
+        parted && !slender && !self.any_blocked(&frame, &nodes, &self.cut_off(&frame, &nodes))
     }
 
-    /// Whether only one arm lies in a divided cell.
-    fn is_own(&self, partition: &Partition, arm: usize) -> bool {
-        partition.faces.iter().all(|f| f.crack == arm)
+    /// What other cracks than some arms part from their common end, of the cells of some nodes.
+    fn cut_off(&self, arms: &[(TipFrame, f64)], nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
+        let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+        let cells = self.near.cells_around(nodes);
+        let (x, trace) = (&arms[0].0.position, self.trace);
+        parted_from(self.mesh, &own, x, &cells, trace, &self.partitions)
     }
 
-    /// Whether a cell of some nodes holds a part of the line behind a tip beyond its room.
-    fn is_blocked(&self, frame: &TipFrame, room: f64, nodes: &BTreeSet<u32>) -> bool {
+    /// Whether a cell of some nodes holds, where it is not cut off, a part of the line behind a tip beyond its room.
+    fn is_blocked(
+        &self,
+        (frame, room): &(TipFrame, f64),
+        nodes: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
         let (size, _) = self.mesh.extent();
-        let line = frame.behind(room, size, 0.1 * self.smallest);
+        let line = frame.behind(*room, size, 0.1 * self.smallest);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
             let slack = 1e-9 * map.diagonal();
-            line.iter().any(|[p, q]| polygon::meets(&map, p, q, slack))
+            let enters = |outline: &[Point]| {
+                let mut line = line.iter();
+                line.any(|[p, q]| polygon::meets(outline, p, q, slack))
+            };
+            let whole = cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none();
+            match self.partitions.get(&cell) {
+                Some(partition) if !whole => {
+                    let mut parts = partition.parts.iter().enumerate();
+                    parts.any(|(region, part)| {
+                        let mut triangles = part.triangles().into_iter();
+                        !cut_off.contains(&(cell, region)) && triangles.any(|t| enters(&t))
+                    })
+                }
+                _ => whole && enters(&map),
+            }
         })
     }
 
@@ -436,29 +464,42 @@ impl Search<'_> {
         };
         let ramped = matches!(self.arms[tip.arm].tip, Tip::Radius(_) | Tip::Auto);
         let zone = ramped.then(|| self.within(radius, &[(self.frame(tip), room)], &tip.cells));
-        let plain = || Zone::plain(self.mesh.nodes_of(tip.cells.iter().copied()));
+        let plain = || {
+            let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+            Zone {
+                cut_off: self.cut_off(&[(self.frame(tip), room)], &nodes),
+                ..Zone::plain(nodes)
+            }
+        };
         zone.flatten().unwrap_or_else(plain)
     }
 
-    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
-    /// `arms`: their frames with the lengths that these know.
+    /// The nodes within the largest radius around a place, its cells given, where other cracks than the arms that end there
+    /// enter only to cut something off. `arms`: their frames with the lengths that these know.
     fn within(&self, mut radius: f64, arms: &[(TipFrame, f64)], cells: &[usize]) -> Option<Zone> {
         let (mesh, near) = (self.mesh, &self.near);
         let size = mesh.map(cells[0]).diagonal();
         let smallest = near.nodes_around(&mesh.nodes_of(cells.iter().copied()));
-        let own = |p: &Partition| {
-            let mut faces = p.faces.iter();
-            faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
-        };
         loop {
             let within = |n: &u32| arms[0].0.distance(&mesh.nodes[*n as usize]) <= radius;
             let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
-            let cells = near.cells_around(&core);
-            let mut parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
-            if parted.all(own) && !self.any_blocked(arms, &nodes) {
-                return Some(Zone { nodes, core });
+            let cut_off = self.cut_off(arms, &nodes);
+            // At one node of the ramp nothing may be cut off: that is where superfluous functions are left out.
+            let whole = |&node: &u32| {
+                let mut cells = near.cells_around(&BTreeSet::from([node])).into_iter();
+                cells.all(|cell| cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none())
+            };
+            if core.iter().any(whole)
+                && self.parts_cleanly(arms, &core, &cut_off)
+                && !self.any_blocked(arms, &nodes, &cut_off)
+            {
+                return Some(Zone {
+                    nodes,
+                    core,
+                    cut_off,
+                });
             }
             if radius < 0.5 * size {
                 return None;
@@ -467,10 +508,34 @@ impl Search<'_> {
         }
     }
 
+    /// Whether every other crack in the cells of some nodes has something that is cut off on one of its sides at least.
+    fn parts_cleanly(
+        &self,
+        arms: &[(TipFrame, f64)],
+        core: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
+        let cells = self.near.cells_around(core).into_iter();
+        let mut divided = cells.filter_map(|cell| Some((cell, self.partitions.get(&cell)?)));
+        divided.all(|(cell, partition)| {
+            partition.faces.iter().all(|face| {
+                arms.iter().any(|arm| arm.0.crack == face.crack)
+                    || face
+                        .parts
+                        .iter()
+                        .any(|&region| cut_off.contains(&(cell, region)))
+            })
+        })
+    }
+
     /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
-    fn any_blocked(&self, arms: &[(TipFrame, f64)], nodes: &BTreeSet<u32>) -> bool {
-        let mut arms = arms.iter();
-        arms.any(|(frame, room)| self.is_blocked(frame, *room, nodes))
+    fn any_blocked(
+        &self,
+        arms: &[(TipFrame, f64)],
+        nodes: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
+        arms.iter().any(|arm| self.is_blocked(arm, nodes, cut_off))
     }
 
     /// Distance of a place from arms other than its own and from the border of the body [m].

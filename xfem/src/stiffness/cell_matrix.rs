@@ -212,12 +212,16 @@ impl<'a> CellIntegrator<'a> {
         if branch && self.mesh.dim() == 3 {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
-        let tip = self.tip_in(cell);
         let tips = self.enrichment.singular_points();
-        // A pair of tips has none of its own at its middle.
-        let tip = tip
-            .map(|tip| self.enrichment.tips[tip].tips())
-            .filter(|t| t.len() == 1);
+        // A pair of tips has none of its own at its middle, and beside another tip a fan around one is no rule.
+        let alone = |tip: &Vec<Point>| {
+            let near = |x: &&Point| polygon::border_distance(map, x) <= map.diagonal();
+            tip.len() == 1 && tips.iter().filter(near).count() == 1
+        };
+        let tip = self
+            .tip_in(cell)
+            .map(|tip| self.enrichment.tips[tip].tips());
+        let tip = tip.filter(alone);
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, &tip) {

@@ -14,7 +14,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::partition::Partition;
-use crate::enrichment::basis::{FunctionKind, Region};
+use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
@@ -160,13 +160,18 @@ impl CellIntegrator<'_> {
             }
         }
         if kinds.contains(&true) {
-            // Evenly over the cell.
+            // Evenly over where it lives in the cell.
             let flux = self.flux(cell, functions)?;
+            let steps = self.enrichment.steps(cell);
             for f in (0..kinds.len()).filter(|&f| kinds[f]) {
                 let sums = moments.iter().map(|m| &m.gradients[f]);
                 let missing = sums.fold(flux[f], |missing, sum| sub(&missing, sum));
-                let correction = missing.map(|v| v / whole);
-                found.iter_mut().for_each(|own| own[f] = correction);
+                let lives = |region: &usize| steps[region * kinds.len() + f] != ABSENT;
+                let regions: Vec<usize> = (0..moments.len()).filter(lives).collect();
+                let whole: f64 = regions.iter().map(|&region| moments[region].measure).sum();
+                for region in regions {
+                    found[region][f] = missing.map(|v| v / whole);
+                }
             }
         }
         Ok(found)

@@ -22,7 +22,7 @@
 
 use std::borrow::Cow;
 
-use crate::enrichment::basis::{FunctionKind, Region};
+use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
@@ -243,7 +243,7 @@ fn tips<'a>(integrator: &CellIntegrator<'a>, cell: usize) -> Vec<Tip<'a>> {
         numbers.push(tip);
         let side = |region: Region| {
             let step = steps[region * functions.len() + i];
-            (step != 0.0).then_some(step)
+            (step != 0.0 && step != ABSENT).then_some(step)
         };
         let sides = (0..enrichment.regions(cell)).map(side).collect();
         found.push((&enrichment.tips[tip as usize], sides));

@@ -76,7 +76,7 @@ impl SolverBasis {
     ) -> Self {
         let dim = mesh.dim();
         let mut basis = SolverBasis::default();
-        let surplus = surplus(mesh, enrichment, &held);
+        let surplus = surplus(mesh, enrichment, users, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
@@ -251,6 +251,7 @@ impl SolverBasis {
 fn surplus(
     mesh: &Mesh,
     enrichment: &Enrichment,
+    users: &[Vec<u32>],
     held: impl Fn(usize, usize) -> bool,
 ) -> BTreeSet<usize> {
     let dim = mesh.dim();
@@ -271,7 +272,11 @@ fn surplus(
         let r = |f: usize| tip.distance(&mesh.nodes[node_of(f) as usize]);
         let own = functions.iter().copied();
         let free = |f: usize| !enrichment.enriched_of(node_of(f) as usize).any(any);
-        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)) && free(f));
+        let whole = |f: usize| {
+            let mut cells = users[f].iter();
+            !users[f].is_empty() && !cells.any(|&cell| enrichment.is_cut_off(number, cell as usize))
+        };
+        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)) && free(f) && whole(f));
         let farthest = core.max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
         let node = farthest.map(node_of);
         found.extend(functions.into_iter().filter(|&f| {

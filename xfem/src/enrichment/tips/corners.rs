@@ -24,7 +24,7 @@ use crate::geometry::polygon::{meets, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, norm, sub, unit};
 
-use super::{SHARE, SHORTEST, SLENDER, SLENDEREST, Search, Zone};
+use super::{Place, SHARE, SHORTEST, SLENDER, SLENDEREST, Search, Zone};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -49,6 +49,8 @@ pub(super) struct CornerFunctions {
     pub cells: Vec<usize>,
     /// Nodes of the ramp; empty: there is none.
     pub core: BTreeSet<u32>,
+    /// Regions that other cracks part from it.
+    pub cut_off: BTreeSet<Place>,
     /// Node, arm in the order of the frames, and how many of the functions.
     pub functions: Vec<(u32, usize, u8)>,
 }
@@ -128,8 +130,14 @@ impl Search<'_> {
             None => false,
         });
         let around = || (radius > 0.0).then(|| self.near.nodes_around(&at_corner));
-        let plain =
-            |nodes: BTreeSet<u32>| (!self.any_blocked(&arms, &nodes)).then(|| Zone::plain(nodes));
+        let plain = |nodes: BTreeSet<u32>| {
+            let cut_off = self.cut_off(&arms, &nodes);
+            let blocked = self.any_blocked(&arms, &nodes, &cut_off);
+            (!blocked).then(|| Zone {
+                cut_off,
+                ..Zone::plain(nodes)
+            })
+        };
         let zone = deep
             .or_else(|| around().and_then(plain))
             .or_else(|| plain(at_corner.clone()))?;
@@ -139,6 +147,7 @@ impl Search<'_> {
             frames: arms.into_iter().map(|arm| arm.0).collect(),
             cells,
             core: zone.core,
+            cut_off: zone.cut_off,
             functions,
         })
     }
