@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::enrichment::basis::{FunctionKind, Region};
+use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
 use crate::geometry::tip_frame::FrontShape;
 use crate::geometry::{Point, norm, root, sub};
@@ -90,7 +90,8 @@ impl<'a> FreeJumps<'a> {
             }
             FunctionKind::Branch { tip, order: 0 } => {
                 let crack = &cracks[enrichment.tips[tip as usize].crack];
-                cracks[self.index].shares_tips(crack)
+                let lives = |region| enrichment.step(cell, region, *f) != ABSENT;
+                cracks[self.index].shares_tips(crack) && regions.into_iter().all(lives)
             }
             _ => false,
         };

@@ -71,12 +71,18 @@ impl Pending {
 
     /// From vertex to vertex.
     fn piece(&self, from: usize, to: usize) -> Self {
-        Pending {
+        let mut piece = Pending {
             vertices: self.vertices[from..=to].to_vec(),
             arms: self.arms[from..to].to_vec(),
             free: self.free && to + 1 == self.vertices.len(),
             loose: self.loose && from == 0,
+        };
+        // Of two free ends one is left.
+        if piece.loose && !piece.free {
+            piece.reverse();
+            (piece.loose, piece.free) = (false, true);
         }
+        piece
     }
 }
 
@@ -119,33 +125,37 @@ pub fn divide(
 ) -> Result<Partition, PartitionError> {
     let mut division = Division::new(mesh, cell, trace);
     let mut pending: Vec<Pending> = chains.iter().map(|chain| Pending::new(chain)).collect();
-    while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
     let mut dropped = Vec::new();
-    pending.reverse();
-    while let Some(mut chain) = pending.pop() {
-        if chain.loose && !chain.free {
-            // What is left of one with two free ends.
-            chain.reverse();
-            (chain.loose, chain.free) = (false, true);
-        }
-        if division.part_at_extensions(&mut chain) {
-            // Its way to the last of them is cut; what is free goes on from there.
-            let mut pieces = vec![chain];
-            division.insert(&mut pieces)?;
-            pending.extend(pieces);
-            continue;
-        }
-        if chain.length() <= SHORT * division.size {
+    loop {
+        while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
+        // Free ends one by one: others may wait for their chains.
+        let short = |chain: &Pending| chain.length() <= SHORT * division.size;
+        let leads = |chain: &Pending| match chain.loose {
+            true => chain.vertices.len() == 2,
+            false => chain.free && division.is_corner(chain.first()),
+        };
+        let next = pending
+            .iter()
+            .position(|chain| short(chain) || leads(chain));
+        let Some(mut chain) = next.map(|i| pending.remove(i)) else {
+            break;
+        };
+        if short(&chain) {
             dropped.extend(chain.arms.iter().map(|arm| arm.0));
-        } else if chain.loose && chain.vertices.len() == 2 {
+        } else if division.part_at_extensions(&mut chain) {
+            pending.push(chain);
+        } else if chain.loose {
             let begun = division.begun(chain)?;
             division.extend(begun)?;
-        } else if chain.free && division.is_corner(chain.first()) {
-            division.extend(chain)?;
         } else {
-            dropped.extend(chain.arms.iter().map(|arm| arm.0));
+            division.extend(chain)?;
         }
     }
+    dropped.extend(
+        pending
+            .iter()
+            .flat_map(|chain| chain.arms.iter().map(|arm| arm.0)),
+    );
     let mut partition = division.finish(&mesh.map(cell))?;
     partition.dropped = dropped;
     Ok(partition)

@@ -111,7 +111,11 @@ impl Tips {
         };
         for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
             let zone = search.zone(tip, search.room(number));
+            let beyond = search.beyond(tip, &zone);
             tips.add(search.frame(tip), &tip.cells, zone);
+            if let Some(zone) = beyond {
+                tips.add(search.frame(tip), &[], zone);
+            }
         }
         for &arm in &search.pairs {
             let cells: Vec<usize> = search.cells_of(arm);
@@ -506,6 +510,22 @@ impl Search<'_> {
             }
             radius *= 0.85;
         }
+    }
+
+    /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
+    /// of a narrow ligament feels its end, too.
+    fn beyond(&self, tip: &TracedTip, zone: &Zone) -> Option<Zone> {
+        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
+            let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
+            (0..parts).map(move |region| (cell, region))
+        });
+        let (beyond, cut_off): (BTreeSet<Place>, BTreeSet<Place>) =
+            places.partition(|place| zone.cut_off.contains(place));
+        (!beyond.is_empty()).then(|| Zone {
+            cut_off,
+            ..Zone::plain(nodes)
+        })
     }
 
     /// Whether every other crack in the cells of some nodes has something that is cut off on one of its sides at least.
