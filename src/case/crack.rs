@@ -90,15 +90,14 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
     })
 }
 
-/// `tip`; a plane goes through the whole solid and has none. By default a tip in the plane has branch functions within a
-/// radius that fits, a front in a solid those of its cells: there a radius costs more than it brings.
+/// `tip`; a plane goes through the whole solid and has none. By default a tip or front has branch functions within a radius
+/// that fits.
 fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
     let endless = matches!(shape, CrackShape::Plane { .. });
     let Some(value) = value else {
         return Ok(match shape {
             CrackShape::Plane { .. } => Tip::None,
-            CrackShape::Ellipse(_) => Tip::Branch,
-            CrackShape::Polyline(_) | CrackShape::Arc { .. } => Tip::Auto,
+            _ => Tip::Auto,
         });
     };
     let tip = if value.any_table().is_ok() {

@@ -9,6 +9,7 @@ pub mod facets;
 pub mod pieces;
 pub mod supports;
 pub mod tips;
+mod zone;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,6 +43,8 @@ pub struct Enrichment {
     pub tip_cells: Vec<(usize, usize)>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     cores: Vec<BTreeSet<u32>>,
+    /// Radius of every ramp, within which all nodes carry the functions of the tip [m]; 0: there is none.
+    pub radii: Vec<f64>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
     /// 2D: where arms cross mesh edges (lower node first) [m].
@@ -139,6 +142,7 @@ impl Enrichment {
             tips: tips.frames,
             tip_cells: tips.cells,
             cores: tips.cores,
+            radii: tips.radii,
             partitions: tips.partitions,
             endings: tips.endings,
             on_edges: trace.on_edges,

@@ -22,27 +22,10 @@ use crate::mesh::neighbours::Neighbours;
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
+use super::zone::{Zone, front_room};
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
-
-/// Nodes around a tip.
-struct Zone {
-    /// Those that carry its branch functions.
-    nodes: BTreeSet<u32>,
-    /// Those of the ramp; empty: there is none.
-    core: BTreeSet<u32>,
-}
-
-impl Zone {
-    /// Without a ramp.
-    fn plain(nodes: BTreeSet<u32>) -> Self {
-        Zone {
-            nodes,
-            core: BTreeSet::new(),
-        }
-    }
-}
 
 /// Cells longer than this times their width take no branch functions by themselves …
 const SLENDER: f64 = 6.0;
@@ -65,6 +48,8 @@ pub struct Tips {
     pub cells: Vec<(usize, usize)>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     pub cores: Vec<BTreeSet<u32>>,
+    /// Radius of every ramp [m]; 0: there is none.
+    pub radii: Vec<f64>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
 }
@@ -160,24 +145,32 @@ impl Tips {
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
+        let mut near = None;
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
                 continue;
             };
             let cells: Vec<usize> = cells.into_iter().collect();
             let at_front = mesh.nodes_of(cells.iter().copied());
-            let zone = match arms[index].tip {
-                Tip::Radius(radius) => {
-                    let within = |node: &u32| frame.distance(&mesh.nodes[*node as usize]) <= radius;
-                    let own = (0..mesh.nodes.len() as u32).filter(within);
-                    let near = Neighbours::new(mesh);
-                    let core = &own.collect() | &near.nodes_around(&at_front);
-                    Zone {
-                        nodes: near.nodes_around(&core),
-                        core,
-                    }
+            let radius = match (arms[index].tip, &frame.shape) {
+                (Tip::Radius(radius), _) => Some(radius),
+                (Tip::Auto, FrontShape::Ellipse(e)) => {
+                    Some(SHARE * front_room(mesh, arms, &arms[index], e))
                 }
-                _ => Zone::plain(at_front),
+                _ => None,
+            };
+            let own = |cell: &usize| {
+                let divided = tips.partitions.get(cell);
+                let mut faces = divided.iter().flat_map(|p| &p.faces);
+                faces.all(|f| arms[f.crack].number == arms[index].number)
+            };
+            let zone = match radius {
+                Some(radius) => {
+                    let near = near.get_or_insert_with(|| Neighbours::new(mesh));
+                    let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
+                    Zone::widest(mesh, near, &frame, radius, at_front, free)
+                }
+                None => Zone::plain(at_front),
             };
             tips.add(frame, &cells, zone);
         }
@@ -201,6 +194,7 @@ impl Tips {
         self.functions
             .extend(zone.nodes.into_iter().flat_map(branch));
         self.cores.push(zone.core);
+        self.radii.push(zone.radius);
         self.frames.push(frame);
     }
 }
@@ -407,28 +401,16 @@ impl Search<'_> {
         let (mesh, near) = (self.mesh, &self.near);
         let frame = self.frame(tip);
         let at_tip = mesh.nodes_of(tip.cells.iter().copied());
-        let mut radius = match self.arms[tip.arm].tip {
+        let radius = match self.arms[tip.arm].tip {
             Tip::Radius(radius) => radius.min(room),
             Tip::Auto => SHARE * room.min(self.clearance(tip)),
             Tip::Branch | Tip::None => return Zone::plain(at_tip),
         };
-        let smallest = near.nodes_around(&at_tip);
-        let size = mesh.map(tip.cells[0]).diagonal();
-        loop {
-            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
-            let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
-            let core = &inside | &smallest;
-            let nodes = near.nodes_around(&core);
-            let own = near.cells_around(&core);
-            let mut own = own.iter().filter_map(|cell| self.partitions.get(cell));
-            if own.all(|p| self.is_own(p, tip.arm)) && !self.is_blocked(&frame, room, &nodes) {
-                return Zone { nodes, core };
-            }
-            if radius < 0.5 * size {
-                return Zone::plain(at_tip);
-            }
-            radius *= 0.85;
-        }
+        let free = |cells: &BTreeSet<usize>, nodes: &BTreeSet<u32>| {
+            let mut own = cells.iter().filter_map(|cell| self.partitions.get(cell));
+            own.all(|p| self.is_own(p, tip.arm)) && !self.is_blocked(&frame, room, nodes)
+        };
+        Zone::widest(mesh, near, &frame, radius, at_tip, free)
     }
 
     /// Distance of a tip from other arms and from the border of the body [m].
