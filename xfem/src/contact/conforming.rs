@@ -20,7 +20,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
     if facets.is_empty() {
         return Ok(None);
     }
-    for cell in 0..mesh.cell_count() {
+    for &cell in crack.cells() {
         if is_split(&crack.cell_phi(mesh, cell)) && centre_on(mesh, crack, cell) {
             return Err(EnrichmentError::Mixed {
                 crack: crack.number,
@@ -68,7 +68,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
         .map(|&facet| mesh.facet_nodes(facet).collect())
         .collect();
     let surface = ContactSurface::new(points, faces);
-    for cell in 0..mesh.cell_count() {
+    for &cell in crack.cells() {
         if crack.distance(&mesh.centre(cell)) > 0.0 {
             for node in mesh.cell_mut(cell) {
                 if let Some(&new) = twin.get(node) {
@@ -84,7 +84,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<Option<ContactSurface>, E
 fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
     let mut upper: BTreeSet<Vec<usize>> = BTreeSet::new();
     let mut lower: Vec<(Vec<usize>, Facet)> = Vec::new();
-    for cell in 0..mesh.cell_count() {
+    for &cell in crack.cells() {
         let phi = crack.cell_phi(mesh, cell);
         if phi.iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
             continue;

@@ -14,6 +14,7 @@ use crate::cut::flat;
 use crate::cut::partition::Partition;
 use crate::cut::placement::{self, front_frame};
 use crate::cut::trace::{Chain, Trace, TracedTip};
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
@@ -71,9 +72,19 @@ impl Tips {
                 .iter()
                 .map(|t| arms[t.arm].tip != Tip::None)
                 .collect(),
-            pairs: Vec::new(),
+            pairs: BTreeSet::new(),
             partitions: BTreeMap::new(),
+            extents: Boxes::new(arms.iter().map(Crack::extents)),
+            tips_of: vec![Vec::new(); arms.len()],
+            chains_of: vec![Vec::new(); arms.len()],
         };
+        for (number, tip) in trace.tips.iter().enumerate() {
+            search.tips_of[tip.arm].push(number);
+        }
+        for (&cell, chains) in &trace.chains {
+            let own = chains.iter().map(|chain| (cell, chain));
+            own.for_each(|chain| search.chains_of[chain.1.arm].push(chain));
+        }
         // Every round takes at least one tip its functions.
         while search.round()? {}
         if search.add_pairs() {
@@ -89,7 +100,7 @@ impl Tips {
         }
         for &arm in &search.pairs {
             let cells: Vec<usize> = search.cells_of(arm);
-            let own = trace.tips.iter().filter(|t| t.arm == arm);
+            let own = search.tips_of[arm].iter().map(|&t| &trace.tips[t]);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
             let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
@@ -104,7 +115,7 @@ impl Tips {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, crack) in arms.iter().enumerate() {
-            for cell in 0..mesh.cell_count() {
+            for &cell in crack.cells() {
                 let list = match placement::along(mesh, crack, cell) {
                     placement::Along::Through => &mut inside,
                     placement::Along::Ends => &mut ending,
@@ -208,7 +219,11 @@ struct Search<'a> {
     /// By tip: whether it does, so far.
     kept: Vec<bool>,
     /// Arms with functions of both ends.
-    pairs: Vec<usize>,
+    pairs: BTreeSet<usize>,
+    /// By arm: a box around it, its tips, its chains with their cells.
+    extents: Boxes,
+    tips_of: Vec<Vec<usize>>,
+    chains_of: Vec<Vec<(usize, &'a Chain)>>,
     partitions: BTreeMap<usize, Partition>,
     /// Shortest edge [m].
     smallest: f64,
@@ -232,8 +247,8 @@ impl Search<'_> {
     }
 
     fn keeps(&self, arm: usize, end: usize) -> bool {
-        let mut tips = self.trace.tips.iter().zip(&self.kept);
-        self.pairs.contains(&arm) || tips.any(|(t, &kept)| kept && (t.arm, t.end) == (arm, end))
+        let mut tips = self.tips_of[arm].iter();
+        self.pairs.contains(&arm) || tips.any(|&t| self.kept[t] && self.trace.tips[t].end == end)
     }
 
     fn divide(&mut self) -> Result<(), EnrichmentError> {
@@ -272,30 +287,27 @@ impl Search<'_> {
 
     /// Cells that an arm runs through or ends in.
     fn cells_of(&self, arm: usize) -> Vec<usize> {
-        let chains = self.trace.chains.iter();
-        let own = chains.filter(|(_, chains)| chains.iter().any(|c| c.arm == arm));
-        own.map(|(&cell, _)| cell).collect()
+        let mut cells: Vec<usize> = self.chains_of[arm].iter().map(|c| c.0).collect();
+        cells.dedup();
+        cells
     }
 
     /// From where to where an arm parts the cells [m].
     fn range(&self, arm: usize) -> [f64; 2] {
         let mut range = self.arms[arm].range;
-        for (tip, _) in self.trace.tips.iter().zip(&self.kept).filter(|t| !t.1) {
-            if tip.arm == arm {
-                range[tip.end] = tip.entry;
-            }
+        for &number in self.tips_of[arm].iter().filter(|&&t| !self.kept[t]) {
+            let tip = &self.trace.tips[number];
+            range[tip.end] = tip.entry;
         }
-        for (cell, chains) in &self.trace.chains {
-            for chain in chains.iter().filter(|c| c.arm == arm && self.divides(c)) {
-                let partition = self.partitions.get(cell);
-                if partition.is_none_or(|p| p.dropped.contains(&arm)) {
-                    // At the end that it is nearer to.
-                    let [low, high] = chain.range;
-                    if low - range[0] < range[1] - high {
-                        range[0] = range[0].max(high);
-                    } else {
-                        range[1] = range[1].min(low);
-                    }
+        for (cell, chain) in self.chains_of[arm].iter().filter(|c| self.divides(c.1)) {
+            let partition = self.partitions.get(cell);
+            if partition.is_none_or(|p| p.dropped.contains(&arm)) {
+                // At the end that it is nearer to.
+                let [low, high] = chain.range;
+                if low - range[0] < range[1] - high {
+                    range[0] = range[0].max(high);
+                } else {
+                    range[1] = range[1].min(low);
                 }
             }
         }
@@ -320,9 +332,8 @@ impl Search<'_> {
 
     /// Length of an arm inside the body [m].
     fn inside(&self, arm: usize) -> f64 {
-        let chains = self.trace.chains.values().flatten();
-        let own = chains.filter(|c| c.arm == arm);
-        own.map(|c| c.range[1] - c.range[0]).sum()
+        let own = self.chains_of[arm].iter();
+        own.map(|(_, c)| c.range[1] - c.range[0]).sum()
     }
 
     fn frame(&self, tip: &TracedTip) -> TipFrame {
@@ -374,9 +385,7 @@ impl Search<'_> {
     /// Straight arms with two ends inside the body, none of which has room: they take functions of both.
     fn add_pairs(&mut self) -> bool {
         for (index, arm) in self.arms.iter().enumerate() {
-            let own: Vec<usize> = (0..self.kept.len())
-                .filter(|&t| self.trace.tips[t].arm == index && !self.kept[t])
-                .collect();
+            let own = self.tips_of[index].iter().filter(|&&t| !self.kept[t]);
             let cells = self.cells_of(index);
             let alone = cells.iter().all(|cell| {
                 let chains = &self.trace.chains[cell];
@@ -385,12 +394,12 @@ impl Search<'_> {
             if arm.tip != Tip::None
                 && arm.ends == [End::Free; 2]
                 && arm.path.len() == 2
-                && own.len() == 2
+                && own.count() == 2
                 && alone
                 && !cells.is_empty()
                 && self.inside(index) > SHORTEST * self.smallest
             {
-                self.pairs.push(index);
+                self.pairs.insert(index);
             }
         }
         !self.pairs.is_empty()
@@ -403,7 +412,7 @@ impl Search<'_> {
         let at_tip = mesh.nodes_of(tip.cells.iter().copied());
         let radius = match self.arms[tip.arm].tip {
             Tip::Radius(radius) => radius.min(room),
-            Tip::Auto => SHARE * room.min(self.clearance(tip)),
+            Tip::Auto => SHARE * self.clearance(tip, room),
             Tip::Branch | Tip::None => return Zone::plain(at_tip),
         };
         let free = |cells: &BTreeSet<usize>, nodes: &BTreeSet<u32>| {
@@ -413,19 +422,20 @@ impl Search<'_> {
         Zone::widest(mesh, near, &frame, radius, at_tip, free)
     }
 
-    /// Distance of a tip from other arms and from the border of the body [m].
-    fn clearance(&self, tip: &TracedTip) -> f64 {
+    /// Distance of a tip from other arms and from the border of the body, at most `room` [m].
+    fn clearance(&self, tip: &TracedTip, room: f64) -> f64 {
         let mesh = self.mesh;
         let facets = mesh.sides.values().flatten().map(|&facet| {
             let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
             segment_distance(&tip.x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
         });
-        let others = (0..self.arms.len()).filter(|&arm| arm != tip.arm);
+        let others = self.extents.meeting(&around([&tip.x], room)).into_iter();
+        let others = others.filter(|&arm| arm != tip.arm);
         let cracks = others.flat_map(|arm| {
             let path = self.arms[arm].path.windows(2);
             path.map(|w| segment_distance(&tip.x, &w[0].x, &w[1].x))
         });
-        facets.chain(cracks).fold(f64::INFINITY, f64::min)
+        facets.chain(cracks).fold(room, f64::min)
     }
 }
 

@@ -42,9 +42,10 @@ impl Zone {
         free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> bool,
     ) -> Self {
         let smallest = near.nodes_around(&at_tip);
+        let candidates = near.nodes_in(&frame.extents(radius));
         loop {
             let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
-            let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
+            let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
             if free(&near.cells_around(&core), &nodes) {
