@@ -97,17 +97,14 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
     })
 }
 
-/// `tip`; a plane goes through the whole solid and has none. By default a tip in the plane has branch functions within a
-/// radius that fits, a front in a solid those of its cells: there a radius costs more than it brings.
+/// `tip`; a plane goes through the whole solid and has none. By default a tip or front has branch functions within a radius
+/// that fits.
 fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
     if let CrackShape::Plane { .. } = shape {
         return no_tip(value, "a plane goes through the whole solid and has no tip");
     }
     let Some(value) = value else {
-        return Ok(match shape {
-            CrackShape::Ellipse(_) => Tip::Branch,
-            _ => Tip::Auto,
-        });
+        return Ok(Tip::Auto);
     };
     if value.any_table().is_ok() {
         let table = value.table(&["branch_radius_m"])?;

@@ -131,16 +131,31 @@ pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliEr
                 Loading::new(&body, &case, friction).map_err(RunError::from)?;
             }
             say(format_args!(
-                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}",
+                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}{}",
                 file.display(),
                 body.label,
                 body.mesh.cell_count(),
                 body.elastic.unknowns(),
                 body.points.len(),
                 body.space,
-                body.checks.uniform
+                body.checks.uniform,
+                radii(&body.enrichment.radii)
             ));
         }
     }
     Ok(true)
+}
+
+/// Radii of the branch functions, from the least to the largest; empty without any.
+fn radii(all: &[f64]) -> String {
+    let ramps = || all.iter().copied().filter(|r| *r > 0.0);
+    let [least, largest] = [
+        ramps().fold(f64::INFINITY, f64::min),
+        ramps().fold(0.0, f64::max),
+    ];
+    match ramps().next() {
+        None => String::new(),
+        Some(_) if least == largest => format!(", branch functions within {least:.3} m"),
+        Some(_) => format!(", branch functions within {least:.3} to {largest:.3} m"),
+    }
 }

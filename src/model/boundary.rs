@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stickslip_xfem::contact::free_jumps::FreeJumps;
-use stickslip_xfem::cut::crack::Crack;
+use stickslip_xfem::cut::crack::{Crack, first_on};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::enrichment::cell_facets::pieces;
 use stickslip_xfem::geometry::{Point, add_scaled};
@@ -37,6 +37,7 @@ fn nodes_of(mesh: &Mesh, region: &Region) -> Vec<usize> {
 /// Places beside nodes that lie on a crack and on a support, on the side of the crack where the facets that the support
 /// holds are; none where it holds facets of both sides. The other side touches the support in a point, which holds nothing.
 pub fn held_sides(case: &Case, mesh: &Mesh, cracks: &[Crack]) -> BTreeMap<u32, Point> {
+    let on_crack = first_on(cracks);
     // By node: a facet below its first crack, and one above.
     let mut found: BTreeMap<u32, [Option<Point>; 2]> = BTreeMap::new();
     for support in &case.supports {
@@ -52,7 +53,7 @@ pub fn held_sides(case: &Case, mesh: &Mesh, cracks: &[Crack]) -> BTreeMap<u32, P
                 .iter()
                 .fold([0.0; 3], |sum, &n| add_scaled(&sum, part, &mesh.nodes[n]));
             for &node in &nodes {
-                if let Some(crack) = cracks.iter().find(|c| c.phi[node] == 0.0) {
+                if let Some(crack) = on_crack.get(&(node as u32)).map(|&k| &cracks[k]) {
                     let above = crack.distance(&centre) > 0.0;
                     found.entry(node as u32).or_default()[usize::from(above)] = Some(centre);
                 }

@@ -168,8 +168,9 @@ impl<'a> Vertices<'a> {
             None => node.map_or_else(Vec::new, |node| self.reached_faces(cell, node)),
         };
         if let Some(node) = node {
-            let own =
-                |&(crack, upper): &(usize, bool)| (body.cracks[crack].side_of(node) > 0.0) == upper;
+            let own = |&(crack, upper): &(usize, bool)| {
+                (body.cracks[crack].side_of(&body.mesh, node) > 0.0) == upper
+            };
             if faces.iter().all(own) {
                 return node;
             }
@@ -218,7 +219,7 @@ impl<'a> Vertices<'a> {
         let centre = body.mesh.centre(cell);
         let cracks = 0..body.cracks.len();
         cracks
-            .filter(|&k| body.cracks[k].phi[node] == 0.0 && self.jumps(k, x))
+            .filter(|&k| body.cracks[k].holds(node as u32) && self.jumps(k, x))
             .filter(|_| !body.enrichment.enriched_of(node).is_empty())
             .map(|k| (k, body.cracks[k].distance(&centre) > 0.0))
             .collect()

@@ -21,7 +21,7 @@ impl Sides {
     pub fn new(case: &Case, integrator: &CellIntegrator<'_>) -> Option<Self> {
         let mesh = integrator.mesh;
         if let Some(crack) = integrator.cracks.first() {
-            let nodes = (0..mesh.nodes.len()).map(|node| crack.side_of(node));
+            let nodes = (0..mesh.nodes.len()).map(|node| crack.side_of(mesh, node));
             return Some(Sides {
                 nodes: nodes.collect(),
                 crack: crack.clone(),
@@ -30,11 +30,13 @@ impl Sides {
         // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
         let spec = case.cracks.first()?;
         let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &mesh.lengths());
-        let mut nodes: Vec<Side> = (0..mesh.nodes.len()).map(|n| crack.side_of(n)).collect();
+        let mut nodes: Vec<Side> = (0..mesh.nodes.len())
+            .map(|n| crack.side_of(mesh, n))
+            .collect();
         for cell in 0..mesh.cell_count() {
             let side = sign(crack.distance(&mesh.centre(cell)));
             for &node in mesh.cell(cell) {
-                if crack.phi[node as usize] == 0.0 {
+                if crack.holds(node) {
                     nodes[node as usize] = side;
                 }
             }

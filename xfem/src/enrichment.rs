@@ -9,6 +9,7 @@ pub mod facets;
 pub mod pieces;
 pub mod supports;
 pub mod tips;
+mod zone;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,6 +48,8 @@ pub struct Enrichment {
     cores: Vec<BTreeSet<u32>>,
     /// Regions where the branch functions of every tip vanish, beyond other cracks.
     cut_off: Vec<BTreeSet<Place>>,
+    /// Radius of every ramp, within which all nodes carry the functions of the tip [m]; 0: there is none.
+    pub radii: Vec<f64>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
     /// 2D: where arms cross mesh edges (lower node first) [m].
@@ -60,7 +63,11 @@ pub struct Enrichment {
     steps: Vec<f64>,
     node_ptr: Vec<usize>,
     /// Nodes with φ = 0 for some crack.
-    on_crack: Vec<bool>,
+    on_crack: BTreeSet<u32>,
+    /// Shortest edge at every node [m].
+    pub sizes: Vec<f64>,
+    /// Divided cells with faces of a crack, by crack.
+    cut_by: Vec<Vec<usize>>,
     standard: usize,
 }
 
@@ -89,14 +96,11 @@ impl Enrichment {
             2 => Tips::flat(mesh, cracks, &trace)?,
             _ => Tips::solid(mesh, cracks),
         };
+        let divided = tips.partitions.values().chain(tips.endings.values());
+        let faces = divided.flat_map(|p| &p.faces);
+        let present: BTreeSet<usize> = faces.map(|f| cracks[f.crack].number).collect();
         for crack in cracks {
-            let own = |p: &Partition| {
-                p.faces
-                    .iter()
-                    .any(|f| cracks[f.crack].number == crack.number)
-            };
-            let mut divided = tips.partitions.values().chain(tips.endings.values());
-            if !divided.any(own) {
+            if !present.contains(&crack.number) {
                 return Err(match enters(mesh, crack) {
                     true => EnrichmentError::TooShort {
                         crack: crack.number,
@@ -106,6 +110,11 @@ impl Enrichment {
                     },
                 });
             }
+        }
+        let mut cut_by = vec![Vec::new(); cracks.len()];
+        for (&cell, partition) in &tips.partitions {
+            let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
+            own.into_iter().for_each(|crack| cut_by[crack].push(cell));
         }
         let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions, beside);
         let standard = mesh.nodes.len();
@@ -132,7 +141,7 @@ impl Enrichment {
                 FunctionKind::Standard | FunctionKind::Piece { .. } => 0.0,
                 FunctionKind::Branch { tip, order } => {
                     let frame: &TipFrame = &tips.frames[tip as usize];
-                    let side = cracks[frame.crack].side_of(f.node as usize);
+                    let side = cracks[frame.crack].side_of(mesh, f.node as usize);
                     frame.branch(&mesh.nodes[f.node as usize], Some(side)).0[order as usize]
                 }
             })
@@ -146,6 +155,7 @@ impl Enrichment {
             corners: tips.corners,
             cores: tips.cores,
             cut_off: tips.cut_off,
+            radii: tips.radii,
             partitions: tips.partitions,
             endings: tips.endings,
             on_edges: trace.on_edges,
@@ -153,9 +163,9 @@ impl Enrichment {
             cell_functions: Vec::new(),
             step_ptr: vec![0],
             steps: Vec::new(),
-            on_crack: (0..standard)
-                .map(|node| cracks.iter().any(|crack| crack.phi[node] == 0.0))
-                .collect(),
+            on_crack: cracks.iter().flat_map(Crack::nodes_on).collect(),
+            sizes: mesh.node_sizes(),
+            cut_by,
             standard,
         };
         enrichment.index_cells(mesh, cracks, &pieces);
@@ -253,6 +263,11 @@ impl Enrichment {
         self.partitions.iter().map(|(&cell, part)| (cell, part))
     }
 
+    /// Divided cells with faces of a crack, in order.
+    pub fn cut_by(&self, crack: usize) -> &[usize] {
+        &self.cut_by[crack]
+    }
+
     /// Number of regions of a cell.
     pub fn regions(&self, cell: usize) -> usize {
         self.partition(cell).map_or(1, |p| p.parts.len())
@@ -285,7 +300,7 @@ impl Enrichment {
 
     /// True if a node lies on a crack between its ends, so that the displacement jumps there.
     pub fn jumps_at(&self, node: usize) -> bool {
-        !self.enriched_of(node).is_empty() && self.on_crack[node]
+        !self.enriched_of(node).is_empty() && self.on_crack.contains(&(node as u32))
     }
 
     /// Functions of a cell, the standard ones first.

@@ -1,5 +1,6 @@
 //! Points, curves, convex parts, crack shapes and the coordinates of their tips. Knows nothing of meshes.
 
+pub mod boxes;
 pub mod clip;
 pub mod crack_shape;
 pub mod curve;

@@ -10,6 +10,7 @@ pub mod stream;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::{Point, norm, sub};
 
 use self::cell::{CellKind, CellMap};
@@ -49,6 +50,8 @@ pub struct Lengths {
     pub smallest: f64,
     /// See [`Mesh::rounding`] [m].
     pub rounding: f64,
+    /// Every cell with its neighbourhood, see [`Mesh::surroundings`].
+    pub cells: Boxes,
 }
 
 impl Mesh {
@@ -178,7 +181,14 @@ impl Mesh {
             smallest: of_nodes.iter().copied().fold(f64::INFINITY, f64::min),
             of_nodes,
             rounding: self.rounding(),
+            cells: self.surroundings(),
         }
+    }
+
+    /// Boxes of the cells, larger by three of their longest edges: what may touch a cell or its neighbours.
+    pub fn surroundings(&self) -> Boxes {
+        let maps = (0..self.cell_count()).map(|cell| self.map(cell));
+        Boxes::new(maps.map(|map| around(map.iter(), 3.0 * map.longest_edge())))
     }
 
     /// Rounding of positions: what differences of the coordinates they were stated in carry [m].

@@ -113,7 +113,7 @@ pub(super) fn nodal_displacement(body: &Body, field: &dyn Field, u: &[f64]) -> [
     let mut sums = [0.0; 3];
     for (node, x) in body.mesh.nodes.iter().enumerate() {
         let side = pair_side[node].unwrap_or_else(|| match body.cracks.first() {
-            Some(crack) => crack.side_of(node),
+            Some(crack) => crack.side_of(&body.mesh, node),
             None => side_of(body, x),
         });
         let exact = field.displacement(x, side);

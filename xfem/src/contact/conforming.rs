@@ -26,7 +26,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
     };
     let cut =
         |cell: &usize| is_split(&crack.cell_phi(mesh, *cell)) && centre_on(mesh, crack, *cell);
-    if let Some(cell) = (0..mesh.cell_count()).find(cut) {
+    if let Some(&cell) = crack.cells().iter().find(|cell| cut(cell)) {
         return Err(off(mesh.centre(cell)));
     }
     // A node has one frame: a bend is no place for a pair.
@@ -86,7 +86,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
         .map(|&facet| mesh.facet_nodes(facet).collect())
         .collect();
     let surface = ContactSurface::new(points, faces);
-    for cell in 0..mesh.cell_count() {
+    for &cell in crack.cells() {
         if crack.distance(&mesh.centre(cell)) > 0.0 {
             for node in mesh.cell_mut(cell) {
                 if let Some(&new) = twin.get(node) {
@@ -102,7 +102,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
 fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
     let mut upper: BTreeSet<Vec<usize>> = BTreeSet::new();
     let mut lower: Vec<(Vec<usize>, Facet)> = Vec::new();
-    for cell in 0..mesh.cell_count() {
+    for &cell in crack.cells() {
         let phi = crack.cell_phi(mesh, cell);
         if phi.iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
             continue;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::enrichment::Enrichment;
 use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
 use crate::geometry::tip_frame::FrontShape;
@@ -24,15 +25,15 @@ pub struct Crossing {
     pub fraction: f64,
 }
 
-/// The facets of a crack, and the functions that jump across it and are free to do so.
+/// The facets of a crack, and the functions that jump across it and are free to do so: in all directions but those in which
+/// supports hold the jump on the whole crack.
 pub struct FreeJumps<'a> {
     /// Facets.
     pub facets: CrackFacets,
     integrator: &'a CellIntegrator<'a>,
     index: usize,
-    /// By function: none of its components is prescribed.
-    free: Vec<bool>,
-    sizes: Vec<f64>,
+    /// Functions that jump across it and are free to.
+    free: BTreeSet<usize>,
 }
 
 impl<'a> FreeJumps<'a> {
@@ -43,17 +44,30 @@ impl<'a> FreeJumps<'a> {
         held: impl Fn(usize) -> bool,
     ) -> Self {
         let (mesh, enrichment) = (integrator.mesh, integrator.enrichment);
-        let dim = mesh.dim();
-        let functions = 0..enrichment.functions.len();
-        FreeJumps {
+        let mut jumps = FreeJumps {
             facets: CrackFacets::new(mesh, index, &integrator.cracks[index], enrichment),
             integrator,
             index,
-            free: functions
-                .map(|f| (0..dim).all(|a| !held(f * dim + a)))
-                .collect(),
-            sizes: mesh.node_sizes(),
-        }
+            free: BTreeSet::new(),
+        };
+        let all: BTreeSet<usize> = (jumps.facets.facets.iter())
+            .flat_map(|facet| jumps.jumping_on(facet))
+            .collect();
+        let is_free = |f: usize, a: usize| !held(f * mesh.dim() + a);
+        let moves = (0..mesh.dim()).filter(|&a| all.iter().any(|&f| is_free(f, a)));
+        let moves: Vec<usize> = moves.collect();
+        let of_all = all
+            .into_iter()
+            .filter(|&f| moves.iter().all(|&a| is_free(f, a)));
+        jumps.free = of_all.collect();
+        jumps
+    }
+
+    /// Functions that jump across a facet.
+    fn jumping_on(&self, facet: &Facet) -> impl Iterator<Item = usize> {
+        let place = (facet.cell, facet.regions);
+        let nodes = self.integrator.mesh.cell(facet.cell).iter();
+        nodes.flat_map(move |&n| self.jumping(n, place))
     }
 
     /// Functions that jump where no multiplier of the crack can be: on a stretch of it without a free jump, beside supports
@@ -71,11 +85,7 @@ impl<'a> FreeJumps<'a> {
         let free = facets.iter().filter(|f| self.jumps_on(f));
         let guarded: BTreeSet<Option<usize>> = free.map(&mut stretch).collect();
         let bare = facets.iter().filter(|f| !guarded.contains(&stretch(f)));
-        bare.flat_map(|facet| {
-            let nodes = self.integrator.mesh.cell(facet.cell).iter();
-            nodes.flat_map(|&n| self.jumping(n, (facet.cell, facet.regions)))
-        })
-        .collect()
+        bare.flat_map(|facet| self.jumping_on(facet)).collect()
     }
 
     /// Functions of a node that jump at a place of the crack.
@@ -116,18 +126,19 @@ impl<'a> FreeJumps<'a> {
             }
         }
         let mut jumping = self.jumping(node, place).into_iter();
-        jumping.any(|f| self.free[f]).then_some(copies)
+        jumping.any(|f| self.free.contains(&f)).then_some(copies)
     }
 
     /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
-        let (mesh, tips) = (self.integrator.mesh, &self.integrator.enrichment.tips);
+        let mesh = self.integrator.mesh;
+        let Enrichment { tips, sizes, .. } = self.integrator.enrichment;
         // At a corner other functions jump, too.
         let tips = || tips.iter().filter(|tip| tip.shape != FrontShape::Corner);
         let mut numbers: BTreeMap<(u32, [usize; 2]), u32> = BTreeMap::new();
         let mut crossing = |corner: &Corner| {
             let [i, j] = corner.nodes?;
-            let size = self.sizes[i as usize].min(self.sizes[j as usize]);
+            let size = sizes[i as usize].min(sizes[j as usize]);
             let mut distances = tips().map(|tip| tip.distance(&corner.x));
             if distances.any(|distance| distance <= AT_TIP * size) {
                 return None;
@@ -175,7 +186,13 @@ impl<'a> FreeJumps<'a> {
         let path = &self.integrator.cracks[self.index].path;
         let ends = path.first().into_iter().chain(path.last());
         let away = ends.map(|end| norm(&sub(&self.facets.corners[corner].x, &end.x)));
-        let size = self.sizes.iter().copied().fold(f64::INFINITY, f64::min);
+        let size = self
+            .integrator
+            .enrichment
+            .sizes
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
         away.reduce(f64::min).unwrap_or(0.0) / size
     }
 
@@ -184,7 +201,9 @@ impl<'a> FreeJumps<'a> {
         let mesh = self.integrator.mesh;
         let nodes = mesh.cell(facet.cell);
         let area: f64 = vertex_weights(&self.facets.polygon(facet)).iter().sum();
-        let sizes = nodes.iter().map(|&n| self.sizes[n as usize]);
+        let sizes = nodes
+            .iter()
+            .map(|&n| self.integrator.enrichment.sizes[n as usize]);
         let size = sizes.fold(f64::INFINITY, f64::min);
         area > SLIVER * size.powi(mesh.dim() as i32 - 1) && self.jumps_on(facet)
     }

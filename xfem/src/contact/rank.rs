@@ -59,15 +59,22 @@ fn search(
     let mut found = Vec::new();
     // Points by row of the factor.
     let mut owners = Vec::new();
-    for point in order.into_iter().flat_map(|arm| arm.clone()) {
-        let own = rows(point);
-        let known = factor.len();
-        // All rows of a point, or none.
-        if own.into_iter().all(|row| factor.push(row, pivot)) {
-            owners.resize(factor.len(), point);
-        } else {
-            factor.truncate(known);
-            found.push(point);
+    for arm in order {
+        // A slip direction that supports hold on a whole arm has no force to tell; they hold it, too.
+        let void = |k: usize| k > 0 && arm.clone().all(|point| rows(point)[k].is_empty());
+        let dim = arm.clone().next().map_or(0, |point| rows(point).len());
+        let told: Vec<bool> = (0..dim).map(|k| !void(k)).collect();
+        for point in arm.clone() {
+            let own = rows(point).into_iter().zip(&told).filter(|row| *row.1);
+            let mut own = own.map(|row| row.0);
+            let known = factor.len();
+            // All rows of a point, or none.
+            if own.all(|row| factor.push(row, pivot)) {
+                owners.resize(factor.len(), point);
+            } else {
+                factor.truncate(known);
+                found.push(point);
+            }
         }
     }
     if found.is_empty() {

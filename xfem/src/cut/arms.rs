@@ -4,6 +4,7 @@
 //! junction three. A bend sharper than ten degrees parts a crack too: the faces beside it have normals of their own, and so
 //! have the forces on them. In a solid a crack that crosses an earlier plane is parted by it.
 
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::polygon::segment_foot;
 use crate::geometry::{Point, add_scaled, cross, norm, sub, unit};
 use crate::mesh::Mesh;
@@ -52,8 +53,11 @@ pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Result<Vec<Crack>, Overlap> {
         points: Vec::new(),
         cuts: vec![Vec::new(); cracks.len()],
     };
-    for later in 1..cracks.len() {
-        for earlier in 0..later {
+    let extents = |crack: &Crack| around(&crack.extents(), size);
+    let boxes = Boxes::new(cracks.iter().map(extents));
+    for (later, crack) in cracks.iter().enumerate() {
+        let near = boxes.meeting(&extents(crack)).into_iter();
+        for earlier in near.take_while(|&k| k < later) {
             places.meet(&cracks, [earlier, later])?;
         }
     }
@@ -290,7 +294,7 @@ fn plane_arms(crack: &Crack, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
 
 /// True if some cell is cut by both planes.
 fn meet(crack: &Crack, other: &Crack, mesh: &Mesh) -> bool {
-    (0..mesh.cell_count()).any(|cell| {
+    crack.cells().iter().any(|&cell| {
         let inside = |c: &Crack| is_split(&c.cell_phi(mesh, cell));
         let map = mesh.map(cell);
         inside(crack) && inside(other) && crack.jumps_at(&map.centre(), -map.diagonal())

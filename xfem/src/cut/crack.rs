@@ -9,14 +9,16 @@
 //! A crack that meets an earlier one ends there: it is an arm whose step is 0 beyond its parent (Daux, Moës, Dolbow,
 //! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::geometry::boxes::{Extents, around};
 use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{Point, dot, sub};
+use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
 use crate::mesh::{Lengths, Mesh};
 
@@ -106,8 +108,19 @@ pub struct Crack {
     pub parents: Vec<Parent>,
     /// Enrichment of tips inside the body.
     pub tip: Tip,
-    /// φ at the nodes, snapped to 0 within [`ON_CRACK`] [m].
-    pub phi: Arc<[f64]>,
+    /// φ next to it, the same for all its arms.
+    pub(super) near: Arc<LevelSet>,
+}
+
+/// φ at the nodes next to a crack.
+#[derive(Debug, Default)]
+pub(super) struct LevelSet {
+    /// Cells that the crack may touch, and their neighbours.
+    cells: Vec<usize>,
+    /// Their nodes, ascending.
+    nodes: Vec<u32>,
+    /// φ there, snapped to 0 within [`ON_CRACK`] [m].
+    phi: Vec<f64>,
 }
 
 impl Crack {
@@ -166,13 +179,56 @@ impl Crack {
             geometry,
             parents: Vec::new(),
             tip,
-            phi: Arc::from([]),
+            near: Arc::default(),
         };
-        let nodes = mesh.nodes.iter().zip(&lengths.of_nodes);
-        crack.phi = nodes
-            .map(|(x, &h)| snapped(crack.distance(x), on_crack(h, lengths.rounding)))
-            .collect();
+        let cells = lengths.cells.meeting(&crack.extents());
+        let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
+        let phi = nodes.iter().map(|&node| {
+            let on = on_crack(lengths.of_nodes[node as usize], lengths.rounding);
+            snapped(crack.distance(&mesh.nodes[node as usize]), on)
+        });
+        let phi = phi.collect();
+        crack.near = Arc::new(LevelSet { cells, nodes, phi });
         crack
+    }
+
+    /// A box around it [m].
+    pub fn extents(&self) -> Extents {
+        /// Of its chords, by which an arc may reach out of theirs.
+        const BULGE: f64 = 0.01;
+        match &self.geometry {
+            Geometry::Curve(_) => {
+                let [low, high] = around(self.path.iter().map(|v| &v.x), 0.0);
+                around(&[low, high], BULGE * norm(&sub(&high, &low)))
+            }
+            Geometry::Plane { .. } => [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]],
+            Geometry::Ellipse(e) => around([&e.centre], e.half_axes[0].max(e.half_axes[1])),
+        }
+    }
+
+    /// Cells that it may touch, and their neighbours, ascending.
+    pub fn cells(&self) -> &[usize] {
+        &self.near.cells
+    }
+
+    /// φ at a node, as it is away from the crack [m].
+    pub fn phi(&self, mesh: &Mesh, node: u32) -> f64 {
+        match self.near.nodes.binary_search(&node) {
+            Ok(place) => self.near.phi[place],
+            Err(_) => self.distance(&mesh.nodes[node as usize]),
+        }
+    }
+
+    /// Nodes on its curve or plane, ascending.
+    pub fn nodes_on(&self) -> impl Iterator<Item = u32> {
+        let nodes = self.near.nodes.iter().zip(&self.near.phi);
+        nodes.filter(|n| *n.1 == 0.0).map(|n| *n.0)
+    }
+
+    /// Whether a node is one of these.
+    pub fn holds(&self, node: u32) -> bool {
+        let place = self.near.nodes.binary_search(&node);
+        place.is_ok_and(|place| self.near.phi[place] == 0.0)
     }
 
     /// φ(x), signed distance to the crack's curve or plane [m].
@@ -207,7 +263,7 @@ impl Crack {
     /// Level set at the nodes of a cell.
     pub fn cell_phi(&self, mesh: &Mesh, cell: usize) -> Nodal<f64> {
         let nodes = mesh.cell(cell);
-        Nodal::new(nodes.len(), |i| self.phi[nodes[i] as usize])
+        Nodal::new(nodes.len(), |i| self.phi(mesh, nodes[i]))
     }
 
     /// Nodes on the crack and crossed edges of a cell with levels φ: the place, and the local nodes it lies between
@@ -231,8 +287,11 @@ impl Crack {
     }
 
     /// Side of a node: +1 on side 1 and on the crack, −1 on side 2.
-    pub fn side_of(&self, node: usize) -> Side {
-        if self.phi[node] >= 0.0 { 1.0 } else { -1.0 }
+    pub fn side_of(&self, mesh: &Mesh, node: usize) -> Side {
+        match self.phi(mesh, node as u32) >= 0.0 {
+            true => 1.0,
+            false => -1.0,
+        }
     }
 
     /// True if the displacement jumps at a point of the crack's curve or plane: between the ends, by more than `slack` [m].
@@ -268,6 +327,13 @@ impl Crack {
             .map(tip)
             .collect()
     }
+}
+
+/// The first crack on whose curve or plane a node lies, by node.
+pub fn first_on(cracks: &[Crack]) -> BTreeMap<u32, usize> {
+    let later_first = cracks.iter().enumerate().rev();
+    let nodes = later_first.flat_map(|(k, crack)| crack.nodes_on().map(move |node| (node, k)));
+    nodes.collect()
 }
 
 /// The polyline that stands for a curve: its own vertices, or chords of an arc no longer than a quarter of a cell.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::curve::turned;
 use crate::geometry::{Point, dot, norm, sub, unit};
 use crate::mesh::Mesh;
@@ -18,10 +19,10 @@ pub struct Near<'a> {
     pub cells_of: BTreeMap<u32, Vec<usize>>,
     /// Edges of these cells, lower node first.
     pub edges: BTreeSet<[u32; 2]>,
-    /// The same by their least x, in which they are sorted [m].
-    by_x: Vec<(f64, [u32; 2])>,
-    /// Largest extent of an edge along x [m].
-    widest: f64,
+    /// The same by place.
+    boxes: Boxes,
+    /// The same by number there.
+    numbered: Vec<[u32; 2]>,
     /// No place is taken for another one farther away [m].
     slack: f64,
     /// Shortest edge at each of their nodes [m].
@@ -37,23 +38,26 @@ impl<'a> Near<'a> {
             mesh,
             cells_of: BTreeMap::new(),
             edges: BTreeSet::new(),
-            by_x: Vec::new(),
-            widest: 0.0,
+            boxes: Boxes::default(),
+            numbered: Vec::new(),
             slack: 0.0,
             sizes: BTreeMap::new(),
             rounding: mesh.rounding(),
         };
-        for cell in 0..mesh.cell_count() {
+        // All arms of a crack have its level set.
+        let whole = cracks
+            .chunk_by(|a, b| a.number == b.number)
+            .map(|arms| &arms[0]);
+        let touched = whole.flat_map(|crack| {
+            crack.cells().iter().copied().filter(|&cell| {
+                let phi = mesh.cell(cell).iter().map(|&n| crack.phi(mesh, n).abs());
+                // The two most distant corners are at most two longest edges apart.
+                phi.fold(f64::INFINITY, f64::min) <= 2.0 * mesh.map(cell).longest_edge()
+            })
+        });
+        let touched: BTreeSet<usize> = touched.collect();
+        for cell in touched {
             let nodes = mesh.cell(cell);
-            let distance = |crack: &Crack| {
-                let phi = nodes.iter().map(|&n| crack.phi[n as usize].abs());
-                phi.fold(f64::INFINITY, f64::min)
-            };
-            let closest = cracks.iter().map(distance).fold(f64::INFINITY, f64::min);
-            // The two most distant corners are at most two longest edges apart.
-            if closest > 2.0 * mesh.map(cell).longest_edge() {
-                continue;
-            }
             for &node in nodes {
                 near.cells_of.entry(node).or_default().push(cell);
             }
@@ -67,34 +71,19 @@ impl<'a> Near<'a> {
                 }
             }
         }
-        let along_x = |edge: &[u32; 2]| edge.map(|n| mesh.nodes[n as usize][0]);
-        for edge in &near.edges {
-            let [a, b] = along_x(edge);
-            near.by_x.push((a.min(b), *edge));
-            near.widest = near.widest.max((b - a).abs());
-        }
-        near.by_x.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.numbered = near.edges.iter().copied().collect();
+        let ends = |edge: &[u32; 2]| edge.map(|n| mesh.nodes[n as usize]);
+        near.boxes = Boxes::new(near.edges.iter().map(|edge| around(&ends(edge), 0.0)));
         let longest = near.sizes.values().copied().fold(0.0, f64::max);
         near.slack = (TIP_ON_EDGE * longest).max(4.0 * near.rounding);
         near
     }
 
     /// The edges in a box or on its border, in order.
-    pub fn edges_in(&self, mut low: [f64; 2], mut high: [f64; 2]) -> Vec<[u32; 2]> {
-        for a in 0..2 {
-            (low[a], high[a]) = (low[a] - self.slack, high[a] + self.slack);
-        }
-        let from = low[0] - self.widest;
-        let begin = self.by_x.partition_point(|edge| edge.0 < from);
-        let end = self.by_x.partition_point(|edge| edge.0 <= high[0]);
-        let inside = |[i, j]: [u32; 2]| {
-            let [p, q] = [i, j].map(|n| self.at(n));
-            (0..2).all(|c| p[c].max(q[c]) >= low[c] && p[c].min(q[c]) <= high[c])
-        };
-        let own = self.by_x[begin..end.max(begin)].iter().map(|edge| edge.1);
-        let mut found: Vec<[u32; 2]> = own.filter(|edge| inside(*edge)).collect();
-        found.sort_unstable();
-        found
+    pub fn edges_in(&self, low: [f64; 2], high: [f64; 2]) -> Vec<[u32; 2]> {
+        let corners = [low, high].map(|x| [x[0], x[1], 0.0]);
+        let found = self.boxes.meeting(&around(&corners, self.slack));
+        found.into_iter().map(|k| self.numbered[k]).collect()
     }
 
     /// Cells at a node or edge.

@@ -56,19 +56,14 @@ pub fn off_facets(
 
 /// Where all nodes of a facet lie on a crack or next to it [m].
 fn facet_along(mesh: &Mesh, lengths: &Lengths, crack: &Crack) -> Option<Point> {
-    let near = |node: usize| {
-        crack.phi[node].abs() <= (ALONG * lengths.of_nodes[node]).max(lengths.rounding)
-    };
-    let near: Vec<bool> = (0..mesh.nodes.len()).map(near).collect();
-    let along = |facet: &&[usize], nodes: &[u32]| facet.iter().all(|&i| near[nodes[i] as usize]);
-    let mut cells = 0..if near.contains(&true) {
-        mesh.cell_count()
-    } else {
-        0
-    };
-    cells.find_map(|cell| {
-        let nodes = mesh.cell(cell);
-        let facet = mesh.kind.facets().iter().find(|f| along(f, nodes))?;
+    crack.cells().iter().find_map(|&cell| {
+        let (nodes, phi) = (mesh.cell(cell), crack.cell_phi(mesh, cell));
+        let near = |&i: &usize| {
+            let size = lengths.of_nodes[nodes[i] as usize];
+            phi[i].abs() <= (ALONG * size).max(lengths.rounding)
+        };
+        let mut facets = mesh.kind.facets().iter();
+        let facet = facets.find(|facet| facet.iter().all(near))?;
         Some(mean(facet.iter().map(|&i| &mesh.nodes[nodes[i] as usize])))
     })
 }

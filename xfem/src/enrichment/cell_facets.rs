@@ -58,7 +58,7 @@ pub fn clipped(
         // The nodes' own values, so that a node on the crack stays on it.
         let level = |x: &Point| {
             let node = nodes.iter().find(|&&n| at(n) == x);
-            let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi[n as usize]);
+            let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi(mesh, n));
             snapped(value, small)
         };
         let levels: Vec<f64> = polygon.iter().map(level).collect();

@@ -60,7 +60,7 @@ pub struct CrackFacets {
 impl CrackFacets {
     /// Facets of the `index`-th crack, up to its tips or front.
     pub fn new(mesh: &Mesh, index: usize, crack: &Crack, enrichment: &Enrichment) -> Self {
-        let cells = enrichment.cut_cells().map(|(cell, _)| cell);
+        let cells = enrichment.cut_by(index).iter().copied();
         Self::of_cells(mesh, cells, index, crack, enrichment)
     }
 

@@ -126,7 +126,8 @@ impl Pieces {
             u[node * dim..(node + 1) * dim].copy_from_slice(&own[..dim]);
             let functions: Vec<usize> = steps_of(enrichment, node).collect();
             let others = &copies[1..];
-            if functions.is_empty() || others.is_empty() {
+            let moved = others.iter().any(|copy| r(copy.1, x) != own);
+            if functions.is_empty() || !moved {
                 continue;
             }
             let matrix = DMatrix::from_fn(others.len(), functions.len(), |i, j| others[i].0[j]);

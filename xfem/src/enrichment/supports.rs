@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::Crack;
+use crate::cut::crack::{Crack, first_on};
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
@@ -61,6 +61,7 @@ pub fn support_pieces(
         }
     }
     let joiner = Joiner {
+        on_crack: first_on(cracks),
         mesh,
         cracks,
         trace,
@@ -110,6 +111,7 @@ pub fn parted_from(
         trace,
         partitions,
         beside: &BTreeMap::new(),
+        on_crack: BTreeMap::new(),
     };
     let places: Vec<Place> = (cells.iter())
         .flat_map(|&cell| (0..joiner.regions(cell)).map(move |region| (cell, region)))
@@ -167,6 +169,8 @@ struct Joiner<'a> {
     trace: &'a Trace,
     partitions: &'a BTreeMap<usize, Partition>,
     beside: &'a BTreeMap<u32, Point>,
+    /// The first crack that runs through a node.
+    on_crack: BTreeMap<u32, usize>,
 }
 
 impl Joiner<'_> {
@@ -292,7 +296,7 @@ impl Joiner<'_> {
                 part.polygon.contains(x) || part.tetrahedra.iter().any(|t| t.contains(x))
             }
         };
-        let crack = self.cracks.iter().find(|c| c.phi[node as usize] == 0.0);
+        let crack = self.on_crack.get(&node).map(|&k| &self.cracks[k]);
         let wanted = self.beside.get(&node).zip(crack);
         let below = wanted.is_some_and(|(x, crack)| crack.distance(x) < 0.0);
         let above = |&(cell, region): &Place| {

@@ -17,6 +17,7 @@ use crate::cut::flat;
 use crate::cut::partition::Partition;
 use crate::cut::placement::{self, front_frame};
 use crate::cut::trace::{Chain, Trace, TracedTip};
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, norm, sub};
@@ -26,30 +27,10 @@ use crate::mesh::neighbours::Neighbours;
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
 use super::supports::{Place, parted_from};
+use super::zone::{Zone, front_room};
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
-
-/// Nodes around a tip.
-struct Zone {
-    /// Those that carry its branch functions.
-    nodes: BTreeSet<u32>,
-    /// Those of the ramp; empty: there is none.
-    core: BTreeSet<u32>,
-    /// Regions of its cells that other cracks part from the tip.
-    cut_off: BTreeSet<Place>,
-}
-
-impl Zone {
-    /// Without a ramp.
-    fn plain(nodes: BTreeSet<u32>) -> Self {
-        Zone {
-            nodes,
-            core: BTreeSet::new(),
-            cut_off: BTreeSet::new(),
-        }
-    }
-}
 
 /// Cells longer than this times their width take no branch functions by themselves …
 const SLENDER: f64 = 6.0;
@@ -74,6 +55,8 @@ pub struct Tips {
     pub cores: Vec<BTreeSet<u32>>,
     /// Regions where the functions of every tip vanish, beyond other cracks.
     pub cut_off: Vec<BTreeSet<Place>>,
+    /// Radius of every ramp [m]; 0: there is none.
+    pub radii: Vec<f64>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
     /// Corners with branch functions.
@@ -97,9 +80,19 @@ impl Tips {
                 .iter()
                 .map(|t| arms[t.arm].tip != Tip::None)
                 .collect(),
-            pairs: Vec::new(),
+            pairs: BTreeSet::new(),
             partitions: BTreeMap::new(),
+            extents: Boxes::new(arms.iter().map(Crack::extents)),
+            tips_of: vec![Vec::new(); arms.len()],
+            chains_of: vec![Vec::new(); arms.len()],
         };
+        for (number, tip) in trace.tips.iter().enumerate() {
+            search.tips_of[tip.arm].push(number);
+        }
+        for (&cell, chains) in &trace.chains {
+            let own = chains.iter().map(|chain| (cell, chain));
+            own.for_each(|chain| search.chains_of[chain.1.arm].push(chain));
+        }
         // Every round takes at least one tip its functions.
         while search.round()? {}
         if search.add_pairs() {
@@ -119,7 +112,7 @@ impl Tips {
         }
         for &arm in &search.pairs {
             let cells: Vec<usize> = search.cells_of(arm);
-            let own = trace.tips.iter().filter(|t| t.arm == arm);
+            let own = search.tips_of[arm].iter().map(|&t| &trace.tips[t]);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
             let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
@@ -137,7 +130,7 @@ impl Tips {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, crack) in arms.iter().enumerate() {
-            for cell in 0..mesh.cell_count() {
+            for &cell in crack.cells() {
                 let list = match placement::along(mesh, crack, cell) {
                     placement::Along::Through => &mut inside,
                     placement::Along::Ends => &mut ending,
@@ -178,25 +171,34 @@ impl Tips {
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
+        let mut near = None;
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
                 continue;
             };
             let cells: Vec<usize> = cells.into_iter().collect();
             let at_front = mesh.nodes_of(cells.iter().copied());
-            let zone = match arms[index].tip {
-                Tip::Radius(radius) => {
-                    let within = |node: &u32| frame.distance(&mesh.nodes[*node as usize]) <= radius;
-                    let own = (0..mesh.nodes.len() as u32).filter(within);
-                    let near = Neighbours::new(mesh);
-                    let core = &own.collect() | &near.nodes_around(&at_front);
-                    Zone {
-                        nodes: near.nodes_around(&core),
-                        core,
-                        cut_off: BTreeSet::new(),
-                    }
+            let radius = match (arms[index].tip, &frame.shape) {
+                (Tip::Radius(radius), _) => Some(radius),
+                (Tip::Auto, FrontShape::Ellipse(e)) => {
+                    Some(SHARE * front_room(mesh, arms, &arms[index], e))
                 }
-                _ => Zone::plain(at_front),
+                _ => None,
+            };
+            let own = |cell: &usize| {
+                let divided = tips.partitions.get(cell);
+                let mut faces = divided.iter().flat_map(|p| &p.faces);
+                faces.all(|f| arms[f.crack].number == arms[index].number)
+            };
+            let zone = match radius {
+                Some(radius) => {
+                    let near = near.get_or_insert_with(|| Neighbours::new(mesh));
+                    let free = |_: &_, cells: &BTreeSet<usize>, _: &_| {
+                        cells.iter().all(own).then(BTreeSet::new)
+                    };
+                    Zone::widest(mesh, near, &frame, radius, at_front, free)
+                }
+                None => Zone::plain(at_front),
             };
             tips.add(frame, &cells, zone);
         }
@@ -213,6 +215,7 @@ impl Tips {
             .extend(nodes.flat_map(|node| branches(node, tip, 4)));
         self.cores.push(zone.core);
         self.cut_off.push(zone.cut_off);
+        self.radii.push(zone.radius);
         self.frames.push(frame);
     }
 
@@ -225,9 +228,11 @@ impl Tips {
         self.functions
             .extend(own.flat_map(|(node, arm, count)| branches(node, first + arm, count)));
         self.cores
-            .extend(found.frames.iter().map(|_| found.core.clone()));
+            .extend(found.frames.iter().map(|_| found.zone.core.clone()));
         self.cut_off
-            .extend(found.frames.iter().map(|_| found.cut_off.clone()));
+            .extend(found.frames.iter().map(|_| found.zone.cut_off.clone()));
+        self.radii
+            .extend(found.frames.iter().map(|_| found.zone.radius));
         self.frames.extend(found.frames);
         self.corners.push(found.corner);
     }
@@ -253,7 +258,11 @@ struct Search<'a> {
     /// By tip: whether it does, so far.
     kept: Vec<bool>,
     /// Arms with functions of both ends.
-    pairs: Vec<usize>,
+    pairs: BTreeSet<usize>,
+    /// By arm: a box around it, its tips, its chains with their cells.
+    extents: Boxes,
+    tips_of: Vec<Vec<usize>>,
+    chains_of: Vec<Vec<(usize, &'a Chain)>>,
     partitions: BTreeMap<usize, Partition>,
     /// Shortest edge [m].
     smallest: f64,
@@ -277,8 +286,8 @@ impl Search<'_> {
     }
 
     fn keeps(&self, arm: usize, end: usize) -> bool {
-        let mut tips = self.trace.tips.iter().zip(&self.kept);
-        self.pairs.contains(&arm) || tips.any(|(t, &kept)| kept && (t.arm, t.end) == (arm, end))
+        let mut tips = self.tips_of[arm].iter();
+        self.pairs.contains(&arm) || tips.any(|&t| self.kept[t] && self.trace.tips[t].end == end)
     }
 
     fn divide(&mut self) -> Result<(), EnrichmentError> {
@@ -317,30 +326,27 @@ impl Search<'_> {
 
     /// Cells that an arm runs through or ends in.
     fn cells_of(&self, arm: usize) -> Vec<usize> {
-        let chains = self.trace.chains.iter();
-        let own = chains.filter(|(_, chains)| chains.iter().any(|c| c.arm == arm));
-        own.map(|(&cell, _)| cell).collect()
+        let mut cells: Vec<usize> = self.chains_of[arm].iter().map(|c| c.0).collect();
+        cells.dedup();
+        cells
     }
 
     /// From where to where an arm parts the cells [m].
     fn range(&self, arm: usize) -> [f64; 2] {
         let mut range = self.arms[arm].range;
-        for (tip, _) in self.trace.tips.iter().zip(&self.kept).filter(|t| !t.1) {
-            if tip.arm == arm {
-                range[tip.end] = tip.entry;
-            }
+        for &number in self.tips_of[arm].iter().filter(|&&t| !self.kept[t]) {
+            let tip = &self.trace.tips[number];
+            range[tip.end] = tip.entry;
         }
-        for (cell, chains) in &self.trace.chains {
-            for chain in chains.iter().filter(|c| c.arm == arm && self.divides(c)) {
-                let partition = self.partitions.get(cell);
-                if partition.is_none_or(|p| p.dropped.contains(&arm)) {
-                    // At the end that it is nearer to.
-                    let [low, high] = chain.range;
-                    if low - range[0] < range[1] - high {
-                        range[0] = range[0].max(high);
-                    } else {
-                        range[1] = range[1].min(low);
-                    }
+        for (cell, chain) in self.chains_of[arm].iter().filter(|c| self.divides(c.1)) {
+            let partition = self.partitions.get(cell);
+            if partition.is_none_or(|p| p.dropped.contains(&arm)) {
+                // At the end that it is nearer to.
+                let [low, high] = chain.range;
+                if low - range[0] < range[1] - high {
+                    range[0] = range[0].max(high);
+                } else {
+                    range[1] = range[1].min(low);
                 }
             }
         }
@@ -365,9 +371,8 @@ impl Search<'_> {
 
     /// Length of an arm inside the body [m].
     fn inside(&self, arm: usize) -> f64 {
-        let chains = self.trace.chains.values().flatten();
-        let own = chains.filter(|c| c.arm == arm);
-        own.map(|c| c.range[1] - c.range[0]).sum()
+        let own = self.chains_of[arm].iter();
+        own.map(|(_, c)| c.range[1] - c.range[0]).sum()
     }
 
     fn frame(&self, tip: &TracedTip) -> TipFrame {
@@ -437,9 +442,7 @@ impl Search<'_> {
     /// Straight arms with two ends inside the body, none of which has room: they take functions of both.
     fn add_pairs(&mut self) -> bool {
         for (index, arm) in self.arms.iter().enumerate() {
-            let own: Vec<usize> = (0..self.kept.len())
-                .filter(|&t| self.trace.tips[t].arm == index && !self.kept[t])
-                .collect();
+            let own = self.tips_of[index].iter().filter(|&&t| !self.kept[t]);
             let cells = self.cells_of(index);
             let alone = cells.iter().all(|cell| {
                 let chains = &self.trace.chains[cell];
@@ -448,12 +451,12 @@ impl Search<'_> {
             if arm.tip != Tip::None
                 && arm.ends == [End::Free; 2]
                 && arm.path.len() == 2
-                && own.len() == 2
+                && own.count() == 2
                 && alone
                 && !cells.is_empty()
                 && self.inside(index) > SHORTEST * self.smallest
             {
-                self.pairs.push(index);
+                self.pairs.insert(index);
             }
         }
         !self.pairs.is_empty()
@@ -461,55 +464,47 @@ impl Search<'_> {
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
     fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
+        let clearance = || self.clearance(&tip.x, &[tip.arm], room);
         let radius = match self.arms[tip.arm].tip {
-            Tip::Radius(radius) => radius.min(room),
-            Tip::Auto => SHARE * room.min(self.clearance(&tip.x, &[tip.arm])),
-            Tip::Branch | Tip::None => 0.0,
+            Tip::Radius(radius) => Some(radius.min(room)),
+            Tip::Auto => Some(SHARE * clearance()),
+            Tip::Branch | Tip::None => None,
         };
-        let ramped = matches!(self.arms[tip.arm].tip, Tip::Radius(_) | Tip::Auto);
-        let zone = ramped.then(|| self.within(radius, &[(self.frame(tip), room)], &tip.cells));
-        let plain = || {
-            let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
-            Zone {
-                cut_off: self.cut_off(&[(self.frame(tip), room)], &nodes),
-                ..Zone::plain(nodes)
-            }
+        let arms = [(self.frame(tip), room)];
+        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let zone = match radius {
+            Some(radius) => self.within(radius, &arms, nodes),
+            None => Zone::plain(nodes),
         };
-        zone.flatten().unwrap_or_else(plain)
+        Zone {
+            cut_off: self.cut_off(&arms, &zone.nodes),
+            ..zone
+        }
     }
 
     /// The nodes within the largest radius around a place, its cells given, where other cracks than the arms that end there
     /// enter only to cut something off. `arms`: their frames with the lengths that these know.
-    fn within(&self, mut radius: f64, arms: &[(TipFrame, f64)], cells: &[usize]) -> Option<Zone> {
-        let (mesh, near) = (self.mesh, &self.near);
-        let size = mesh.map(cells[0]).diagonal();
-        let smallest = near.nodes_around(&mesh.nodes_of(cells.iter().copied()));
-        loop {
-            let within = |n: &u32| arms[0].0.distance(&mesh.nodes[*n as usize]) <= radius;
-            let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
-            let core = &inside | &smallest;
-            let nodes = near.nodes_around(&core);
-            let cut_off = self.cut_off(arms, &nodes);
-            // At one node of the ramp nothing may be cut off: that is where superfluous functions are left out.
-            let whole = |&node: &u32| {
-                let mut cells = near.cells_around(&BTreeSet::from([node])).into_iter();
-                cells.all(|cell| cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none())
-            };
-            if core.iter().any(whole)
-                && self.parts_cleanly(arms, &core, &cut_off)
-                && !self.any_blocked(arms, &nodes, &cut_off)
-            {
-                return Some(Zone {
-                    nodes,
-                    core,
-                    cut_off,
-                });
-            }
-            if radius < 0.5 * size {
-                return None;
-            }
-            radius *= 0.85;
-        }
+    fn within(&self, radius: f64, arms: &[(TipFrame, f64)], at_tip: BTreeSet<u32>) -> Zone {
+        let near = &self.near;
+        Zone::widest(
+            self.mesh,
+            near,
+            &arms[0].0,
+            radius,
+            at_tip,
+            |core, cells, nodes| {
+                let cut_off = self.cut_off(arms, nodes);
+                // At one node of the ramp nothing may be cut off: that is where superfluous functions are left out.
+                let whole = |&node: &u32| {
+                    let mut cells = near.cells_around(&BTreeSet::from([node])).into_iter();
+                    cells.all(|cell| cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none())
+                };
+                let free = core.iter().any(whole)
+                    && self.parts_cleanly(arms, cells, &cut_off)
+                    && !self.any_blocked(arms, nodes, &cut_off);
+                free.then_some(cut_off)
+            },
+        )
     }
 
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
@@ -528,14 +523,14 @@ impl Search<'_> {
         })
     }
 
-    /// Whether every other crack in the cells of some nodes has something that is cut off on one of its sides at least.
+    /// Whether every other crack in some cells has something that is cut off on one of its sides at least.
     fn parts_cleanly(
         &self,
         arms: &[(TipFrame, f64)],
-        core: &BTreeSet<u32>,
+        cells: &BTreeSet<usize>,
         cut_off: &BTreeSet<Place>,
     ) -> bool {
-        let cells = self.near.cells_around(core).into_iter();
+        let cells = cells.iter().copied();
         let mut divided = cells.filter_map(|cell| Some((cell, self.partitions.get(&cell)?)));
         divided.all(|(cell, partition)| {
             partition.faces.iter().all(|face| {
@@ -558,19 +553,20 @@ impl Search<'_> {
         arms.iter().any(|arm| self.is_blocked(arm, nodes, cut_off))
     }
 
-    /// Distance of a place from arms other than its own and from the border of the body [m].
-    fn clearance(&self, x: &Point, own: &[usize]) -> f64 {
+    /// Distance of a place from arms other than its own and from the border of the body, at most `room` [m].
+    fn clearance(&self, x: &Point, own: &[usize], room: f64) -> f64 {
         let mesh = self.mesh;
         let facets = mesh.sides.values().flatten().map(|&facet| {
             let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
             segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
         });
-        let others = (0..self.arms.len()).filter(|arm| !own.contains(arm));
+        let others = self.extents.meeting(&around([x], room)).into_iter();
+        let others = others.filter(|arm| !own.contains(arm));
         let cracks = others.flat_map(|arm| {
             let path = self.arms[arm].path.windows(2);
             path.map(|w| segment_distance(x, &w[0].x, &w[1].x))
         });
-        facets.chain(cracks).fold(f64::INFINITY, f64::min)
+        facets.chain(cracks).fold(room, f64::min)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Tips and fronts of cracks with their coordinates: distance ahead along the crack, distance from it.
 
+use super::boxes::{Extents, around};
 use super::clip::Side;
 use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
@@ -121,6 +122,21 @@ impl TipFrame {
             FrontShape::Pair { half_length } => (at.psi.abs() - half_length).hypot(at.phi),
             _ => (at.psi * at.psi + at.phi * at.phi).sqrt(),
         }
+    }
+
+    /// A box around all points within a distance of the tip or front [m].
+    pub fn extents(&self, radius: f64) -> Extents {
+        let reach = match &self.shape {
+            FrontShape::Straight | FrontShape::Corner => radius,
+            // ψ along a circle within the distance of it.
+            FrontShape::Arc { curve, .. } => match curve {
+                Curve::Arc { radius: r, .. } => radius * (2.0 + radius / r),
+                Curve::Chain(_) => f64::INFINITY,
+            },
+            FrontShape::Pair { half_length } => radius + half_length,
+            FrontShape::Ellipse(e) => radius + e.half_axes[0].max(e.half_axes[1]),
+        };
+        around([&self.position], reach)
     }
 
     /// The line behind a 2D tip from a distance on, along which the first branch function jumps whether there is a crack or

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Mesh;
+use crate::geometry::boxes::{Boxes, Extents};
 
 /// The cells of every node, ascending.
 #[derive(Debug)]
@@ -11,6 +12,8 @@ pub struct Neighbours<'a> {
     /// Where the cells of every node start.
     ptr: Vec<usize>,
     cells: Vec<usize>,
+    /// See [`Mesh::surroundings`].
+    boxes: Boxes,
 }
 
 impl<'a> Neighbours<'a> {
@@ -32,13 +35,24 @@ impl<'a> Neighbours<'a> {
                 next[node] += 1;
             }
         }
-        Neighbours { mesh, ptr, cells }
+        let boxes = mesh.surroundings();
+        Neighbours {
+            mesh,
+            ptr,
+            cells,
+            boxes,
+        }
     }
 
     /// Cells with one of some nodes.
     pub fn cells_around(&self, nodes: &BTreeSet<u32>) -> BTreeSet<usize> {
         let own = |&node: &u32| &self.cells[self.ptr[node as usize]..self.ptr[node as usize + 1]];
         nodes.iter().flat_map(own).copied().collect()
+    }
+
+    /// All nodes in a box, and some beside it.
+    pub fn nodes_in(&self, extents: &Extents) -> BTreeSet<u32> {
+        self.mesh.nodes_of(self.boxes.meeting(extents))
     }
 
     /// Nodes of all cells with one of some nodes.

@@ -24,7 +24,7 @@ use crate::geometry::polygon::{meets, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, norm, sub, unit};
 
-use super::{Place, SHARE, SHORTEST, SLENDER, SLENDEREST, Search, Zone};
+use super::{SHARE, SHORTEST, SLENDER, SLENDEREST, Search, Zone};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -47,10 +47,8 @@ pub(super) struct CornerFunctions {
     pub frames: Vec<TipFrame>,
     /// Cells around it.
     pub cells: Vec<usize>,
-    /// Nodes of the ramp; empty: there is none.
-    pub core: BTreeSet<u32>,
-    /// Regions that other cracks part from it.
-    pub cut_off: BTreeSet<Place>,
+    /// Its nodes.
+    pub zone: Zone,
     /// Node, arm in the order of the frames, and how many of the functions.
     pub functions: Vec<(u32, usize, u8)>,
 }
@@ -92,7 +90,8 @@ impl Search<'_> {
         let at_corner = self.mesh.nodes_of(cells.iter().copied());
         let own: Vec<usize> = ends.iter().map(|end| end.0).collect();
         let rooms = arms.iter().map(|arm| arm.1);
-        let room = rooms.fold(self.clearance(&x, &own), f64::min);
+        let room = rooms.fold(f64::INFINITY, f64::min);
+        let room = self.clearance(&x, &own, room);
         let tips = || own.iter().map(|&arm| self.arms[arm].tip);
         let longest = match tips().all(|tip| tip == Tip::Auto) {
             true => SLENDER,
@@ -119,9 +118,8 @@ impl Search<'_> {
         });
         let radius = radii.fold(f64::INFINITY, f64::min);
         let mut surplus = Vec::new();
-        let ramped = (radius > 0.0)
-            .then(|| self.within(radius, &arms, &cells))
-            .flatten();
+        let ramped = (radius > 0.0).then(|| self.within(radius, &arms, at_corner.clone()));
+        let ramped = ramped.filter(|zone| zone.radius > 0.0);
         let deep = ramped.filter(|zone| match self.deepest(&arms, &zone.core, DEEP * size) {
             Some(nodes) => {
                 surplus = nodes;
@@ -146,9 +144,8 @@ impl Search<'_> {
             corner: Corner { x, arms: own, size },
             frames: arms.into_iter().map(|arm| arm.0).collect(),
             cells,
-            core: zone.core,
-            cut_off: zone.cut_off,
             functions,
+            zone,
         })
     }
 

@@ -1,0 +1,96 @@
+//! The nodes around a tip or front that carry its branch functions, and the room that a front has.
+//!
+//! The ramp falls to zero over the cells around its nodes. Other cracks may enter it only to cut something off; a radius is
+//! reduced until that is so.
+
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+use crate::cut::crack::{Crack, Geometry};
+use crate::geometry::ellipse::Ellipse;
+use crate::geometry::tip_frame::TipFrame;
+use crate::mesh::Mesh;
+use crate::mesh::neighbours::Neighbours;
+
+use super::supports::Place;
+
+/// Nodes around a tip.
+pub(super) struct Zone {
+    /// Those that carry its branch functions.
+    pub nodes: BTreeSet<u32>,
+    /// Those of the ramp; empty: there is none.
+    pub core: BTreeSet<u32>,
+    /// Radius of the ramp [m]; 0: there is none.
+    pub radius: f64,
+    /// Regions of its cells that other cracks part from the tip.
+    pub cut_off: BTreeSet<Place>,
+}
+
+impl Zone {
+    /// Without a ramp.
+    pub fn plain(nodes: BTreeSet<u32>) -> Self {
+        Zone {
+            nodes,
+            core: BTreeSet::new(),
+            radius: 0.0,
+            cut_off: BTreeSet::new(),
+        }
+    }
+
+    /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the ramp's nodes, their cells and
+    /// all nodes, of which it tells what is cut off; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
+    pub fn widest(
+        mesh: &Mesh,
+        near: &Neighbours<'_>,
+        frame: &TipFrame,
+        mut radius: f64,
+        at_tip: BTreeSet<u32>,
+        free: impl Fn(&BTreeSet<u32>, &BTreeSet<usize>, &BTreeSet<u32>) -> Option<BTreeSet<Place>>,
+    ) -> Self {
+        let smallest = near.nodes_around(&at_tip);
+        let candidates = near.nodes_in(&frame.extents(radius));
+        loop {
+            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
+            let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
+            let core = &inside | &smallest;
+            let nodes = near.nodes_around(&core);
+            if let Some(cut_off) = free(&core, &near.cells_around(&core), &nodes) {
+                return Zone {
+                    nodes,
+                    core,
+                    radius,
+                    cut_off,
+                };
+            }
+            if core == smallest {
+                return Zone::plain(at_tip);
+            }
+            radius *= 0.85;
+        }
+    }
+}
+
+/// Room around the front of an ellipse: its shorter axis, the distance from other cracks and from the sides of the body that
+/// it does not cross [m].
+pub(super) fn front_room(mesh: &Mesh, arms: &[Crack], own: &Crack, front: &Ellipse) -> f64 {
+    /// Places along the front.
+    const PLACES: u32 = 64;
+    let places = (0..PLACES).map(|k| front.point(TAU * f64::from(k) / f64::from(PLACES)));
+    let places: Vec<_> = places.collect();
+    let least = |distance: &dyn Fn(&[f64; 3]) -> f64| {
+        let all = places.iter().map(distance);
+        all.fold(f64::INFINITY, f64::min)
+    };
+    let [low, high] = mesh.extents();
+    let sides = (0..3).flat_map(|a| [least(&|x| x[a] - low[a]), least(&|x| high[a] - x[a])]);
+    let others = arms.iter().filter(|arm| arm.number != own.number);
+    let cracks = others.map(|arm| match &arm.geometry {
+        Geometry::Ellipse(e) => least(&|x| e.nearest(x).psi.max(0.0).hypot(arm.distance(x))),
+        _ => least(&|x| arm.distance(x).abs()),
+    });
+    let shorter = 2.0 * front.half_axes[0].min(front.half_axes[1]);
+    sides
+        .filter(|d| *d > 0.0)
+        .chain(cracks)
+        .fold(shorter, f64::min)
+}
