@@ -426,7 +426,7 @@ fn place_cracks(
     }
     let cracks: Vec<_> = case.cracks.iter().map(|c| (&c.geometry, c.tip)).collect();
     let cracks = off_facets(mesh, &lengths, &cracks).map_err(refused)?;
-    let cracks = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
+    let (cracks, _joined) = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
     Ok((cracks, None))
 }
 

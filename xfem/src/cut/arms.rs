@@ -5,8 +5,8 @@
 //! have the forces on them. In a solid a crack that crosses an earlier plane is parted by it.
 
 use crate::geometry::boxes::{Boxes, around};
-use crate::geometry::polygon::segment_foot;
-use crate::geometry::{Point, add_scaled, cross, norm, sub, unit};
+use crate::geometry::polygon::{segment_distance, segment_foot};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::crack::{Crack, End, Geometry, Parent, PathVertex};
@@ -15,12 +15,15 @@ use super::is_split;
 /// Bends sharper than this part a crack [rad]: ten degrees.
 const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
-/// Closer than this to a crack is on it, in units of the shortest edge: nobody gives a point on a slanted crack to all
-/// digits.
-const ON_OTHER: f64 = 1e-4;
+/// An end closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
+/// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
+const JOINED: f64 = 1e-2;
+
+/// How far an end is followed to where it really crosses, in the same units: so it keeps its direction.
+const FOLLOWED: f64 = 10.0 * JOINED;
 
 /// Places where one crack meets others closer than this are one, in the same units; no arm between them is shorter.
-const SAME_PLACE: f64 = 10.0 * ON_OTHER;
+const SAME_PLACE: f64 = 1e-3;
 
 /// Cracks closer than this run along each other, in the same units: what lies between them is lost in rounding.
 const ALONG: f64 = 1e-6;
@@ -35,36 +38,55 @@ pub struct Overlap {
     pub at: Point,
 }
 
-/// Cuts cracks where they meet and bend; arms of a crack follow each other. `cracks`: whole ones.
+/// An end that was joined with what it nearly touches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    /// Number of the crack, from 0.
+    pub crack: usize,
+    /// Where it ends as it was given [m].
+    pub from: Point,
+    /// Where it ends now [m].
+    pub to: Point,
+}
+
+/// Cuts cracks where they meet and bend; arms of a crack follow each other. `cracks`: whole ones. Ends that nearly touch
+/// something are joined with it.
 ///
 /// # Errors
 /// Two cracks of a plane body that run along each other.
-pub fn arms(cracks: Vec<Crack>, mesh: &Mesh) -> Result<Vec<Crack>, Overlap> {
+pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Joined>), Overlap> {
     if mesh.dim() == 3 {
         let mut done: Vec<Crack> = Vec::new();
         for crack in cracks {
             done.extend(plane_arms(&crack, &done, mesh));
         }
-        return Ok(done);
+        return Ok((done, Vec::new()));
     }
     let size = mesh.smallest_edge();
     let mut places = Places {
         size,
         points: Vec::new(),
         cuts: vec![Vec::new(); cracks.len()],
+        joined: Vec::new(),
     };
     let extents = |crack: &Crack| around(&crack.extents(), size);
     let boxes = Boxes::new(cracks.iter().map(extents));
-    for (later, crack) in cracks.iter().enumerate() {
-        let near = boxes.meeting(&extents(crack)).into_iter();
-        for earlier in near.take_while(|&k| k < later) {
+    let near: Vec<Vec<usize>> = cracks.iter().map(|crack| boxes.meeting(&extents(crack))).collect();
+    for k in 0..cracks.len() {
+        for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
+            if !places.join(&cracks, k, end, &near[k]) {
+                places.lead_out(&mut cracks[k], end, mesh);
+            }
+        }
+    }
+    for (later, near) in near.iter().enumerate() {
+        for &earlier in near.iter().take_while(|&&k| k < later) {
             places.meet(&cracks, [earlier, later])?;
         }
     }
     let parts = cracks.iter().zip(places.cuts);
-    Ok(parts
-        .flat_map(|(crack, cuts)| parted(crack, cuts, SAME_PLACE * size))
-        .collect())
+    let arms = parts.flat_map(|(crack, cuts)| parted(crack, cuts, SAME_PLACE * size));
+    Ok((arms.collect(), places.joined))
 }
 
 /// Where cracks meet.
@@ -75,44 +97,114 @@ struct Places {
     points: Vec<Point>,
     /// By crack: abscissa [m] and place.
     cuts: Vec<Vec<PathVertex>>,
+    /// Ends that were moved.
+    joined: Vec<Joined>,
+}
+
+/// The last vertex of a whole crack at one of its ends, and the unit direction out of it.
+fn ending(crack: &Crack, end: usize) -> Option<(PathVertex, Point)> {
+    let [last, before] = match crack.path.as_slice() {
+        [first, next, ..] if end == 0 => [first, next],
+        [.., next, last] => [last, next],
+        _ => return None,
+    };
+    Some((*last, unit(&sub(&last.x, &before.x))))
 }
 
 impl Places {
-    /// Adds where two cracks meet.
-    fn meet(&mut self, cracks: &[Crack], pair: [usize; 2]) -> Result<(), Overlap> {
-        let [one, two] = pair.map(|k| &cracks[k]);
-        let slack = ON_OTHER * self.size;
-        // Where one ends on the other, or beside it.
-        for (k, l) in [(0, 1), (1, 0)] {
-            let (ending, other) = (&cracks[pair[k]], &cracks[pair[l]]);
-            let ends = [ending.path.first(), ending.path.last()];
-            for end in ends.into_iter().flatten().filter(|_| !is_closed(ending)) {
-                let near = other.path.windows(2).map(|w| {
-                    let foot = segment_foot(&end.x, &w[0].x, &w[1].x);
-                    let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
-                    (
-                        distance(&end.x, &foot),
-                        w[0].s + share * (w[1].s - w[0].s),
-                        foot,
-                    )
-                });
-                let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
-                if let Some((away, s, foot)) = nearest.filter(|n| n.0 <= slack) {
-                    // Followed to where it really crosses, if that is next to it: both keep their directions.
-                    let crossing = crossings(ending, other, 100.0 * slack)
-                        .into_iter()
-                        .filter(|c| (c[0].s - end.s).abs() <= 100.0 * slack)
-                        .min_by(|a, b| (a[0].s - end.s).abs().total_cmp(&(b[0].s - end.s).abs()));
-                    let (s, x) = match crossing {
-                        Some(c) => (c[1].s, c[1].x),
-                        // It runs beside the other.
-                        None if away > ALONG * self.size => continue,
-                        None => (s, foot),
-                    };
-                    self.add([pair[k], pair[l]], [end.s, s], x);
-                }
+    /// Joins an end with the cracks it nearly touches, at the first place behind or before it; whether there are any.
+    fn join(&mut self, cracks: &[Crack], k: usize, end: usize, near: &[usize]) -> bool {
+        let Some((last, ahead)) = ending(&cracks[k], end) else {
+            return false;
+        };
+        let (joined, followed) = (JOINED * self.size, FOLLOWED * self.size);
+        // The place on another crack, its abscissa there.
+        let place = |l: usize| {
+            let feet = cracks[l].path.windows(2).map(|w| {
+                let foot = segment_foot(&last.x, &w[0].x, &w[1].x);
+                let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
+                let s = w[0].s + share * (w[1].s - w[0].s);
+                (distance(&last.x, &foot), s, foot)
+            });
+            let (away, s, foot) = feet.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            if away > joined {
+                return None;
+            }
+            let away_from_end = |c: &[PathVertex; 2]| (c[0].s - last.s).abs();
+            let crossing = crossings(&cracks[k], &cracks[l], followed)
+                .into_iter()
+                .filter(|c| away_from_end(c) <= followed && distance(&c[0].x, &last.x) <= followed)
+                .min_by(|a, b| away_from_end(a).total_cmp(&away_from_end(b)));
+            // It runs beside the other, or on to an end of it: that of the earlier stays.
+            let ends = [cracks[l].path.first(), cracks[l].path.last()];
+            let at_end = ends.into_iter().flatten().any(|v| v.x == foot);
+            match crossing {
+                Some(c) => Some((l, c[1].s, c[1].x)),
+                None if away <= ALONG * self.size || at_end && l < k => Some((l, s, foot)),
+                None => None,
+            }
+        };
+        let found: Vec<(usize, f64, Point)> =
+            near.iter().filter(|&&l| l != k).filter_map(|&l| place(l)).collect();
+        let along = |x: &Point| dot(&sub(x, &last.x), &ahead);
+        let Some(first) = found.iter().min_by(|a, b| along(&a.2).total_cmp(&along(&b.2))) else {
+            return false;
+        };
+        let x = first.2;
+        for (l, s, at) in found {
+            if distance(&at, &x) <= SAME_PLACE * self.size {
+                self.add([k, l], [last.s, s], at);
             }
         }
+        self.note(&cracks[k], &last.x, &x);
+        true
+    }
+
+    /// Leads an end that nearly touches a side of the body through it.
+    fn lead_out(&mut self, crack: &mut Crack, end: usize, mesh: &Mesh) {
+        let Some((last, ahead)) = ending(crack, end) else {
+            return;
+        };
+        let facets = mesh.sides.values().flatten();
+        let before = facets.filter_map(|&facet| {
+            let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
+            let [p, q] = [0, 1].map(|i| &mesh.nodes[ends[i]]);
+            let (d, from) = (sub(q, p), sub(p, &last.x));
+            let turn = cross(&ahead, &d)[2];
+            let [t, share] = [cross(&from, &d)[2] / turn, cross(&from, &ahead)[2] / turn];
+            let close = segment_distance(&last.x, p, q) <= JOINED * self.size;
+            (close && (0.0..=1.0).contains(&share) && t > 0.0).then_some(t)
+        });
+        let nearest = before.fold(f64::INFINITY, f64::min);
+        if nearest > FOLLOWED * self.size {
+            return;
+        }
+        self.note(crack, &last.x, &add_scaled(&last.x, nearest, &ahead));
+        let by = nearest + JOINED * self.size;
+        let moved = PathVertex {
+            s: last.s + if end == 0 { -by } else { by },
+            x: add_scaled(&last.x, by, &ahead),
+        };
+        crack.range[end] = moved.s;
+        let vertex = if end == 0 { crack.path.first_mut() } else { crack.path.last_mut() };
+        if let Some(vertex) = vertex {
+            *vertex = moved;
+        }
+    }
+
+    fn note(&mut self, crack: &Crack, from: &Point, to: &Point) {
+        if distance(from, to) > ALONG * self.size {
+            self.joined.push(Joined {
+                crack: crack.number,
+                from: *from,
+                to: *to,
+            });
+        }
+    }
+
+    /// Adds where two cracks cross.
+    fn meet(&mut self, cracks: &[Crack], pair: [usize; 2]) -> Result<(), Overlap> {
+        let [one, two] = pair.map(|k| &cracks[k]);
         for [a, b] in crossings(one, two, 0.0) {
             self.add(pair, [a.s, b.s], a.x);
         }
@@ -129,7 +221,8 @@ impl Places {
         });
         for (crack, s) in cracks.into_iter().zip(s) {
             let cuts = &mut self.cuts[crack];
-            if !cuts.iter().any(|c| (c.s - s).abs() <= same && c.x == x) {
+            // What crosses beside its own end ends there.
+            if !cuts.iter().any(|c| (c.s - s).abs() <= FOLLOWED * self.size && c.x == x) {
                 cuts.push(PathVertex { s, x });
             }
         }
@@ -250,7 +343,7 @@ fn parted(crack: &Crack, mut cuts: Vec<PathVertex>, shortest: f64) -> Vec<Crack>
     for w in crack.path.windows(3) {
         let [a, b] = [0, 1].map(|i| unit(&sub(&w[i + 1].x, &w[i].x)));
         let sine = cross(&a, &b)[2];
-        let turn = sine.atan2(crate::geometry::dot(&a, &b));
+        let turn = sine.atan2(dot(&a, &b));
         // However short: the faces between a bend and a crossing have a normal of their own.
         if turn.abs() > BEND && far(&bounds, w[1].s, small) {
             bounds.push((w[1], End::Bend));
