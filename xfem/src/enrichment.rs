@@ -290,16 +290,6 @@ impl Enrichment {
         self.standard
     }
 
-    /// True if the branch functions of a tip reach beyond its cells, with a ramp.
-    pub fn is_ramped(&self, tip: usize) -> bool {
-        !self.cores[tip].is_empty()
-    }
-
-    /// True for a node of the ramp of a tip.
-    pub fn in_core(&self, tip: usize, node: u32) -> bool {
-        self.cores[tip].contains(&node)
-    }
-
     /// Where branch functions are singular in 2D: the tips and corners that carry them [m].
     pub fn singular_points(&self) -> Vec<Point> {
         let mut found: Vec<Point> = self.tips.iter().flat_map(TipFrame::tips).collect();

@@ -11,7 +11,7 @@ pub mod corners;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::corners::{Corner, CornerFunctions};
+use self::corners::Corner;
 use crate::cut::crack::{Crack, End, Geometry, Tip};
 use crate::cut::flat;
 use crate::cut::partition::Partition;
@@ -30,11 +30,14 @@ use super::error::EnrichmentError;
 const SHARE: f64 = 0.25;
 
 /// Nodes around a tip.
+#[derive(Default)]
 struct Zone {
     /// Those that carry its branch functions.
     nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
     core: BTreeSet<u32>,
+    /// Those without g₃ and g₄, which the ramp makes superfluous there.
+    surplus: Vec<u32>,
 }
 
 impl Zone {
@@ -42,8 +45,20 @@ impl Zone {
     fn plain(nodes: BTreeSet<u32>) -> Self {
         Zone {
             nodes,
-            core: BTreeSet::new(),
+            ..Zone::default()
         }
+    }
+
+    /// The functions of a tip at one of the nodes.
+    fn branches(&self, node: u32, tip: usize) -> impl Iterator<Item = Function> {
+        let count = if self.surplus.contains(&node) { 2 } else { 4 };
+        (0..count).map(move |order| {
+            let kind = FunctionKind::Branch {
+                tip: tip as u32,
+                order,
+            };
+            Function { node, kind }
+        })
     }
 }
 
@@ -114,9 +129,7 @@ impl Tips {
             let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
         }
-        for corner in search.corners() {
-            tips.add_corner(corner);
-        }
+        search.add_corners(&mut tips);
         tips.partitions = search.partitions;
         tips.cells.sort_unstable();
         Ok(tips)
@@ -183,6 +196,7 @@ impl Tips {
                     Zone {
                         nodes: near.nodes_around(&core),
                         core,
+                        ..Zone::default()
                     }
                 }
                 _ => Zone::plain(at_front),
@@ -197,37 +211,12 @@ impl Tips {
     fn add(&mut self, frame: TipFrame, cells: &[usize], zone: Zone) {
         let tip = self.frames.len();
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
-        let nodes = zone.nodes.into_iter();
+        let nodes = zone.nodes.iter();
         self.functions
-            .extend(nodes.flat_map(|node| branches(node, tip, 4)));
+            .extend(nodes.flat_map(|&node| zone.branches(node, tip)));
         self.cores.push(zone.core);
         self.frames.push(frame);
     }
-
-    /// Adds the branch functions of the arms of a corner.
-    fn add_corner(&mut self, found: CornerFunctions) {
-        let first = self.frames.len();
-        self.cells
-            .extend(found.cells.into_iter().map(|cell| (cell, first)));
-        let own = found.functions.into_iter();
-        self.functions
-            .extend(own.flat_map(|(node, arm, count)| branches(node, first + arm, count)));
-        self.cores
-            .extend(found.frames.iter().map(|_| found.core.clone()));
-        self.frames.extend(found.frames);
-        self.corners.push(found.corner);
-    }
-}
-
-/// The first branch functions of a tip at a node.
-fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> {
-    (0..count).map(move |order| {
-        let kind = FunctionKind::Branch {
-            tip: tip as u32,
-            order,
-        };
-        Function { node, kind }
-    })
 }
 
 /// The search for the tips of a 2D body that can carry branch functions.
@@ -367,14 +356,11 @@ impl Search<'_> {
         // A tip inside a cell divides it; another crack there leaves the functions no meaning.
         let parted = tip.cells.len() > 1
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
-        let alone = tip
-            .cells
-            .iter()
-            .filter_map(divided)
-            .all(|p| self.is_own(p, tip.arm));
+        let own = [(self.frame(tip), self.room(number))];
+        let alone = self.holds_only(&own, &tip.cells.iter().copied().collect());
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let size = self.mesh.map(tip.cells[0]).diagonal();
-        let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
+        let parted = parted && own[0].1.min(self.inside(tip.arm)) > SHORTEST * size;
         // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.
         let longest = match self.arms[tip.arm].tip {
             Tip::Auto => SLENDER,
@@ -382,12 +368,7 @@ impl Search<'_> {
         };
         let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
         let slender = aspects.any(|aspect| aspect > longest);
-        parted && alone && !slender && !self.is_blocked(&self.frame(tip), self.room(number), &nodes)
-    }
-
-    /// Whether only one arm lies in a divided cell.
-    fn is_own(&self, partition: &Partition, arm: usize) -> bool {
-        partition.faces.iter().all(|f| f.crack == arm)
+        parted && alone && !slender && !self.any_blocked(&own, &nodes)
     }
 
     /// Whether a cell of some nodes holds a part of the line behind a tip beyond its room.
@@ -429,15 +410,22 @@ impl Search<'_> {
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
     fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
-        let radius = match self.arms[tip.arm].tip {
-            Tip::Radius(radius) => radius.min(room),
-            Tip::Auto => SHARE * room.min(self.clearance(&tip.x, &[tip.arm])),
-            Tip::Branch | Tip::None => 0.0,
-        };
-        let ramped = matches!(self.arms[tip.arm].tip, Tip::Radius(_) | Tip::Auto);
-        let zone = ramped.then(|| self.within(radius, &[(self.frame(tip), room)], &tip.cells));
-        let plain = || Zone::plain(self.mesh.nodes_of(tip.cells.iter().copied()));
-        zone.flatten().unwrap_or_else(plain)
+        let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm]));
+        let own = [(self.frame(tip), room)];
+        let mut ramped = radius.and_then(|radius| self.within(radius, &own, &tip.cells));
+        if let (Some(zone), FrontShape::Straight) = (&mut ramped, &own[0].0.shape) {
+            zone.surplus = self.deepest(&own, &zone.core, 0.0).unwrap_or_default();
+        }
+        ramped.unwrap_or_else(|| Zone::plain(self.mesh.nodes_of(tip.cells.iter().copied())))
+    }
+
+    /// The radius that an arm asks for, if any. `clear`: the distance from other arms and the border [m].
+    fn radius(&self, arm: usize, room: f64, clear: f64) -> Option<f64> {
+        match self.arms[arm].tip {
+            Tip::Radius(radius) => Some(radius.min(room)),
+            Tip::Auto => Some(SHARE * room.min(clear)),
+            Tip::Branch | Tip::None => None,
+        }
     }
 
     /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
@@ -446,25 +434,28 @@ impl Search<'_> {
         let (mesh, near) = (self.mesh, &self.near);
         let size = mesh.map(cells[0]).diagonal();
         let smallest = near.nodes_around(&mesh.nodes_of(cells.iter().copied()));
-        let own = |p: &Partition| {
-            let mut faces = p.faces.iter();
-            faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
-        };
         loop {
             let within = |n: &u32| arms[0].0.distance(&mesh.nodes[*n as usize]) <= radius;
             let inside: BTreeSet<u32> = (0..mesh.nodes.len() as u32).filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
             let cells = near.cells_around(&core);
-            let mut parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
-            if parted.all(own) && !self.any_blocked(arms, &nodes) {
-                return Some(Zone { nodes, core });
+            if self.holds_only(arms, &cells) && !self.any_blocked(arms, &nodes) {
+                let ramp = Zone::plain(nodes);
+                return Some(Zone { core, ..ramp });
             }
             if radius < 0.5 * size {
                 return None;
             }
             radius *= 0.85;
         }
+    }
+
+    /// Whether none but some arms run through some cells.
+    fn holds_only(&self, arms: &[(TipFrame, f64)], cells: &BTreeSet<usize>) -> bool {
+        let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
+        let mut faces = parted.flat_map(|p| &p.faces);
+        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
     }
 
     /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
@@ -481,11 +472,14 @@ impl Search<'_> {
             segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
         });
         let others = (0..self.arms.len()).filter(|arm| !own.contains(arm));
-        let cracks = others.flat_map(|arm| {
-            let path = self.arms[arm].path.windows(2);
-            path.map(|w| segment_distance(x, &w[0].x, &w[1].x))
-        });
-        facets.chain(cracks).fold(f64::INFINITY, f64::min)
+        facets.fold(self.from_arms(x, others), f64::min)
+    }
+
+    /// Distance of a place from some arms [m].
+    fn from_arms(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
+        let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
+        let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
+        away.fold(f64::INFINITY, f64::min)
     }
 }
 

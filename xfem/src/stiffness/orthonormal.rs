@@ -11,22 +11,11 @@
 //! span of those before it is too small to be told from rounding is dropped. Functions keep their numbers; only what the
 //! solver sees is transformed. A is divided by that of a standard function, rounded to a power of four: all unknowns of the
 //! solver are displacements then, and residuals compare whatever the units.
-//!
-//! With a ramp the shape functions sum to one over all cells of a straight tip, and the branch functions become exactly
-//! dependent: with x, y ahead and across,
-//!
-//! ```text
-//!   y (g₂ − g₃) − x g₄ = 0,     y (g₁ − g₄) + x g₃ = 0
-//! ```
-//!
-//! and Σ N_k x_k = x, Σ N_k y_k = y. Both relations are resolved by leaving out g₃ and g₄ at one node, where r is largest.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
-use crate::geometry::tip_frame::FrontShape;
-use crate::mesh::Mesh;
 
 use super::elasticity::{CellMatrix, CellView};
 
@@ -64,15 +53,13 @@ impl SolverBasis {
     /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its
     /// functions; `held`: whether a component of a function is prescribed, which keeps this component of its node as it is.
     pub fn new<'a>(
-        mesh: &Mesh,
+        dim: usize,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
         matrix: impl Fn(usize) -> CellView<'a>,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
-        let dim = mesh.dim();
         let mut basis = SolverBasis::default();
-        let surplus = surplus(mesh, enrichment, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
@@ -95,7 +82,7 @@ impl SolverBasis {
             }
             basis.blocks.push(Block {
                 first: own.start,
-                t: inverse_factor(&gram, own.len(), |i| surplus.contains(&(own.start + i))),
+                t: inverse_factor(&gram, own.len()),
                 count: own.len(),
                 free,
             });
@@ -237,42 +224,6 @@ impl SolverBasis {
     }
 }
 
-/// The functions that the relations between branch functions make superfluous: two per straight ramped tip.
-fn surplus(
-    mesh: &Mesh,
-    enrichment: &Enrichment,
-    held: impl Fn(usize, usize) -> bool,
-) -> BTreeSet<usize> {
-    let dim = mesh.dim();
-    let any = |f: usize| (0..dim).any(|a| held(f, a));
-    let mut found = BTreeSet::new();
-    for (number, tip) in enrichment.tips.iter().enumerate() {
-        let own = |f: &usize| match enrichment.functions[*f].kind {
-            FunctionKind::Branch { tip, .. } => tip as usize == number,
-            _ => false,
-        };
-        let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
-        // A prescribed component breaks the relations of that component alone.
-        let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
-        if tip.shape != FrontShape::Straight || !enrichment.is_ramped(number) || broken {
-            continue;
-        }
-        let node_of = |f: usize| enrichment.functions[f].node;
-        let r = |f: usize| tip.distance(&mesh.nodes[node_of(f) as usize]);
-        let own = functions.iter().copied();
-        let free = |f: usize| !enrichment.enriched_of(node_of(f) as usize).any(any);
-        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)) && free(f));
-        let farthest = core.max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
-        let node = farthest.map(node_of);
-        found.extend(functions.into_iter().filter(|&f| {
-            let function = enrichment.functions[f];
-            let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
-            last && Some(function.node) == node
-        }));
-    }
-    found
-}
-
 /// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
 fn gram<'a>(
     enrichment: &Enrichment,
@@ -300,12 +251,12 @@ fn gram<'a>(
     gram
 }
 
-/// T = (D L)⁻¹ of a Gram matrix, with zero rows for the superfluous functions and those in the span of others before them.
-fn inverse_factor(gram: &[f64], n: usize, surplus: impl Fn(usize) -> bool) -> Vec<f64> {
+/// T = (D L)⁻¹ of a Gram matrix, with zero rows for functions in the span of others before them.
+fn inverse_factor(gram: &[f64], n: usize) -> Vec<f64> {
     let scale: Vec<f64> = (0..n).map(|i| gram[i * n + i].sqrt()).collect();
     let mut t = vec![0.0; n * n];
     for i in 0..n {
-        if scale[i] == 0.0 || surplus(i) {
+        if scale[i] == 0.0 {
             continue;
         }
         // Gram–Schmidt against the functions kept so far, twice for orthogonality.
@@ -356,7 +307,7 @@ mod tests {
         let n = 4;
         let dot = |a: &[f64; 4], b: &[f64; 4]| (0..4).map(|k| a[k] * b[k]).sum::<f64>();
         let gram: Vec<f64> = (0..16).map(|k| dot(&v[k / n], &v[k % n])).collect();
-        let t = inverse_factor(&gram, n, |_| false);
+        let t = inverse_factor(&gram, n);
         let product = |i: usize, j: usize| {
             let mut sum = 0.0;
             for k in 0..n {
