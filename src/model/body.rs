@@ -147,7 +147,7 @@ impl Body {
         let mut matrices = CellMatrices::new(&integrator).map_err(unfilled)?;
         let stiffness = assembly.sum(|cell| matrices.of(cell));
         let basis = SolverBasis::new(
-            &mesh,
+            dim,
             &enrichment,
             &assembly.users,
             |cell| matrices.of(cell),
@@ -337,7 +337,8 @@ fn faces(
     let hairs = rank::hairs(&surface, &arms, size);
     arms = rank::merge(&mut surface, &arms, &hairs).0;
     loop {
-        let lost = rank::dependent(&arms, |k| rows(&surface.points[k..=k]));
+        let weight = |k: usize| surface.points[k].weight;
+        let lost = rank::dependent(&arms, weight, |k| rows(&surface.points[k..=k]));
         if lost.is_empty() {
             break;
         }

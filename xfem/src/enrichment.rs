@@ -318,20 +318,9 @@ impl Enrichment {
         self.standard
     }
 
-    /// True if the branch functions of a tip reach beyond its cells, with a ramp.
-    pub fn is_ramped(&self, tip: usize) -> bool {
-        !self.cores[tip].is_empty()
-    }
-
-    /// True for a node of the ramp of a tip.
-    pub fn in_core(&self, tip: usize, node: u32) -> bool {
-        self.cores[tip].contains(&node)
-    }
-
-    /// True if other cracks cut off something of a tip's functions in a cell.
-    pub fn is_cut_off(&self, tip: usize, cell: usize) -> bool {
-        let mut own = self.cut_off[tip].range((cell, 0)..(cell + 1, 0));
-        own.next().is_some()
+    /// True if other cracks cut off something of a tip's functions.
+    pub fn is_cut(&self, tip: usize) -> bool {
+        !self.cut_off[tip].is_empty()
     }
 
     /// Where branch functions are singular in 2D: the tips and corners that carry them [m].

@@ -89,21 +89,13 @@ pub fn star_space(free: &mut FreeJumps<'_>) -> Multipliers {
             }
         });
     }
-    let mut count = stars.iter().flatten().max().map_or(0, |s| s + 1);
-    let mut number: BTreeMap<(usize, usize), u32> = BTreeMap::new();
+    let count = stars.iter().flatten().max().map_or(0, |s| s + 1);
     for (corner, (k, share)) in near {
-        let shares = [(0, share), (1, 1.0 - share)]
-            .into_iter()
-            .filter(|s| s.1 > 0.0);
-        let numbered = shares.map(|(i, share)| {
-            let fresh = || {
-                count += 1;
-                count as u32 - 1
-            };
-            (*number.entry((k, i)).or_insert_with(fresh), share)
-        });
-        own[corner] = Some(numbered.collect());
+        let first = (count + 2 * k) as u32;
+        let shares = [(first, share), (first + 1, 1.0 - share)].into_iter();
+        own[corner] = Some(shares.filter(|s| s.1 > 0.0).collect());
     }
+    let count = count + 2 * ends.len();
     complete(free, by_corner(&free.facets, own, count))
 }
 

@@ -38,33 +38,50 @@ type Row = Vec<(usize, f64)>;
 
 /// Points whose forces no displacement determines beside those of the others; `rows(k)`: the rows (n, a[, b]) of a point.
 ///
-/// Arms with few points come first and keep them.
-pub fn dependent(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
-    search(arms, rows, [DEPENDENT, UNRESISTED])
+/// Arms with few points come first and keep them; of equals those with the larger weights, and each from its end with the
+/// larger, however the cracks are read.
+pub fn dependent(
+    arms: &[std::ops::Range<usize>],
+    weight: impl Fn(usize) -> f64,
+    rows: impl Fn(usize) -> Vec<Row>,
+) -> Vec<usize> {
+    search(&ordered(arms, weight), rows, [DEPENDENT, UNRESISTED])
 }
 
 /// Points whose forces nothing at all tells from those of the others.
 pub fn singular(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
-    search(arms, rows, [SINGULAR; 2])
+    search(&ordered(arms, |_| 1.0), rows, [SINGULAR; 2])
 }
 
+fn ordered(arms: &[std::ops::Range<usize>], weight: impl Fn(usize) -> f64) -> Vec<Vec<usize>> {
+    let scale: f64 = arms.iter().flat_map(Clone::clone).map(&weight).sum();
+    let rounded = |&point: &usize| (-weight(point) / scale * 1e9).round() as i64;
+    let mut order: Vec<Vec<usize>> = arms.iter().map(|arm| arm.clone().collect()).collect();
+    for arm in &mut order {
+        if arm.iter().map(rounded).gt(arm.iter().rev().map(rounded)) {
+            arm.reverse();
+        }
+    }
+    order.sort_by_cached_key(|arm| (arm.len(), arm.iter().map(rounded).collect::<Vec<_>>()));
+    order
+}
+
+/// Points that are dependent on those before them in the arms' order.
 fn search(
-    arms: &[std::ops::Range<usize>],
+    arms: &[Vec<usize>],
     rows: impl Fn(usize) -> Vec<Row>,
     [pivot, eigenvalue]: [f64; 2],
 ) -> Vec<usize> {
-    let mut order: Vec<&std::ops::Range<usize>> = arms.iter().collect();
-    order.sort_by_key(|arm| arm.len());
     let mut factor = Factor::default();
     let mut found = Vec::new();
     // Points by row of the factor.
     let mut owners = Vec::new();
-    for arm in order {
+    for arm in arms {
         // A slip direction that supports hold on a whole arm has no force to tell; they hold it, too.
-        let void = |k: usize| k > 0 && arm.clone().all(|point| rows(point)[k].is_empty());
-        let dim = arm.clone().next().map_or(0, |point| rows(point).len());
+        let void = |k: usize| k > 0 && arm.iter().all(|&point| rows(point)[k].is_empty());
+        let dim = arm.first().map_or(0, |&point| rows(point).len());
         let told: Vec<bool> = (0..dim).map(|k| !void(k)).collect();
-        for point in arm.clone() {
+        for &point in arm {
             let own = rows(point).into_iter().zip(&told).filter(|row| *row.1);
             let mut own = own.map(|row| row.0);
             let known = factor.len();

@@ -71,7 +71,10 @@ pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Join
     };
     let extents = |crack: &Crack| around(&crack.extents(), size);
     let boxes = Boxes::new(cracks.iter().map(extents));
-    let near: Vec<Vec<usize>> = cracks.iter().map(|crack| boxes.meeting(&extents(crack))).collect();
+    let near: Vec<Vec<usize>> = cracks
+        .iter()
+        .map(|crack| boxes.meeting(&extents(crack)))
+        .collect();
     for k in 0..cracks.len() {
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
             if !places.join(&cracks, k, end, &near[k]) {
@@ -144,10 +147,16 @@ impl Places {
                 None => None,
             }
         };
-        let found: Vec<(usize, f64, Point)> =
-            near.iter().filter(|&&l| l != k).filter_map(|&l| place(l)).collect();
+        let found: Vec<(usize, f64, Point)> = near
+            .iter()
+            .filter(|&&l| l != k)
+            .filter_map(|&l| place(l))
+            .collect();
         let along = |x: &Point| dot(&sub(x, &last.x), &ahead);
-        let Some(first) = found.iter().min_by(|a, b| along(&a.2).total_cmp(&along(&b.2))) else {
+        let Some(first) = found
+            .iter()
+            .min_by(|a, b| along(&a.2).total_cmp(&along(&b.2)))
+        else {
             return false;
         };
         let x = first.2;
@@ -186,7 +195,11 @@ impl Places {
             x: add_scaled(&last.x, by, &ahead),
         };
         crack.range[end] = moved.s;
-        let vertex = if end == 0 { crack.path.first_mut() } else { crack.path.last_mut() };
+        let vertex = if end == 0 {
+            crack.path.first_mut()
+        } else {
+            crack.path.last_mut()
+        };
         if let Some(vertex) = vertex {
             *vertex = moved;
         }
@@ -222,7 +235,10 @@ impl Places {
         for (crack, s) in cracks.into_iter().zip(s) {
             let cuts = &mut self.cuts[crack];
             // What crosses beside its own end ends there.
-            if !cuts.iter().any(|c| (c.s - s).abs() <= FOLLOWED * self.size && c.x == x) {
+            if !cuts
+                .iter()
+                .any(|c| (c.s - s).abs() <= FOLLOWED * self.size && c.x == x)
+            {
                 cuts.push(PathVertex { s, x });
             }
         }

@@ -73,7 +73,7 @@ enum Integrand<'a> {
 ///   jump × hat is cubic on an affine cell: 2 points;    with branch functions: x = tip + ρ² e, a polynomial in ρ
 /// ```
 fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
-    /// Points in ρ: exact for √r × quartics, and with slack for the √r of the other tip.
+    /// Points in ρ: exact for √r × quartics, and with slack for the √r of another tip.
     const ROOT: usize = 10;
     let d = sub(&ends[1], &ends[0]);
     let length = norm(&d);
@@ -88,28 +88,44 @@ fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint
             .map(|(t, w)| (0.5 * (1.0 + t), 0.5 * w))
     };
     let plain = |n: usize| unit(n).map(|(t, w)| point(t, w * length)).collect();
-    let nearest = match integrand {
+    let tips = match integrand {
         Integrand::Polynomial => return plain(2),
         Integrand::Rational(n) => return plain(n),
-        Integrand::Root(tips) => tips.iter().min_by(|a, b| {
-            let distance = |x: &Point| norm(&sub(&ends[0], x)).min(norm(&sub(&ends[1], x)));
-            distance(a).total_cmp(&distance(b))
-        }),
+        Integrand::Root(tips) => tips,
     };
-    let Some(tip) = nearest else {
+    let nearest = |x: &Point| {
+        let away = |tip: &Point| norm(&sub(x, tip));
+        tips.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    let (Some(one), Some(two)) = (nearest(&ends[0]), nearest(&ends[1])) else {
         return plain(ROOT);
     };
-    // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
-    let r = [0, 1].map(|i| dot(&sub(&ends[i], tip), &d).abs() / length);
-    let (low, high) = (r[0].min(r[1]).sqrt(), (r[0].min(r[1]) + length).sqrt());
-    unit(ROOT)
-        .map(|(q, w)| {
+    // Halfway between two tips the other takes over.
+    let (middle, apart) = (mean([one, two]), sub(one, two));
+    let [low, high] = [0, 1].map(|i| dot(&apart, &sub(&ends[i], &middle)));
+    let half = if one == two { 1.0 } else { low / (low - high) };
+    let mut points = Vec::new();
+    for (tip, from, to) in [(one, 0.0, half), (two, half, 1.0)] {
+        if from >= to {
+            continue;
+        }
+        // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
+        let places = [from, to].map(|t| add_scaled(&ends[0], t, &d));
+        let r = places.map(|x| dot(&sub(&x, tip), &d).abs() / length);
+        let least = r[0].min(r[1]);
+        let (low, high) = (least.sqrt(), (least + (to - from) * length).sqrt());
+        points.extend(unit(ROOT).map(|(q, w)| {
             let rho = low + q * (high - low);
             let along = (rho * rho - low * low) / length;
-            let t = if r[0] <= r[1] { along } else { 1.0 - along };
+            let t = if r[0] <= r[1] {
+                from + along
+            } else {
+                to - along
+            };
             point(t, 2.0 * rho * (high - low) * w)
-        })
-        .collect()
+        }));
+    }
+    points
 }
 
 /// Points of a convex polygon in space.

@@ -148,30 +148,31 @@ impl CrackFacets {
         found
     }
 
-    /// Parts the segment in which a plane crack is at the distance d from a place [m].
+    /// Parts the segment of a plane crack that crosses the distance d from a place [m].
     pub fn part(&mut self, from: &Point, d: f64) {
         /// Corners this near to it, in parts of d, are there.
         const THERE: f64 = 1e-6;
-        for index in 0..self.facets.len() {
-            let &[p, q] = self.facets[index].corners.as_slice() else {
-                continue;
-            };
-            let [x, y] = [p, q].map(|c| self.corners[c].x);
-            let [low, high] = [&x, &y].map(|end| norm(&sub(end, from)) - d);
-            if low * high >= 0.0 || low.abs().min(high.abs()) <= THERE * d {
-                continue;
-            }
-            self.corners.push(Corner {
-                x: add_scaled(&x, low / (low - high), &sub(&y, &x)),
-                nodes: None,
-                place: (self.facets[index].cell, self.facets[index].regions),
-            });
-            let middle = self.corners.len() - 1;
-            let mut rest = self.facets[index].clone();
-            (self.facets[index].corners[1], rest.corners[0]) = (middle, middle);
-            self.facets.push(rest);
+        let beyond = |c: usize| norm(&sub(&self.corners[c].x, from)) - d;
+        let levels = self
+            .facets
+            .iter()
+            .map(|f| [0, 1].map(|i| beyond(f.corners[i])));
+        let crossed = levels
+            .enumerate()
+            .find(|(_, [low, high])| low * high < 0.0 && low.abs().min(high.abs()) > THERE * d);
+        let Some((index, [low, high])) = crossed else {
             return;
-        }
+        };
+        let facet = &self.facets[index];
+        let [x, y] = [0, 1].map(|i| self.corners[facet.corners[i]].x);
+        let (mut rest, middle) = (facet.clone(), self.corners.len());
+        self.corners.push(Corner {
+            x: add_scaled(&x, low / (low - high), &sub(&y, &x)),
+            nodes: None,
+            place: (facet.cell, facet.regions),
+        });
+        (self.facets[index].corners[1], rest.corners[0]) = (middle, middle);
+        self.facets.push(rest);
     }
 
     /// Positions of the corners of a facet.

@@ -11,7 +11,7 @@ pub mod corners;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::corners::{Corner, CornerFunctions};
+use self::corners::Corner;
 use crate::cut::crack::{Crack, End, Geometry, Tip};
 use crate::cut::flat;
 use crate::cut::partition::Partition;
@@ -24,7 +24,7 @@ use crate::geometry::{Point, add_scaled, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 
-use super::basis::{Function, FunctionKind};
+use super::basis::Function;
 use super::error::EnrichmentError;
 use super::supports::{Place, parted_from};
 use super::zone::{Zone, front_room};
@@ -117,9 +117,7 @@ impl Tips {
             let zone = Zone::plain(mesh.nodes_of(cells));
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
         }
-        for corner in search.corners() {
-            tips.add_corner(corner);
-        }
+        search.add_corners(&mut tips);
         tips.partitions = search.partitions;
         tips.cells.sort_unstable();
         Ok(tips)
@@ -193,9 +191,8 @@ impl Tips {
             let zone = match radius {
                 Some(radius) => {
                     let near = near.get_or_insert_with(|| Neighbours::new(mesh));
-                    let free = |_: &_, cells: &BTreeSet<usize>, _: &_| {
-                        cells.iter().all(own).then(BTreeSet::new)
-                    };
+                    let free =
+                        |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own).then(BTreeSet::new);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }
                 None => Zone::plain(at_front),
@@ -210,43 +207,19 @@ impl Tips {
     fn add(&mut self, frame: TipFrame, cells: &[usize], zone: Zone) {
         let tip = self.frames.len();
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
-        let nodes = zone.nodes.into_iter();
+        let nodes = zone.nodes.iter();
         self.functions
-            .extend(nodes.flat_map(|node| branches(node, tip, 4)));
-        self.cores.push(zone.core);
-        self.cut_off.push(zone.cut_off);
+            .extend(nodes.flat_map(|&node| zone.branches(node, tip)));
+        self.add_frame(frame, &zone);
+    }
+
+    /// Adds a tip whose functions are given.
+    fn add_frame(&mut self, frame: TipFrame, zone: &Zone) {
+        self.cores.push(zone.core.clone());
+        self.cut_off.push(zone.cut_off.clone());
         self.radii.push(zone.radius);
         self.frames.push(frame);
     }
-
-    /// Adds the branch functions of the arms of a corner.
-    fn add_corner(&mut self, found: CornerFunctions) {
-        let first = self.frames.len();
-        self.cells
-            .extend(found.cells.into_iter().map(|cell| (cell, first)));
-        let own = found.functions.into_iter();
-        self.functions
-            .extend(own.flat_map(|(node, arm, count)| branches(node, first + arm, count)));
-        self.cores
-            .extend(found.frames.iter().map(|_| found.zone.core.clone()));
-        self.cut_off
-            .extend(found.frames.iter().map(|_| found.zone.cut_off.clone()));
-        self.radii
-            .extend(found.frames.iter().map(|_| found.zone.radius));
-        self.frames.extend(found.frames);
-        self.corners.push(found.corner);
-    }
-}
-
-/// The first branch functions of a tip at a node.
-fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> {
-    (0..count).map(move |order| {
-        let kind = FunctionKind::Branch {
-            tip: tip as u32,
-            order,
-        };
-        Function { node, kind }
-    })
 }
 
 /// The search for the tips of a 2D body that can carry branch functions.
@@ -464,21 +437,37 @@ impl Search<'_> {
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
     fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
-        let clearance = || self.clearance(&tip.x, &[tip.arm], room);
-        let radius = match self.arms[tip.arm].tip {
-            Tip::Radius(radius) => Some(radius.min(room)),
-            Tip::Auto => Some(SHARE * clearance()),
-            Tip::Branch | Tip::None => None,
-        };
+        let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
         let arms = [(self.frame(tip), room)];
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
-        let zone = match radius {
+        let mut zone = match radius {
             Some(radius) => self.within(radius, &arms, nodes),
             None => Zone::plain(nodes),
         };
-        Zone {
-            cut_off: self.cut_off(&arms, &zone.nodes),
-            ..zone
+        zone.cut_off = self.cut_off(&arms, &zone.nodes);
+        if arms[0].0.shape == FrontShape::Straight && zone.cut_off.is_empty() {
+            zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
+        }
+        // Where all of a node's cells are cut off it carries nothing.
+        zone.nodes.retain(|&node| self.lives(node, &zone.cut_off));
+        zone
+    }
+
+    /// Whether some region around a node is not cut off.
+    fn lives(&self, node: u32, cut_off: &BTreeSet<Place>) -> bool {
+        let mut cells = self.near.cells_around(&BTreeSet::from([node])).into_iter();
+        cells.any(|cell| {
+            let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
+            (0..parts).any(|region| !cut_off.contains(&(cell, region)))
+        })
+    }
+
+    /// The radius that an arm asks for, if any. `clear`: the distance from other arms and the border [m].
+    fn radius(&self, arm: usize, room: f64, clear: f64) -> Option<f64> {
+        match self.arms[arm].tip {
+            Tip::Radius(radius) => Some(radius.min(room)),
+            Tip::Auto => Some(SHARE * room.min(clear)),
+            Tip::Branch | Tip::None => None,
         }
     }
 
@@ -492,15 +481,9 @@ impl Search<'_> {
             &arms[0].0,
             radius,
             at_tip,
-            |core, cells, nodes| {
+            |cells, nodes| {
                 let cut_off = self.cut_off(arms, nodes);
-                // At one node of the ramp nothing may be cut off: that is where superfluous functions are left out.
-                let whole = |&node: &u32| {
-                    let mut cells = near.cells_around(&BTreeSet::from([node])).into_iter();
-                    cells.all(|cell| cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none())
-                };
-                let free = core.iter().any(whole)
-                    && self.parts_cleanly(arms, cells, &cut_off)
+                let free = self.parts_cleanly(arms, cells, &cut_off)
                     && !self.any_blocked(arms, nodes, &cut_off);
                 free.then_some(cut_off)
             },
@@ -510,7 +493,6 @@ impl Search<'_> {
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
     /// of a narrow ligament feels its end, too.
     fn beyond(&self, tip: &TracedTip, zone: &Zone) -> Option<Zone> {
-        if std::env::var("NOBEYOND").is_ok() { return None; }
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
             let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
@@ -518,6 +500,10 @@ impl Search<'_> {
         });
         let (beyond, cut_off): (BTreeSet<Place>, BTreeSet<Place>) =
             places.partition(|place| zone.cut_off.contains(place));
+        let nodes = nodes
+            .into_iter()
+            .filter(|&node| self.lives(node, &cut_off))
+            .collect();
         (!beyond.is_empty()).then(|| Zone {
             cut_off,
             ..Zone::plain(nodes)
@@ -563,11 +549,14 @@ impl Search<'_> {
         });
         let others = self.extents.meeting(&around([x], room)).into_iter();
         let others = others.filter(|arm| !own.contains(arm));
-        let cracks = others.flat_map(|arm| {
-            let path = self.arms[arm].path.windows(2);
-            path.map(|w| segment_distance(x, &w[0].x, &w[1].x))
-        });
-        facets.chain(cracks).fold(room, f64::min)
+        facets.fold(room.min(self.from_arms(x, others)), f64::min)
+    }
+
+    /// Distance of a place from some arms [m].
+    fn from_arms(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
+        let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
+        let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
+        away.fold(f64::INFINITY, f64::min)
     }
 }
 

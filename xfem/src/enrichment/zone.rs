@@ -12,14 +12,18 @@ use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 
+use super::basis::{Function, FunctionKind};
 use super::supports::Place;
 
 /// Nodes around a tip.
+#[derive(Default)]
 pub(super) struct Zone {
     /// Those that carry its branch functions.
     pub nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
     pub core: BTreeSet<u32>,
+    /// Those without g₃ and g₄, which the ramp makes superfluous there.
+    pub surplus: Vec<u32>,
     /// Radius of the ramp [m]; 0: there is none.
     pub radius: f64,
     /// Regions of its cells that other cracks part from the tip.
@@ -31,21 +35,31 @@ impl Zone {
     pub fn plain(nodes: BTreeSet<u32>) -> Self {
         Zone {
             nodes,
-            core: BTreeSet::new(),
-            radius: 0.0,
-            cut_off: BTreeSet::new(),
+            ..Zone::default()
         }
     }
 
-    /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the ramp's nodes, their cells and
-    /// all nodes, of which it tells what is cut off; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
+    /// The functions of a tip at one of the nodes.
+    pub fn branches(&self, node: u32, tip: usize) -> impl Iterator<Item = Function> {
+        let count = if self.surplus.contains(&node) { 2 } else { 4 };
+        (0..count).map(move |order| {
+            let kind = FunctionKind::Branch {
+                tip: tip as u32,
+                order,
+            };
+            Function { node, kind }
+        })
+    }
+
+    /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and
+    /// by all nodes, of which it tells what is cut off; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
     pub fn widest(
         mesh: &Mesh,
         near: &Neighbours<'_>,
         frame: &TipFrame,
         mut radius: f64,
         at_tip: BTreeSet<u32>,
-        free: impl Fn(&BTreeSet<u32>, &BTreeSet<usize>, &BTreeSet<u32>) -> Option<BTreeSet<Place>>,
+        free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> Option<BTreeSet<Place>>,
     ) -> Self {
         let smallest = near.nodes_around(&at_tip);
         let candidates = near.nodes_in(&frame.extents(radius));
@@ -54,12 +68,13 @@ impl Zone {
             let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
-            if let Some(cut_off) = free(&core, &near.cells_around(&core), &nodes) {
+            if let Some(cut_off) = free(&near.cells_around(&core), &nodes) {
                 return Zone {
                     nodes,
                     core,
                     radius,
                     cut_off,
+                    ..Zone::default()
                 };
             }
             if core == smallest {

@@ -171,13 +171,11 @@ impl TipFrame {
     /// Tips of a 2D crack, where the branch functions are singular [m].
     pub fn tips(&self) -> Vec<Point> {
         match self.shape {
-            FrontShape::Straight | FrontShape::Corner | FrontShape::Arc { .. } => {
-                vec![self.position]
-            }
             FrontShape::Pair { half_length } => [half_length, -half_length]
                 .map(|s| add_scaled(&self.position, s, &self.ahead))
                 .to_vec(),
             FrontShape::Ellipse(_) => Vec::new(),
+            _ => vec![self.position],
         }
     }
 

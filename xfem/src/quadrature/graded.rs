@@ -163,18 +163,24 @@ pub fn graded_segment(
 }
 
 /// Points of triangles near tips: n × n points where no tip is closer than the triangle's diameter, which are exact to
-/// (3 + √8)^−2n for functions with singularities at that distance; polar coordinates around the tip elsewhere, on what lies
-/// nearer to it than to another. So many at any distance and for any shape.
-pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<WeightedPoint> {
+/// (3 + √8)^−2n for functions with singularities at that distance, `far` × `far` where none is at four times the distance, which
+/// are exact to (9 + √80)^−2far; polar coordinates around the tip elsewhere, on what lies nearer to it than to another.
+pub fn graded_points(
+    triangles: &[[Point; 3]],
+    tips: &[Point],
+    [n, far]: [usize; 2],
+) -> Vec<WeightedPoint> {
     let mut points = Vec::new();
     for t in triangles {
         let size = diameter(t);
-        let near: Vec<&Point> = tips
-            .iter()
-            .filter(|tip| border_distance(t, tip) < size)
-            .collect();
+        let within = |reach: f64| {
+            tips.iter()
+                .filter(move |tip| border_distance(t, tip) < reach * size)
+        };
+        let near: Vec<&Point> = within(1.0).collect();
         if near.is_empty() {
-            points.extend(triangle_collapsed(t, n));
+            let order = if within(4.0).next().is_none() { far } else { n };
+            points.extend(triangle_collapsed(t, order));
         }
         for tip in &near {
             let mut own = t.to_vec();
@@ -187,7 +193,7 @@ pub fn graded_points(triangles: &[[Point; 3]], tips: &[Point], n: usize) -> Vec<
                 // Half of the angles on every interval.
                 let rule = FanRule {
                     radial: n.max(6),
-                    angular: 2 * n + 8,
+                    angular: 2 * n + 14,
                 };
                 points.extend(slice_points(
                     &own,
@@ -266,7 +272,7 @@ mod tests {
         let t = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         for distance in [1e-1, 1e-3, 1e-6] {
             let tip = [0.4, -distance, 0.0];
-            let points = graded_points(&[t], &[tip], 7);
+            let points = graded_points(&[t], &[tip], [7, 5]);
             let found = integral(&points, |x| 1.0 / norm(&sub(x, &tip)));
             let error = found / inverse_distance(&t, &tip) - 1.0;
             assert!(error.abs() < 1e-8, "{distance}: {error:e}");

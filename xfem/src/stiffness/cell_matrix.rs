@@ -222,11 +222,18 @@ impl<'a> CellIntegrator<'a> {
             .tip_in(cell)
             .map(|tip| self.enrichment.tips[tip].tips());
         let tip = tip.filter(alone);
+        // A ramp squared raises the degree by four.
+        let nodes = self.mesh.cell(cell);
+        let mut ramps = (0..self.enrichment.tips.len()).map(|t| self.enrichment.ramp(t, nodes));
+        let order = match ramps.any(|inside| !matches!(inside, 0 | 0b1111 | u8::MAX)) {
+            true => [9, 7],
+            false => [7, 5],
+        };
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, &tip) {
                 (true, Some(tip)) => tip_points(polygon::edges(&part.polygon), &tip[0], affine),
-                (true, None) => graded_points(&part.triangles(), &tips, 7),
+                (true, None) => graded_points(&part.triangles(), &tips, order),
                 (false, _) if affine => part.points(),
                 (false, _) => part.fine_points(map),
             };

@@ -11,22 +11,11 @@
 //! span of those before it is too small to be told from rounding is dropped. Functions keep their numbers; only what the
 //! solver sees is transformed. A is divided by that of a standard function, rounded to a power of four: all unknowns of the
 //! solver are displacements then, and residuals compare whatever the units.
-//!
-//! With a ramp the shape functions sum to one over all cells of a straight tip, and the branch functions become exactly
-//! dependent: with x, y ahead and across,
-//!
-//! ```text
-//!   y (g₂ − g₃) − x g₄ = 0,     y (g₁ − g₄) + x g₃ = 0
-//! ```
-//!
-//! and Σ N_k x_k = x, Σ N_k y_k = y. Both relations are resolved by leaving out g₃ and g₄ at one node, where r is largest.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::FunctionKind;
-use crate::geometry::tip_frame::FrontShape;
-use crate::mesh::Mesh;
+use crate::enrichment::basis::{Function, FunctionKind};
 
 use super::elasticity::{CellMatrix, CellView};
 
@@ -68,15 +57,13 @@ impl SolverBasis {
     /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its
     /// functions; `held`: whether a component of a function is prescribed, which keeps this component of its node as it is.
     pub fn new<'a>(
-        mesh: &Mesh,
+        dim: usize,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
         matrix: impl Fn(usize) -> CellView<'a>,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
-        let dim = mesh.dim();
         let mut basis = SolverBasis::default();
-        let surplus = surplus(mesh, enrichment, users, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
@@ -86,8 +73,9 @@ impl SolverBasis {
             if own.is_empty() || free == [false; 3] {
                 continue;
             }
-            let standard = gram(enrichment, dim, node..node + 1, users, &matrix)[0];
-            let gram = gram(enrichment, dim, own.clone(), users, &matrix);
+            let standard = gram(enrichment, dim, &[node], users, &matrix)[0];
+            let all: Vec<usize> = own.clone().collect();
+            let gram = gram(enrichment, dim, &all, users, &matrix);
             let sliver = |i: usize| gram[i * own.len() + i] <= SLIVER * standard;
             // Pieces are disjoint: of a node their functions depend on no other.
             let dependent = own.clone().any(branch);
@@ -103,18 +91,87 @@ impl SolverBasis {
             }
             basis.blocks.push(Block {
                 first: own.start,
-                t: inverse_factor(&gram, own.len(), |i| {
-                    sliver(i) || surplus.contains(&(own.start + i))
-                }),
+                t: inverse_factor(&gram, own.len(), sliver),
                 count: own.len(),
                 free,
             });
+        }
+        for tip in (0..enrichment.tips.len()).filter(|&tip| enrichment.is_cut(tip)) {
+            basis.drop_tied(dim, enrichment, tip, users, &matrix);
         }
         // A power of two changes no bit of a scaled matrix.
         let unit = (0.5 * stiffest.log2()).round().exp2();
         let entries = basis.blocks.iter_mut().flat_map(|block| &mut block.t);
         entries.for_each(|t| *t *= unit);
         basis
+    }
+
+    /// Drops branch functions of a tip that are in the span of all functions at its nodes before them: on the little that other
+    /// cracks leave of its zone, those of different nodes depend on each other.
+    fn drop_tied<'a>(
+        &mut self,
+        dim: usize,
+        enrichment: &Enrichment,
+        tip: usize,
+        users: &[Vec<u32>],
+        matrix: &impl Fn(usize) -> CellView<'a>,
+    ) {
+        let is_branch =
+            |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
+        let of_tip = |f: &&Function| matches!(f.kind, FunctionKind::Branch { tip: t, .. } if t as usize == tip);
+        let nodes: BTreeSet<usize> = enrichment
+            .functions
+            .iter()
+            .filter(of_tip)
+            .map(|f| f.node as usize)
+            .collect();
+        let enriched = nodes.iter().flat_map(|&node| enrichment.enriched_of(node));
+        let mut own: Vec<usize> = nodes.iter().copied().chain(enriched).collect();
+        own.sort_by_key(|&f| is_branch(f));
+        let mut gram = gram(enrichment, dim, &own, users, matrix);
+        let n = own.len();
+        // T G Tᵀ, one after the other on columns and rows.
+        let place: BTreeMap<usize, usize> = own.iter().copied().zip(0..).collect();
+        let blocks: BTreeSet<u32> = own.iter().filter_map(|&f| *self.block_of.get(f)?).collect();
+        for turn in 0..2 {
+            for block in blocks.iter().map(|&b| &self.blocks[b as usize]) {
+                let at: Vec<usize> = (0..block.count)
+                    .map(|i| place[&(block.first + i)])
+                    .collect();
+                for line in 0..n {
+                    let index = |i: usize| {
+                        if turn == 0 {
+                            line * n + at[i]
+                        } else {
+                            at[i] * n + line
+                        }
+                    };
+                    for i in (0..block.count).rev() {
+                        let sum = (0..=i).map(|j| block.t(i, j) * gram[index(j)]).sum();
+                        gram[index(i)] = sum;
+                    }
+                }
+            }
+        }
+        // Elimination, without what is left of nothing.
+        let own_squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
+        for k in 0..n {
+            let pivot = gram[k * n + k];
+            if pivot <= DROPPED * own_squares[k] {
+                if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
+                    let block = &mut self.blocks[*block as usize];
+                    let row = own[k] - block.first;
+                    block.t[row * block.count..(row + 1) * block.count].fill(0.0);
+                }
+                continue;
+            }
+            for i in k + 1..n {
+                let factor = gram[i * n + k] / pivot;
+                if factor != 0.0 {
+                    (k + 1..n).for_each(|j| gram[i * n + j] -= factor * gram[k * n + j]);
+                }
+            }
+        }
     }
 
     /// True if the solver works with the functions themselves.
@@ -247,80 +304,40 @@ impl SolverBasis {
     }
 }
 
-/// The functions that the relations between branch functions make superfluous: two per straight ramped tip.
-fn surplus(
-    mesh: &Mesh,
-    enrichment: &Enrichment,
-    users: &[Vec<u32>],
-    held: impl Fn(usize, usize) -> bool,
-) -> BTreeSet<usize> {
-    let dim = mesh.dim();
-    let any = |f: usize| (0..dim).any(|a| held(f, a));
-    let mut found = BTreeSet::new();
-    for (number, tip) in enrichment.tips.iter().enumerate() {
-        let own = |f: &usize| match enrichment.functions[*f].kind {
-            FunctionKind::Branch { tip, .. } => tip as usize == number,
-            _ => false,
-        };
-        let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
-        // A prescribed component breaks the relations of that component alone.
-        let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
-        if tip.shape != FrontShape::Straight || !enrichment.is_ramped(number) || broken {
-            continue;
-        }
-        let node_of = |f: usize| enrichment.functions[f].node;
-        let r = |f: usize| tip.distance(&mesh.nodes[node_of(f) as usize]);
-        let own = functions.iter().copied();
-        let free = |f: usize| !enrichment.enriched_of(node_of(f) as usize).any(any);
-        let whole = |f: usize| {
-            let mut cells = users[f].iter();
-            !users[f].is_empty() && !cells.any(|&cell| enrichment.is_cut_off(number, cell as usize))
-        };
-        let core = own.filter(|&f| enrichment.in_core(number, node_of(f)) && free(f) && whole(f));
-        let farthest = core.max_by(|&f, &g| r(f).total_cmp(&r(g)).then(g.cmp(&f)));
-        let node = farthest.map(node_of);
-        found.extend(functions.into_iter().filter(|&f| {
-            let function = enrichment.functions[f];
-            let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
-            last && Some(function.node) == node
-        }));
-    }
-    found
-}
-
 /// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
 fn gram<'a>(
     enrichment: &Enrichment,
     dim: usize,
-    own: std::ops::Range<usize>,
+    own: &[usize],
     users: &[Vec<u32>],
     matrix: &impl Fn(usize) -> CellView<'a>,
 ) -> Vec<f64> {
     let count = own.len();
     let mut gram = vec![0.0; count * count];
-    let cells: BTreeSet<u32> = own.clone().flat_map(|f| users[f].iter().copied()).collect();
+    let cells: BTreeSet<u32> = own.iter().flat_map(|&f| users[f].iter().copied()).collect();
+    let number: BTreeMap<usize, usize> = own.iter().copied().zip(0..).collect();
     for cell in cells.into_iter().map(|c| c as usize) {
-        let functions = enrichment.cell(cell);
-        let place = |f: usize| functions.iter().position(|&g| g as usize == f);
+        let functions = enrichment.cell(cell).iter().enumerate();
+        let places: Vec<(usize, usize)> = functions
+            .filter_map(|(p, &f)| Some((*number.get(&(f as usize))?, p)))
+            .collect();
         let k = matrix(cell);
-        for (i, f) in own.clone().enumerate() {
-            for (j, g) in own.clone().enumerate() {
-                if let (Some(p), Some(q)) = (place(f), place(g)) {
-                    let diagonal = (0..dim).map(|a| k.get(p * dim + a, q * dim + a));
-                    gram[i * count + j] += diagonal.sum::<f64>();
-                }
+        for &(i, p) in &places {
+            for &(j, q) in &places {
+                let diagonal = (0..dim).map(|a| k.get(p * dim + a, q * dim + a));
+                gram[i * count + j] += diagonal.sum::<f64>();
             }
         }
     }
     gram
 }
 
-/// T = (D L)⁻¹ of a Gram matrix, with zero rows for the superfluous functions and those in the span of others before them.
-fn inverse_factor(gram: &[f64], n: usize, surplus: impl Fn(usize) -> bool) -> Vec<f64> {
+/// T = (D L)⁻¹ of a Gram matrix, with zero rows for functions on slivers and those in the span of others before them.
+fn inverse_factor(gram: &[f64], n: usize, sliver: impl Fn(usize) -> bool) -> Vec<f64> {
     let scale: Vec<f64> = (0..n).map(|i| gram[i * n + i].sqrt()).collect();
     let mut t = vec![0.0; n * n];
     for i in 0..n {
-        if scale[i] == 0.0 || surplus(i) {
+        if scale[i] == 0.0 || sliver(i) {
             continue;
         }
         // Gram–Schmidt against the functions kept so far, twice for orthogonality.

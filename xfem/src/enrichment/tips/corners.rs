@@ -10,9 +10,15 @@
 //! are those of any other arm, turned, with a sign that changes across arm k: n sets span four functions on every wedge. Near
 //! a node beside which m < n arms run m + 1 of them do, and the others would be the same functions once more.
 //!
-//! With a ramp two relations tie the functions of every wedge, as at a tip (`stiffness::orthonormal`): g₃ and g₄ are left out at
-//! the node that lies deepest in it. Without a node deep enough there is no ramp. Two or three arms: at crossings, where
-//! nothing ends, the pieces of the supports suffice.
+//! With a ramp the shape functions sum to one over all cells of a wedge, that around a straight tip too, and its functions
+//! become exactly dependent: with x, y ahead and across, Σ N_k x_k = x, Σ N_k y_k = y and
+//!
+//! ```text
+//!   y (g₂ − g₃) − x g₄ = 0,     y (g₁ − g₄) + x g₃ = 0
+//! ```
+//!
+//! Both relations are resolved by leaving out g₃ and g₄ at the node deepest in the wedge; without one deep enough there is no
+//! ramp. Two or three arms: at crossings, where nothing ends, the pieces of the supports suffice.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -20,137 +26,132 @@ use std::f64::consts::TAU;
 use crate::cut::crack::{End, Geometry, Tip};
 use crate::cut::placement::cells_at;
 use crate::geometry::curve::{Curve, turned};
-use crate::geometry::polygon::{meets, segment_distance};
+use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, norm, sub, unit};
+use crate::geometry::{Point, norm, sub, unit};
 
-use super::{SHARE, SHORTEST, SLENDER, SLENDEREST, Search, Zone};
+use super::{SHORTEST, SLENDER, Search, Tips, Zone};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
+
+/// An arm shorter than this, in edges, has no multipliers of its own in a corner: the displacement could not balance them.
+const LONG: f64 = 2.0;
 
 /// A place where arms with branch functions bend or meet.
 #[derive(Debug, Clone)]
 pub struct Corner {
     /// Position [m].
     pub x: Point,
-    /// Its arms.
-    pub arms: Vec<usize>,
+    /// Its arms that are long enough for multipliers of their own.
+    pub long: Vec<usize>,
     /// Shortest edge of the mesh around it [m].
     pub size: f64,
 }
 
-/// The branch functions of a corner.
-pub(super) struct CornerFunctions {
-    pub corner: Corner,
-    /// By arm.
-    pub frames: Vec<TipFrame>,
-    /// Cells around it.
-    pub cells: Vec<usize>,
-    /// Its nodes.
-    pub zone: Zone,
-    /// Node, arm in the order of the frames, and how many of the functions.
-    pub functions: Vec<(u32, usize, u8)>,
-}
+/// The frame of an arm and the length that its functions know [m].
+type Ending = (TipFrame, f64);
 
 impl Search<'_> {
-    /// The corners that can carry functions.
-    pub(super) fn corners(&self) -> Vec<CornerFunctions> {
-        let mut at: BTreeMap<[u64; 3], Vec<(usize, usize)>> = BTreeMap::new();
+    /// Adds the functions of the corners that have room for them.
+    pub(super) fn add_corners(&self, tips: &mut Tips) {
+        for ends in self.meetings() {
+            let arms = ends.iter().map(|&(arm, end)| self.ending(arm, end));
+            let Some(arms) = arms.collect::<Option<Vec<Ending>>>() else {
+                continue;
+            };
+            let x = arms[0].0.position;
+            let cells = cells_at(self.mesh, &x);
+            let sizes = self.mesh.node_sizes();
+            let nodes = self.mesh.nodes_of(cells.iter().copied());
+            let sizes = nodes.iter().map(|&node| sizes[node as usize]);
+            let size = sizes.fold(f64::INFINITY, f64::min);
+            let Some(zone) = self.corner_zone(&arms, &cells, DEEP * size) else {
+                continue;
+            };
+            let first = tips.frames.len();
+            for (node, arm) in self.sets(&arms, &zone.nodes) {
+                tips.functions.extend(zone.branches(node, first + arm));
+            }
+            tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
+            let mut long: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+            long.retain(|&arm| self.range(arm)[1] - self.range(arm)[0] >= LONG * size);
+            let corner = Corner { x, long, size };
+            tips.corners.push(corner);
+            arms.into_iter()
+                .for_each(|arm| tips.add_frame(arm.0, &zone));
+        }
+    }
+
+    /// Two or three ends of arms in one place. By their distances from the middle of the body: in the same order however the
+    /// cracks are read, and the body is turned.
+    fn meetings(&self) -> Vec<Vec<(usize, usize)>> {
+        let (extent, middle) = self.mesh.extent();
+        let away = |x: &Point| (norm(&sub(x, &middle)) / extent * 1e9).round() as i64;
+        let mut at: BTreeMap<(i64, [u64; 3]), Vec<(usize, usize)>> = BTreeMap::new();
         for (index, arm) in self.arms.iter().enumerate() {
             let ends = [arm.path.first(), arm.path.last()];
             for (end, vertex) in ends.into_iter().enumerate() {
                 if let (End::Bend | End::Meeting, Some(vertex)) = (arm.ends[end], vertex) {
-                    let place = at.entry(vertex.x.map(f64::to_bits)).or_default();
-                    place.push((index, end));
+                    let place = (away(&vertex.x), vertex.x.map(f64::to_bits));
+                    at.entry(place).or_default().push((index, end));
                 }
             }
         }
-        let length = |arm: usize| self.arms[arm].range[1] - self.arms[arm].range[0];
-        let mut places: Vec<Vec<(usize, usize)>> = at.into_values().collect();
-        // The same order however the cracks are read, and wherever they lie.
-        for ends in &mut places {
-            ends.sort_by(|a, b| length(a.0).total_cmp(&length(b.0)));
+        let mut found: Vec<_> = at.into_values().collect();
+        found.retain(|ends| (2..=3).contains(&ends.len()));
+        for ends in &mut found {
+            ends.sort_by_key(|&(arm, end)| {
+                let path = &self.arms[arm].path;
+                let other = if end == 0 { path.last() } else { path.first() };
+                other.map(|v| away(&v.x))
+            });
         }
-        let total = |ends: &[(usize, usize)]| ends.iter().map(|end| length(end.0)).sum::<f64>();
-        places.sort_by(|a, b| total(a).total_cmp(&total(b)));
-        let places = places.iter().filter(|ends| (2..=3).contains(&ends.len()));
-        places.filter_map(|ends| self.corner(ends)).collect()
+        found
     }
 
-    /// The functions of the arms with these ends in one place, if there is room for them.
-    fn corner(&self, ends: &[(usize, usize)]) -> Option<CornerFunctions> {
-        let arms: Vec<(TipFrame, f64)> = ends
-            .iter()
-            .map(|&(arm, end)| self.ending(arm, end))
-            .collect::<Option<_>>()?;
-        let x = arms[0].0.position;
-        let cells = cells_at(self.mesh, &x);
-        let diagonal = self.mesh.map(*cells.first()?).diagonal();
-        let at_corner = self.mesh.nodes_of(cells.iter().copied());
-        let own: Vec<usize> = ends.iter().map(|end| end.0).collect();
+    /// The nodes around a corner with the cells given. `deep`: see [`DEEP`] [m].
+    fn corner_zone(&self, arms: &[Ending], cells: &[usize], deep: f64) -> Option<Zone> {
+        let own: Vec<usize> = arms.iter().map(|(frame, _)| frame.crack).collect();
         let rooms = arms.iter().map(|arm| arm.1);
         let room = rooms.fold(f64::INFINITY, f64::min);
-        let room = self.clearance(&x, &own, room);
-        let tips = || own.iter().map(|&arm| self.arms[arm].tip);
-        let longest = match tips().all(|tip| tip == Tip::Auto) {
-            true => SLENDER,
-            false => SLENDEREST,
-        };
-        let slender = |&cell: &usize| self.mesh.map(cell).aspect() > longest;
-        if room <= SHORTEST * diagonal || cells.iter().any(slender) {
+        let room = self.clearance(&arms[0].0.position, &own, room);
+        let slender = |&cell: &usize| self.mesh.map(cell).aspect() > SLENDER;
+        let least = SHORTEST * self.mesh.map(*cells.first()?).diagonal();
+        if cells.iter().any(slender) || room <= least {
             return None;
         }
-        let edges = cells.iter().map(|&cell| {
-            let map = self.mesh.map(cell);
-            let edge = |[i, j]: &[usize; 2]| norm(&sub(&map[*i], &map[*j]));
-            map.kind
-                .edges()
-                .iter()
-                .map(edge)
-                .fold(f64::INFINITY, f64::min)
-        });
-        let size = edges.fold(f64::INFINITY, f64::min);
-        let radii = tips().map(|tip| match tip {
-            Tip::Radius(radius) => radius.min(room),
-            Tip::Auto => SHARE * room,
-            Tip::Branch | Tip::None => 0.0,
-        });
-        let radius = radii.fold(f64::INFINITY, f64::min);
-        let mut surplus = Vec::new();
-        let ramped = (radius > 0.0).then(|| self.within(radius, &arms, at_corner.clone()));
-        let ramped = ramped.filter(|zone| zone.radius > 0.0);
-        let deep = ramped.filter(|zone| match self.deepest(&arms, &zone.core, DEEP * size) {
-            Some(nodes) => {
-                surplus = nodes;
-                true
+        let radii = own.iter().map(|&arm| self.radius(arm, room, room));
+        let radius = radii.reduce(|a, b| Some(a?.min(b?))).flatten();
+        let nodes = self.mesh.nodes_of(cells.iter().copied());
+        let ramped = |radius: f64| {
+            let mut zone = self.within(radius, arms, nodes.clone());
+            if zone.core.is_empty() || !zone.cut_off.is_empty() {
+                return None;
             }
-            None => false,
-        });
-        let around = || (radius > 0.0).then(|| self.near.nodes_around(&at_corner));
-        let plain = |nodes: BTreeSet<u32>| {
-            let cut_off = self.cut_off(&arms, &nodes);
-            let blocked = self.any_blocked(&arms, &nodes, &cut_off);
-            (!blocked).then(|| Zone {
-                cut_off,
-                ..Zone::plain(nodes)
-            })
+            zone.surplus = self.deepest(arms, &zone.core, deep)?;
+            Some(zone)
         };
-        let zone = deep
-            .or_else(|| around().and_then(plain))
-            .or_else(|| plain(at_corner.clone()))?;
-        let functions = self.sets(&arms, &zone.nodes, &surplus);
-        Some(CornerFunctions {
-            corner: Corner { x, arms: own, size },
-            frames: arms.into_iter().map(|arm| arm.0).collect(),
-            cells,
-            functions,
-            zone,
-        })
+        let plain = |core: BTreeSet<usize>| {
+            let nodes = self.mesh.nodes_of(core.iter().copied());
+            let alone = self.holds_only(arms, &core);
+            let alone = alone && !self.any_blocked(arms, &nodes, &BTreeSet::new());
+            alone.then(|| Zone::plain(nodes))
+        };
+        let around = |_| plain(self.near.cells_around(&nodes));
+        let zone = radius.and_then(ramped).or_else(|| radius.and_then(around));
+        zone.or_else(|| plain(cells.iter().copied().collect()))
+    }
+
+    /// Whether none but some arms run through some cells.
+    fn holds_only(&self, arms: &[Ending], cells: &BTreeSet<usize>) -> bool {
+        let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
+        let mut faces = parted.flat_map(|p| &p.faces);
+        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
     }
 
     /// Frame of a straight arm at an end that parts the cells there, and the length of the arm behind it [m].
-    fn ending(&self, arm: usize, end: usize) -> Option<(TipFrame, f64)> {
+    fn ending(&self, arm: usize, end: usize) -> Option<Ending> {
         let crack = &self.arms[arm];
         let (range, path) = (self.range(arm), &crack.path);
         let straight = matches!(crack.geometry, Geometry::Curve(Curve::Chain(_)));
@@ -158,9 +159,12 @@ impl Search<'_> {
         if crack.tip == Tip::None || !straight || !parted {
             return None;
         }
+        // Where it was traced to: on a node or an edge, if it is that close.
+        let mut chains = self.trace.chains.values().flatten();
+        let last = chains.find(|c| c.arm == arm && c.range[end] == crack.range[end])?;
         let (x, next) = match end {
-            0 => (path.first()?.x, path.get(1)?.x),
-            _ => (path.last()?.x, path.get(path.len() - 2)?.x),
+            0 => (last.vertices.first()?.x, path.get(1)?.x),
+            _ => (last.vertices.last()?.x, path.get(path.len() - 2)?.x),
         };
         let ahead = unit(&sub(&x, &next));
         let along = if end == 0 { ahead.map(|v| -v) } else { ahead };
@@ -170,27 +174,22 @@ impl Search<'_> {
     }
 
     /// The node of the ramp that lies deepest in each wedge; `None` where one has none farther than `least` from the arms.
-    fn deepest(
+    pub(super) fn deepest(
         &self,
-        arms: &[(TipFrame, f64)],
+        arms: &[Ending],
         core: &BTreeSet<u32>,
         least: f64,
     ) -> Option<Vec<u32>> {
         let x = arms[0].0.position;
         let angle = |v: &Point| v[1].atan2(v[0]).rem_euclid(TAU);
-        let angles: Vec<f64> = arms
-            .iter()
-            .map(|(f, _)| angle(&f.ahead.map(|v| -v)))
-            .collect();
+        let angles = arms.iter().map(|arm| angle(&arm.0.ahead.map(|v| -v)));
+        let angles: Vec<f64> = angles.collect();
         let mut found = vec![(least, None); arms.len()];
         for &node in core {
             let place = &self.mesh.nodes[node as usize];
             let own = angle(&sub(place, &x));
             let wedge = angles.iter().filter(|a| **a <= own).count() % arms.len();
-            let far = |(f, room): &(TipFrame, f64)| {
-                segment_distance(place, &x, &add_scaled(&x, -room, &f.ahead))
-            };
-            let depth = arms.iter().map(far).fold(f64::INFINITY, f64::min);
+            let depth = self.from_arms(place, arms.iter().map(|arm| arm.0.crack));
             if depth > found[wedge].0 {
                 found[wedge] = (depth, Some(node));
             }
@@ -198,29 +197,23 @@ impl Search<'_> {
         found.into_iter().map(|(_, node)| node).collect()
     }
 
-    /// The functions of every node: those of the arms beside it, and of one more.
-    fn sets(
-        &self,
-        arms: &[(TipFrame, f64)],
-        nodes: &BTreeSet<u32>,
-        surplus: &[u32],
-    ) -> Vec<(u32, usize, u8)> {
-        let beside = |node: u32, (frame, room): &(TipFrame, f64)| {
-            let [p, q] = [0.0, -room].map(|s| add_scaled(&frame.position, s, &frame.ahead));
+    /// The arms whose functions every node carries: those beside it, and one more.
+    fn sets(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> Vec<(u32, usize)> {
+        let beside = |node: u32, (frame, _): &Ending| {
             let cells = self.near.cells_around(&BTreeSet::from([node]));
             cells.into_iter().any(|cell| {
                 let map = self.mesh.map(cell);
-                meets(&map, &p, &q, 1e-9 * map.diagonal())
+                let slack = 1e-9 * map.diagonal();
+                let mut path = self.arms[frame.crack].path.windows(2);
+                path.any(|w| meets(&map, &w[0].x, &w[1].x, slack))
             })
         };
-        let mut functions = Vec::new();
-        for &node in nodes {
-            let count = if surplus.contains(&node) { 2 } else { 4 };
+        let of_node = |&node: &u32| {
             let (mut own, others): (Vec<usize>, Vec<usize>) =
                 (0..arms.len()).partition(|&arm| beside(node, &arms[arm]));
             own.extend(others.first());
-            functions.extend(own.into_iter().map(|arm| (node, arm, count)));
-        }
-        functions
+            own.into_iter().map(move |arm| (node, arm))
+        };
+        nodes.iter().flat_map(of_node).collect()
     }
 }
