@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod conforming;
+mod energy;
 mod errors;
 mod exact;
 mod exact_curve;
