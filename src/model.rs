@@ -12,3 +12,4 @@ pub mod nodal_forces;
 pub mod quantities;
 pub mod refusals;
 pub mod sides;
+pub mod work;

@@ -42,10 +42,11 @@ impl Scene {
         let loading = Loading::new(&body, &case, problem.friction).expect("the closed form holds");
         let exact = Choice::new(method(EXACT).expect("registered"), &[]).expect("defaults");
         let mut solver = Solver::new(&exact, &path).expect("an exact method takes every case");
-        let (mut start, mut start_load) = (ContactState::zero(&path), Load::zero(&body.elastic));
+        let mut start = ContactState::zero(&path);
+        let mut start_load = loading.before(loading.first());
         let mut hardest = None;
-        for index in 0..case.path.increments {
-            let load = loading.at(index + 1);
+        for (index, increment) in (loading.first()..=loading.increments()).enumerate() {
+            let load = loading.at(increment);
             let scene = Scene {
                 system: system(),
                 load: load.clone(),

@@ -21,10 +21,10 @@ pub struct ExactSpec {
 }
 
 impl ExactSpec {
-    /// Load factors at the ends of all increments of a path.
+    /// Load factors at time 0 and at the ends of all increments of a path.
     pub fn factors(&self, path: &PathSpec) -> Vec<f64> {
         let factor = |increment| self.history.factor(path.time(increment), path.end);
-        (1..=path.increments).map(factor).collect()
+        (0..=path.increments).map(factor).collect()
     }
 }
 

@@ -23,7 +23,7 @@ pub struct Region {
 pub enum History {
     /// factor = t / end.
     Ramp,
-    /// factor = 1 at every increment.
+    /// factor = 1 at all times.
     Constant,
     /// Piecewise linear through (t, factor) points, strictly increasing t, constant beyond the ends.
     Points(Vec<[f64; 2]>),

@@ -75,11 +75,11 @@ pub fn errors(
     rows.extend(surface::rows(body, surface, field, now, &scales));
     rows.extend(stick_boundary::row(body, surface, field, now));
     if let Some(exact) = field.dissipation() {
-        let difference = (now.dissipation - exact).abs();
+        let difference = (now.work.dissipation() - exact).abs();
         rows.push(Deviation::new(
             "dissipation",
             String::new(),
-            [now.dissipation, exact],
+            [now.work.dissipation(), exact],
             difference,
             exact.abs(),
             scales.energy,

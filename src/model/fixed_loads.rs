@@ -17,6 +17,8 @@ pub struct FixedLoad {
     /// Contact forces that an initial stress implies at factor 1, `dim` per point [N, in 2D N/m]; empty for all other
     /// loads, and where no method asks for the traction operator.
     pub traction: Vec<f64>,
+    /// Whether it is an initial stress.
+    pub initial_stress: bool,
     /// Evolution.
     pub history: History,
 }
@@ -52,6 +54,7 @@ pub fn fixed_loads(
         loads.push(FixedLoad {
             force,
             traction,
+            initial_stress: matches!(load.kind, LoadKind::InitialStress(_)),
             history: load.history.clone(),
         });
     }

@@ -21,11 +21,12 @@ use stickslip_xfem::geometry::{add_scaled, sub};
 
 use crate::case::{Amount, Case, CaseError, ExactSpec, History, LoadKind};
 use crate::model::body::{Body, BodyError};
+use crate::model::fixed_loads::FixedLoad;
 use crate::model::nodal_forces::{add_exact_forces, no_force};
 use crate::model::refusals::load_error;
 use crate::model::sides::Sides;
 
-/// The closed form at the end of an increment, on the body.
+/// The closed form at time 0 or at the end of an increment, on the body.
 struct ExactStep {
     field: Box<dyn Field>,
     /// Prescribed unknowns that take their value from it [m].
@@ -35,63 +36,33 @@ struct ExactStep {
 }
 
 /// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
-/// of the path; a closed form is evaluated for no others.
+/// of the path. Where something acts at time 0 the state there is solved first, as increment 0 from a body at rest.
 pub struct Loading<'a> {
     body: &'a Body,
     case: &'a Case,
+    /// By increment, time 0 first; empty without closed form.
     exact: Vec<ExactStep>,
+    first: usize,
 }
 
 impl<'a> Loading<'a> {
-    /// Evaluates the closed form, if the case has one, for all increments; `friction` is that of the only crack.
+    /// Evaluates the closed form, if the case has one, at time 0 and for all increments; `friction` is that of the only crack.
     ///
     /// # Errors
     /// At `[exact]` where the closed form does not hold for the body, the friction coefficient or the path.
     pub fn new(body: &'a Body, case: &'a Case, friction: f64) -> Result<Self, BodyError> {
+        let exact = exact_steps(body, case, friction)?;
         let mut loading = Loading {
             body,
             case,
-            exact: Vec::new(),
+            exact,
+            first: 0,
         };
-        let (Some(spec), Some(crack)) = (&case.exact, case.cracks.first()) else {
-            return Ok(loading);
-        };
-        let setting = Setting {
-            material: case.material,
-            model: case.model,
-            friction,
-            crack: &crack.geometry,
-            body: body.mesh.extents(),
-        };
-        let refuse = |message: String| exact_error(case, spec, friction, &message);
-        let solution = (spec.solution.build)(&setting, &spec.values).map_err(refuse)?;
-        let factors = spec.factors(&case.path);
-        let integrator = body.integrator();
-        let Some(sides) = Sides::new(case, &integrator) else {
-            return Ok(loading);
-        };
-        for increment in 1..=factors.len() {
-            let field = solution.at(&factors[..increment]).map_err(|message| {
-                refuse(match factors.len() {
-                    1 => message,
-                    _ => format!("increment {increment}: {message}"),
-                })
-            })?;
-            let mut force = Vec::new();
-            for load in &case.loads {
-                if matches!(load.kind, LoadKind::ExactTraction(_) | LoadKind::ExactBody) {
-                    force.resize(body.numbers.len(), 0.0);
-                    add_exact_forces(&integrator, &sides, &load.kind, field.as_ref(), &mut force)
-                        .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
-                }
-            }
-            let displacement = exact_displacement(body, &sides, field.as_ref());
-            loading.exact.push(ExactStep {
-                field,
-                displacement,
-                force,
-            });
-        }
+        let start = loading.at(0);
+        let external = loading.external_force(0);
+        let parts = [start.force, start.offset, start.traction, external];
+        let rests = parts.iter().flatten().all(|value| *value == 0.0);
+        loading.first = usize::from(rests);
         Ok(loading)
     }
 
@@ -100,7 +71,12 @@ impl<'a> Loading<'a> {
         self.body
     }
 
-    /// Number of increments.
+    /// The increment that a run begins with: 0 where something acts at time 0, otherwise 1.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Number of increments, without that at time 0.
     pub fn increments(&self) -> usize {
         self.case.path.increments
     }
@@ -112,11 +88,7 @@ impl<'a> Loading<'a> {
 
     /// The closed form at the end of an increment; `None` if the case names none.
     pub fn exact(&self, increment: usize) -> Option<&dyn Field> {
-        self.step(increment).map(|step| step.field.as_ref())
-    }
-
-    fn step(&self, increment: usize) -> Option<&ExactStep> {
-        self.exact.get(increment.checked_sub(1)?)
+        self.exact.get(increment).map(|step| step.field.as_ref())
     }
 
     fn factor(&self, history: &History, increment: usize) -> f64 {
@@ -134,7 +106,7 @@ impl<'a> Loading<'a> {
         for load in &self.body.loads {
             add(self.factor(&load.history, increment), &load.force);
         }
-        if let Some(step) = self.step(increment) {
+        if let Some(step) = self.exact.get(increment) {
             add(1.0, &step.force);
         }
         force
@@ -151,7 +123,7 @@ impl<'a> Loading<'a> {
                 u[unknown] = amount * factors[fixed.support];
             }
         }
-        if let Some(step) = self.step(increment) {
+        if let Some(step) = self.exact.get(increment) {
             for &(unknown, value) in &step.displacement {
                 u[unknown] = value;
             }
@@ -160,13 +132,9 @@ impl<'a> Loading<'a> {
     }
 
     /// Right-hand side at the end of an increment: f = f_ext − K u_prescribed at the free unknowns, the jump the
-    /// prescribed ones carry, and the contact forces that their stress and an initial one imply. Before the first
-    /// increment, 0, nothing acts, whatever the histories say at t = 0.
+    /// prescribed ones carry, and the contact forces that their stress and an initial one imply.
     pub fn at(&self, increment: usize) -> Load {
         let body = self.body;
-        if increment == 0 {
-            return Load::zero(&body.elastic);
-        }
         let prescribed = self.prescribed_displacement(increment);
         let held = body.stiffness.mul(&prescribed);
         let external = self.external_force(increment);
@@ -189,6 +157,30 @@ impl<'a> Loading<'a> {
         }
     }
 
+    /// The load that an increment begins with: none before the first one.
+    pub fn before(&self, increment: usize) -> Load {
+        match increment.checked_sub(1) {
+            Some(before) if increment > self.first => self.at(before),
+            _ => Load::zero(&self.body.elastic),
+        }
+    }
+
+    /// −½ ∫ (σ₀(before) + σ₀(now)) : Δε, work of the initial stress in an increment with displacements Δu over all unknowns
+    /// [J, in 2D J/m].
+    pub fn initial_stress_work(&self, increment: usize, du: &[f64]) -> f64 {
+        let work = |load: &FixedLoad| {
+            let before = match increment.checked_sub(1) {
+                Some(before) => self.factor(&load.history, before),
+                None => 0.0,
+            };
+            let now = self.factor(&load.history, increment);
+            let full: f64 = load.force.iter().zip(du).map(|(f, u)| f * u).sum();
+            0.5 * (before + now) * full
+        };
+        let own = self.body.loads.iter().filter(|load| load.initial_stress);
+        own.map(work).sum()
+    }
+
     /// All unknowns at the end of an increment from the free ones [m].
     pub fn all_unknowns(&self, increment: usize, u: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.body.numbers.len()];
@@ -206,6 +198,51 @@ impl<'a> Loading<'a> {
         }
         all
     }
+}
+
+/// The closed form of a case at time 0 and at the end of every increment; none where the case names none.
+fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>, BodyError> {
+    let (Some(spec), Some(crack)) = (&case.exact, case.cracks.first()) else {
+        return Ok(Vec::new());
+    };
+    let setting = Setting {
+        material: case.material,
+        model: case.model,
+        friction,
+        crack: &crack.geometry,
+        body: body.mesh.extents(),
+    };
+    let refuse = |message: String| exact_error(case, spec, friction, &message);
+    let solution = (spec.solution.build)(&setting, &spec.values).map_err(refuse)?;
+    let factors = spec.factors(&case.path);
+    let integrator = body.integrator();
+    let Some(sides) = Sides::new(case, &integrator) else {
+        return Ok(Vec::new());
+    };
+    let mut steps = Vec::new();
+    for increment in 0..factors.len() {
+        let field = solution.at(&factors[..=increment]).map_err(|message| {
+            refuse(match case.path.increments {
+                1 => message,
+                _ => format!("increment {increment}: {message}"),
+            })
+        })?;
+        let mut force = Vec::new();
+        for load in &case.loads {
+            if matches!(load.kind, LoadKind::ExactTraction(_) | LoadKind::ExactBody) {
+                force.resize(body.numbers.len(), 0.0);
+                add_exact_forces(&integrator, &sides, &load.kind, field.as_ref(), &mut force)
+                    .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+            }
+        }
+        let displacement = exact_displacement(body, &sides, field.as_ref());
+        steps.push(ExactStep {
+            field,
+            displacement,
+            force,
+        });
+    }
+    Ok(steps)
 }
 
 /// Values of the unknowns that the closed form prescribes; evaluated once per node.

@@ -7,6 +7,7 @@ use crate::case::Case;
 use crate::model::body::Body;
 use crate::model::boundary::region_name;
 use crate::model::loading::Loading;
+use crate::model::work::Work;
 
 /// One quantity of interest.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,18 +70,18 @@ pub struct Snapshot {
     pub jump: Vec<f64>,
     /// Contact forces on side 1, `dim` each.
     pub p: Vec<f64>,
+    /// Factors of the traction rows in Nitsche's consistency term; empty for other methods.
+    pub consistency: Vec<f64>,
     /// External forces plus reactions over all unknowns: K u − Bᵀ P, less the consistency term of Nitsche's method.
     pub force: Vec<f64>,
     /// External forces over all unknowns.
     pub external: Vec<f64>,
     /// Open, stick or slip of every point.
     pub status: Vec<PointStatus>,
-    /// Σ −P_t·d over all increments so far [J, in 2D J/m].
-    pub dissipation: f64,
-    /// ½ u·K u [J, in 2D J/m].
+    /// ½ u·K u: that of the strain, without the initial stress [J, in 2D J/m].
     pub strain_energy: f64,
-    /// Relative residual of the discrete energy identity of the increment [-].
-    pub energy_identity: f64,
+    /// Work since time 0.
+    pub work: Work,
     /// Deepest overlap of the faces of every crack of the case, between its contact points too [m].
     pub overlap: Vec<f64>,
 }
@@ -94,12 +95,12 @@ impl Snapshot {
             u: vec![0.0; n],
             jump: vec![0.0; m],
             p: vec![0.0; m],
+            consistency: Vec::new(),
             force: vec![0.0; n],
             external: vec![0.0; n],
             status: vec![PointStatus::Open; body.points.len()],
-            dissipation: 0.0,
             strain_energy: 0.0,
-            energy_identity: 0.0,
+            work: Work::none(body.integrated.len()),
             overlap: vec![0.0; body.integrated.len()],
         }
     }
@@ -109,17 +110,18 @@ impl Snapshot {
         self.overlap.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks.
+    /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks,
+    /// `friction`: coefficient of every point.
     pub fn new(
         loading: &Loading<'_>,
         increment: usize,
         state: &ContactState,
         consistency: Option<&[f64]>,
         status: Vec<PointStatus>,
+        friction: &[f64],
         before: &Snapshot,
     ) -> Self {
         let body = loading.body();
-        let dim = body.mesh.dim();
         let u = loading.all_unknowns(increment, &state.u);
         let jump = body.jump(&u);
         let internal = body.stiffness.mul(&u);
@@ -131,50 +133,49 @@ impl Snapshot {
                 force[i] -= coefficient * p;
             }
         }
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-        let strain_energy = 0.5 * dot(&u, &internal);
-        let slip_work: f64 = (0..jump.len())
-            .filter(|i| i % dim != 0)
-            .map(|i| state.p[i] * (jump[i] - before.jump[i]))
-            .sum();
-        // F·du = dE + ½ du·K du + D + P_n g_old, because P_n g_new = 0; F includes the reactions.
-        let du: Vec<f64> = u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
-        let opening: f64 = (0..body.points.len())
-            .map(|i| state.p[i * dim] * before.jump[i * dim])
-            .sum();
-        let stored = strain_energy - before.strain_energy;
-        let second = 0.5 * dot(&du, &body.stiffness.mul(&du));
-        let work = dot(&force, &du);
-        let size = work.abs() + stored.abs() + second + slip_work.abs() + opening.abs();
-        let gap = work - (stored + second - slip_work + opening);
-        Snapshot {
+        let mut now = Snapshot {
             external: loading.external_force(increment),
             time: loading.time(increment),
             overlap: sampled_penetration(body, &u, &jump),
             jump,
             p: state.p.clone(),
+            consistency: consistency.unwrap_or_default().to_vec(),
             force,
             status,
-            dissipation: before.dissipation - slip_work,
-            strain_energy,
-            energy_identity: if size > 0.0 { gap.abs() / size } else { 0.0 },
+            strain_energy: 0.5 * u.iter().zip(&internal).map(|(u, f)| u * f).sum::<f64>(),
+            work: Work::none(0),
             u,
-        }
+        };
+        now.work = Work::after(loading, increment, friction, before, &now);
+        now
     }
 }
 
 impl Snapshot {
     /// What of it is no finite number, if anything: then there is no answer, whatever the residuals say.
     pub fn not_finite(&self) -> Option<&'static str> {
+        let Work {
+            external,
+            initial_stress,
+            faces,
+            identity,
+            ..
+        } = self.work;
+        let friction = self.work.dissipation();
+        let energies = [
+            self.strain_energy,
+            external,
+            initial_stress,
+            faces,
+            friction,
+            identity,
+        ];
         let parts: [(&str, &[f64]); 5] = [
             ("displacements", &self.u),
             ("jumps", &self.jump),
             ("contact forces", &self.p),
             ("nodal forces", &self.force),
-            (
-                "energies",
-                &[self.strain_energy, self.dissipation, self.energy_identity],
-            ),
+            ("energies", &energies),
         ];
         let broken = |values: &[f64]| !values.iter().all(|x| x.is_finite());
         let found = parts.iter().find(|(_, values)| broken(values));
@@ -198,9 +199,12 @@ pub fn unit(name: &str, dim: usize) -> Option<&'static str> {
         "reaction" | "contact_force" => force_unit(dim),
         "displacement" | "mean_slip" | "max_slip" => "m",
         "max_gap" | "max_penetration" | "max_penetration_sampled" => "m",
-        "points_open" | "points_stick" | "points_slip" | "energy_identity" => "-",
-        "dissipation" | "strain_energy" if dim == 2 => "J/m",
-        "dissipation" | "strain_energy" => "J",
+        "points_open" | "points_stick" | "points_slip" => "-",
+        "energy_identity" | "path_error" => "-",
+        "dissipation" | "external_work" | "initial_stress_work" | "strain_energy" => match dim {
+            2 => "J/m",
+            _ => "J",
+        },
         _ => return None,
     })
 }
@@ -277,9 +281,15 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
             }
         }
     }
-    push("dissipation", "", "", now.dissipation);
+    push("dissipation", "", "", now.work.dissipation());
+    for (crack, &work) in now.work.friction.iter().enumerate() {
+        push("dissipation", &format!("crack-{}", crack + 1), "", work);
+    }
     push("strain_energy", "", "", now.strain_energy);
-    push("energy_identity", "", "", now.energy_identity);
+    push("external_work", "", "", now.work.external);
+    push("initial_stress_work", "", "", now.work.initial_stress);
+    push("path_error", "", "", now.work.path_error());
+    push("energy_identity", "", "", now.work.identity);
     rows
 }
 

@@ -24,7 +24,7 @@ const INSIDE: f64 = 1e-12;
 /// Tractions and jumps below this fraction of the largest are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The closed form along a 2D crack at the end of every increment; nothing where the case names none, or in a solid.
+/// The closed form along a 2D crack at the end of every increment, time 0 included where a run begins there; nothing where the case names none, or in a solid.
 pub fn exact_rows(posed: &Posed<'_>) -> Vec<ExactRow> {
     let Posed {
         case,
@@ -50,7 +50,8 @@ pub fn exact_rows(posed: &Posed<'_>) -> Vec<ExactRow> {
         .map(at)
         .filter(|(_, x)| !cells_at(mesh, x).is_empty())
         .collect();
-    let increments = (1..=loading.increments()).filter_map(|i| Some((i, loading.exact(i)?)));
+    let increments =
+        (loading.first()..=loading.increments()).filter_map(|i| Some((i, loading.exact(i)?)));
     let rows = increments.flat_map(|(increment, field)| {
         places.iter().map(move |(s, x)| {
             let (traction, jump) = (field.traction(x), field.jump(x));

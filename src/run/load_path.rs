@@ -131,7 +131,7 @@ impl LoadPathRun<'_> {
         } = *self;
         let body = loading.body();
         let mut end = PathEnd {
-            key: self.key(1),
+            key: self.key(loading.first()),
             started: true,
             verdict: Verdict::Crashed("a load path without increments".into()),
             now: None,
@@ -148,8 +148,8 @@ impl LoadPathRun<'_> {
         let rest = ContactState::zero(system);
         let mut state = rest.clone();
         let mut before = Snapshot::virgin(body);
-        let mut start_load = loading.at(0);
-        for increment in 1..=last {
+        let mut start_load = loading.before(loading.first());
+        for increment in loading.first()..=last {
             end.key.increment = increment;
             if let Some(now) = end.now.take() {
                 before = now;
@@ -161,7 +161,7 @@ impl LoadPathRun<'_> {
                 start_load: &start_load,
                 start: &state,
                 guess: self.cold.then_some(&rest.p[..]),
-                index: increment - 1,
+                index: increment - loading.first(),
                 tolerance: accuracy.asked,
             };
             let mut solved = solver.judge(&problem, accuracy.accepted);
@@ -172,6 +172,7 @@ impl LoadPathRun<'_> {
                     &judged.outcome.state,
                     judged.consistency.as_deref(),
                     judged.status.clone(),
+                    system.friction(),
                     &before,
                 )
             });

@@ -335,7 +335,7 @@ fn private(path: &Path) -> std::io::Result<()> {
 /// The problem with what methods here start from, as a guess: contact forces, and the jumps at the start of the increment.
 fn problem(increment: &Increment<'_>, form: &LocalForm) -> LocalProblem {
     let info = Info {
-        title: Some(format!("increment {}", increment.index + 1)),
+        title: Some(format!("increment {} of its path", increment.index + 1)),
         description: Some("stickslip: docs/protocol.md".into()),
         math_info: None,
     };

@@ -27,7 +27,7 @@ pub struct RunKey {
     pub method: String,
     /// Friction coefficient (of the first crack where cracks differ).
     pub friction: f64,
-    /// Increment, from 1.
+    /// Increment, from 1; 0: the state at time 0, where something acts then.
     pub increment: usize,
 }
 
@@ -191,7 +191,7 @@ pub struct ExactRow {
     pub case: String,
     /// Friction coefficient.
     pub friction: f64,
-    /// Increment, from 1.
+    /// Increment, as in [`RunKey`].
     pub increment: usize,
     /// Crack number, from 1.
     pub crack: usize,

@@ -9,7 +9,7 @@ use stickslip::model::body::{Body, Needs};
 use stickslip::model::quantities::Snapshot;
 use stickslip::run::registry::method;
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status,
+    ContactState, ContactSystem, Increment, Options, Silent, Status, point_status,
 };
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::cut::crack::Geometry;
@@ -139,7 +139,7 @@ impl Field for Griffith {
 
     fn dissipation(&self) -> Option<f64> {
         let slip = self.drop[1] * 2.0 * PI * self.a * self.a / plane_modulus(self.lame);
-        Some((self.remote[2] - self.drop[1]) * slip)
+        Some(0.5 * (self.remote[2] - self.drop[1]) * slip)
     }
 }
 
@@ -213,9 +213,17 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
     };
     let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
     assert_eq!(outcome.status, Status::Converged);
-    let status = vec![PointStatus::Open; body.points.len()];
+    let status = point_status(&increment, &outcome.state).unwrap();
     let virgin = Snapshot::virgin(&body);
-    let now = Snapshot::new(&held, 1, &outcome.state, None, status, &virgin);
+    let now = Snapshot::new(
+        &held,
+        1,
+        &outcome.state,
+        None,
+        status,
+        system.friction(),
+        &virgin,
+    );
     drop(held);
     (body, now)
 }

@@ -9,7 +9,7 @@ use stickslip::model::errors::{Deviation, errors};
 use stickslip::model::quantities::Snapshot;
 use stickslip::run::registry::method;
 use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Options, PointStatus, Silent, Status,
+    ContactState, ContactSystem, Increment, Options, Silent, Status, point_status,
 };
 use stickslip_xfem::cut::partition::Partition;
 use stickslip_xfem::geometry::{add_scaled, dot, norm};
@@ -60,9 +60,17 @@ fn measure(body: &Body, text: &str) -> (Snapshot, Vec<Deviation>) {
     };
     let outcome = enforcement.solve(&increment, &mut Silent).unwrap();
     assert_eq!(outcome.status, Status::Converged);
-    let status = vec![PointStatus::Open; body.points.len()];
+    let status = point_status(&increment, &outcome.state).unwrap();
     let virgin = Snapshot::virgin(body);
-    let now = Snapshot::new(&loading, 1, &outcome.state, None, status, &virgin);
+    let now = Snapshot::new(
+        &loading,
+        1,
+        &outcome.state,
+        None,
+        status,
+        system.friction(),
+        &virgin,
+    );
     let field = loading.exact(1).expect("a closed form");
     let rows = errors(body, &body.surface.quadrature, field, &now).unwrap();
     (now, rows)

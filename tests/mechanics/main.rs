@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod conforming;
 mod corners;
+mod energy;
 mod errors;
 mod exact;
 mod exact_curve;

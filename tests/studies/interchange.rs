@@ -143,7 +143,7 @@ fn plate_and_beam_and_later_increments_that_start_where_the_path_has_led() {
 
 #[test]
 fn floating_block_with_its_rigid_motions() {
-    let (dir, stem) = files_give_what_the_case_gives("sliding_block_embedded", 0.2, 1);
+    let (dir, stem) = files_give_what_the_case_gives("sliding_block_embedded", 0.2, 3);
     std::fs::remove_dir_all(dir.path().join("results")).unwrap();
     let file = |kind: &str| format!("problems/{stem}.{kind}");
     let [global, local, q] = ["global.hdf5", "local.hdf5", "q.mtx"].map(file);

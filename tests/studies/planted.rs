@@ -75,10 +75,10 @@ const FAULTS: &[Fault] = &[
         causes: MESH,
     },
     Fault {
-        name: "sign of the dissipation",
-        file: "src/model/quantities.rs",
-        from: "dissipation: before.dissipation - slip_work,",
-        to: "dissipation: before.dissipation + slip_work,",
+        name: "friction works under the pressure at the end",
+        file: "src/model/work.rs",
+        from: "let mean = 0.5 * (pressure(before) + pressure(now));",
+        to: "let mean = pressure(now);",
         causes: &["wrong energy"],
     },
     Fault {

@@ -248,7 +248,7 @@ fn records_and_tables_tell_increments_and_starts_apart() {
         let (cell, found) = (&record.cell, &record.found);
         assert_eq!(
             found.increments.len(),
-            16 * cell.increments,
+            1 + 16 * cell.increments,
             "{}",
             record.id
         );
@@ -275,7 +275,7 @@ fn records_and_tables_tell_increments_and_starts_apart() {
     let rows: Vec<&str> = table.lines().skip(1).collect();
     assert_eq!(rows.len(), 4, "{table}");
     assert!(
-        rows[1].starts_with("cyclic,nsgs,1e-6,2,32,1,1,1,"),
+        rows[1].starts_with("cyclic,nsgs,1e-6,2,33,1,1,1,"),
         "{table}"
     );
 }

@@ -128,11 +128,15 @@ fn figure(paths: &[(&RunKey, Path)], crack: &str, results: &Results) -> Figure {
 
 /// What a run dissipates over the path, beside the closed form if the case states it.
 fn dissipation(key: &RunKey, results: &Results) -> Option<String> {
-    let own = |row: &&QuantityRow| row.key == *key && row.quantity.name == "dissipation";
+    let own = |row: &&QuantityRow| {
+        let quantity = &row.quantity;
+        row.key == *key && quantity.name == "dissipation" && quantity.at.is_empty()
+    };
     let quantity = &results.quantities.iter().find(own)?.quantity;
     let found = significant(quantity.value, 4);
     let mut stated = results.expectations.iter().filter(|row| row.key == *key);
-    let stated = stated.find(|row| row.kind == "analytic" && row.quantity == "dissipation");
+    let stated = stated
+        .find(|row| row.kind == "analytic" && row.quantity == "dissipation" && row.at.is_empty());
     let stated = stated.map(|row| format!(", closed form {}", significant(row.expected, 4)));
     let (unit, stated) = (plain(&quantity.unit), stated.unwrap_or_default());
     Some(format!("Friction takes {found} {unit}{stated}"))

@@ -161,7 +161,7 @@ impl Row for IncrementRow<'_> {
 
     fn columns() -> Vec<Column<Self>> {
         of_cell(columns! { r: Self,
-            "increment" "" = r.number, INCREMENT;
+            "increment" "" = r.number, "place of the increment in the path, from 1; the state at time 0 takes the first where something acts then";
             "verdict" "" = &r.found.verdict, "its verdict";
             "natural_map" "–" .residual() = r.found.natural_map.unwrap_or(f64::NAN), "its residual";
             "iterations" "" = r.found.iterations, ITERATIONS;

@@ -6,7 +6,7 @@ pub const SPACE: &str =
     "contact space with its marks, e.g. `edge-pairs`, `edge-pairs/gauss-6`, `star/mean-dilatation`";
 pub const METHOD: &str = "method, options other than the default in brackets; `exec:` and the name of the file of a program from outside";
 pub const FRICTION: &str = "friction coefficient (of the first crack where cracks differ)";
-pub const INCREMENT: &str = "number of the increment, from 1";
+pub const INCREMENT: &str = "number of the increment, from 1; 0: the state at time 0, solved first where something acts then";
 pub const TIER: &str =
     "requested accuracy: `low` 1e-3, `mid` 1e-6, `high` 1e-9 on the violation of the contact laws";
 pub const VERDICT: &str = "what the method claims, checked: `solved`, `approximate: low`, `mid` or `none` (its own laws solved; the contact laws hold to that tier), `false-claim`, `gave-up: …`, `refused: …`, `crashed: …`, `timed-out`, `out-of-memory`; `not run` where there is no such run";

@@ -101,10 +101,10 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
     let increment = Increment {
         system: &posed.system,
         load: &posed.loading.at(wanted),
-        start_load: &posed.loading.at(wanted - 1),
+        start_load: &posed.loading.before(wanted),
         start: &start,
         guess: None,
-        index: wanted - 1,
+        index: wanted - posed.loading.first(),
         tolerance: path.accuracy.asked,
     };
     let info = info(case, &end.key, &increment);

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-use stickslip_methods::Status;
+use stickslip_methods::{PointStatus, Status};
 
 use super::finding::{Cause, Finding, Trial};
 use super::invariance::Base;
@@ -17,7 +17,7 @@ use crate::model::quantities::PointState;
 use crate::run::choice::Choice;
 use crate::run::record::{Results, RunRow};
 use crate::run::registry::methods;
-use crate::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
+use crate::run::run_case::{Fields, Quiet, RunError, Settings, friction_values, run_case};
 use crate::run::verdict::Verdict;
 
 /// Name of the file, as errors tell it.
@@ -187,7 +187,7 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         Truth::Energy => {
             let identity = quantity("energy_identity").unwrap_or(f64::NAN).abs();
             let dissipation = quantity("dissipation").unwrap_or(f64::NAN);
-            let friction = answer.relative(dissipation - friction_work(&results));
+            let friction = answer.relative(dissipation - friction_work(&case, &results));
             // NaN is the larger.
             let error = if identity >= friction || identity.is_nan() {
                 identity
@@ -234,17 +234,21 @@ fn is_at_limit(case: &Case) -> bool {
     results.is_ok_and(|own| own.is_ok_and(|r| r.runs.iter().any(|row| row.verdict == none)))
 }
 
-/// −Σ P_t · Δd over all increments and contact points of the default method: what friction took.
-fn friction_work(results: &Results) -> f64 {
+/// ½ Σ μ (P_n⁰ + P_n¹) |Δd| over all increments and slipping points of the default method: what friction took.
+fn friction_work(case: &Case, results: &Results) -> f64 {
+    let friction = &friction_values(case)[0];
     let own = results.points.iter().filter(|p| p.key.method == DEFAULT);
     let own: Vec<_> = own.map(|row| (row.key.increment, &row.point)).collect();
-    let mut before = vec![[0.0; 2]; own.len()];
+    let mut before = vec![[0.0; 3]; own.len()];
     let mut work = 0.0;
     for points in own.chunk_by(|a, b| a.0 == b.0) {
-        for ((_, p), start) in points.iter().zip(&mut before) {
-            let slip = [p.slip_a_m, p.slip_b_m];
-            work -= p.p_a * (slip[0] - start[0]) + p.p_b * (slip[1] - start[1]);
-            *start = slip;
+        for ((increment, p), start) in points.iter().zip(&mut before) {
+            let now = [p.p_n.max(0.0), p.slip_a_m, p.slip_b_m];
+            let slip = (now[1] - start[1]).hypot(now[2] - start[2]);
+            if p.status == PointStatus::Slip.as_str() && *increment > 0 {
+                work += 0.5 * friction[p.crack - 1] * (start[0] + now[0]) * slip;
+            }
+            *start = now;
         }
     }
     work

@@ -68,8 +68,8 @@ fn the_closed_form_arrives_with_its_parameters_in_order() {
     let case = parse(&plate().replace("pressure_pa = 3e5", given)).unwrap();
     let exact = case.exact.unwrap();
     assert_eq!(exact.values, [3e5, -2.0]);
-    // Four increments until t = 2.
-    assert_eq!(exact.factors(&case.path), [1.5, 3.0, 3.0, 3.0]);
+    // Time 0 and four increments until t = 2.
+    assert_eq!(exact.factors(&case.path), [0.0, 1.5, 3.0, 3.0, 3.0]);
     assert!(accepted(PLANE).exact.is_none());
 }
 

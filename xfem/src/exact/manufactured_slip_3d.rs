@@ -19,7 +19,7 @@
 //! On both faces σ_yy = −p, σ_yα = μ p h e_α, the jump is s e: Coulomb's law holds for an increment from zero slip. With
 //! everything constant along x₂ and e = a it is `manufactured-slip`. The body force jumps across the crack, and leaps where
 //! slip ends. The load factor scales the whole field; it may grow from increment to increment but not fall. Dissipation:
-//! Σ f_k (f_k − f_{k−1}) ∫ μ p s over the part of the plane inside the body, as in backward Euler.
+//! ½ (f² − f₀²) ∫ μ p s over the part of the plane inside the body, f₀ the first factor: p and s grow together.
 //! Manufactured for this project after P. J. Roache (2002).
 
 use std::f64::consts::{PI, TAU};
@@ -261,7 +261,7 @@ impl Solution for ManufacturedSlip {
             ..self.clone()
         };
         growing(factors, |factor, before| {
-            now.dissipation += factor * (factor - before) * self.work;
+            now.dissipation += 0.5 * (factor + before) * (factor - before) * self.work;
             now.scale = factor;
         })?;
         Ok(Box::new(now))
@@ -400,7 +400,7 @@ mod tests {
     fn dissipation_is_the_integral_over_the_plane_inside_the_body() {
         for shape in &shapes() {
             let of = solid(shape);
-            let field = build(&of, &VALUES).unwrap().at(&[1.0]).unwrap();
+            let field = build(&of, &VALUES).unwrap().at(&[0.0, 1.0]).unwrap();
             let n = 1200;
             let step = 4.0 / f64::from(n);
             let mut sum = 0.0;
@@ -409,7 +409,7 @@ mod tests {
                     let [x1, x2] = [i, j].map(|k| (f64::from(k) + 0.5) * step - 2.0);
                     let x = at(shape, x1, x2, 0.0);
                     if (0..3).all(|k| x[k] >= of.body[0][k] && x[k] <= of.body[1][k]) {
-                        sum -= dot(&field.traction(&x), &field.jump(&x)) * step * step;
+                        sum -= 0.5 * dot(&field.traction(&x), &field.jump(&x)) * step * step;
                     }
                 }
             }

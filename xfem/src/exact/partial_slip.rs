@@ -139,11 +139,11 @@ impl Solution for PartialSlip {
         let mut turns = vec![0.0];
         let mut zones = Vec::new();
         let (mut work, mut dissipation) = (0.0, 0.0);
-        for factor in factors {
+        for (k, factor) in factors.iter().enumerate() {
             turn(&mut turns, factor * self.shear);
             zones = self.zones(&turns);
             let now = self.work(&zones);
-            dissipation += (now - work).abs();
+            dissipation += if k == 0 { 0.0 } else { (now - work).abs() };
             work = now;
         }
         let now = factors.last().copied().unwrap_or(0.0);
@@ -205,7 +205,7 @@ mod tests {
         let shape = line([-1.0, 0.0], [1.0, 0.0]);
         let of = example(&shape);
         let solution = build(&of, &[1.0, 0.6, 0.45]).unwrap();
-        let field = at(&*solution, &[1.0]);
+        let field = at(&*solution, &[0.0, 1.0]);
         // b = 5/9: slip on [−1, 1/9].
         assert!(field.jump(&[0.11, 0.0, 0.0])[1] > 0.0);
         assert_eq!(field.jump(&[0.1112, 0.0, 0.0])[1], 0.0);
@@ -217,13 +217,15 @@ mod tests {
         assert_eq!(field.intensity(&[1.0, 0.0, 0.0]), Some([0.0; 3]));
         assert!((field.dissipation().unwrap() - 0.0183825187).abs() < 1e-10);
         // One increment or many.
-        let many = at(&*solution, &[0.2, 0.7, 0.75, 1.0]);
+        let many = at(&*solution, &[0.0, 0.2, 0.7, 0.75, 1.0]);
         assert!((field.dissipation().unwrap() - many.dissipation().unwrap()).abs() < 1e-16);
         // None where slip has several zones, or reaches both ends.
         assert_eq!(at(&*solution, &[1.0, -0.5]).stick_boundary(), None);
         assert_eq!(at(&*solution, &[2.0]).stick_boundary(), None);
         // A full cycle.
-        let cycle = at(&*solution, &[1.0, -1.0, 1.0]).dissipation().unwrap();
+        let cycle = at(&*solution, &[0.0, 1.0, -1.0, 1.0])
+            .dissipation()
+            .unwrap();
         assert!((cycle - 5.0 * 0.0183825187).abs() < 1e-9);
     }
 
@@ -232,11 +234,11 @@ mod tests {
         let shape = line([-1.0, 0.0], [1.0, 0.0]);
         let of = example(&shape);
         let solution = build(&of, &[1.0, 0.6, 0.45]).unwrap();
-        let first = at(&*solution, &[1.0]).dissipation();
+        let first = at(&*solution, &[0.0, 1.0]).dissipation();
         // 2 μ (p₀ − p₁) = 0.4 = 0.889 · 0.45.
-        let small = at(&*solution, &[1.0, 0.112, 1.0, 0.5, 0.112, 1.0]);
+        let small = at(&*solution, &[0.0, 1.0, 0.112, 1.0, 0.5, 0.112, 1.0]);
         assert_eq!(small.dissipation(), first);
-        let large = at(&*solution, &[1.0, 0.1, 1.0]);
+        let large = at(&*solution, &[0.0, 1.0, 0.1, 1.0]);
         assert!(large.dissipation() > first);
     }
 

@@ -89,8 +89,8 @@ pub struct SolutionSpec {
 
 /// A closed form over a load path.
 pub trait Solution: Send + Sync {
-    /// State after a path of load factors (increment by increment, the last one is now; `[1.0]` for a single increment).
-    /// The error says why the closed form does not hold there.
+    /// State after a path of load factors: at time 0, then increment by increment, the last one is now. That at time 0 is
+    /// reached from rest. The error says why the closed form does not hold there.
     fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String>;
 }
 
@@ -125,22 +125,23 @@ pub trait Field: Send + Sync {
         None
     }
 
-    /// Frictional dissipation since the start of the path [J, in 2D J/m].
+    /// Work of friction since time 0, with loads that change linearly within increments [J, in 2D J/m].
     fn dissipation(&self) -> Option<f64> {
         None
     }
 }
 
-/// Visits the increments of a path whose slip would reverse if the load fell: the factor, and the one before.
+/// Visits the increments of a path whose slip would reverse if the load fell: the factor, and the one before; at time 0 twice
+/// the same.
 pub fn growing(factors: &[f64], mut increment: impl FnMut(f64, f64)) -> Result<(), String> {
     let mut before = 0.0;
-    for &factor in factors {
+    for (k, &factor) in factors.iter().enumerate() {
         if factor < before {
             return Err(format!(
                 "the load factor falls from {before} to {factor}: slip would reverse"
             ));
         }
-        increment(factor, before);
+        increment(factor, if k == 0 { factor } else { before });
         before = factor;
     }
     Ok(())

@@ -124,7 +124,7 @@ fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
             snapshots.extend(now.cloned());
         }
     });
-    let complete = snapshots.len() == scene.case.path.increments;
+    let complete = snapshots.len() == scene.loading.increments() + 1 - scene.loading.first();
     complete.then_some(Reference {
         natural_map,
         snapshots,

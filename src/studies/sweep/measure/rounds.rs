@@ -61,8 +61,10 @@ pub fn in_turn(
     };
     let traction = choices.iter().any(Choice::needs_traction);
     let scene = bench.scene(cell, text, traction)?;
-    let loads: Vec<Load> = (0..=scene.case.path.increments)
-        .map(|k| scene.loading.at(k))
+    let loading = &scene.loading;
+    let ends = (loading.first()..=loading.increments()).map(|k| loading.at(k));
+    let loads: Vec<Load> = std::iter::once(loading.before(loading.first()))
+        .chain(ends)
         .collect();
     let asked = (scene.system, &loads[..], cell.tolerance, cell.cold);
     Ok(take_rounds(asked, choices, repeats))

@@ -36,7 +36,7 @@ pub struct CrackField {
     pub background: Background,
     /// Loaded zones, each with its factor.
     pub zones: Vec<(f64, FaceLoad)>,
-    /// Dissipation since the start of the path [J/m].
+    /// Work of friction since time 0 [J/m].
     pub dissipation: f64,
 }
 
