@@ -36,7 +36,7 @@ pub struct Case {
     pub model: Model,
     /// Isotropic linear elasticity.
     pub material: Material,
-    /// The dilatation that the file forces.
+    /// The dilatation of the stress of the gradient, which the file forces in every cell.
     pub dilatation: Option<Dilatation>,
     /// Origin of the frame of the body in the coordinates of the file [m]: mesh, cracks, loads and probes are in this frame.
     pub origin: Point,
@@ -69,10 +69,11 @@ pub struct Case {
 }
 
 impl Case {
-    /// Lamé constants of material and model, with the dilatation that the file forces.
+    /// Lamé constants of material and model, with the stress that the file forces.
     pub fn lame(&self) -> Lame {
         let lame = Lame::new(self.material, self.model);
         Lame {
+            assumed: self.dilatation.is_none(),
             dilatation: self.dilatation.unwrap_or(lame.dilatation),
             ..lame
         }

@@ -224,7 +224,7 @@ impl Body {
             other => other?,
         };
         let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
-        let space = space_name(case, &cracks, lame.dilatation);
+        let space = space_name(case, &cracks);
         let mut body = Body {
             origin: case.origin,
             quadrature: case.quadrature,
@@ -389,8 +389,8 @@ fn traction(
     Ok(rows)
 }
 
-/// Contact spaces of the cracks, each named once, with marks for inexact quadrature and for the mean dilatation.
-fn space_name(case: &Case, cracks: &[Crack], dilatation: Dilatation) -> String {
+/// Contact spaces of the cracks, each named once, with marks for inexact quadrature and for the mean dilatation in every cell.
+fn space_name(case: &Case, cracks: &[Crack]) -> String {
     let mut names: Vec<&str> = Vec::new();
     for spec in &case.cracks {
         if !names.contains(&spec.contact.name()) {
@@ -401,7 +401,7 @@ fn space_name(case: &Case, cracks: &[Crack], dilatation: Dilatation) -> String {
     if let (Quadrature::Gauss(n), false) = (case.quadrature, cracks.is_empty()) {
         name += &format!("/gauss-{n}");
     }
-    if dilatation == Dilatation::Mean {
+    if case.dilatation == Some(Dilatation::Mean) {
         name += "/mean-dilatation";
     }
     name

@@ -92,13 +92,21 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     };
     for cell in 0..mesh.cell_count() {
         let map = mesh.map(cell);
+        // As its stiffness, which was integrated: no number is no stress.
+        let mut own = integrator.stress(cell).ok();
+        let mut von_mises = |xi: Point, region: usize| match &mut own {
+            Some(own) => {
+                let h = own.field(&xi, &map.at(&xi), region, &now.u).1;
+                body.lame.von_mises(&h, dim)
+            }
+            None => f64::NAN,
+        };
         let Some(partition) = body.enrichment.partition(cell) else {
             cells.push(FieldCell {
                 shape: whole,
                 points: map.iter().map(|x| vertices.of(cell, x, 0, now)).collect(),
             });
-            let h = integrator.displacement_gradient(cell, &[0.0; 3], 0, &now.u);
-            stress.push(body.lame.von_mises(&h, dim));
+            stress.push(von_mises([0.0; 3], 0));
             sides.push(0.0);
             continue;
         };
@@ -112,8 +120,7 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
                         .collect(),
                 });
                 let xi = map.inverse(&mean(&part)).unwrap_or_default();
-                let h = integrator.displacement_gradient(cell, &xi, region, &now.u);
-                stress.push(body.lame.von_mises(&h, dim));
+                stress.push(von_mises(xi, region));
                 sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
             }
         }

@@ -1,4 +1,4 @@
-//! Nearly incompressible bodies: the mean dilatation against locking, exact in uniform strain.
+//! Nearly incompressible bodies: assumed stress, or the mean dilatation, against locking, exact in uniform strain.
 
 use crate::common::bodies::{bodies_like, piecewise};
 use crate::common::*;
@@ -13,9 +13,16 @@ fn energy(text: &str, refine: usize) -> f64 {
     0.5 * force.iter().zip(&found.u).map(|(f, u)| f * u).sum::<f64>()
 }
 
-/// The same with the dilatation of every point.
+/// The same with the stress of the gradient in every cell, by a dilatation.
+fn of_gradient(text: &str, dilatation: &str) -> String {
+    text.replace(
+        " }\nmesh",
+        &format!(", dilatation = {dilatation:?} }}\nmesh"),
+    )
+}
+
 fn full(text: &str) -> String {
-    text.replace(" }\nmesh", ", dilatation = \"full\" }\nmesh")
+    of_gradient(text, "full")
 }
 
 const BENDING: &str = "traction_pa = [{ at_origin_pa = -1e-3, gradient_pa_per_m = [0, 2e-3] }, 0]";
@@ -27,8 +34,8 @@ fn cantilever(crack: &str, traction: &str) -> String {
     plane([0.0, 0.0], [1.0, 1.0], [11, 11], &rest)
 }
 
-/// Source: σ_xx = s (2y − 1) in plane strain, energy (1 − ν²) s² / 6 E per unit square. Goal: 11 × 11 cells find it at any
-/// ν < ½.
+/// Source: σ_xx = s (2y − 1) in plane strain, energy (1 − ν²) s² / 6 E per unit square. Goal: 11 × 11 cells of
+/// assumed stress have it to rounding, times λ/μ, at any ν < ½; with the stress of the gradient:
 ///
 /// ```text
 ///   ν               0.3     0.4     0.45     0.49     0.499    0.4999   0.499999
@@ -45,14 +52,17 @@ fn pure_bending_has_its_energy_at_any_ratio() {
         let exact = (1.0 - nu * nu) * 1e-6 / 6.0;
         let text = of_ratio(&square, nu);
         let lack = |text: &str| 1.0 - energy(text, 1) / exact;
+        let mean = of_gradient(&text, "mean");
         println!(
-            "ν = {nu}: {:.4}, full {:.4}",
+            "ν = {nu}: {:.1e}, mean {:.4}, full {:.4}",
             lack(&text),
+            lack(&mean),
             lack(&full(&text))
         );
-        let mean = parse(&text).lame().dilatation == Dilatation::Mean;
-        assert_eq!(mean, nu > 0.4);
-        assert_below(lack(&text).abs(), if mean { 3e-3 } else { 1e-2 }, nu);
+        assert_below(lack(&text).abs(), 1e-12 / (1.0 - 2.0 * nu), nu);
+        if nu > 0.4 {
+            assert_below(lack(&mean).abs(), 3e-3, nu);
+        }
         if nu == 0.499 {
             assert!(lack(&full(&text)) > 0.4);
         }
@@ -63,9 +73,10 @@ fn pure_bending_has_its_energy_at_any_ratio() {
 /// as accurate as at ν = 0.3; full dilatation loses 16 % at ν = 0.49 (26 % with a crack) and all at 0.4999 on both meshes.
 ///
 /// ```text
-///   ν        0.3      0.49    0.4999
-///   whole    4.9 %    4.8 %   5.0 %
-///   plane    12.6 %   4.1 %   4.2 %     a crack from side to side
+///                    0.3      0.49    0.4999
+///   whole            3.2 %    5.6 %   5.9 %
+///     mean           4.9 %    4.8 %   5.0 %     full at 0.3
+///   plane, mean      12.6 %   4.1 %   4.2 %     a crack from side to side
 /// ```
 #[test]
 fn a_solid_does_not_lock() {
@@ -75,8 +86,12 @@ fn a_solid_does_not_lock() {
         let cube = solid([1.0, 1.0, 1.0], [4, 4, 4], &planes, &rest);
         for nu in [0.49, 0.4999] {
             let text = of_ratio(&cube, nu);
-            let error = energy(&text, 1) / energy(&text, 2) - 1.0;
-            assert_below(error.abs(), 0.055, (&planes, nu));
+            let mean = of_gradient(&text, "mean");
+            for (text, bound) in [(text, 0.065), (mean, 0.055)] {
+                let error = energy(&text, 1) / energy(&text, 2) - 1.0;
+                println!("solid, {} planes, ν = {nu}: {error:.3}", planes.len());
+                assert_below(error.abs(), bound, (&planes, nu));
+            }
         }
     }
 }
@@ -95,7 +110,9 @@ fn pressures_do_not_alternate() {
             let pressure: Vec<f64> = (0..n * n)
                 .map(|cell| {
                     // The mean over a rectangle is the value at its centre.
-                    let h = integrator.displacement_gradient(cell, &[0.0; 3], 0, &found.u);
+                    let x = found.body.mesh.centre(cell);
+                    let mut stress = integrator.stress(cell).unwrap();
+                    let h = stress.field(&[0.0; 3], &x, 0, &found.u).1;
                     found.body.lame.lambda * (h[0][0] + h[1][1])
                 })
                 .collect();
@@ -115,8 +132,9 @@ fn pressures_do_not_alternate() {
     }
 }
 
-/// Source: comparison with 44 × 44 cells. Goal: the strain energy of 11 × 11 cells is within 3 %, at any ν, whole, with a crack
-/// from side to side and with one inside that carries branch functions.
+/// Source: comparison with 44 × 44 cells. Goal: the strain energy of 11 × 11 cells is within 3.5 %, with the mean dilatation in
+/// every cell within 3 %, at any ν, whole, with a crack from side to side and with one inside that carries branch functions. With
+/// assumed stress bending is 0.9 % off, shear 2.1 %, 3.0 % with the crack from side to side; of the gradient, mean but where said:
 ///
 /// ```text
 ///   ν                 0.3     0.49    0.499   0.4999   0.49 full   0.499 full
@@ -138,14 +156,18 @@ fn cracked_bodies_in_bending_do_not_lock() {
         for traction in [BENDING, SHEAR] {
             for nu in [0.49, 0.499, 0.4999] {
                 let text = of_ratio(&cantilever(crack, traction), nu);
-                let error = energy(&text, 1) / energy(&text, 4) - 1.0;
-                assert_below(error.abs(), 0.03, (crack, traction, nu));
+                let mean = of_gradient(&text, "mean");
+                for (text, bound) in [(text, 0.035), (mean, 0.03)] {
+                    let error = energy(&text, 1) / energy(&text, 4) - 1.0;
+                    println!("{traction} ν = {nu}: {error:.4} {crack}");
+                    assert_below(error.abs(), bound, (crack, traction, nu));
+                }
             }
         }
     }
     let text = of_ratio(&cantilever("", BENDING), 0.499);
     let locked = energy(&full(&text), 1) / energy(&full(&text), 4);
-    assert_below(locked, 0.6, "locking that the mean dilatation removes");
+    assert_below(locked, 0.6, "locking that assumed stress removes");
 }
 
 /// ∫ σ_ab ∂_b φ of a displacement, σ by Hooke's law from its gradient point by point.
@@ -173,11 +195,11 @@ fn internal_force(body: &Body, u: &[f64]) -> Vec<f64> {
     force
 }
 
-/// Source: a uniform strain is its own mean. Goal: in cells that are whole, cut, cut to slivers, distorted, with branch
+/// Source: a uniform strain is its own mean, and its stress a mode. Goal: in cells that are whole, cut, cut to slivers, distorted, with branch
 /// functions, 2D and 3D, K times a field with a gradient of its own in every piece is the force of Hooke's law, and the energy
-/// of one gradient everywhere is ½ V σ:ε.
+/// of one gradient everywhere is ½ V σ:ε; by default and with the mean dilatation in every cell.
 #[test]
-fn the_mean_dilatation_is_exact_in_uniform_strain() {
+fn every_stress_is_exact_in_uniform_strain() {
     let mut random = Random(23);
     let incompressible = |text: &str| of_ratio(text, 0.4999);
     let distorted = |text: &str| match text.contains("solid") {
@@ -192,8 +214,10 @@ fn the_mean_dilatation_is_exact_in_uniform_strain() {
         &(crack([-1.0, 1.5 + 5e-7], [4.0, 1.5 + 5e-7], 0.3, "none") + &clamped(2)),
     );
     let sliver = ("sliver", body(&incompressible(&sliver)));
+    let mean = |text: &str| of_gradient(&incompressible(text), "mean");
     for (name, body) in all
         .chain(bodies_like(Needs::default(), distorted))
+        .chain(bodies_like(Needs::default(), mean))
         .chain([sliver])
     {
         assert_eq!(body.lame.dilatation, Dilatation::Mean);

@@ -264,9 +264,11 @@ enum Tractions {
     Exact,
 }
 
-/// Errors of K over |K| on a mesh, worst of both tips: jump fit, interaction integral.
-fn errors(field: &Griffith, cells: usize, tractions: Tractions) -> [f64; 2] {
-    let (body, mut now) = solve_held(&plate(field, cells, "branch"), field);
+/// Errors of K over |K| on a mesh, worst of both tips: jump fit, interaction integral. `stress`: a further key of the material.
+fn errors(field: &Griffith, cells: usize, tractions: Tractions, stress: &str) -> [f64; 2] {
+    let stress = format!("poisson = 0.3{stress}");
+    let text = plate(field, cells, "branch").replace("poisson = 0.3", &stress);
+    let (body, mut now) = solve_held(&text, field);
     if tractions == Tractions::Exact {
         for (p, point) in now.p.chunks_exact_mut(2).zip(&body.points) {
             let exact = field.traction(&point.x);
@@ -295,7 +297,7 @@ fn errors(field: &Griffith, cells: usize, tractions: Tractions) -> [f64; 2] {
 /// the two cells that the fit has at 21 cells say nothing.
 #[test]
 fn discrete_solutions_of_an_open_crack_give_its_intensity() {
-    let found = [21, 41, 81].map(|cells| errors(&open(), cells, Tractions::Found));
+    let found = [21, 41, 81].map(|cells| errors(&open(), cells, Tractions::Found, ""));
     println!("{found:?}");
     for (k, bound) in [6e-3, 4e-3, 2.5e-3].into_iter().enumerate() {
         assert!(found[k][1] < bound, "{found:?}");
@@ -305,15 +307,18 @@ fn discrete_solutions_of_an_open_crack_give_its_intensity() {
 }
 
 /// Source: closed form of the crack that slides under uniform pressure and friction. Goal: with the exact traction on its
-/// faces the integral of the discrete solution finds K_II, and no K_I, within 1.5 %. The forces of edge pairs oscillate by
+/// faces the integral of the discrete solution finds K_II, and no K_I, within 1.5 % with the stress of the gradient, 2 % with assumed
+/// stress. The forces of edge pairs oscillate by
 /// half their size whatever the mesh, and near the tip the integral sees them with r^−½: the error is tens of per cent then.
 #[test]
 fn discrete_solutions_of_a_sliding_crack_give_its_intensity_if_the_tractions_are_right() {
-    for cells in [21, 41] {
-        let [jump, exact] = errors(&sliding(), cells, Tractions::Exact);
-        let [_, found] = errors(&sliding(), cells, Tractions::Found);
-        println!("{cells}: {jump:.1e} {exact:.1e} {found:.1e}");
-        assert!(exact < 0.015 && jump < 0.08, "{cells}: {exact} {jump}");
-        assert!(found > 10.0 * exact, "{cells}: {found}");
+    for (stress, bound) in [("", 0.02), (", dilatation = \"full\"", 0.015)] {
+        for cells in [21, 41] {
+            let [jump, exact] = errors(&sliding(), cells, Tractions::Exact, stress);
+            let [_, found] = errors(&sliding(), cells, Tractions::Found, stress);
+            println!("{cells}: {jump:.1e} {exact:.1e} {found:.1e}");
+            assert!(exact < bound && jump < 0.08, "{cells}: {exact} {jump}");
+            assert!(found > 10.0 * exact, "{cells}: {found}");
+        }
     }
 }

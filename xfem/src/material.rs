@@ -36,7 +36,7 @@ impl Material {
     }
 }
 
-/// The dilatation tr ε in the stiffness and in every stress.
+/// The dilatation tr ε where the stress is that of the gradient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dilatation {
     /// That of the gradient, point by point.
@@ -69,12 +69,14 @@ pub struct Lame {
     pub mu: f64,
     /// σ_zz = λ_z (ε_xx + ε_yy): λ in plane strain, 0 in plane stress, unused in 3D.
     pub lambda_z: f64,
-    /// The dilatation that λ multiplies in the discretisation.
+    /// Whether the stress is [assumed](crate::stiffness::assumed_stress) in the regions without branch functions.
+    pub assumed: bool,
+    /// The dilatation that λ multiplies where it is not.
     pub dilatation: Dilatation,
 }
 
 impl Lame {
-    /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)); the dilatation as [`Dilatation::of`] has it.
+    /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)); assumed stress, elsewhere the dilatation as [`Dilatation::of`] has it.
     pub fn new(material: Material, model: Model) -> Self {
         let Material { young, poisson } = material;
         let mu = young / (2.0 * (1.0 + poisson));
@@ -87,6 +89,7 @@ impl Lame {
             lambda,
             mu,
             lambda_z,
+            assumed: true,
             dilatation: Dilatation::of(material, model),
         }
     }

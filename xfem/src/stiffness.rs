@@ -1,6 +1,7 @@
 //! Stiffness of enriched cells and of the body: integration, matrices, assembly.
 
 pub mod assembly;
+pub mod assumed_stress;
 pub mod block_matrix;
 pub mod cell_matrices;
 pub mod cell_matrix;
@@ -10,3 +11,4 @@ pub mod elasticity;
 pub mod lanes;
 pub mod near_front;
 pub mod orthonormal;
+pub mod stress;

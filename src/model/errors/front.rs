@@ -12,7 +12,6 @@ use stickslip_xfem::geometry::{Point, add_scaled, norm, sub};
 use stickslip_xfem::intensity::interaction::{Domain, Fields, interaction};
 use stickslip_xfem::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use stickslip_xfem::stiffness::cell_matrix::CellError;
-use stickslip_xfem::stiffness::dilatation::ProjectedDilatation;
 
 use crate::model::body::Body;
 use crate::model::quantities::Snapshot;
@@ -139,12 +138,10 @@ pub fn tip_intensities(
         })
         .collect();
     let gradients = |cell: usize, points: &[ComparisonPoint]| {
-        let mut functions = integrator.functions(cell);
-        let dilatation = ProjectedDilatation::new(&integrator, cell)?;
+        let mut stress = integrator.stress(cell)?;
         let at = |p: &ComparisonPoint| {
             let p = &p.point;
-            let h = functions.field(&p.xi, &p.x, p.region, &now.u).1;
-            dilatation.assumed(p.region, &p.x, functions.numbers, &now.u, h)
+            stress.field(&p.xi, &p.x, p.region, &now.u).1
         };
         Ok(points.iter().map(at).collect::<Vec<_>>())
     };

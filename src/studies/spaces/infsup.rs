@@ -15,7 +15,7 @@
 //! of the two kinds compares up to a constant (1.7 for a crack along the grid in 2D, 1.9 in 3D).
 //!
 //! The bodies are unit squares and cubes made from case files like any other; their supports, which hold standard functions
-//! only, are then left out.
+//! only, are then left out. The norm of the displacement is the energy of its gradient, whatever stress a case may assume.
 
 mod pencil;
 mod scene;

@@ -23,7 +23,7 @@ use crate::enrichment::basis::Region;
 use crate::geometry::{Point, dot};
 use crate::quadrature;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
-use crate::stiffness::dilatation::ProjectedDilatation;
+use crate::stiffness::stress::CellStress;
 
 use super::pairs::ContactPoint;
 use super::surface_point::SurfacePoint;
@@ -63,15 +63,15 @@ pub fn integrated_rows(
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
     let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
-    let mut known: BTreeMap<usize, ProjectedDilatation<'_>> = BTreeMap::new();
+    let mut known: BTreeMap<usize, CellStress<'_>> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
         let [m1, m2] = *measures
             .entry((q.cell, q.regions))
             .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
-        let dilatation = match known.entry(q.cell) {
+        let stress = match known.entry(q.cell) {
             Entry::Occupied(own) => own.into_mut(),
-            Entry::Vacant(place) => place.insert(ProjectedDilatation::new(integrator, q.cell)?),
+            Entry::Vacant(place) => place.insert(integrator.stress(q.cell)?),
         };
         for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
             let part = Part {
@@ -82,15 +82,8 @@ pub fn integrated_rows(
             };
             for &(k, value) in &q.shares {
                 let own = &mut rows[k as usize * dim..(k as usize + 1) * dim];
-                add_stress(
-                    integrator,
-                    dilatation,
-                    &part,
-                    &q.x,
-                    &q.frame,
-                    -q.weight * value * share,
-                    own,
-                );
+                let factor = -q.weight * value * share;
+                add_stress(stress, &part, &q.x, &q.frame, factor, own);
             }
         }
     }
@@ -167,16 +160,9 @@ fn point_rows(
     let mut rows = vec![BTreeMap::<usize, f64>::new(); integrator.mesh.dim()];
     for part in parts.iter().filter(|p| p.measure > 0.0) {
         let factor = -point.weight * part.measure / total;
-        let dilatation = ProjectedDilatation::new(integrator, part.cell)?;
-        add_stress(
-            integrator,
-            &dilatation,
-            part,
-            &point.x,
-            &point.frame,
-            factor,
-            &mut rows,
-        );
+        let mut stress = integrator.stress(part.cell)?;
+        let (x, frame) = (&point.x, &point.frame);
+        add_stress(&mut stress, part, x, frame, factor, &mut rows);
     }
     Ok(rows
         .into_iter()
@@ -185,33 +171,19 @@ fn point_rows(
 }
 
 /// rows += factor · F σ n of a part at x.
-///
-/// With σ = λ tr(h) I + μ (h + hᵀ) and h_ab = Σ u_a ∂_b φ, the unknown u_a of a function φ enters e·σ n by
-/// λ (e·n) ∂_a φ + μ (e_a ∇φ·n + n_a ∇φ·e); behind λ what the dilatation takes for ∂_a φ.
 fn add_stress(
-    integrator: &CellIntegrator<'_>,
-    dilatation: &ProjectedDilatation<'_>,
+    stress: &mut CellStress<'_>,
     part: &Part,
     x: &Point,
     frame: &[Point; 3],
     factor: f64,
     rows: &mut [BTreeMap<usize, f64>],
 ) {
-    let dim = integrator.mesh.dim();
-    let (lambda, mu) = (integrator.lame.lambda, integrator.lame.mu);
-    let n = &frame[0];
-    let mut functions = integrator.functions(part.cell);
-    functions.evaluate(&part.xi, x, part.region);
-    let dilating = dilatation.gradients(part.region, x, &functions.gradients);
-    let gradients = functions.gradients.iter().zip(dilating.iter());
-    for (&f, (g, d)) in functions.numbers.iter().zip(gradients) {
+    for (unknown, t) in stress.tractions(&part.xi, x, part.region, &frame[0]) {
         for (row, e) in rows.iter_mut().zip(frame) {
-            let (normal, tangential) = (dot(g, n), dot(g, e));
-            for a in 0..dim {
-                let value = lambda * dot(e, n) * d[a] + mu * (e[a] * normal + n[a] * tangential);
-                if value != 0.0 {
-                    *row.entry(f as usize * dim + a).or_default() += factor * value;
-                }
+            let value = dot(e, &t);
+            if value != 0.0 {
+                *row.entry(unknown).or_default() += factor * value;
             }
         }
     }

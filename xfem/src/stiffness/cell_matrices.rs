@@ -57,7 +57,7 @@ impl CellMatrices {
         let plain: Vec<CellMatrix> = first
             .par_iter()
             .map(|&cell| cell_stiffness(&mesh.map(cell), integrator.lame))
-            .collect();
+            .collect::<Result<_, _>>()?;
         let mut total = 0;
         let mut enriched = Vec::new();
         for cell in (0..mesh.cell_count()).filter(|&c| !enrichment.is_plain(mesh, c)) {

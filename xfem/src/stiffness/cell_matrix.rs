@@ -7,9 +7,9 @@
 //!   K[(p,a),(q,b)] = Σ_r f_p^r f_q^r K^r[(i_p,a),(i_q,b)]
 //! ```
 //!
-//! The largest region is K_e minus the others: half the work, and a sliver keeps its full relative accuracy (its entries may
-//! be 10⁻²⁴ of K_e and still count). The mean dilatation of the whole is no sum of those of the regions: there all of them are
-//! integrated. Distorted cells and those with branch functions are integrated function by function.
+//! Every region is integrated by itself: a sliver keeps its full relative accuracy (its entries may be 10⁻²⁴ of the others and
+//! still count), and the [stress](super::stress) of a region is its own. Cells with branch functions are integrated function by
+//! function.
 
 use crate::cut::crack::Crack;
 use crate::cut::part::Part;
@@ -99,7 +99,7 @@ impl<'a> CellIntegrator<'a> {
     pub fn stiffness(&self, cell: usize, plain: &CellMatrix) -> Result<CellMatrix, CellError> {
         if self.enrichment.is_plain(self.mesh, cell) {
             Ok(plain.clone())
-        } else if self.enrichment.has_branch(cell) || !self.mesh.map(cell).is_affine() {
+        } else if self.enrichment.has_branch(cell) {
             self.by_functions(cell)
         } else {
             self.by_regions(cell, plain)
@@ -110,41 +110,10 @@ impl<'a> CellIntegrator<'a> {
     fn by_regions(&self, cell: usize, plain: &CellMatrix) -> Result<CellMatrix, CellError> {
         let dim = self.mesh.dim();
         let functions = self.functions(cell);
-        let map = &functions.map;
-        let points = self.points(cell)?;
-        let regions = self.enrichment.regions(cell);
-        let volume = |region: Region| -> f64 {
-            let own = points.iter().filter(|p| p.region == region);
-            own.map(|p| p.weight).sum()
+        let parts = match self.enrichment.regions(cell) {
+            1 => vec![plain.clone()],
+            _ => self.region_stiffness(cell)?,
         };
-        // The first of the largest: the others are integrated.
-        let largest = (0..regions)
-            .rev()
-            .max_by(|&a, &b| volume(a).total_cmp(&volume(b)))
-            .unwrap_or(0);
-        let integrate = |region: Region| {
-            let mut gram = Gram::zero(map.len(), dim);
-            for p in points.iter().filter(|p| p.region == region) {
-                gram.add(p.weight, &map.gradients(&p.xi).0);
-            }
-            gram.stiffness(self.lame)
-        };
-        let mut parts: Vec<CellMatrix> = Vec::with_capacity(regions);
-        let sums = regions == 1 || self.lame.dilatation == Dilatation::Full;
-        let exact = self.quadrature == Quadrature::SubCells && sums;
-        let mut rest = plain.clone();
-        for region in 0..regions {
-            if exact && region == largest {
-                parts.push(CellMatrix::zero(0));
-                continue;
-            }
-            let own = integrate(region);
-            rest = CellMatrix::difference(&rest, &own);
-            parts.push(own);
-        }
-        if exact {
-            parts[largest] = rest;
-        }
         let mut k = CellMatrix::zero(functions.numbers.len() * dim);
         for (region, part) in parts.iter().enumerate() {
             for (p, (i, fp)) in functions.steps(region).enumerate() {
@@ -308,19 +277,6 @@ impl<'a> CellIntegrator<'a> {
             Ok(SidedPoint::new(xi, p, region))
         };
         points.into_iter().map(place).collect()
-    }
-
-    /// Displacement gradient ∂u_a/∂x_b at a reference point of a cell, from all unknowns u (function-major).
-    pub fn displacement_gradient(
-        &self,
-        cell: usize,
-        xi: &Point,
-        region: Region,
-        u: &[f64],
-    ) -> [Point; 3] {
-        let mut functions = self.functions(cell);
-        let x = functions.map.at(xi);
-        functions.field(xi, &x, region, u).1
     }
 
     /// Displacement at a point of a cell, in one of its regions.

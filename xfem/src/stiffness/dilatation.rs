@@ -20,15 +20,13 @@
 //! these two besides the constant, as Legrain et al. enrich the pressure: θ = Σ_m q_m ∫_r q_m tr ε with q_m orthonormal. Only
 //! close to the tip: farther away they differ from constants by too little to be missed.
 
-use std::borrow::Cow;
-
 use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::material::{Dilatation, Lame};
+use crate::material::Lame;
 
-use super::cell_matrix::{CellError, CellIntegrator, SidedPoint};
+use super::cell_matrix::{CellIntegrator, SidedPoint};
 use super::consistent::EvaluatedPoint;
 
 /// A mode is dropped if less than this part of its square lies outside the span of those before it: all but those in the cells
@@ -54,35 +52,19 @@ pub struct ProjectedDilatation<'a> {
     lame: Lame,
     dim: usize,
     tips: Vec<Tip<'a>>,
-    /// Modes by region; empty: the dilatation is that of the gradient.
+    /// Modes by region.
     regions: Vec<Vec<Mode>>,
 }
 
 impl<'a> ProjectedDilatation<'a> {
-    /// Means and modes over the regions of a cell, by the rule of its stiffness.
-    ///
-    /// # Errors
-    /// A cell that cannot be integrated.
-    pub fn new(integrator: &CellIntegrator<'a>, cell: usize) -> Result<Self, CellError> {
-        let points = match integrator.lame.dilatation {
-            Dilatation::Full => Vec::new(),
-            Dilatation::Mean => integrator.evaluated(cell)?,
-        };
-        Ok(Self::of(integrator, cell, &points))
-    }
-
-    /// The same from the points of the cell, evaluated.
+    /// Means and modes over the regions of a cell, by the points of its stiffness.
     pub fn of(integrator: &CellIntegrator<'a>, cell: usize, evaluated: &[EvaluatedPoint]) -> Self {
         let mut projected = ProjectedDilatation {
             lame: integrator.lame,
             dim: integrator.mesh.dim(),
-            tips: Vec::new(),
+            tips: tips(integrator, cell),
             regions: Vec::new(),
         };
-        if integrator.lame.dilatation == Dilatation::Full {
-            return projected;
-        }
-        projected.tips = tips(integrator, cell);
         let count = integrator.enrichment.cell(cell).len();
         for region in 0..integrator.enrichment.regions(cell) {
             let own = evaluated.iter().filter(|p| p.at.region == region);
@@ -161,30 +143,22 @@ impl<'a> ProjectedDilatation<'a> {
         modes.map(flat).collect()
     }
 
-    /// The gradients of the functions at x as the dilatation takes them; `gradients`: what they are.
-    pub fn gradients<'g>(
-        &self,
-        region: Region,
-        x: &Point,
-        gradients: &'g [Point],
-    ) -> Cow<'g, [Point]> {
-        let Some(modes) = self.regions.get(region) else {
-            return Cow::Borrowed(gradients);
-        };
+    /// The gradients of all functions, so many, at x as the dilatation takes them.
+    pub fn gradients(&self, region: Region, x: &Point, count: usize) -> Vec<Point> {
         let shapes = self.shapes(region, x);
-        let mut found = vec![[0.0; 3]; gradients.len()];
-        for mode in modes {
+        let mut found = vec![[0.0; 3]; count];
+        for mode in &self.regions[region] {
             let q = mode.at(&shapes);
             for (sum, g) in found.iter_mut().zip(&mode.integrals) {
                 *sum = [0, 1, 2].map(|a| sum[a] + q * g[a]);
             }
         }
-        Cow::Owned(found)
+        found
     }
 
     /// The gradient whose stress by Hooke's law is λ θ I + 2 μ ε, from that of the displacement at x,
     /// h + λ / (d λ + 2 μ) (θ − tr h) I; `functions`: numbers of the cell's functions, `u`: all unknowns.
-    pub fn assumed(
+    pub fn projected(
         &self,
         region: Region,
         x: &Point,
@@ -192,14 +166,11 @@ impl<'a> ProjectedDilatation<'a> {
         u: &[f64],
         mut h: [Point; 3],
     ) -> [Point; 3] {
-        let Some(modes) = self.regions.get(region) else {
-            return h;
-        };
         let (dim, Lame { lambda, mu, .. }) = (self.dim, self.lame);
         let shapes = self.shapes(region, x);
         let trace: f64 = (0..dim).map(|a| h[a][a]).sum();
         let mut excess = -trace;
-        for mode in modes {
+        for mode in &self.regions[region] {
             let mut integral = 0.0;
             for (&f, g) in functions.iter().zip(&mode.integrals) {
                 integral += (0..dim)

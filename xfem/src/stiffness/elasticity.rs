@@ -18,8 +18,9 @@ use faer::{Accum, MatMut, MatRef, Par};
 use crate::geometry::{Point, Points};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::cell::CellMap;
-use crate::quadrature::gauss_cell;
 
+use super::assumed_stress::{AssumedStress, ShapePoint};
+use super::cell_matrix::{CellError, whole_cell};
 use super::lanes::LANES;
 
 /// Measure of a region, and ∫ of the gradients of all functions over it.
@@ -300,24 +301,25 @@ impl CellMatrix {
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         self.values[i * self.size + j] += value;
     }
-
-    /// a − b, entry by entry.
-    pub fn difference(a: &CellMatrix, b: &CellMatrix) -> CellMatrix {
-        CellMatrix {
-            size: a.size,
-            values: a.values.iter().zip(&b.values).map(|(a, b)| a - b).collect(),
-        }
-    }
 }
 
 /// Stiffness of an uncut cell: 2 Gauss points per direction, exact on affine cells.
-pub fn cell_stiffness(map: &CellMap, lame: Lame) -> CellMatrix {
-    let dim = map.kind.dim();
-    let mut gram = Gram::zero(map.len(), dim);
-    for (xi, w) in gauss_cell(map.kind, 2) {
-        let (g, det) = map.gradients(&xi);
-        gram.add(w * det, &g);
+///
+/// # Errors
+/// A cell without extent.
+pub fn cell_stiffness(map: &CellMap, lame: Lame) -> Result<CellMatrix, CellError> {
+    let points = whole_cell(map, 2, |_| 0).into_iter();
+    let points: Vec<ShapePoint> = points.map(|at| (at, map.gradients(&at.xi).0)).collect();
+    if lame.assumed {
+        return Ok(AssumedStress::new(map, lame, &points)?.stiffness());
     }
+    Ok(gradient_stiffness(map, lame, &points))
+}
+
+/// Stiffness of the shape functions in a region, with the stress of the gradient.
+pub fn gradient_stiffness(map: &CellMap, lame: Lame, points: &[ShapePoint]) -> CellMatrix {
+    let mut gram = Gram::zero(map.len(), map.kind.dim());
+    points.iter().for_each(|(at, g)| gram.add(at.weight, g));
     gram.stiffness(lame)
 }
 
@@ -335,7 +337,11 @@ mod tests {
     fn square_plane_stress_matches_the_closed_form() {
         let corners = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
         let map = CellMap::new(CellKind::Quad4, |i| corners[i]);
-        let k = cell_stiffness(&map, Lame::new(STEEL, Model::PlaneStress));
+        let lame = Lame {
+            assumed: false,
+            ..Lame::new(STEEL, Model::PlaneStress)
+        };
+        let k = cell_stiffness(&map, lame).unwrap();
         let (e, nu) = (STEEL.young, STEEL.poisson);
         let c = e / (1.0 - nu * nu);
         for (j, exact) in [
@@ -358,7 +364,7 @@ mod tests {
             let [x, y, z] = CellKind::Hex8.corner(i);
             [x + 0.1 * y * z, y - 0.2 * x, 1.3 * z + 0.1 * x * y]
         });
-        let k = cell_stiffness(&map, Lame::new(STEEL, Model::Solid));
+        let k = cell_stiffness(&map, Lame::new(STEEL, Model::Solid)).unwrap();
         let modes: [fn(&Point) -> Point; 4] = [
             |_| [1.0, 0.0, 0.0],
             |_| [0.0, 0.0, 1.0],

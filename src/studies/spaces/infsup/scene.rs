@@ -164,7 +164,8 @@ impl Scene {
             String::new()
         };
         let text = format!(
-            "title = \"{name}\"\nmodel = \"{model}\"\nmaterial = {{ young_pa = {YOUNG:?}, poisson = 0.3 }}\n\
+            "title = \"{name}\"\nmodel = \"{model}\"\n\
+             material = {{ young_pa = {YOUNG:?}, poisson = 0.3, dilatation = \"full\" }}\n\
              mesh = {{ box = {{ min_m = {low:?}, max_m = {high:?}, cells = {counts:?} }}{distort} }}\n\
              [[crack]]\n{crack}\nfriction = 0\ncontact = \"{space}\"\n{supports}",
             name = self.name,
