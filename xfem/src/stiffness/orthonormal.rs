@@ -23,6 +23,9 @@ use super::elasticity::{CellMatrix, CellView};
 /// square: K' carries the rounding of K divided by it.
 const DROPPED: f64 = 1e-8;
 
+/// The same for functions of different nodes: the rules of cells hold what ties them to 1e-8.
+const TIED: f64 = 1e-6;
+
 /// A function is dropped, too, if its energy is smaller than this part of that of its node's standard function: on a sliver
 /// around a point, a junction next to a grid line say, the functions of all nodes of a cell are alike up to rounding.
 const SLIVER: f64 = 1e-12;
@@ -157,7 +160,7 @@ impl SolverBasis {
         let own_squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
         for k in 0..n {
             let pivot = gram[k * n + k];
-            if pivot <= DROPPED * own_squares[k] {
+            if pivot <= TIED * own_squares[k] {
                 if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
                     let block = &mut self.blocks[*block as usize];
                     let row = own[k] - block.first;
