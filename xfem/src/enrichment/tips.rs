@@ -36,7 +36,7 @@ struct Zone {
     nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
     core: BTreeSet<u32>,
-    /// Those without g₃ and g₄, which the ramp makes superfluous there.
+    /// Those where the ramp makes g₃ and g₄ superfluous.
     surplus: Vec<u32>,
 }
 
@@ -47,18 +47,6 @@ impl Zone {
             nodes,
             ..Zone::default()
         }
-    }
-
-    /// The functions of a tip at one of the nodes.
-    fn branches(&self, node: u32, tip: usize) -> impl Iterator<Item = Function> {
-        let count = if self.surplus.contains(&node) { 2 } else { 4 };
-        (0..count).map(move |order| {
-            let kind = FunctionKind::Branch {
-                tip: tip as u32,
-                order,
-            };
-            Function { node, kind }
-        })
     }
 }
 
@@ -85,6 +73,8 @@ pub struct Tips {
     pub cores: Vec<BTreeSet<u32>>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
+    /// Tips and nodes where a ramp makes g₃ and g₄ superfluous.
+    pub surplus: Vec<(u32, u32)>,
     /// Corners with branch functions.
     pub corners: Vec<Corner>,
 }
@@ -211,12 +201,25 @@ impl Tips {
     fn add(&mut self, frame: TipFrame, cells: &[usize], zone: Zone) {
         let tip = self.frames.len();
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
-        let nodes = zone.nodes.iter();
+        let nodes = zone.nodes.into_iter();
         self.functions
-            .extend(nodes.flat_map(|&node| zone.branches(node, tip)));
+            .extend(nodes.flat_map(|node| branches(node, tip, 4)));
+        let surplus = zone.surplus.into_iter();
+        self.surplus.extend(surplus.map(|node| (tip as u32, node)));
         self.cores.push(zone.core);
         self.frames.push(frame);
     }
+}
+
+/// The first branch functions of a tip at a node.
+fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> {
+    (0..count).map(move |order| {
+        let kind = FunctionKind::Branch {
+            tip: tip as u32,
+            order,
+        };
+        Function { node, kind }
+    })
 }
 
 /// The search for the tips of a 2D body that can carry branch functions.

@@ -30,7 +30,7 @@ use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, norm, sub, unit};
 
-use super::{SHORTEST, SLENDER, Search, Tips, Zone};
+use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -71,7 +71,8 @@ impl Search<'_> {
             };
             let first = tips.frames.len();
             for (node, arm) in self.sets(&arms, &zone.nodes) {
-                tips.functions.extend(zone.branches(node, first + arm));
+                let count = if zone.surplus.contains(&node) { 2 } else { 4 };
+                tips.functions.extend(branches(node, first + arm, count));
             }
             tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
             let mut long: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
