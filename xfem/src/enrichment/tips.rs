@@ -475,11 +475,11 @@ impl Search<'_> {
             segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
         });
         let others = (0..self.arms.len()).filter(|arm| !own.contains(arm));
-        facets.fold(self.from_arms(x, others), f64::min)
+        facets.fold(self.away_from(x, others), f64::min)
     }
 
     /// Distance of a place from some arms [m].
-    fn from_arms(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
+    fn away_from(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
         let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
         let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
         away.fold(f64::INFINITY, f64::min)
