@@ -42,6 +42,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// Straight tips with a ramp, and the node where g₃ and g₄ are superfluous unless a function of the tip is prescribed.
+    pub surplus: Vec<(u32, u32)>,
     /// 2D: where arms with branch functions bend or meet.
     pub corners: Vec<Corner>,
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
@@ -152,6 +154,7 @@ impl Enrichment {
             shifts,
             tips: tips.frames,
             tip_cells: tips.cells,
+            surplus: tips.surplus,
             corners: tips.corners,
             cores: tips.cores,
             cut_off: tips.cut_off,

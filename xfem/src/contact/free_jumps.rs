@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::cut::crack::PathVertex;
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
@@ -172,12 +173,20 @@ impl<'a> FreeJumps<'a> {
         own
     }
 
-    /// Distance of a corner of facets from the nearer end of the arm, in lengths of the arm; 0 in a solid.
-    pub fn from_end(&self, corner: usize) -> f64 {
+    /// Where corners of facets lie along the arm, in 1e-9 of its length, from its end nearer to the middle of the body: the same
+    /// however the crack is read. 0 in a solid.
+    pub fn along(&self) -> impl Fn(usize) -> i64 {
+        let (extent, middle) = self.integrator.mesh.extent();
         let crack = &self.integrator.cracks[self.index];
-        let ends = crack.path.first().into_iter().chain(crack.path.last());
-        let away = ends.map(|end| norm(&sub(&self.facets.corners[corner].x, &end.x)));
-        away.reduce(f64::min).unwrap_or(0.0) / (crack.range[1] - crack.range[0])
+        let round = |v: f64| (v * 1e9).round() as i64;
+        let key = |vertex: &PathVertex| {
+            let d = sub(&vertex.x, &middle).map(|v| v / extent);
+            (round(norm(&d)), d.map(round))
+        };
+        let [first, last] = [crack.path.first(), crack.path.last()].map(|v| v.map(key));
+        let sign = if first <= last { 1.0 } else { -1.0 };
+        let length = crack.range[1] - crack.range[0];
+        move |corner| round(sign * crack.abscissa(&self.facets.corners[corner].x) / length)
     }
 
     /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.

@@ -61,12 +61,9 @@ pub fn star_space(free: &mut FreeJumps<'_>) -> Multipliers {
         .filter(|(corner, _)| near.binary_search_by_key(corner, |n| n.0).is_err())
         .filter_map(|(corner, crossing)| crossing.map(|c| (corner, c)))
         .collect();
-    // Of equals the edge cut nearest its middle goes, then that nearest an end: however the crack is read.
-    edges.sort_by_cached_key(|(corner, crossing)| {
-        let rounded = |v: f64| (v * 1e9).round() as i64;
-        let from_middle = (crossing.fraction - 0.5).abs();
-        (rounded(from_middle), rounded(free.from_end(*corner)))
-    });
+    // Which of equal edges leaves the forest must not depend on how the crack is read.
+    let along = free.along();
+    edges.sort_by_cached_key(|(corner, _)| along(*corner));
     let pairs: Vec<_> = edges.iter().map(|(_, c)| c.ends).collect();
     let stars = star_forest(&pairs);
     let mut star_of: BTreeMap<u32, u32> = BTreeMap::new();

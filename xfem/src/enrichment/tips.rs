@@ -24,7 +24,7 @@ use crate::geometry::{Point, add_scaled, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 
-use super::basis::Function;
+use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
 use super::supports::{Place, parted_from};
 use super::zone::{Zone, front_room};
@@ -59,6 +59,8 @@ pub struct Tips {
     pub radii: Vec<f64>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
+    /// Tips and nodes where a ramp makes g₃ and g₄ superfluous.
+    pub surplus: Vec<(u32, u32)>,
     /// Corners with branch functions.
     pub corners: Vec<Corner>,
 }
@@ -209,17 +211,31 @@ impl Tips {
         self.cells.extend(cells.iter().map(|&cell| (cell, tip)));
         let nodes = zone.nodes.iter();
         self.functions
-            .extend(nodes.flat_map(|&node| zone.branches(node, tip)));
+            .extend(nodes.flat_map(|&node| branches(node, tip, 4)));
         self.add_frame(frame, &zone);
     }
 
     /// Adds a tip whose functions are given.
     fn add_frame(&mut self, frame: TipFrame, zone: &Zone) {
+        let tip = self.frames.len() as u32;
+        self.surplus
+            .extend(zone.surplus.iter().map(|&node| (tip, node)));
         self.cores.push(zone.core.clone());
         self.cut_off.push(zone.cut_off.clone());
         self.radii.push(zone.radius);
         self.frames.push(frame);
     }
+}
+
+/// The first branch functions of a tip at a node.
+fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> {
+    (0..count).map(move |order| {
+        let kind = FunctionKind::Branch {
+            tip: tip as u32,
+            order,
+        };
+        Function { node, kind }
+    })
 }
 
 /// The search for the tips of a 2D body that can carry branch functions.
@@ -549,11 +565,11 @@ impl Search<'_> {
         });
         let others = self.extents.meeting(&around([x], room)).into_iter();
         let others = others.filter(|arm| !own.contains(arm));
-        facets.fold(room.min(self.from_arms(x, others)), f64::min)
+        facets.fold(room.min(self.away_from(x, others)), f64::min)
     }
 
     /// Distance of a place from some arms [m].
-    fn from_arms(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
+    fn away_from(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
         let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
         let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
         away.fold(f64::INFINITY, f64::min)

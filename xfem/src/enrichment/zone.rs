@@ -12,7 +12,6 @@ use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 
-use super::basis::{Function, FunctionKind};
 use super::supports::Place;
 
 /// Nodes around a tip.
@@ -22,7 +21,7 @@ pub(super) struct Zone {
     pub nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
     pub core: BTreeSet<u32>,
-    /// Those without g₃ and g₄, which the ramp makes superfluous there.
+    /// Those where the ramp makes g₃ and g₄ superfluous.
     pub surplus: Vec<u32>,
     /// Radius of the ramp [m]; 0: there is none.
     pub radius: f64,
@@ -37,18 +36,6 @@ impl Zone {
             nodes,
             ..Zone::default()
         }
-    }
-
-    /// The functions of a tip at one of the nodes.
-    pub fn branches(&self, node: u32, tip: usize) -> impl Iterator<Item = Function> {
-        let count = if self.surplus.contains(&node) { 2 } else { 4 };
-        (0..count).map(move |order| {
-            let kind = FunctionKind::Branch {
-                tip: tip as u32,
-                order,
-            };
-            Function { node, kind }
-        })
     }
 
     /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and

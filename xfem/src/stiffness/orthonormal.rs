@@ -67,6 +67,7 @@ impl SolverBasis {
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let mut basis = SolverBasis::default();
+        let surplus = surplus(dim, enrichment, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
             let own = enrichment.enriched_of(node);
@@ -94,7 +95,9 @@ impl SolverBasis {
             }
             basis.blocks.push(Block {
                 first: own.start,
-                t: inverse_factor(&gram, own.len(), sliver),
+                t: inverse_factor(&gram, own.len(), |i| {
+                    sliver(i) || surplus.contains(&(own.start + i))
+                }),
                 count: own.len(),
                 free,
             });
@@ -307,6 +310,27 @@ impl SolverBasis {
     }
 }
 
+/// g₃ and g₄ where the ramps of tips make them superfluous.
+fn surplus(
+    dim: usize,
+    enrichment: &Enrichment,
+    held: impl Fn(usize, usize) -> bool,
+) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    for &(tip, node) in &enrichment.surplus {
+        let kind = |f: usize| enrichment.functions[f].kind;
+        let own = |f: &usize| matches!(kind(*f), FunctionKind::Branch { tip: t, .. } if t == tip);
+        let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
+        // A prescribed component breaks the relations of that component alone.
+        let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
+        found.extend(functions.into_iter().filter(|&f| {
+            let last = matches!(kind(f), FunctionKind::Branch { order: 2..=3, .. });
+            !broken && last && enrichment.functions[f].node == node
+        }));
+    }
+    found
+}
+
 /// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
 fn gram<'a>(
     enrichment: &Enrichment,
@@ -335,12 +359,12 @@ fn gram<'a>(
     gram
 }
 
-/// T = (D L)⁻¹ of a Gram matrix, with zero rows for functions on slivers and those in the span of others before them.
-fn inverse_factor(gram: &[f64], n: usize, sliver: impl Fn(usize) -> bool) -> Vec<f64> {
+/// T = (D L)⁻¹ of a Gram matrix, with zero rows for superfluous functions and those in the span of others before them.
+fn inverse_factor(gram: &[f64], n: usize, surplus: impl Fn(usize) -> bool) -> Vec<f64> {
     let scale: Vec<f64> = (0..n).map(|i| gram[i * n + i].sqrt()).collect();
     let mut t = vec![0.0; n * n];
     for i in 0..n {
-        if scale[i] == 0.0 || sliver(i) {
+        if scale[i] == 0.0 || surplus(i) {
             continue;
         }
         // Gram–Schmidt against the functions kept so far, twice for orthogonality.

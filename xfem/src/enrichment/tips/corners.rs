@@ -30,7 +30,7 @@ use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, norm, sub, unit};
 
-use super::{SHORTEST, SLENDER, Search, Tips, Zone};
+use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -52,6 +52,9 @@ pub struct Corner {
 /// The frame of an arm and the length that its functions know [m].
 type Ending = (TipFrame, f64);
 
+/// An arm and which of its ends, 0 or 1.
+type ArmEnd = (usize, usize);
+
 impl Search<'_> {
     /// Adds the functions of the corners that have room for them.
     pub(super) fn add_corners(&self, tips: &mut Tips) {
@@ -71,7 +74,8 @@ impl Search<'_> {
             };
             let first = tips.frames.len();
             for (node, arm) in self.sets(&arms, &zone.nodes) {
-                tips.functions.extend(zone.branches(node, first + arm));
+                let count = if zone.surplus.contains(&node) { 2 } else { 4 };
+                tips.functions.extend(branches(node, first + arm, count));
             }
             tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
             let mut long: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
@@ -85,10 +89,10 @@ impl Search<'_> {
 
     /// Two or three ends of arms in one place. By their distances from the middle of the body: in the same order however the
     /// cracks are read, and the body is turned.
-    fn meetings(&self) -> Vec<Vec<(usize, usize)>> {
+    fn meetings(&self) -> Vec<Vec<ArmEnd>> {
         let (extent, middle) = self.mesh.extent();
         let away = |x: &Point| (norm(&sub(x, &middle)) / extent * 1e9).round() as i64;
-        let mut at: BTreeMap<(i64, [u64; 3]), Vec<(usize, usize)>> = BTreeMap::new();
+        let mut at: BTreeMap<(i64, [u64; 3]), Vec<ArmEnd>> = BTreeMap::new();
         for (index, arm) in self.arms.iter().enumerate() {
             let ends = [arm.path.first(), arm.path.last()];
             for (end, vertex) in ends.into_iter().enumerate() {
@@ -189,7 +193,7 @@ impl Search<'_> {
             let place = &self.mesh.nodes[node as usize];
             let own = angle(&sub(place, &x));
             let wedge = angles.iter().filter(|a| **a <= own).count() % arms.len();
-            let depth = self.from_arms(place, arms.iter().map(|arm| arm.0.crack));
+            let depth = self.away_from(place, arms.iter().map(|arm| arm.0.crack));
             if depth > found[wedge].0 {
                 found[wedge] = (depth, Some(node));
             }
