@@ -19,6 +19,7 @@ use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::clip::{Side, snapped};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
@@ -41,6 +42,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// Where branch functions are singular in 2D, and the same by place.
+    singular: (Vec<Point>, Boxes),
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     cores: Vec<BTreeSet<u32>>,
     /// Radius of every ramp, within which all nodes carry the functions of the tip [m]; 0: there is none.
@@ -141,10 +144,13 @@ impl Enrichment {
                 }
             })
             .collect();
+        let singular: Vec<Point> = tips.frames.iter().flat_map(TipFrame::tips).collect();
+        let at_place = Boxes::new(singular.iter().map(|x| [*x; 2]));
         let mut enrichment = Enrichment {
             node_ptr,
             functions,
             shifts,
+            singular: (singular, at_place),
             tips: tips.frames,
             tip_cells: tips.cells,
             cores: tips.cores,
@@ -312,8 +318,15 @@ impl Enrichment {
     }
 
     /// Where branch functions are singular in 2D: the tips that carry them [m].
-    pub fn singular_points(&self) -> Vec<Point> {
-        self.tips.iter().flat_map(TipFrame::tips).collect()
+    pub fn singular_points(&self) -> &[Point] {
+        &self.singular.0
+    }
+
+    /// Those closer to a cell than its diagonal [m].
+    pub fn singular_points_near(&self, map: &CellMap) -> Vec<Point> {
+        let (points, boxes) = &self.singular;
+        let near = boxes.meeting(&around(map.iter(), map.diagonal()));
+        near.into_iter().map(|k| points[k]).collect()
     }
 
     /// Local nodes of a cell in the ramp of a tip, one bit each.

@@ -212,11 +212,11 @@ impl<'a> CellIntegrator<'a> {
         if branch && self.mesh.dim() == 3 {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
-        let tip = self.tip_in(cell);
-        let tips = self.enrichment.singular_points();
+        let tip = self.tips_in(cell).first();
+        let tips = self.enrichment.singular_points_near(map);
         // A pair of tips has none of its own at its middle.
         let tip = tip
-            .map(|tip| self.enrichment.tips[tip].tips())
+            .map(|&(_, tip)| self.enrichment.tips[tip].tips())
             .filter(|t| t.len() == 1);
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
@@ -236,10 +236,12 @@ impl<'a> CellIntegrator<'a> {
         self.located(cell, points, tolerance)
     }
 
-    /// The tip or front in a cell.
-    fn tip_in(&self, cell: usize) -> Option<usize> {
-        let own = self.enrichment.tip_cells.iter().find(|&&(c, _)| c == cell);
-        own.map(|&(_, tip)| tip)
+    /// The tips and fronts in a cell, with its number.
+    fn tips_in(&self, cell: usize) -> &[(usize, usize)] {
+        let all = &self.enrichment.tip_cells;
+        let first = all.partition_point(|t| t.0 < cell);
+        let count = all[first..].partition_point(|t| t.0 == cell);
+        &all[first..first + count]
     }
 
     /// Signed distances of the corners of a cell to the plane of a crack [m], and its normal.
@@ -260,7 +262,7 @@ impl<'a> CellIntegrator<'a> {
             map: &self.mesh.map(cell),
             parts,
             fronts: &self.enrichment.tips,
-            chord: self.tip_in(cell).and_then(|tip| {
+            chord: self.tips_in(cell).first().and_then(|&(_, tip)| {
                 let index = self.enrichment.tips[tip].crack;
                 let crack = &self.cracks[index];
                 let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);

@@ -246,12 +246,13 @@ fn surplus(
     let dim = mesh.dim();
     let any = |f: usize| (0..dim).any(|a| held(f, a));
     let mut found = BTreeSet::new();
-    for (number, tip) in enrichment.tips.iter().enumerate() {
-        let own = |f: &usize| match enrichment.functions[*f].kind {
-            FunctionKind::Branch { tip, .. } => tip as usize == number,
-            _ => false,
-        };
-        let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
+    let mut of_tips = vec![Vec::new(); enrichment.tips.len()];
+    for (f, function) in enrichment.functions.iter().enumerate() {
+        if let FunctionKind::Branch { tip, .. } = function.kind {
+            of_tips[tip as usize].push(f);
+        }
+    }
+    for (number, (tip, functions)) in enrichment.tips.iter().zip(of_tips).enumerate() {
         // A prescribed component breaks the relations of that component alone.
         let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
         if tip.shape != FrontShape::Straight || !enrichment.is_ramped(number) || broken {
