@@ -6,6 +6,7 @@ pub mod errors;
 pub mod field_mesh;
 pub mod fixed_loads;
 pub mod loading;
+pub mod memory;
 pub mod mesh_checks;
 pub mod nodal_forces;
 

@@ -11,6 +11,7 @@ use super::progress::Bar;
 use crate::case;
 use crate::model::body::{Body, Needs};
 use crate::model::loading::Loading;
+use crate::model::memory::predicted_gb;
 use crate::report::table::readable;
 use crate::report::{page, prepare_output, standard};
 use crate::run::choice::choices;
@@ -131,7 +132,7 @@ pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliEr
                 Loading::new(&body, &case, friction).map_err(RunError::from)?;
             }
             say(format_args!(
-                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}{}",
+                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}, at least {:.2} GB{}",
                 file.display(),
                 body.label,
                 body.mesh.cell_count(),
@@ -139,6 +140,7 @@ pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliEr
                 body.points.len(),
                 body.space,
                 body.checks.uniform,
+                predicted_gb(case.model.dim(), body.mesh.cell_count() as f64),
                 radii(&body.enrichment.radii)
             ));
         }

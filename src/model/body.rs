@@ -30,6 +30,7 @@ use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 use crate::case::{Case, CaseError, ContactSpace, CrackSpec, Quadrature};
 use crate::model::boundary::{Prescribed, held_sides, prescribed, region_nodes};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
+use crate::model::memory;
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
 use crate::model::refusals::{cell_error, check_probes, check_supports, crack_error, motion_error};
@@ -109,6 +110,7 @@ impl Body {
     pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
         let clock = Instant::now();
         let spec = case.mesh.grid.refined(refine);
+        memory::check(case, &spec)?;
         let cells: Vec<String> = spec
             .lines
             .iter()

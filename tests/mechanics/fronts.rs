@@ -253,3 +253,37 @@ fn a_straight_front_is_the_tip_of_the_plane_problem() {
         }
     }
 }
+
+/// Source: plane strain. Goal: a slab of one layer of cells between rollers, all nodes of which the supports hold along y, is the
+/// plane problem per thickness. Tolerance: that of the solver; the crack sticks.
+#[test]
+fn a_slab_of_one_layer_between_rollers_is_the_plane_problem() {
+    let flat = "[[crack]]\npoints_m = [[-0.2, 0.31], [1.2, 0.646]]\nfriction = 0.3\n".to_owned()
+        + &support("\"bottom\"", "[0, 0]")
+        + &support("\"top\"", "[4e-4, -1e-3]");
+    let flat = solve(&plane([0.0, 0.0], [1.0, 1.0], [10, 10], &flat));
+    let rest = support("\"bottom\"", "[0, \"free\", 0]")
+        + &support("\"top\"", "[4e-4, \"free\", -1e-3]")
+        + &support("\"front\"", "[\"free\", 0, \"free\"]")
+        + &support("\"back\"", "[\"free\", 0, \"free\"]");
+    let crack = ([0.55, 0.05, 0.49], [-0.36, 0.0, 1.5], 0.3);
+    let deep = solid([1.0, 0.1, 1.0], [10, 1, 10], &[crack], &rest);
+    let deep = solve(&deep.replace("edge-pairs", "star"));
+    assert!(!deep.body.points.is_empty());
+    for [a, b] in [[0, 0], [2, 1]] {
+        let [deep, flat] = [deep.reaction("top", a) / 0.1, flat.reaction("top", b)];
+        assert_below((deep - flat).abs(), 1e-8 * flat.abs(), (a, deep, flat));
+    }
+}
+
+/// Source: docs/case-format.md. Goal: without `tip` a front has a quarter of its room: here of the 0.479 m to the side y = −1.4.
+#[test]
+fn a_front_takes_a_quarter_of_its_room_by_default() {
+    let crack = disc("[0, 0, 1]", 0.3, "\"auto\"");
+    for crack in [crack.replace("tip = \"auto\"", ""), crack] {
+        let body = try_body(&held(&crack, [8, 8, 4], SHEAR)).unwrap();
+        let radii = &body.enrichment.radii;
+        assert_eq!(radii.len(), 1);
+        assert_below((radii[0] - 0.25 * 0.479).abs(), 1e-9, radii[0]);
+    }
+}

@@ -19,6 +19,7 @@ use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::clip::{Side, snapped};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
@@ -46,6 +47,8 @@ pub struct Enrichment {
     pub surplus: Vec<(u32, u32)>,
     /// 2D: where arms with branch functions bend or meet.
     pub corners: Vec<Corner>,
+    /// Where branch functions are singular in 2D, and the same by place.
+    singular: (Vec<Point>, Boxes),
     /// Nodes of the ramp of every tip's branch functions; empty: they have none.
     cores: Vec<BTreeSet<u32>>,
     /// Regions where the branch functions of every tip vanish, beyond other cracks.
@@ -148,10 +151,15 @@ impl Enrichment {
                 }
             })
             .collect();
+        let mut singular: Vec<Point> = tips.frames.iter().flat_map(TipFrame::tips).collect();
+        // The arms of a corner follow each other.
+        singular.dedup();
+        let at_place = Boxes::new(singular.iter().map(|x| [*x; 2]));
         let mut enrichment = Enrichment {
             node_ptr,
             functions,
             shifts,
+            singular: (singular, at_place),
             tips: tips.frames,
             tip_cells: tips.cells,
             surplus: tips.surplus,
@@ -327,11 +335,15 @@ impl Enrichment {
     }
 
     /// Where branch functions are singular in 2D: the tips and corners that carry them [m].
-    pub fn singular_points(&self) -> Vec<Point> {
-        let mut found: Vec<Point> = self.tips.iter().flat_map(TipFrame::tips).collect();
-        // The arms of a corner follow each other.
-        found.dedup();
-        found
+    pub fn singular_points(&self) -> &[Point] {
+        &self.singular.0
+    }
+
+    /// Those closer to a cell than its diagonal [m].
+    pub fn singular_points_near(&self, map: &CellMap) -> Vec<Point> {
+        let (points, boxes) = &self.singular;
+        let near = boxes.meeting(&around(map.iter(), map.diagonal()));
+        near.into_iter().map(|k| points[k]).collect()
     }
 
     /// Local nodes of a cell in the ramp of a tip, one bit each.
@@ -342,6 +354,21 @@ impl Enrichment {
         }
         let inside = nodes.iter().enumerate().filter(|(_, n)| core.contains(n));
         inside.fold(0, |mask, (i, _)| mask | 1 << i)
+    }
+
+    /// True if the ramp of some tip falls within a cell of these nodes.
+    pub fn ramps_in(&self, nodes: &[u32], cell: usize) -> bool {
+        let kinds = self
+            .cell(cell)
+            .iter()
+            .map(|&f| self.functions[f as usize].kind);
+        let tips = kinds.filter_map(|kind| match kind {
+            FunctionKind::Branch { tip, .. } => Some(tip as usize),
+            _ => None,
+        });
+        let tips: BTreeSet<usize> = tips.collect();
+        let mut inside = tips.into_iter().map(|tip| self.ramp(tip, nodes));
+        inside.any(|inside| !matches!(inside, 0 | 0b1111 | u8::MAX))
     }
 
     /// True if the cell carries standard functions only.

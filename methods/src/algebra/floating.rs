@@ -36,35 +36,47 @@ pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>
         let own = r.iter().enumerate();
         own.map(|(j, v)| k.diagonal(j).sqrt() * v).collect()
     };
-    let mut work: Vec<(usize, Vec<f64>)> = modes
+    // The first of the largest entries, with its size.
+    let pivot_of = |r: &[f64]| {
+        let own = r.iter().enumerate();
+        own.fold((0, -1.0), |best: (usize, f64), (j, v)| {
+            match v.abs() > best.1 {
+                true => (j, v.abs()),
+                false => best,
+            }
+        })
+    };
+    let mut work: Vec<(usize, Vec<f64>, (usize, f64))> = modes
         .iter()
         .enumerate()
         .map(|(mode, r)| {
             let r = scaled(r);
             let size = largest(&r);
-            (mode, r.iter().map(|v| v / size).collect())
+            let r: Vec<f64> = r.iter().map(|v| v / size).collect();
+            let pivot = pivot_of(&r);
+            (mode, r, pivot)
         })
         .collect();
     let mut pins = Vec::with_capacity(modes.len());
     while !work.is_empty() {
-        let (mut best, mut pivot, mut size) = (0, 0, -1.0);
-        for (w, (_, r)) in work.iter().enumerate() {
-            for (j, v) in r.iter().enumerate() {
-                if v.abs() > size {
-                    (best, pivot, size) = (w, j, v.abs());
-                }
+        let mut best = 0;
+        for (w, (.., (_, size))) in work.iter().enumerate() {
+            if *size > work[best].2.1 {
+                best = w;
             }
         }
-        let (mode, r) = work.swap_remove(best);
+        let (mode, r, (pivot, size)) = work.swap_remove(best);
         if size < DEPENDENT {
             return Err(MethodError::DependentModes { mode });
         }
-        for (_, other) in &mut work {
+        // Motions of other pieces stay as they are.
+        for (_, other, largest) in work.iter_mut().filter(|w| w.1[pivot] != 0.0) {
             let factor = other[pivot] / r[pivot];
             for j in 0..n {
                 other[j] -= factor * r[j];
             }
             other[pivot] = 0.0;
+            *largest = pivot_of(other);
         }
         pins.push(pivot);
     }
@@ -145,7 +157,9 @@ impl Balance {
     pub fn take_out(&self, x: &mut [f64]) {
         for Motion { r, s } in &self.motions {
             let amount: f64 = s.iter().map(|&(j, s)| self.root[j] * s * x[j]).sum();
-            x.iter_mut().zip(r).for_each(|(x, r)| *x -= amount * r);
+            if amount != 0.0 {
+                x.iter_mut().zip(r).for_each(|(x, r)| *x -= amount * r);
+            }
         }
     }
 

@@ -40,7 +40,7 @@ pub fn facet_points(
     if let &[p, q] = polygon.as_slice() {
         let tips = enrichment.singular_points();
         let integrand = match (branch, affine) {
-            (true, _) => Integrand::Root(&tips),
+            (true, _) => Integrand::Root(tips),
             (false, true) => Integrand::Polynomial,
             (false, false) => Integrand::Rational(rational_order(&map, [&p, &q])),
         };

@@ -3,6 +3,8 @@
 //! Every node has one copy on its own piece of its support and one on every other. Regions of cells join the copies they
 //! touch; what stays joined is a piece of the body.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, SVD, SymmetricEigen};
 
 use crate::geometry::{Point, root};
@@ -174,11 +176,29 @@ pub fn free_motions(
         }
     }
     let scale = support.diagonal().max().max(f64::MIN_POSITIVE);
-    let eigen = SymmetricEigen::new(support / scale);
-    let free: Vec<Vec<f64>> = (0..m)
-        .filter(|&k| eigen.eigenvalues[k].abs() < ZERO)
-        .map(|k| combined(&modes, |l| eigen.eigenvectors[(l, k)]))
-        .collect();
+    // Block by block of modes that supports tie to each other: free motions stay with their pieces.
+    let mut parent: Vec<usize> = (0..m).collect();
+    for (k, l) in (0..m).flat_map(|k| (0..k).map(move |l| (k, l))) {
+        if support[(k, l)] != 0.0 {
+            let [a, b] = [k, l].map(|i| root(&mut parent, i));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut blocks: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, _) in modes.iter().enumerate() {
+        blocks.entry(root(&mut parent, k)).or_default().push(k);
+    }
+    let mut free = Vec::new();
+    for block in blocks.into_values() {
+        let count = block.len();
+        let own = DMatrix::from_fn(count, count, |i, j| support[(block[i], block[j])] / scale);
+        let eigen = SymmetricEigen::new(own);
+        let zero = (0..count).filter(|&k| eigen.eigenvalues[k].abs() < ZERO);
+        free.extend(zero.map(|k| {
+            let parts = block.iter().map(|&l| &modes[l]);
+            combined(parts, |i| eigen.eigenvectors[(i, k)])
+        }));
+    }
     if !free.is_empty() {
         // Contact must feel every free motion: the Gram matrix of their jumps must be regular.
         let jumps: Vec<Vec<f64>> = free.iter().map(|mode| jump(mode)).collect();
@@ -189,7 +209,7 @@ pub fn free_motions(
         let eigen = SymmetricEigen::new(gram / size);
         let motions: Vec<Vec<f64>> = (0..free.len())
             .filter(|&k| size == f64::MIN_POSITIVE || eigen.eigenvalues[k].abs() < ZERO)
-            .map(|k| combined(&free, |l| eigen.eigenvectors[(l, k)]))
+            .map(|k| combined(free.iter(), |l| eigen.eigenvectors[(l, k)]))
             .collect();
         if !motions.is_empty() {
             return Err(MotionError { motions });
@@ -199,10 +219,11 @@ pub fn free_motions(
 }
 
 /// Σ_l c_l mode_l.
-fn combined(modes: &[Vec<f64>], c: impl Fn(usize) -> f64) -> Vec<f64> {
-    let mut sum = vec![0.0; modes[0].len()];
-    for (l, mode) in modes.iter().enumerate() {
+fn combined<'a>(modes: impl Iterator<Item = &'a Vec<f64>>, c: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut sum = Vec::new();
+    for (l, mode) in modes.enumerate() {
         let c = c(l);
+        sum.resize(mode.len(), 0.0);
         for (value, m) in sum.iter_mut().zip(mode) {
             *value += c * m;
         }

@@ -181,20 +181,13 @@ impl<'a> CellIntegrator<'a> {
         if branch && self.mesh.dim() == 3 {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
-        let tips = self.enrichment.singular_points();
+        let tips = self.enrichment.singular_points_near(map);
         // A pair of tips has none of its own at its middle, and beside another tip a fan around one is no rule.
-        let alone = |tip: &Vec<Point>| {
-            let near = |x: &&Point| polygon::border_distance(map, x) <= map.diagonal();
-            tip.len() == 1 && tips.iter().filter(near).count() == 1
-        };
-        let tip = self
-            .tip_in(cell)
-            .map(|tip| self.enrichment.tips[tip].tips());
-        let tip = tip.filter(alone);
+        let tip = self.tips_in(cell).first();
+        let tip = tip.map(|&(_, tip)| self.enrichment.tips[tip].tips());
+        let tip = tip.filter(|own| own.len() == 1 && tips.len() == 1);
         // A ramp squared raises the degree by four.
-        let nodes = self.mesh.cell(cell);
-        let mut ramps = (0..self.enrichment.tips.len()).map(|t| self.enrichment.ramp(t, nodes));
-        let order = match ramps.any(|inside| !matches!(inside, 0 | 0b1111 | u8::MAX)) {
+        let order = match self.enrichment.ramps_in(self.mesh.cell(cell), cell) {
             true => [9, 7],
             false => [7, 5],
         };
@@ -216,10 +209,12 @@ impl<'a> CellIntegrator<'a> {
         self.located(cell, points, tolerance)
     }
 
-    /// The tip or front in a cell.
-    fn tip_in(&self, cell: usize) -> Option<usize> {
-        let own = self.enrichment.tip_cells.iter().find(|&&(c, _)| c == cell);
-        own.map(|&(_, tip)| tip)
+    /// The tips and fronts in a cell, with its number.
+    fn tips_in(&self, cell: usize) -> &[(usize, usize)] {
+        let all = &self.enrichment.tip_cells;
+        let first = all.partition_point(|t| t.0 < cell);
+        let count = all[first..].partition_point(|t| t.0 == cell);
+        &all[first..first + count]
     }
 
     /// Signed distances of the corners of a cell to the plane of a crack [m], and its normal.
@@ -240,7 +235,7 @@ impl<'a> CellIntegrator<'a> {
             map: &self.mesh.map(cell),
             parts,
             fronts: &self.enrichment.tips,
-            chord: self.tip_in(cell).and_then(|tip| {
+            chord: self.tips_in(cell).first().and_then(|&(_, tip)| {
                 let index = self.enrichment.tips[tip].crack;
                 let crack = &self.cracks[index];
                 let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);

@@ -317,15 +317,20 @@ fn surplus(
     held: impl Fn(usize, usize) -> bool,
 ) -> BTreeSet<usize> {
     let mut found = BTreeSet::new();
+    let mut of_tips = vec![Vec::new(); enrichment.tips.len()];
+    for (f, function) in enrichment.functions.iter().enumerate() {
+        if let FunctionKind::Branch { tip, .. } = function.kind {
+            of_tips[tip as usize].push(f);
+        }
+    }
     for &(tip, node) in &enrichment.surplus {
-        let kind = |f: usize| enrichment.functions[f].kind;
-        let own = |f: &usize| matches!(kind(*f), FunctionKind::Branch { tip: t, .. } if t == tip);
-        let functions: Vec<usize> = (0..enrichment.functions.len()).filter(own).collect();
+        let functions = &of_tips[tip as usize];
         // A prescribed component breaks the relations of that component alone.
         let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
-        found.extend(functions.into_iter().filter(|&f| {
-            let last = matches!(kind(f), FunctionKind::Branch { order: 2..=3, .. });
-            !broken && last && enrichment.functions[f].node == node
+        found.extend(functions.iter().copied().filter(|&f| {
+            let function = enrichment.functions[f];
+            let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
+            !broken && last && function.node == node
         }));
     }
     found
