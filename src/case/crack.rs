@@ -101,10 +101,10 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
             CrackShape::Polyline(_) | CrackShape::Arc { .. } => Tip::Auto,
         });
     };
-    let tip = if value.any_table().is_ok() {
+    let tip = if value.is_table() {
         let table = value.table(&["branch_radius_m"])?;
         Tip::Radius(table.positive("branch_radius_m")?)
-    } else if value.string().is_ok() {
+    } else if value.text().is_some() {
         value.one_of(&[
             ("none", Tip::None),
             ("auto", Tip::Auto),

@@ -27,11 +27,11 @@ use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
 use crate::case::{Case, CaseError, Quadrature};
-use crate::model::boundary::{Prescribed, held_sides, prescribed, region_nodes};
+use crate::model::boundary::{Prescribed, Supports};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
-use crate::model::refusals::{cell_error, check_probes, check_supports, crack_error, motion_error};
+use crate::model::refusals::{cell_error, check_probes, crack_error, motion_error};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -121,9 +121,9 @@ impl Body {
         })?;
         mesh.origin = case.origin;
         let (cracks, doubled) = place_cracks(case, &mut mesh)?;
-        let beside = held_sides(case, &mesh, &cracks);
-        let enrichment =
-            Enrichment::new(&mesh, &cracks, &beside).map_err(|e| crack_error(case, &e))?;
+        let supports = Supports::new(case, &mesh)?;
+        let enrichment = Enrichment::new(&mesh, &cracks, &supports.beside(&cracks))
+            .map_err(|e| crack_error(case, &e))?;
         let lame = case.lame();
         let integrator = CellIntegrator {
             mesh: &mesh,
@@ -132,8 +132,7 @@ impl Body {
             quadrature: case.quadrature,
             lame,
         };
-        let fixed = prescribed(case, &integrator);
-        check_supports(case, &integrator)?;
+        let fixed = supports.prescribed(&integrator)?;
         check_probes(case, &mesh, &enrichment)?;
         let dim = mesh.dim();
         let unknowns = 0..enrichment.functions.len() * dim;
@@ -226,7 +225,7 @@ impl Body {
             }
             other => other?,
         };
-        let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
+        let loads = fixed_loads(case, &integrator, &supports.border, &points, needs.traction)?;
         let space = space_name(case, &cracks, lame.dilatation);
         let mut body = Body {
             origin: case.origin,
@@ -295,11 +294,6 @@ impl Body {
     /// A place as the case file has it [m].
     pub fn place(&self, x: &Point) -> Point {
         add_scaled(x, 1.0, &self.origin)
-    }
-
-    /// Nodes of a region of the case.
-    pub fn region_nodes(&self, region: &crate::case::Region) -> Vec<usize> {
-        region_nodes(&self.integrator(), region)
     }
 }
 
