@@ -244,9 +244,9 @@ impl<'a> Supports<'a> {
                         // No unknown holds one copy alone where the node's own is free. In a corner of the body both are
                         // held, as without crack.
                         (Some(s), None) if parted => {
-                            let by = held.by.get(&node).into_iter().flatten();
+                            let mut by = held.by.get(&node).into_iter().flatten();
                             let bits = |s: usize| self.border.bits(&self.spec(s).on);
-                            if by.into_iter().any(|&other| bits(other) & bits(s) != 0) {
+                            if by.any(|&other| bits(other) & bits(s) != 0) {
                                 return Err(lips_error(self.case, self.spec(s)));
                             }
                             let amount = self.amount(s, a, node);
