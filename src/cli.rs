@@ -1,6 +1,7 @@
 //! The command line: verbs, arguments, what is printed.
 
 mod arguments;
+mod check;
 mod conform;
 mod converge;
 mod error;
@@ -74,7 +75,7 @@ enum Verb {
     /// Describe a method or a case, or all `methods`
     Show(show::Arguments),
     /// Check case files without running them
-    Check(run::CheckArguments),
+    Check(check::Arguments),
 }
 
 /// The whole program, with the methods of a registry: reads the command line and says how it ended.
@@ -116,6 +117,6 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Conform(arguments) => conform::run(&arguments),
         Verb::List => show::run_list(),
         Verb::Show(arguments) => show::run(arguments),
-        Verb::Check(arguments) => run::run_check(arguments),
+        Verb::Check(arguments) => check::check(arguments),
     }
 }

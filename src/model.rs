@@ -1,8 +1,10 @@
 //! A case as a discrete body: unknowns, what acts on it, the quantities read from a solution and their errors.
 
 pub mod body;
+pub mod border;
 pub mod boundary;
 pub mod errors;
+pub mod extent;
 pub mod field_mesh;
 pub mod fixed_loads;
 pub mod loading;

@@ -7,46 +7,46 @@
 //! axis       = "x" | "y" | "z"            (z only in 3D)
 //! relation   = "<=" | ">=" | "<" | ">" | "=="
 //! ```
+//!
+//! A condition is a union of boxes. It cuts a convex part of the border bound by bound, so that boxes may overlap.
 
 use std::fmt;
 use std::ops::Range;
 
+use stickslip_xfem::geometry::Point;
+use stickslip_xfem::geometry::clip::{clip, snapped};
+
 /// Nesting of parentheses allowed; the parser is recursive and must not exhaust the stack.
 const MAX_DEPTH: usize = 32;
 
-/// Tolerance of every comparison, times max(1, |number|): node coordinates are computed and carry rounding errors.
-const TOLERANCE: f64 = 1e-9;
-
 /// A condition on a place, e.g. `z <= 1 or z >= 2`; `and` binds tighter than `or`.
 ///
-/// Comparisons allow for rounding: with δ = 1e-9 · max(1, |c|) [m], `x <= c` means x <= c + δ, `x < c` means x < c − δ,
-/// `x == c` means |x − c| <= δ, and likewise for the others. A node on x = c thus fulfils `x <= c` and never `x < c`.
+/// Comparisons allow for rounding by δ [m], a billionth of a cell: `x <= c` means x <= c + δ, `x < c` means x < c − δ, `x == c`
+/// means |x − c| <= δ, and likewise for the others. A node on x = c thus fulfils `x <= c` and never `x < c`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     text: String,
     rule: Rule,
 }
 
+/// Parts of a convex polygon, or of a segment, by their corners [m].
+pub type Parts = Vec<Vec<Point>>;
+
+/// Places in pairs of parts: what a condition holds of something, and the rest.
+const INSIDE: usize = 0;
+const OUTSIDE: usize = 1;
+
 #[derive(Debug, Clone, PartialEq)]
 enum Rule {
     Any(Vec<Rule>),
     All(Vec<Rule>),
-    Compare {
+    /// sign · (number − x_axis) >= 0, or > 0.
+    Bound {
         axis: usize,
-        relation: Relation,
+        sign: f64,
         number: f64,
-        /// δ [m].
-        tolerance: f64,
+        strict: bool,
     },
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Relation {
-    AtMost,
-    AtLeast,
-    Below,
-    Above,
-    Equal,
 }
 
 /// What is wrong with a condition; `at` is the byte range inside its text.
@@ -58,13 +58,33 @@ pub(super) struct ConditionError {
 }
 
 impl Condition {
-    /// Whether the place `x` [m] fulfils the condition; in 2D the third coordinate is not looked at.
-    pub fn holds(&self, x: &[f64; 3]) -> bool {
-        self.rule.holds(x)
+    /// Whether the place `x` [m] fulfils the condition within δ [m]; in 2D the third coordinate is not looked at.
+    pub fn holds(&self, x: &Point, delta: f64) -> bool {
+        self.rule.holds(x, delta)
+    }
+
+    /// The parts of a convex polygon, or of a segment, inside the condition and outside of it; corners within δ [m] of a bound
+    /// lie on it. What lies in several boxes is one part.
+    pub fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2] {
+        self.rule.split(polygon, delta)
+    }
+
+    /// Lowest and highest coordinate along an axis that the condition can hold for, infinite without bound [m].
+    pub fn range(&self, axis: usize) -> [f64; 2] {
+        self.rule.range(axis)
+    }
+
+    /// What fulfils any of the conditions.
+    pub(super) fn union(conditions: Vec<Condition>) -> Self {
+        let texts: Vec<&str> = conditions.iter().map(|c| c.text.as_str()).collect();
+        Condition {
+            text: texts.join(" or "),
+            rule: Rule::Any(conditions.into_iter().map(|c| c.rule).collect()),
+        }
     }
 
     /// The same on coordinates that are larger by `by`.
-    pub(super) fn moved(&self, by: &[f64; 3]) -> Self {
+    pub(super) fn moved(&self, by: &Point) -> Self {
         Condition {
             text: self.text.clone(),
             rule: self.rule.moved(by),
@@ -93,46 +113,111 @@ impl fmt::Display for Condition {
 }
 
 impl Rule {
-    fn holds(&self, x: &[f64; 3]) -> bool {
+    fn holds(&self, x: &Point, delta: f64) -> bool {
         match self {
-            Rule::Any(rules) => rules.iter().any(|r| r.holds(x)),
-            Rule::All(rules) => rules.iter().all(|r| r.holds(x)),
-            Rule::Compare {
+            Rule::Any(rules) => rules.iter().any(|r| r.holds(x, delta)),
+            Rule::All(rules) => rules.iter().all(|r| r.holds(x, delta)),
+            &Rule::Bound {
                 axis,
-                relation,
+                sign,
                 number,
-                tolerance: delta,
+                strict,
             } => {
-                let difference = x[*axis] - number;
-                match relation {
-                    Relation::AtMost => difference <= *delta,
-                    Relation::AtLeast => difference >= -delta,
-                    Relation::Below => difference < -delta,
-                    Relation::Above => difference > *delta,
-                    Relation::Equal => difference.abs() <= *delta,
+                let level = snapped(sign * (number - x[axis]), delta);
+                level > 0.0 || level == 0.0 && !strict
+            }
+        }
+    }
+
+    fn split(&self, part: Vec<Point>, delta: f64) -> [Parts; 2] {
+        match self {
+            Rule::Any(rules) => one_by_one(rules, part, delta, OUTSIDE),
+            Rule::All(rules) => one_by_one(rules, part, delta, INSIDE),
+            &Rule::Bound {
+                axis,
+                sign,
+                number,
+                strict,
+            } => {
+                let level = |x: &Point| snapped(sign * (number - x[axis]), delta);
+                let levels: Vec<f64> = part.iter().map(level).collect();
+                let beyond = |side: f64| levels.iter().any(|f| f * side > 0.0);
+                match [beyond(1.0), beyond(-1.0)] {
+                    [true, true] => [1.0, -1.0].map(|side| {
+                        let mut own = clip(&part, &levels, side);
+                        // A segment is cut once, not on the way there and back.
+                        own.truncate(if part.len() == 2 { 2 } else { usize::MAX });
+                        vec![own]
+                    }),
+                    [false, true] => [vec![], vec![part]],
+                    [false, false] if strict => [vec![], vec![part]],
+                    _ => [vec![part], vec![]],
                 }
             }
         }
     }
 
-    fn moved(&self, by: &[f64; 3]) -> Self {
+    fn range(&self, axis: usize) -> [f64; 2] {
+        let of = |rules: &[Rule], pick: fn(f64, f64) -> f64, end: usize, start: f64| {
+            let ends = rules.iter().map(|r| r.range(axis)[end]);
+            ends.fold(start, pick)
+        };
+        const ALL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+        match self {
+            Rule::Any(rules) => [
+                of(rules, f64::min, 0, ALL[1]),
+                of(rules, f64::max, 1, ALL[0]),
+            ],
+            Rule::All(rules) => [
+                of(rules, f64::max, 0, ALL[0]),
+                of(rules, f64::min, 1, ALL[1]),
+            ],
+            Rule::Bound {
+                axis: own,
+                sign,
+                number,
+                ..
+            } => match (*own == axis, *sign > 0.0) {
+                (true, true) => [ALL[0], *number],
+                (true, false) => [*number, ALL[1]],
+                (false, _) => ALL,
+            },
+        }
+    }
+
+    fn moved(&self, by: &Point) -> Self {
         let all = |rules: &[Rule]| rules.iter().map(|r| r.moved(by)).collect();
         match self {
             Rule::Any(rules) => Rule::Any(all(rules)),
             Rule::All(rules) => Rule::All(all(rules)),
-            &Rule::Compare {
+            &Rule::Bound {
                 axis,
-                relation,
+                sign,
                 number,
-                tolerance,
-            } => Rule::Compare {
+                strict,
+            } => Rule::Bound {
                 axis,
-                relation,
+                sign,
                 number: number + by[axis],
-                tolerance,
+                strict,
             },
         }
     }
+}
+
+/// Rule after rule on the parts still undecided: those inside all so far, or outside.
+fn one_by_one(rules: &[Rule], part: Vec<Point>, delta: f64, undecided: usize) -> [Parts; 2] {
+    let mut found = [vec![], vec![]];
+    let mut rest = vec![part];
+    for rule in rules {
+        for part in std::mem::take(&mut rest) {
+            let mut own = rule.split(part, delta);
+            rest.append(&mut own[undecided]);
+            found[1 - undecided].append(&mut own[1 - undecided]);
+        }
+    }
+    found[undecided] = rest;
+    found
 }
 
 struct Parser<'a> {
@@ -203,12 +288,13 @@ impl<'a> Parser<'a> {
         };
         self.at += name.len();
         let sign = self.peek();
-        let relation = match sign {
-            "<=" => Relation::AtMost,
-            ">=" => Relation::AtLeast,
-            "<" => Relation::Below,
-            ">" => Relation::Above,
-            "==" => Relation::Equal,
+        // `==` is both.
+        let (signs, strict): (&[f64], bool) = match sign {
+            "<=" => (&[1.0], false),
+            ">=" => (&[-1.0], false),
+            "<" => (&[1.0], true),
+            ">" => (&[-1.0], true),
+            "==" => (&[1.0, -1.0], false),
             _ => return Err(self.unexpected(sign, "<=, >=, <, > or ==")),
         };
         self.at += sign.len();
@@ -217,12 +303,13 @@ impl<'a> Parser<'a> {
             // Rust also reads `inf` and `nan`; those fail the test.
             Ok(number) if number.is_finite() => {
                 self.at += word.len();
-                Ok(Rule::Compare {
+                let bound = |&sign: &f64| Rule::Bound {
                     axis,
-                    relation,
+                    sign,
                     number,
-                    tolerance: TOLERANCE * number.abs().max(1.0),
-                })
+                    strict,
+                };
+                Ok(Rule::All(signs.iter().map(bound).collect()))
             }
             _ => Err(self.unexpected(word, "a finite number")),
         }
@@ -271,10 +358,12 @@ impl<'a> Parser<'a> {
 
 #[cfg(test)]
 mod tests {
+    use stickslip_xfem::geometry::polygon::space_area;
+
     use super::*;
 
     fn holds(text: &str, x: [f64; 3]) -> bool {
-        Condition::parse(text, 3).unwrap().holds(&x)
+        Condition::parse(text, 3).unwrap().holds(&x, 1e-9)
     }
 
     #[test]
@@ -295,9 +384,54 @@ mod tests {
         assert!(
             !holds("z <= 1", [0.0, 0.0, 1.0 + 2e-9]) && !holds("z == 1", [0.0, 0.0, 1.0 - 2e-9])
         );
-        assert!(
-            holds("x <= -1e6", [-1e6 + 1e-4, 0.0, 0.0])
-                && !holds("x <= -1e6", [-1e6 + 2e-3, 0.0, 0.0])
+    }
+
+    /// Boxes that overlap, touch and nest: inside and outside fill the square, and the inside is that of the grid of bounds.
+    #[test]
+    fn parts_of_a_polygon_fill_it_and_overlaps_count_once() {
+        let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        for (text, area) in [
+            ("x <= 0.3", 0.3),
+            ("x <= 0.3 or y >= 0.4", 0.3 + 0.6 - 0.18),
+            (
+                "x <= 0.5 and y <= 0.5 or x >= 0.2 and y <= 0.7 and x <= 0.8",
+                0.25 + 0.42 - 0.15,
+            ),
+            (
+                "(x < 0.5 or x > 0.7) and (y < 0.1 or y >= 0.2) and x >= 0.4",
+                0.4 * 0.9,
+            ),
+            ("x == 0.5", 0.0),
+            ("x >= -3 and x <= 4", 1.0),
+        ] {
+            let condition = Condition::parse(text, 2).unwrap();
+            let parts = condition.split(square.clone(), 1e-9);
+            let sums = parts.map(|parts| parts.iter().map(|p| space_area(p)).sum::<f64>());
+            assert!((sums[0] - area).abs() < 1e-15, "{text}: {sums:?}");
+            assert!((sums[0] + sums[1] - 1.0).abs() < 1e-15, "{text}: {sums:?}");
+        }
+        let segment = |text| {
+            let condition = Condition::parse(text, 2).unwrap();
+            condition.split(vec![[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]], 1e-9)
+        };
+        let ends = |a: f64, b: f64| vec![[a, 1.0, 0.0], [b, 1.0, 0.0]];
+        let [inside, outside] = segment("x >= 0.25 and x <= 0.75");
+        assert_eq!(inside, [ends(0.25, 0.75)]);
+        assert_eq!(outside, [ends(0.0, 0.25), ends(0.75, 1.0)]);
+        // On the bound itself, and within rounding of its ends.
+        assert_eq!(segment("y == 1")[0], [ends(0.0, 1.0)]);
+        assert!(segment("y < 1")[0].is_empty() && segment("x <= 1e-10")[0].is_empty());
+        assert_eq!(segment("x <= 0.9999999999")[0], [ends(0.0, 1.0)]);
+    }
+
+    #[test]
+    fn ranges_hold_what_the_condition_does() {
+        let range = |text| Condition::parse(text, 2).unwrap().range(0);
+        assert_eq!(range("x <= 1 and x > -2 or x == 3"), [-2.0, 3.0]);
+        assert_eq!(range("y <= 1 and x > -2"), [-2.0, f64::INFINITY]);
+        assert_eq!(
+            range("y <= 1 or x > -2"),
+            [f64::NEG_INFINITY, f64::INFINITY]
         );
     }
 

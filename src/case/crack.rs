@@ -106,10 +106,10 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
     let Some(value) = value else {
         return Ok(Tip::Auto);
     };
-    if value.any_table().is_ok() {
+    if value.is_table() {
         let table = value.table(&["branch_radius_m"])?;
         Ok(Tip::Radius(table.positive("branch_radius_m")?))
-    } else if value.string().is_ok() {
+    } else if value.text().is_some() {
         value.one_of(&[
             ("none", Tip::None),
             ("auto", Tip::Auto),
@@ -124,7 +124,7 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
 /// `tip` of a crack that can have no functions at one.
 fn no_tip(value: Option<Value<'_>>, why: &str) -> Result<Tip, CaseError> {
     match value {
-        Some(value) if value.string().ok() != Some("none") => Err(value.refuse("none", why)),
+        Some(value) if value.text() != Some("none") => Err(value.refuse("none", why)),
         _ => Ok(Tip::None),
     }
 }

@@ -10,7 +10,7 @@
 use stickslip_xfem::geometry::crack_shape::CrackShape;
 use stickslip_xfem::geometry::{Point, add_scaled};
 
-use super::load::{LoadKind, Region};
+use super::load::{Amount, LoadKind, Region};
 use super::parse::Case;
 
 /// o of a body with the given grid lines.
@@ -64,6 +64,11 @@ impl Case {
         };
         for support in &mut self.supports {
             moved(&mut support.on);
+            for amount in support.displacement.iter_mut().flatten() {
+                if let Amount::Number(polynomial) = amount {
+                    *polynomial = polynomial.moved(&origin);
+                }
+            }
         }
         for load in &mut self.loads {
             match &mut load.kind {

@@ -1,9 +1,11 @@
 //! Supports and loads of a case file: where they act, what they prescribe, how they evolve.
 
+use stickslip_xfem::geometry::Point;
 use stickslip_xfem::mesh::box_mesh;
 
-use super::condition::Condition;
+use super::condition::{Condition, Parts};
 use super::error::{CaseError, Span};
+use super::polynomial::Polynomial;
 use super::reader::{Table, Value};
 
 /// The part of the boundary a support or load acts on.
@@ -14,8 +16,24 @@ pub struct Region {
     /// Names of box sides (`left right bottom top`; 3D `left right` = x, `front back` = y, `bottom top` = z: minimum,
     /// maximum). One name: that side. Two names: the edge (2D: the corner) both share. Three: the corner in 3D.
     pub sides: Vec<String>,
-    /// Keeps only the nodes whose coordinates fulfil the condition.
+    /// Keeps only the part of the sides that fulfils the condition.
     pub condition: Option<Condition>,
+}
+
+impl Region {
+    /// Whether the condition holds at a place of the sides, within δ [m].
+    pub fn holds(&self, x: &Point, delta: f64) -> bool {
+        let condition = self.condition.as_ref();
+        condition.is_none_or(|c| c.holds(x, delta))
+    }
+
+    /// What the condition holds of a convex polygon or segment on the sides, and the rest; see [`Condition::split`].
+    pub fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2] {
+        match &self.condition {
+            Some(condition) => condition.split(polygon, delta),
+            None => [vec![polygon], vec![]],
+        }
+    }
 }
 
 /// How a support or load evolves over time: value = factor(t) × stated value.
@@ -57,6 +75,8 @@ pub struct SupportSpec {
     pub on: Region,
     /// Per component: prescribed value or free; `dim` entries.
     pub displacement: Vec<Option<Amount>>,
+    /// The lip that nodes on a crack belong to, where the region does not tell.
+    pub lip: Option<CrackSide>,
     /// Evolution of the stated numbers; values of the closed form follow the history of `[exact]`.
     pub history: History,
 }
@@ -64,8 +84,8 @@ pub struct SupportSpec {
 /// A prescribed component of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amount {
-    /// The same everywhere, times the history factor [m].
-    Number(f64),
+    /// At the place of the node, times the history factor [m].
+    Number(Polynomial),
     /// The closed form at the node.
     Exact,
 }
@@ -85,11 +105,11 @@ pub struct LoadSpec {
 #[derive(Debug, Clone)]
 pub enum LoadKind {
     /// Force per area on a side [Pa].
-    Traction(Region, Vec<Linear>),
+    Traction(Region, Vec<Polynomial>),
     /// Force per area σ n of the closed form on a side.
     ExactTraction(Region),
     /// Pressure on a side, positive towards the body [Pa].
-    Pressure(Region, Linear),
+    Pressure(Region, Polynomial),
     /// Force per length on the edge of two sides, solid only [N/m].
     Line(Region, Vec<f64>),
     /// Force per volume, in the whole body or on one side of its only crack [N/m³].
@@ -100,32 +120,7 @@ pub enum LoadKind {
     InitialStress([[f64; 3]; 3]),
 }
 
-/// A number that varies linearly in space: at_origin + gradient · x, x the place in the undeformed body, in its frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Linear {
-    /// Value at x = 0 [Pa].
-    pub at_origin: f64,
-    /// Slope along the axes [Pa/m]; third entry 0 in 2D.
-    pub gradient: [f64; 3],
-}
-
-impl Linear {
-    /// Value at a place.
-    pub fn at(&self, x: &[f64; 3]) -> f64 {
-        let slope: f64 = self.gradient.iter().zip(x).map(|(g, x)| g * x).sum();
-        self.at_origin + slope
-    }
-
-    /// The same over coordinates with their zero at `origin`.
-    pub(super) fn moved(&self, origin: &[f64; 3]) -> Self {
-        Linear {
-            at_origin: self.at(origin),
-            ..*self
-        }
-    }
-}
-
-/// One side of the only crack.
+/// One side of a crack.
 #[derive(Debug, Clone)]
 pub struct CrackSide {
     /// Where it stands in the file.
@@ -163,7 +158,7 @@ fn region(
     counts: std::ops::RangeInclusive<usize>,
 ) -> Result<Region, CaseError> {
     let on = table.required("on")?;
-    let names = if on.string().is_ok() {
+    let names = if on.text().is_some() {
         vec![on]
     } else {
         on.list()?
@@ -198,9 +193,25 @@ fn region(
     })
 }
 
+/// `where`: a condition, or an array of conditions of which one must hold.
 fn condition(value: Value<'_>, dim: usize) -> Result<Condition, CaseError> {
-    let text = value.string()?;
-    Condition::parse(text, dim).map_err(|e| value.refuse_part(text, e.at, e.allowed, e.message))
+    let one = |value: &Value<'_>| {
+        let text = value.string()?;
+        let read = Condition::parse(text, dim);
+        read.map_err(|e| value.refuse_part(text, e.at, e.allowed, e.message))
+    };
+    if value.text().is_some() {
+        return one(&value);
+    }
+    let allowed = "a condition, or an array of conditions";
+    let list = value
+        .list()
+        .map_err(|e| value.refuse(allowed, e.message()))?;
+    if list.is_empty() {
+        return Err(value.refuse("at least one condition", "nothing is kept"));
+    }
+    let conditions = list.iter().map(one).collect::<Result<_, _>>()?;
+    Ok(Condition::union(conditions))
 }
 
 /// `history` of a support, a load or the closed form.
@@ -208,7 +219,7 @@ pub(super) fn history(table: &Table<'_>) -> Result<History, CaseError> {
     let Some(value) = table.get("history") else {
         return Ok(History::Ramp);
     };
-    if value.string().is_ok() {
+    if value.text().is_some() {
         return match value.one_of(&[("ramp", true), ("constant", false)])? {
             true => Ok(History::Ramp),
             false => Ok(History::Constant),
@@ -236,9 +247,9 @@ pub(super) fn history(table: &Table<'_>) -> Result<History, CaseError> {
 
 /// Whether a value asks for the closed form, which the case must then name.
 fn is_exact(value: &Value<'_>, scene: &Scene) -> Result<bool, CaseError> {
-    match value.string() {
-        Ok("exact") if scene.exact => Ok(true),
-        Ok("exact") => Err(value.refuse(
+    match value.text() {
+        Some("exact") if scene.exact => Ok(true),
+        Some("exact") => Err(value.refuse(
             "numbers, or \"exact\" in a case with an [exact] table",
             "no closed form is named",
         )),
@@ -260,18 +271,16 @@ fn no_history(table: &Table<'_>) -> Result<History, CaseError> {
 /// `[[support]]`.
 pub(super) fn support(value: Value<'_>, scene: &Scene) -> Result<SupportSpec, CaseError> {
     let dim = scene.dim;
-    let table = value.table(&["on", "where", "displacement_m", "history"])?;
+    let table = value.table(&["on", "where", "displacement_m", "crack_side", "history"])?;
     let on = region(&table, dim, 1..=dim)?;
     let given = table.required("displacement_m")?;
-    let component = |v: &Value<'_>| match v.string() {
-        Ok("free") => Ok(None),
-        Ok(_) if is_exact(v, scene)? => Ok(Some(Amount::Exact)),
-        Ok(_) => Err(v.refuse("a number [m], \"free\" or \"exact\"", "unknown name")),
-        Err(_) => v
-            .number_if("a finite number [m], \"free\" or \"exact\"", |_| true)
-            .map(|number| Some(Amount::Number(number))),
+    let others = "a finite number [m], \"free\", \"exact\"";
+    let component = |v: &Value<'_>| match v.text() {
+        Some("free") => Ok(None),
+        _ if is_exact(v, scene)? => Ok(Some(Amount::Exact)),
+        _ => polynomial(v, dim, others).map(|p| Some(Amount::Number(p))),
     };
-    let displacement = if given.string().is_ok() {
+    let displacement = if given.text().is_some() {
         if !is_exact(&given, scene)? {
             return Err(given.refuse(format_args!("{dim} entries or \"exact\""), "unknown name"));
         }
@@ -287,10 +296,12 @@ pub(super) fn support(value: Value<'_>, scene: &Scene) -> Result<SupportSpec, Ca
         return Err(given.refuse("at least one number", "nothing is prescribed"));
     }
     let all_exact = (displacement.iter().flatten()).all(|amount| *amount == Amount::Exact);
+    let lip = table.optional("crack_side", |v| crack_side(&v, scene, usize::MAX))?;
     Ok(SupportSpec {
         span: table.span(),
         on,
         displacement,
+        lip,
         history: if all_exact {
             no_history(&table)?
         } else {
@@ -336,13 +347,13 @@ pub(super) fn load(value: Value<'_>, scene: &Scene) -> Result<LoadSpec, CaseErro
         }
         "traction_pa" => {
             let entries = v.list_of(dim)?;
-            let vector = entries.iter().map(|v| linear(v, dim));
+            let vector = entries.iter().map(|v| density(v, dim));
             LoadKind::Traction(
                 region(&table, dim, 1..=1)?,
                 vector.collect::<Result<_, _>>()?,
             )
         }
-        "pressure_pa" => LoadKind::Pressure(region(&table, dim, 1..=1)?, linear(&v, dim)?),
+        "pressure_pa" => LoadKind::Pressure(region(&table, dim, 1..=1)?, density(&v, dim)?),
         "line_n_per_m" if dim == 2 => {
             return Err(v.refuse(
                 "traction_pa or pressure_pa in 2D",
@@ -391,20 +402,24 @@ fn inside(
             )),
         };
     }
-    let side = side.map(|side| {
-        let number = side.integer(1..=2)?;
-        if scene.cracks != 1 {
-            return Err(side.refuse(
-                "a case with exactly one [[crack]]",
-                format_args!("{} cracks", scene.cracks),
-            ));
-        }
-        Ok(CrackSide {
-            span: side.span(),
-            side: if number == 1 { 1.0 } else { -1.0 },
-        })
-    });
+    let side = side.map(|side| crack_side(&side, scene, 1));
     Ok(LoadKind::Body(v.numbers(scene.dim)?, side.transpose()?))
+}
+
+/// `crack_side`; in a case with more than `most` cracks, or none, it would tell nothing.
+fn crack_side(value: &Value<'_>, scene: &Scene, most: usize) -> Result<CrackSide, CaseError> {
+    let number = value.integer(1..=2)?;
+    if !(1..=most).contains(&scene.cracks) {
+        let allowed = match most {
+            1 => "a case with exactly one [[crack]]",
+            _ => "a case with a [[crack]]",
+        };
+        return Err(value.refuse(allowed, format_args!("{} cracks", scene.cracks)));
+    }
+    Ok(CrackSide {
+        span: value.span(),
+        side: if number == 1 { 1.0 } else { -1.0 },
+    })
 }
 
 /// `initial_stress_pa`: xx, yy, xy; in a solid xx, yy, zz, yz, xz, xy.
@@ -422,18 +437,27 @@ fn initial_stress(value: &Value<'_>, dim: usize) -> Result<LoadKind, CaseError> 
     Ok(LoadKind::InitialStress(stress))
 }
 
-/// A number, or a table that lets it vary linearly in space.
-fn linear(value: &Value<'_>, dim: usize) -> Result<Linear, CaseError> {
-    let allowed = "a finite number [Pa] or { at_origin_pa, gradient_pa_per_m }";
-    if value.any_table().is_err() {
-        return Ok(Linear {
-            at_origin: value.number_if(allowed, |_| true)?,
-            gradient: [0.0; 3],
-        });
+/// A density [Pa]: a polynomial, or a table with the coefficients of a linear one.
+fn density(value: &Value<'_>, dim: usize) -> Result<Polynomial, CaseError> {
+    if !value.is_table() {
+        let allowed = "a finite number [Pa], { at_origin_pa, gradient_pa_per_m }";
+        return polynomial(value, dim, allowed);
     }
     let table = value.table(&["at_origin_pa", "gradient_pa_per_m"])?;
-    Ok(Linear {
-        gradient: table.required("gradient_pa_per_m")?.in_space(dim)?,
-        at_origin: table.required("at_origin_pa")?.number()?,
+    Ok(Polynomial {
+        linear: table.required("gradient_pa_per_m")?.in_space(dim)?,
+        ..table.required("at_origin_pa")?.number()?.into()
     })
+}
+
+/// A number or the text of a polynomial; `others`: what else would be allowed.
+fn polynomial(value: &Value<'_>, dim: usize, others: &str) -> Result<Polynomial, CaseError> {
+    let allowed = format!("{others} or a polynomial such as \"2 - 3 x + 4 x*y\"");
+    match value.text() {
+        Some(text) => Polynomial::parse(text, dim).map_err(|e| {
+            let allowed = format!("{allowed}; here {}", e.allowed);
+            value.refuse_part(text, e.at, allowed, e.message)
+        }),
+        None => value.number_if(&allowed, |_| true).map(Polynomial::from),
+    }
 }

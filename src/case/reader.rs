@@ -18,6 +18,16 @@ const SMALLEST: f64 = 1e-25;
 const LARGEST: f64 = 1e25;
 const MAGNITUDES: &str = "0, or of magnitude 1e-25 to 1e25";
 
+/// Whether products of such numbers stay finite and do not vanish; what is written as another number than 0 must not have
+/// become one.
+pub(super) fn computable(number: f64, written: &str) -> bool {
+    if number != 0.0 {
+        return (SMALLEST..=LARGEST).contains(&number.abs());
+    }
+    let mantissa = written.split(['e', 'E']).next().unwrap_or(written);
+    !mantissa.contains(|c| ('1'..='9').contains(&c))
+}
+
 /// A value of the document with its place.
 #[derive(Clone, Copy)]
 pub(crate) struct Value<'a> {
@@ -112,18 +122,11 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Whether products of such numbers stay finite and do not vanish; what is written as another number than 0 must not
-    /// have become one.
     fn is_computable(&self, number: f64) -> bool {
-        if number != 0.0 {
-            return (SMALLEST..=LARGEST).contains(&number.abs());
+        match self.item.get_ref() {
+            DeValue::Float(float) => computable(number, float.as_str()),
+            _ => computable(number, "0"),
         }
-        let written = match self.item.get_ref() {
-            DeValue::Float(float) => float.as_str(),
-            _ => "0",
-        };
-        let mantissa = written.split(['e', 'E']).next().unwrap_or(written);
-        !mantissa.contains(|c| ('1'..='9').contains(&c))
     }
 
     /// An integer in a range.
@@ -144,6 +147,17 @@ impl<'a> Value<'a> {
             .get_ref()
             .as_str()
             .ok_or_else(|| self.wrong_type("a string"))
+    }
+
+    /// The text of a string, and nothing for other values: what is tried goes without errors, whose place is searched for in the
+    /// whole document.
+    pub(crate) fn text(&self) -> Option<&'a str> {
+        self.item.get_ref().as_str()
+    }
+
+    /// Whether it is a table.
+    pub(crate) fn is_table(&self) -> bool {
+        self.item.get_ref().is_table()
     }
 
     /// A text that names something: it ends up on terminals, in tables and in figures.

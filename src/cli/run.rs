@@ -1,4 +1,4 @@
-//! `stickslip run` and `stickslip check`: cases, run or only read.
+//! `stickslip run`: cases.
 
 use std::path::PathBuf;
 
@@ -8,16 +8,12 @@ use super::arguments::{ProgramLimit, find_case, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::say;
 use super::progress::Bar;
-use crate::case;
-use crate::model::body::{Body, Needs};
-use crate::model::loading::Loading;
-use crate::model::memory::predicted_gb;
 use crate::report::table::readable;
 use crate::report::{page, prepare_output, standard};
 use crate::run::choice::choices;
 use crate::run::expect;
 use crate::run::record::Results;
-use crate::run::run_case::{Fields, RunError, Settings, friction_values, run_case};
+use crate::run::run_case::{Fields, Settings, run_case};
 
 /// Arguments of `stickslip run`.
 #[derive(Debug, clap::Args)]
@@ -42,14 +38,6 @@ pub struct Arguments {
     jobs: u16,
     #[command(flatten)]
     limit: ProgramLimit,
-}
-
-/// Arguments of `stickslip check`.
-#[derive(Debug, clap::Args)]
-pub struct CheckArguments {
-    /// Case files
-    #[arg(required = true)]
-    files: Vec<PathBuf>,
 }
 
 /// Values of `--fields`.
@@ -117,47 +105,4 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         out.display()
     ));
     Ok(results.as_expected())
-}
-
-/// Reads and discretises cases.
-pub fn run_check(CheckArguments { files }: CheckArguments) -> Result<bool, CliError> {
-    for file in files {
-        let case = case::read(&file)?;
-        choices(&case, &[])?;
-        expect::check(&case)?;
-        for &refine in &case.sweep.refine {
-            let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
-            for per_crack in friction_values(&case) {
-                let friction = per_crack.first().copied().unwrap_or(0.0);
-                Loading::new(&body, &case, friction).map_err(RunError::from)?;
-            }
-            say(format_args!(
-                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}, at least {:.2} GB{}",
-                file.display(),
-                body.label,
-                body.mesh.cell_count(),
-                body.elastic.unknowns(),
-                body.points.len(),
-                body.space,
-                body.checks.uniform,
-                predicted_gb(case.model.dim(), body.mesh.cell_count() as f64),
-                radii(&body.enrichment.radii)
-            ));
-        }
-    }
-    Ok(true)
-}
-
-/// Radii of the branch functions, from the least to the largest; empty without any.
-fn radii(all: &[f64]) -> String {
-    let ramps = || all.iter().copied().filter(|r| *r > 0.0);
-    let [least, largest] = [
-        ramps().fold(f64::INFINITY, f64::min),
-        ramps().fold(0.0, f64::max),
-    ];
-    match ramps().next() {
-        None => String::new(),
-        Some(_) if least == largest => format!(", branch functions within {least:.3} m"),
-        Some(_) => format!(", branch functions within {least:.3} to {largest:.3} m"),
-    }
 }

@@ -12,7 +12,7 @@ use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface,
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::contact::traction::{integrated_rows, traction_rows};
 use stickslip_xfem::contact::{self, conforming, rank};
-use stickslip_xfem::cut::arms::arms;
+use stickslip_xfem::cut::arms::{Joined, arms};
 use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::cut::off_facets::off_facets;
 use stickslip_xfem::enrichment::pieces::free_motions;
@@ -28,12 +28,12 @@ use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
 use crate::case::{Case, CaseError, ContactSpace, CrackSpec, Quadrature};
-use crate::model::boundary::{Prescribed, held_sides, prescribed, region_nodes};
+use crate::model::boundary::{Prescribed, Supports};
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::memory;
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
-use crate::model::refusals::{cell_error, check_probes, check_supports, crack_error, motion_error};
+use crate::model::refusals::{cell_error, check_probes, crack_error, motion_error};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -79,6 +79,8 @@ pub struct Body {
     pub jump_rows: Vec<Vec<(usize, f64)>>,
     /// Traction operator over all unknowns, in the same form; empty unless a run [`Needs`] it.
     pub traction_rows: Vec<Vec<(usize, f64)>>,
+    /// Ends of cracks that were joined with what they nearly touch.
+    pub joined: Vec<Joined>,
     /// Loads whose nodal forces only change in size.
     pub loads: Vec<FixedLoad>,
     /// What the tests on the mesh found.
@@ -123,10 +125,14 @@ impl Body {
             case.error(case.mesh.motion_span(fold.motion), &label, allowed, &fold)
         })?;
         mesh.origin = case.origin;
-        let (cracks, doubled) = place_cracks(case, &mut mesh)?;
-        let beside = held_sides(case, &mesh, &cracks);
-        let enrichment =
-            Enrichment::new(&mesh, &cracks, &beside).map_err(|e| crack_error(case, &e))?;
+        let Placed {
+            cracks,
+            joined,
+            doubled,
+        } = place_cracks(case, &mut mesh)?;
+        let supports = Supports::new(case, &mesh)?;
+        let enrichment = Enrichment::new(&mesh, &cracks, &supports.beside(&cracks))
+            .map_err(|e| crack_error(case, &e))?;
         let lame = case.lame();
         let integrator = CellIntegrator {
             mesh: &mesh,
@@ -135,8 +141,7 @@ impl Body {
             quadrature: case.quadrature,
             lame,
         };
-        let fixed = prescribed(case, &integrator);
-        check_supports(case, &integrator)?;
+        let fixed = supports.prescribed(&integrator)?;
         check_probes(case, &mesh, &enrichment)?;
         let dim = mesh.dim();
         let unknowns = 0..enrichment.functions.len() * dim;
@@ -225,7 +230,7 @@ impl Body {
             }
             other => other?,
         };
-        let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
+        let loads = fixed_loads(case, &integrator, &supports.border, &points, needs.traction)?;
         let space = space_name(case, &cracks);
         let mut body = Body {
             origin: case.origin,
@@ -249,6 +254,7 @@ impl Body {
                 traction_s,
             },
             jump_rows: jump,
+            joined,
             traction_rows: traction,
             loads,
             mesh,
@@ -294,11 +300,6 @@ impl Body {
     /// A place as the case file has it [m].
     pub fn place(&self, x: &Point) -> Point {
         add_scaled(x, 1.0, &self.origin)
-    }
-
-    /// Nodes of a region of the case.
-    pub fn region_nodes(&self, region: &crate::case::Region) -> Vec<usize> {
-        region_nodes(&self.integrator(), region)
     }
 }
 
@@ -409,11 +410,16 @@ fn space_name(case: &Case, cracks: &[Crack]) -> String {
     name
 }
 
+/// Cracks in a mesh.
+#[derive(Default)]
+struct Placed {
+    cracks: Vec<Crack>,
+    joined: Vec<Joined>,
+    doubled: Option<ContactSurface>,
+}
+
 /// The arms of the cracks, and the surface of one that splits the mesh along its facets, if that was asked for.
-fn place_cracks(
-    case: &Case,
-    mesh: &mut Mesh,
-) -> Result<(Vec<Crack>, Option<ContactSurface>), CaseError> {
+fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<Placed, CaseError> {
     let refused = |e: EnrichmentError| crack_error(case, &e);
     let lengths = mesh.lengths();
     let pairs = |spec: &&CrackSpec| spec.contact == ContactSpace::NodePairs;
@@ -425,12 +431,19 @@ fn place_cracks(
         }
         let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &lengths);
         let surface = conforming::split(mesh, &crack).map_err(refused)?;
-        return Ok((Vec::new(), Some(surface)));
+        return Ok(Placed {
+            doubled: Some(surface),
+            ..Placed::default()
+        });
     }
     let cracks: Vec<_> = case.cracks.iter().map(|c| (&c.geometry, c.tip)).collect();
     let cracks = off_facets(mesh, &lengths, &cracks).map_err(refused)?;
-    let (cracks, _joined) = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
-    Ok((cracks, None))
+    let (cracks, joined) = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
+    Ok(Placed {
+        cracks,
+        joined,
+        doubled: None,
+    })
 }
 
 /// Numbers those that are kept, in their order, and counts them.

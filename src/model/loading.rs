@@ -19,8 +19,9 @@ use stickslip_xfem::enrichment::basis::{FunctionKind, STEP};
 use stickslip_xfem::exact::{Field, Setting};
 use stickslip_xfem::geometry::{add_scaled, sub};
 
-use crate::case::{Amount, Case, CaseError, ExactSpec, History, LoadKind};
+use crate::case::{Case, CaseError, ExactSpec, History, LoadKind};
 use crate::model::body::{Body, BodyError};
+use crate::model::border::Border;
 use crate::model::fixed_loads::FixedLoad;
 use crate::model::nodal_forces::{add_exact_forces, no_force};
 use crate::model::refusals::load_error;
@@ -119,8 +120,9 @@ impl<'a> Loading<'a> {
             .map(|support| self.factor(&support.history, increment))
             .collect();
         for (&unknown, fixed) in &self.body.prescribed {
-            if let Amount::Number(amount) = fixed.amount {
-                u[unknown] = amount * factors[fixed.support];
+            if let Some(amount) = fixed.amount {
+                let less = fixed.less.map_or(0.0, |(s, amount)| amount * factors[s]);
+                u[unknown] = amount * factors[fixed.support] - less;
             }
         }
         if let Some(step) = self.exact.get(increment) {
@@ -219,6 +221,7 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
     let Some(sides) = Sides::new(case, &integrator) else {
         return Ok(Vec::new());
     };
+    let border = Border::new(&body.mesh);
     let mut steps = Vec::new();
     for increment in 0..factors.len() {
         let field = solution.at(&factors[..=increment]).map_err(|message| {
@@ -231,7 +234,8 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
         for load in &case.loads {
             if matches!(load.kind, LoadKind::ExactTraction(_) | LoadKind::ExactBody) {
                 force.resize(body.numbers.len(), 0.0);
-                add_exact_forces(&integrator, &sides, &load.kind, field.as_ref(), &mut force)
+                let field = field.as_ref();
+                add_exact_forces(&integrator, &border, &sides, &load.kind, field, &mut force)
                     .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
             }
         }
@@ -249,7 +253,7 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
 fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usize, f64)> {
     let dim = body.mesh.dim();
     let mut unknowns: Vec<(usize, usize)> = (body.prescribed.iter())
-        .filter(|(_, fixed)| fixed.amount == Amount::Exact)
+        .filter(|(_, fixed)| fixed.amount.is_none())
         .map(|(&i, _)| (body.enrichment.functions[i / dim].node as usize, i))
         .collect();
     unknowns.sort_unstable();

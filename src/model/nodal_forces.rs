@@ -4,7 +4,8 @@
 //!   f(φ e_a) = ∫_side t_a φ dA + ∫_edge l_a φ ds + ∫_body b_a φ dV − ∫_body σ₀_ab ∂_b φ dV
 //! ```
 //!
-//! φ runs over all functions of the body, enriched ones too; split facets and cells are integrated side by side.
+//! φ runs over all functions of the body, enriched ones too; split facets and cells are integrated side by side, and of facets
+//! and edges what lies in the region of the load.
 
 use stickslip_xfem::enrichment::basis::Region as CellRegion;
 use stickslip_xfem::enrichment::cell_facets::{Piece, pieces};
@@ -15,11 +16,11 @@ use stickslip_xfem::quadrature::{WeightedPoint, gauss_map, segment, triangle, tr
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 use stickslip_xfem::stiffness::consistent::outward;
 
-use crate::case::{LoadKind, Region};
-use crate::model::boundary::region_nodes;
+use crate::case::{LoadKind, Parts, Region};
+use crate::model::border::{Border, BorderPart};
 use crate::model::sides::Sides;
 
-/// Gauss points per segment where loads act: exact for linear shape functions times linear densities, for closed forms
+/// Gauss points per segment where loads act: exact for linear shape functions times quadratic densities, for closed forms
 /// (smooth on the border of the body), and for facets that carry branch functions, an error below 1e-6.
 const SEGMENT_POINTS: usize = 3;
 const EXACT_POINTS: usize = 8;
@@ -45,15 +46,21 @@ pub enum LoadError {
     Cell(#[from] CellError),
 }
 
-/// Nodal forces of a load at factor 1, over all unknowns [N, in 2D N/m]; `None` if they come from the closed form.
+/// Adds the nodal forces of a load at factor 1, over all unknowns [N, in 2D N/m]; nothing of those that the closed form gives.
 ///
 /// `sides` is needed by loads on one side of a crack only.
-pub fn fixed_forces(
+pub fn add_fixed_forces(
     integrator: &CellIntegrator<'_>,
+    border: &Border<'_>,
     sides: Option<&Sides>,
     kind: &LoadKind,
-) -> Result<Option<Vec<f64>>, LoadError> {
-    let mut force = no_force(integrator);
+    force: &mut [f64],
+) -> Result<(), LoadError> {
+    let on = |region| Loaded {
+        integrator,
+        border,
+        region,
+    };
     match kind {
         LoadKind::Body(density, side) => {
             let density = [density[0], density[1], third(density)];
@@ -64,35 +71,33 @@ pub fn fixed_forces(
                 }
                 _ => density,
             };
-            body_force(integrator, Rule::Fixed, &on_side, &mut force)?;
+            body_force(integrator, Rule::Fixed, &on_side, force)
         }
         LoadKind::Traction(region, traction) => {
             let at = |x: &Point| {
                 let mut t = [0.0; 3];
-                for (t, linear) in t.iter_mut().zip(traction) {
-                    *t = linear.at(x);
+                for (t, polynomial) in t.iter_mut().zip(traction) {
+                    *t = polynomial.at(x);
                 }
                 t
             };
-            facet_force(integrator, region, Rule::Fixed, &mut force, |_, x, _, _| {
-                at(x)
-            })?;
+            on(region).facet_force(Rule::Fixed, force, |_, x, _, _| at(x))
         }
         LoadKind::Pressure(region, pressure) => {
-            facet_force(integrator, region, Rule::Fixed, &mut force, |_, x, _, n| {
+            on(region).facet_force(Rule::Fixed, force, |_, x, _, n| {
                 n.map(|v| -pressure.at(x) * v)
-            })?;
+            })
         }
-        LoadKind::Line(region, line) => line_force(integrator, region, line, &mut force)?,
-        LoadKind::InitialStress(stress) => initial_stress(integrator, stress, &mut force)?,
-        LoadKind::ExactTraction(_) | LoadKind::ExactBody => return Ok(None),
+        LoadKind::Line(region, line) => on(region).line_force(line, force),
+        LoadKind::InitialStress(stress) => initial_stress(integrator, stress, force),
+        LoadKind::ExactTraction(_) | LoadKind::ExactBody => Ok(()),
     }
-    Ok(Some(force))
 }
 
 /// Adds the nodal forces that a load takes from the closed form, over all unknowns [N, in 2D N/m].
 pub fn add_exact_forces(
     integrator: &CellIntegrator<'_>,
+    border: &Border<'_>,
     sides: &Sides,
     kind: &LoadKind,
     field: &dyn Field,
@@ -100,16 +105,17 @@ pub fn add_exact_forces(
 ) -> Result<(), LoadError> {
     let side = |cell, x: &Point, split| sides.of_point(integrator, cell, x, split);
     match kind {
-        LoadKind::ExactTraction(region) => facet_force(
-            integrator,
-            region,
-            Rule::Exact,
-            force,
-            |cell, x, split, n| {
+        LoadKind::ExactTraction(region) => {
+            let loaded = Loaded {
+                integrator,
+                border,
+                region,
+            };
+            loaded.facet_force(Rule::Exact, force, |cell, x, split, n| {
                 let stress = field.stress(x, side(cell, x, split));
                 stress.map(|row| dot(&row, n))
-            },
-        ),
+            })
+        }
         LoadKind::ExactBody => {
             let density = |cell, x: &Point, split| field.body_force(x, side(cell, x, split));
             body_force(integrator, Rule::Exact, &density, force)
@@ -126,7 +132,7 @@ pub fn no_force(integrator: &CellIntegrator<'_>) -> Vec<f64> {
 /// Rule for what is integrated.
 #[derive(Clone, Copy, PartialEq)]
 enum Rule {
-    /// Constants and linear functions of space.
+    /// Polynomials of second degree.
     Fixed,
     /// Smooth functions.
     Exact,
@@ -232,96 +238,122 @@ fn initial_stress(
     Ok(())
 }
 
-/// Facets of the sides of a region, or edges of its first side, with all nodes in it: cell and local nodes.
-fn loaded_parts(
-    integrator: &CellIntegrator<'_>,
-    region: &Region,
-    edges: bool,
-) -> Result<Vec<(usize, Vec<usize>)>, LoadError> {
-    let mesh = integrator.mesh;
-    let nodes = region_nodes(integrator, region);
-    // Every mesh edge on the edge of a box belongs to one facet of the first side.
-    let sides = region.sides.iter().take(if edges { 1 } else { usize::MAX });
-    let mut parts = Vec::new();
-    for facet in sides.filter_map(|side| mesh.sides.get(side)).flatten() {
-        let (cell, local) = (mesh.cell(facet.cell), mesh.kind.facets()[facet.local]);
-        let edge = |i: usize| vec![local[i], local[(i + 1) % local.len()]];
-        let own = match edges {
-            true => (0..local.len()).map(edge).collect(),
-            false => vec![local.to_vec()],
-        };
-        let held = |k: &usize| nodes.binary_search(&(cell[*k] as usize)).is_ok();
-        let own = own.into_iter().filter(|part| part.iter().all(held));
-        parts.extend(own.map(|part| (facet.cell, part)));
-    }
-    match parts.is_empty() {
-        true => Err(LoadError::Empty(if edges { "edge" } else { "facet" })),
-        false => Ok(parts),
-    }
+/// The part of the border that a load acts on.
+struct Loaded<'a> {
+    integrator: &'a CellIntegrator<'a>,
+    border: &'a Border<'a>,
+    region: &'a Region,
 }
 
-/// Traction on the facets of a side; `density(cell, x, region, n)` is the force per area for the outward normal n.
-fn facet_force(
-    integrator: &CellIntegrator<'_>,
-    region: &Region,
-    rule: Rule,
-    force: &mut [f64],
-    density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
-) -> Result<(), LoadError> {
-    for (cell, local) in loaded_parts(integrator, region, false)? {
-        if integrator.enrichment.has_branch(cell) && rule == Rule::Fixed {
-            // The points with which the gradients of branch functions are in balance.
-            let normal = outward(&integrator.mesh.map(cell), &local);
-            let mut functions = integrator.functions(cell);
-            let (dim, numbers) = (integrator.mesh.dim(), functions.numbers);
-            integrator.visit_border(cell, &local, &mut functions, |f, p, region, value| {
-                let t = density(cell, &p.x, region, &normal);
-                let own = &mut force[numbers[f] as usize * dim..][..dim];
-                own.iter_mut()
-                    .zip(t)
-                    .for_each(|(f, t)| *f += p.weight * value * t);
-            })?;
-            continue;
+impl Loaded<'_> {
+    /// What the region holds of a piece of the border.
+    fn inside(&self, piece: Vec<Point>) -> Parts {
+        let [inside, _] = self.border.split(self.region, piece);
+        inside
+    }
+
+    /// Facets of the side, or edges where two sides meet, of which the region holds something.
+    fn parts(&self, name: &'static str) -> Result<Vec<BorderPart>, LoadError> {
+        let mut parts = self.border.parts(self.region);
+        parts.retain(|part| !self.inside(self.border.corners(part)).is_empty());
+        match parts.is_empty() {
+            true => Err(LoadError::Empty(name)),
+            false => Ok(parts),
         }
-        for (part, region) in divided(integrator, cell, &local) {
-            let mut add = |normal: Point, points: Vec<(WeightedPoint, CellRegion)>| {
-                let density = |cell, x: &Point, region| density(cell, x, region, &normal);
-                add_points(integrator, cell, &points, &density, force)
-            };
-            if integrator.mesh.dim() == 2 {
-                let (p, q) = (part[0], part[1]);
-                let d = sub(&q, &p);
-                let length = norm(&d);
-                let points = loaded_segment(integrator, rule, cell, [&p, &q], region);
-                add([d[1] / length, -d[0] / length, 0.0], points)?;
+    }
+
+    /// Pieces of a facet or edge in the region, divided among the regions of its cell.
+    fn pieces(&self, part: &BorderPart) -> Vec<Piece> {
+        let CellIntegrator {
+            mesh,
+            cracks,
+            enrichment,
+            ..
+        } = self.integrator;
+        let all = pieces(mesh, cracks, enrichment, part.cell, &part.local).into_iter();
+        let own = all.flat_map(|(piece, r)| self.inside(piece).into_iter().map(move |p| (p, r)));
+        own.collect()
+    }
+
+    /// Traction on the facets of a side; `density(cell, x, region, n)` is the force per area for the outward normal n.
+    fn facet_force(
+        &self,
+        rule: Rule,
+        force: &mut [f64],
+        density: impl Fn(usize, &Point, CellRegion, &Point) -> Point,
+    ) -> Result<(), LoadError> {
+        let integrator = self.integrator;
+        for facet in self.parts("facet")? {
+            let cell = facet.cell;
+            if integrator.enrichment.has_branch(cell) && rule == Rule::Fixed {
+                // The points with which the gradients of branch functions are in balance.
+                let normal = outward(&integrator.mesh.map(cell), &facet.local);
+                let mut functions = integrator.functions(cell);
+                let (dim, numbers) = (integrator.mesh.dim(), functions.numbers);
+                let inside = |piece| self.inside(piece);
+                integrator.visit_border(
+                    cell,
+                    &facet.local,
+                    &inside,
+                    &mut functions,
+                    |f, p, region, value| {
+                        let t = density(cell, &p.x, region, &normal);
+                        let own = &mut force[numbers[f] as usize * dim..][..dim];
+                        own.iter_mut()
+                            .zip(t)
+                            .for_each(|(f, t)| *f += p.weight * value * t);
+                    },
+                )?;
                 continue;
             }
-            for t in fan(&part) {
-                let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
-                let size = norm(&normal);
-                if size > 0.0 {
-                    let points = match rule {
-                        Rule::Fixed => triangle(&t),
-                        Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
-                    };
-                    let points = points.into_iter().map(|p| (p, region));
-                    add(normal.map(|v| v / size), points.collect())?;
+            for (part, region) in self.pieces(&facet) {
+                let mut add = |normal: Point, points: Vec<(WeightedPoint, CellRegion)>| {
+                    let density = |cell, x: &Point, region| density(cell, x, region, &normal);
+                    add_points(integrator, cell, &points, &density, force)
+                };
+                if integrator.mesh.dim() == 2 {
+                    let (p, q) = (part[0], part[1]);
+                    let d = sub(&q, &p);
+                    let length = norm(&d);
+                    let points = loaded_segment(integrator, rule, cell, [&p, &q], region);
+                    add([d[1] / length, -d[0] / length, 0.0], points)?;
+                    continue;
+                }
+                for t in fan(&part) {
+                    let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
+                    let size = norm(&normal);
+                    if size > 0.0 {
+                        let points = match rule {
+                            Rule::Fixed => triangle(&t),
+                            Rule::Exact => triangle_collapsed(&t, EXACT_TRIANGLE),
+                        };
+                        let points = points.into_iter().map(|p| (p, region));
+                        add(normal.map(|v| v / size), points.collect())?;
+                    }
                 }
             }
         }
+        Ok(())
     }
-    Ok(())
-}
 
-/// An edge or facet between local nodes, divided among the regions of the cell.
-fn divided(integrator: &CellIntegrator<'_>, cell: usize, local: &[usize]) -> Vec<Piece> {
-    pieces(
-        integrator.mesh,
-        integrator.cracks,
-        integrator.enrichment,
-        cell,
-        local,
-    )
+    /// Force per length on the edge where two sides of a 3D box meet.
+    fn line_force(&self, line: &[f64], force: &mut [f64]) -> Result<(), LoadError> {
+        let density = [line[0], line[1], third(line)];
+        for edge in self.parts("edge")? {
+            for (part, region) in self.pieces(&edge) {
+                let ends = [&part[0], &part[1]];
+                let points = loaded_segment(self.integrator, Rule::Fixed, edge.cell, ends, region);
+                add_points(
+                    self.integrator,
+                    edge.cell,
+                    &points,
+                    &|_, _, _| density,
+                    force,
+                )?;
+            }
+        }
+        Ok(())
+    }
 }
 
 fn loaded_segment(
@@ -342,22 +374,4 @@ fn loaded_segment(
         .into_iter()
         .map(|point| (point, region))
         .collect()
-}
-
-/// Force per length on the edge where two sides of a 3D box meet.
-fn line_force(
-    integrator: &CellIntegrator<'_>,
-    region: &Region,
-    line: &[f64],
-    force: &mut [f64],
-) -> Result<(), LoadError> {
-    let density = [line[0], line[1], third(line)];
-    for (cell, ends) in loaded_parts(integrator, region, true)? {
-        for (part, region) in divided(integrator, cell, &ends) {
-            let ends = [&part[0], &part[1]];
-            let points = loaded_segment(integrator, Rule::Fixed, cell, ends, region);
-            add_points(integrator, cell, &points, &|_, _, _| density, force)?;
-        }
-    }
-    Ok(())
 }

@@ -2,6 +2,7 @@
 
 use stickslip_methods::{ContactState, PointStatus};
 use stickslip_xfem::contact::surface_point::max_penetration;
+use stickslip_xfem::enrichment::basis::STEP;
 
 use crate::case::Case;
 use crate::model::body::Body;
@@ -313,18 +314,25 @@ fn sampled_penetration(body: &Body, u: &[f64], jump: &[f64]) -> Vec<f64> {
 /// add up; an unknown that several places hold counts at the one whose support is in force, the last.
 fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<(String, usize, f64)> {
     let dim = body.mesh.dim();
+    let mut forces = vec![[0.0; 3]; case.supports.len()];
+    for (&unknown, held) in &body.prescribed {
+        let (function, component) = (unknown / dim, unknown % dim);
+        let force = now.force[unknown] - now.external[unknown];
+        if function < body.mesh.nodes.len() {
+            forces[held.support][component] += force;
+        } else if let Some((own, _)) = held.less {
+            // N_j reaches over all copies of its node: this one's share is not the support's of its own.
+            forces[held.support][component] += force / STEP;
+            forces[own][component] -= force / STEP;
+        }
+    }
     let mut totals: Vec<(String, usize, f64)> = Vec::new();
-    for (number, support) in case.supports.iter().enumerate() {
-        let (at, nodes) = (region_name(&support.on), body.region_nodes(&support.on));
+    for (support, force) in case.supports.iter().zip(&forces) {
+        let at = region_name(&support.on);
         for component in (0..dim).filter(|&a| support.displacement[a].is_some()) {
-            let own = nodes.iter().map(|&node| node * dim + component);
-            let force: f64 = own
-                .filter(|i| body.prescribed.get(i).is_some_and(|p| p.support == number))
-                .map(|i| now.force[i] - now.external[i])
-                .sum();
             match totals.iter_mut().find(|t| t.0 == at && t.1 == component) {
-                Some(total) => total.2 += force,
-                None => totals.push((at.clone(), component, force)),
+                Some(total) => total.2 += force[component],
+                None => totals.push((at.clone(), component, force[component])),
             }
         }
     }

@@ -12,8 +12,7 @@ use stickslip_xfem::geometry::norm;
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use crate::case::{Case, CaseError, LoadKind, Span};
-use crate::model::boundary::region_nodes;
+use crate::case::{Case, CaseError, CrackSide, LoadKind, Span, SupportSpec};
 use crate::model::nodal_forces::LoadError;
 
 /// Why a case cannot be discretised.
@@ -30,20 +29,36 @@ pub enum BodyError {
     Method(#[from] MethodError),
 }
 
-/// Refuses a support whose region holds no node.
-pub fn check_supports(case: &Case, integrator: &CellIntegrator<'_>) -> Result<(), CaseError> {
-    for support in &case.supports {
-        if region_nodes(integrator, &support.on).is_empty() {
-            let found = "no node";
-            return Err(case.error(
-                &support.on.span,
-                found,
-                "a region with at least one node",
-                "the support holds nothing",
-            ));
-        }
-    }
-    Ok(())
+/// The error of a support whose region holds no node.
+pub fn empty_support(case: &Case, support: &SupportSpec) -> CaseError {
+    let allowed = "a region with at least one node";
+    case.error(
+        &support.on.span,
+        "no node",
+        allowed,
+        "the support holds nothing",
+    )
+}
+
+/// The error of a support that holds a node on a crack and no part of the side beside it.
+pub fn lip_error(case: &Case, support: &SupportSpec) -> CaseError {
+    let allowed = "crack_side = 1 or 2, or a region with a part of the side beside the crack";
+    let message = "holds a node on a crack, where two lips part, and no lip";
+    case.refuse(&support.on.span, allowed, message)
+}
+
+/// The error of a support that holds one lip of a crack where another holds the other in other components.
+pub fn lips_error(case: &Case, support: &SupportSpec) -> CaseError {
+    let allowed =
+        "on one lip all components that are held on the other, or a mesh without a node there";
+    let message = "another support holds the other lip of a node on a crack in other components";
+    case.refuse(&support.on.span, allowed, message)
+}
+
+/// The error of a `crack_side` where the region tells the lips apart.
+pub fn needless_lip(case: &Case, lip: &CrackSide) -> CaseError {
+    let allowed = "no crack_side beside a region that holds a part of the side";
+    case.refuse(&lip.span, allowed, "the region tells itself what it holds")
 }
 
 /// Refuses a probe that is at no node, or on a crack, where the displacement has two values.

@@ -84,6 +84,28 @@ fn an_error_that_nobody_reads_keeps_its_exit_code() {
     }
 }
 
+/// Goal: `check` says what acts and what is held, so that a region that was meant otherwise is seen.
+#[test]
+fn check_says_what_loads_and_supports_amount_to() {
+    let dir = tempfile::tempdir().unwrap();
+    let rest = crack([-0.1, 0.5], [1.1, 0.5], 0.3, "none")
+        + &support("\"bottom\"", "[0, 0]")
+        + "[[support]]\non = \"right\"\nwhere = \"y == 0\"\ndisplacement_m = [0, 0]\n"
+        + "[[load]]\non = \"top\"\nwhere = [\"x <= 0.3\", \"x >= 0.2 and x <= 0.53\"]\ntraction_pa = [0, -1e6]\n"
+        + "[[load]]\nbody_n_per_m3 = [1, 2]\ncrack_side = 1\n";
+    let text = plane([0.0, 0.0], [1.0, 1.0], [3, 3], &rest);
+    std::fs::write(dir.path().join("small.toml"), text).unwrap();
+    let (shown, _) = ends_with(0, &["check", "small.toml"], dir.path());
+    let lines: Vec<&str> = shown.lines().skip(1).collect();
+    let wanted = [
+        "    load 1, traction on top: (0, -530000) N/m over 0.53 m",
+        "    load 2, body force: (0.5, 1) N/m over 0.5 m²",
+        "    support 1 on bottom: 4 nodes from (0, 0) to (1, 0) m, 1 m held",
+        "    support 2 on right: 1 node at (1, 0) m, 0 m held",
+    ];
+    assert_eq!(lines, wanted);
+}
+
 #[test]
 fn list_and_show_name_every_method_and_case() {
     let dir = tempfile::tempdir().unwrap();
@@ -148,7 +170,10 @@ fn check_accepts_every_shipped_case_and_says_its_size() {
     assert!(arguments.len() > 4);
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (shown, _) = ends_with(0, &arguments, dir.path());
-    for (line, name) in shown.lines().zip(&arguments[1..]) {
+    // Indented: loads and supports.
+    let sizes = shown.lines().filter(|line| !line.starts_with(' '));
+    assert_eq!(sizes.clone().count(), arguments.len() - 1);
+    for (line, name) in sizes.zip(&arguments[1..]) {
         assert!(line.starts_with(name), "{line}");
         for size in ["cells", "unknowns", "contact points"] {
             assert!(line.contains(size), "{line}");

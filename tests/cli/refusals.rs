@@ -155,11 +155,11 @@ fn a_motion_that_only_opens_no_crack_is_refused() {
 
 #[test]
 fn a_load_on_no_facet_is_refused() {
-    let region = "\"left\"\nwhere = \"y > 0.3 and y < 0.4\"";
+    let region = "\"left\"\nwhere = \"y > 1.3 and y < 1.4\"";
     let load = format!("[[load]]\non = {region}\npressure_pa = 1\n");
     assert_refused(&(good() + &load), "\"left\"", "holds no cell facet");
     let rest = support("\"bottom\"", "[0, 0, 0]")
-        + "[[load]]\non = [\"back\", \"top\"]\nwhere = \"x > 0.6 and x < 0.9\"\nline_n_per_m = [0, 0, 1]\n";
+        + "[[load]]\non = [\"back\", \"top\"]\nwhere = \"x == 0.6 or x > 1\"\nline_n_per_m = [0, 0, 1]\n";
     let text = solid([1.0, 1.0, 1.0], [2, 2, 2], &[], &rest);
     assert_refused(&text, "[\"back\", \"top\"]", "holds no cell edge");
 }
@@ -255,4 +255,26 @@ fn probes_between_the_faces_and_expectations_without_an_answer_are_refused() {
         assert_eq!(at, place(&text, "[[expect]]"), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
+}
+
+/// Goal: a support in a point of a crack says which lip it holds; where the region tells, the key has no meaning. A load whose
+/// region has no length acts on nothing.
+#[test]
+fn supports_that_do_not_tell_lips_apart_and_loads_on_nothing_are_refused() {
+    let text = |rest: &str| {
+        let both = support("\"bottom\"", "[0, 0]") + &support("\"top\"", "[1e-3, -1e-3]");
+        let rest = crack([-2.0, 0.5], [2.0, -0.5], 0.3, "none") + &both + rest;
+        plane([-1.0, -1.0], [1.0, 1.0], [8, 8], &rest)
+    };
+    let lone =
+        "[[support]]\non = \"left\" # here\nwhere = \"y == 0.25\"\ndisplacement_m = [0, 0]\n";
+    assert_refused(&text(lone), "\"left\" # here", "two lips part");
+    assert!(try_body(&text(&format!("{lone}crack_side = 1\n"))).is_ok());
+    let other = lone.replace("y == 0.25", "y >= 0.25") + "crack_side = 2 # key\n";
+    assert_refused(&text(&other), "2 # key", "the region tells itself");
+    let lips = "[[support]]\non = \"left\"\nwhere = \"y >= 0.25\"\ndisplacement_m = [0, \"free\"]\n\
+                [[support]]\non = \"left\" # here\nwhere = \"y <= 0.25\"\ndisplacement_m = [\"free\", 0]\n";
+    assert_refused(&text(lips), "\"left\" # here", "in other components");
+    let load = "[[load]]\non = \"right\" # here\nwhere = \"y == 0.25\"\npressure_pa = 1\n";
+    assert_refused(&text(load), "\"right\" # here", "holds no cell facet");
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use nalgebra::Complex;
-use stickslip::case::{Amount, Material, Model};
+use stickslip::case::{Material, Model};
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::quantities::Snapshot;
 use stickslip::run::registry::method;
@@ -186,7 +186,7 @@ pub fn hold(body: &mut Body, field: &dyn Field) {
         let function = body.enrichment.functions[unknown / dim];
         if function.kind == FunctionKind::Standard {
             let x = body.mesh.nodes[function.node as usize];
-            prescribed.amount = Amount::Number(field.displacement(&x, 1.0)[unknown % dim]);
+            prescribed.amount = Some(field.displacement(&x, 1.0)[unknown % dim]);
         }
     }
 }

@@ -20,6 +20,7 @@ mod load_path;
 mod loads;
 mod mesh_judge;
 mod nitsche;
+mod parts_of_sides;
 mod patch;
 mod penetration;
 mod published;

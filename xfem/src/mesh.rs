@@ -134,18 +134,6 @@ impl Mesh {
         nodes
     }
 
-    /// Sorted nodes common to several sides (an edge or corner of the box).
-    pub fn meeting_nodes(&self, sides: &[String]) -> Vec<usize> {
-        let mut lists = sides.iter().map(|side| self.side_nodes(side));
-        let Some(mut common) = lists.next() else {
-            return Vec::new();
-        };
-        for list in lists {
-            common.retain(|node| list.binary_search(node).is_ok());
-        }
-        common
-    }
-
     /// The node at a point, within 1e-9 of the body's size; of a pair on a crack the one on side 2.
     pub fn node_at(&self, x: &Point) -> Option<usize> {
         let (size, _) = self.extent();

@@ -114,7 +114,7 @@ fn faults_of_the_closed_form_are_refused_at_their_place() {
 #[test]
 fn supports_and_loads_take_values_from_the_closed_form() {
     let displacement = "displacement_m = [\"free\", -0.1]\nhistory = [[0, 0], [1, 2.5]]";
-    let number = Some(Amount::Number(-0.1));
+    let number = Some(Amount::Number((-0.1).into()));
     #[rustfmt::skip]
     let rows = [
         ("displacement_m = \"exact\"", [Some(Amount::Exact); 2]),
@@ -139,11 +139,11 @@ fn supports_and_loads_take_values_from_the_closed_form() {
     #[rustfmt::skip]
     let rows = [
         (displacement, "displacement_m = \"exakt\"", "\"exakt\"", "2 entries or \"exact\""),
-        (displacement, "displacement_m = [\"exakt\", 0]", "\"exakt\"", "\"free\" or \"exact\""),
+        (displacement, "displacement_m = [\"exakt\", 0]", "exakt", "\"free\", \"exact\" or a polynomial"),
         (displacement, "displacement_m = \"exact\"\nhistory = \"ramp\"", "\"ramp\"", own),
         (displacement, "displacement_m = [\"exact\", \"free\"]\nhistory = \"ramp\"", "\"ramp\"", own),
         ("pressure_pa = 1e5\nhistory = \"constant\"", "traction_pa = \"exact\"\nhistory = \"constant\"", "\"constant\"", own),
-        ("pressure_pa = 1e5", "pressure_pa = \"exact\"", "\"exact\"", "at_origin_pa"),
+        ("pressure_pa = 1e5", "pressure_pa = \"exact\"", "exact", "at_origin_pa"),
         ("pressure_pa = 1e5\nhistory = \"constant\"", "traction_pa = \"given\"", "\"given\"", "an array"),
         ("body_n_per_m3 = [0, -1e4]", "body_n_per_m3 = \"exact\"\nhistory = \"ramp\"", "\"ramp\"", own),
         ("body_n_per_m3 = [0, -1e4]", "body_n_per_m3 = \"exact\"\ncrack_side = 1", "1", "no crack_side"),
@@ -167,7 +167,7 @@ fn supports_and_loads_take_values_from_the_closed_form() {
 }
 
 #[test]
-fn tractions_and_pressures_may_vary_linearly() {
+fn tractions_and_pressures_may_vary_in_space() {
     let table = "pressure_pa = { at_origin_pa = 1e5, gradient_pa_per_m = [2, -3] }";
     let case = accepted(&PLANE.replace("pressure_pa = 1e5", table));
     let LoadKind::Pressure(_, p) = &case.loads[0].kind else {
@@ -180,6 +180,12 @@ fn tractions_and_pressures_may_vary_linearly() {
         panic!("{:?}", case.loads[0])
     };
     assert_eq!([0, 1].map(|a| t[a].at(&[4.0, 9.0, 0.0])), [7.0, 1.0]);
+    let text = "pressure_pa = \"1e5 + 2 x - 3e-1 x*y + y^2\"";
+    let case = accepted(&PLANE.replace("pressure_pa = 1e5", text));
+    let LoadKind::Pressure(_, p) = &case.loads[0].kind else {
+        panic!("{:?}", case.loads[0])
+    };
+    assert_eq!(p.at(&[10.0, 100.0, 0.0]), 1e5 + 20.0 - 300.0 + 1e4);
     #[rustfmt::skip]
     let rows = [
         ("pressure_pa = { at_origin_pa = inf, gradient_pa_per_m = [2, 3] }", "inf", "finite numbers"),
@@ -188,8 +194,11 @@ fn tractions_and_pressures_may_vary_linearly() {
         ("pressure_pa = { at_origin = 1, gradient_pa_per_m = [2, 3] }", "at_origin", "at_origin_pa, gradient_pa_per_m"),
         ("pressure_pa = { gradient_pa_per_m = [2, 3] }", "{ grad", "`at_origin_pa`"),
         ("pressure_pa = { at_origin_pa = 1 }", "{ at", "`gradient_pa_per_m`"),
-        ("pressure_pa = \"high\"", "\"high\"", "gradient_pa_per_m"),
-        ("traction_pa = [1, \"high\"]", "\"high\"", "gradient_pa_per_m"),
+        ("pressure_pa = \"high\"", "high", "gradient_pa_per_m"),
+        ("traction_pa = [1, \"3 x + high\"]", "high", "here a number or x, y"),
+        ("pressure_pa = \"3 x*y^2\"", "3 x", "degree 0, 1 or 2"),
+        ("pressure_pa = \"3 z\"", "z", "here a number or x, y"),
+        ("pressure_pa = \"\"", "\"\"", "here a number or x, y"),
         ("traction_pa = [1]", "[1]", "2 entries"),
     ];
     for (to, mark, allowed) in rows {
@@ -249,5 +258,63 @@ fn keys_of_the_closed_form_are_documented() {
     }
     for key in ["at_origin_pa", "gradient_pa_per_m"] {
         assert!(document.contains(&format!("{key} = ")), "{key}");
+    }
+}
+
+#[test]
+fn supports_vary_in_space_and_tell_lips_apart() {
+    let line = "displacement_m = [\"free\", -0.1]\nhistory = [[0, 0], [1, 2.5]]";
+    let case = accepted(&PLANE.replace(line, "displacement_m = [\"x - 2 y\", 0]\ncrack_side = 2"));
+    let support = &case.supports[1];
+    let Some(Amount::Number(u)) = &support.displacement[0] else {
+        panic!("{support:?}")
+    };
+    assert_eq!(u.at(&[3.0, 1.0, 0.0]), 1.0);
+    assert_eq!(support.lip.as_ref().unwrap().side, -1.0);
+    #[rustfmt::skip]
+    let rows = [
+        ("displacement_m = [\"x - 2 w\", 0]", "w", "here a number or x, y"),
+        ("displacement_m = [\"x -\", 0]", "\", 0]", "here a number or x, y"),
+        ("displacement_m = [0, 0]\ncrack_side = 3", "3", "integers from 1 to 2"),
+    ];
+    for (to, mark, allowed) in rows {
+        assert_refused(PLANE, line, to, mark, allowed);
+    }
+    let (start, end) = (
+        PLANE.find("[[crack]]").unwrap(),
+        PLANE.find("[[support]]").unwrap(),
+    );
+    let whole = PLANE[..start].to_owned() + &PLANE[end..];
+    assert_refused(
+        &whole,
+        line,
+        "displacement_m = [0, 0]\ncrack_side = 1",
+        "1",
+        "a [[crack]]",
+    );
+}
+
+#[test]
+fn a_list_of_conditions_is_their_union() {
+    let line = "where = \"x <= 1 and y > 2\"";
+    let case = accepted(&PLANE.replace(line, "where = [\"x <= 1\", \"y > 2 and x < 3\"]"));
+    let condition = case.supports[1].on.condition.as_ref().unwrap();
+    for (x, holds) in [
+        ([1.0, 0.0], true),
+        ([2.0, 3.0], true),
+        ([2.0, 2.0], false),
+        ([3.0, 3.0], false),
+    ] {
+        assert_eq!(condition.holds(&[x[0], x[1], 0.0], 1e-9), holds, "{x:?}");
+    }
+    #[rustfmt::skip]
+    let rows = [
+        ("where = []", "[]", "at least one condition"),
+        ("where = 3", "3", "an array of conditions"),
+        ("where = [\"x <= 1\", 3]", "3", "a string"),
+        ("where = [\"x <= 1\", \"y > w\"]", "w\"", "a finite number"),
+    ];
+    for (to, mark, allowed) in rows {
+        assert_refused(PLANE, line, to, mark, allowed);
     }
 }

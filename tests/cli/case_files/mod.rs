@@ -150,11 +150,14 @@ fn every_table_arrives_in_the_case() {
     );
     let support = &case.supports[1];
     assert_eq!(support.on.sides, ["left", "top"]);
-    assert_eq!(support.displacement, [None, Some(Amount::Number(-0.1))]);
+    assert_eq!(
+        support.displacement,
+        [None, Some(Amount::Number((-0.1).into()))]
+    );
     let history = History::Points(vec![[0.0, 0.0], [1.0, 2.5]]);
     assert_eq!(support.history, history);
     let condition = support.on.condition.as_ref().unwrap();
-    assert!(condition.holds(&[1.0, 2.1, 0.0]) && !condition.holds(&[1.0, 2.0, 0.0]));
+    assert!(condition.holds(&[1.0, 2.1, 0.0], 0.0) && !condition.holds(&[1.0, 2.0, 0.0], 1e-9));
     let LoadKind::Pressure(on, p) = &case.loads[0].kind else {
         panic!("{:?}", case.loads[0])
     };

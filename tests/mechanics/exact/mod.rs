@@ -269,7 +269,7 @@ fn stated_and_exact_components_stand_side_by_side() {
     let case = exact_case(&sliding_text(0.47, 0.3, rest));
     assert_eq!(
         case.supports[0].displacement,
-        [Some(Amount::Exact), Some(Amount::Number(-7e-3))]
+        [Some(Amount::Exact), Some(Amount::Number((-7e-3).into()))]
     );
     let body = Body::new(&case, 1, Needs::default()).unwrap();
     let loading = loading(&body, &case);

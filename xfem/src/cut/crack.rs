@@ -28,6 +28,9 @@ use crate::mesh::{Lengths, Mesh};
 /// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
 pub const ON_CRACK: f64 = 1e-12;
 
+/// To a support a node closer than this to a crack lies on it, in shortest edges of the mesh: cracks off facets pass that close.
+pub const HAIR: f64 = 1e-8;
+
 /// What is closer than this to a crack lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
 pub fn on_crack(size: f64, rounding: f64) -> f64 {
     (ON_CRACK * size).max(rounding)
@@ -121,6 +124,8 @@ pub(super) struct LevelSet {
     nodes: Vec<u32>,
     /// φ there, snapped to 0 within [`ON_CRACK`] [m].
     phi: Vec<f64>,
+    /// See [`HAIR`] [m].
+    hair: f64,
 }
 
 impl Crack {
@@ -188,7 +193,12 @@ impl Crack {
             snapped(crack.distance(&mesh.nodes[node as usize]), on)
         });
         let phi = phi.collect();
-        crack.near = Arc::new(LevelSet { cells, nodes, phi });
+        crack.near = Arc::new(LevelSet {
+            cells,
+            nodes,
+            phi,
+            hair: HAIR * lengths.smallest,
+        });
         crack
     }
 
@@ -219,13 +229,14 @@ impl Crack {
         }
     }
 
-    /// Nodes on its curve or plane, ascending.
+    /// Nodes on its curve or plane or a hair beside it, ascending.
     pub fn nodes_on(&self) -> impl Iterator<Item = u32> {
         let nodes = self.near.nodes.iter().zip(&self.near.phi);
-        nodes.filter(|n| *n.1 == 0.0).map(|n| *n.0)
+        let hair = self.near.hair;
+        nodes.filter(move |n| n.1.abs() <= hair).map(|n| *n.0)
     }
 
-    /// Whether a node is one of these.
+    /// Whether a node lies on its curve or plane.
     pub fn holds(&self, node: u32) -> bool {
         let place = self.near.nodes.binary_search(&node);
         place.is_ok_and(|place| self.near.phi[place] == 0.0)

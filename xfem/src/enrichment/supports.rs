@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, first_on};
+use crate::cut::crack::{Crack, HAIR, first_on};
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
@@ -289,11 +289,17 @@ impl Joiner<'_> {
     /// on the side that was asked for.
     fn own(&self, node: u32, places: &[Place]) -> usize {
         let x = &self.mesh.nodes[node as usize];
+        // Beside a crack a hair away as on it: a piece that comes that close.
+        let size = self.mesh.map(places[0].0).diagonal();
         let at_node = |&(cell, region): &Place| match self.partitions.get(&cell) {
             None => true,
             Some(partition) => {
                 let part = &partition.parts[region];
-                part.polygon.contains(x) || part.tetrahedra.iter().any(|t| t.contains(x))
+                let mut corners = part.polygon.iter().chain(part.tetrahedra.iter().flatten());
+                match self.beside.contains_key(&node) {
+                    true => corners.any(|c| norm(&sub(c, x)) <= HAIR * size),
+                    false => corners.any(|c| c == x),
+                }
             }
         };
         let crack = self.on_crack.get(&node).map(|&k| &self.cracks[k]);

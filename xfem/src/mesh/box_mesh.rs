@@ -219,12 +219,6 @@ mod tests {
         for node in mesh.side_nodes("back") {
             assert_eq!(mesh.nodes[node][1], 2.0);
         }
-        let edge = mesh.meeting_nodes(&["back".into(), "top".into()]);
-        assert_eq!(edge.len(), 3);
-        assert!(
-            edge.iter()
-                .all(|&n| mesh.nodes[n][1] == 2.0 && mesh.nodes[n][2] == 4.0)
-        );
     }
 
     #[test]

@@ -39,6 +39,14 @@ pub struct EvaluatedPoint {
     pub gradients: Vec<Point>,
 }
 
+/// The parts of a convex piece of an edge or face to integrate over.
+pub type Within<'a> = &'a dyn Fn(Vec<Point>) -> Vec<Vec<Point>>;
+
+/// All of it.
+fn uncut(piece: Vec<Point>) -> Vec<Vec<Point>> {
+    vec![piece]
+}
+
 /// Points on a part of an edge no longer than twice its distance from a tip, and halvings down to that: an error of 1e-9 at
 /// any distance.
 const BRANCH_EDGE: usize = 10;
@@ -205,7 +213,7 @@ impl CellIntegrator<'_> {
         for local in map.kind.facets() {
             let normal = outward(map, local);
             // Linear along an edge.
-            for (p, region) in self.border_points(cell, local, None) {
+            for (p, region) in self.border_points(cell, local, None, &uncut) {
                 add(&p, region, 1.0, &normal)?;
             }
         }
@@ -277,7 +285,7 @@ impl CellIntegrator<'_> {
             let normal = outward(map, local);
             let nodes = local.iter().fold(0, |mask, i| mask | 1 << i);
             for &tip in &own {
-                let points = self.border_points(cell, local, Some(tip));
+                let points = self.border_points(cell, local, Some(tip), &uncut);
                 for side in points.chunk_by(|p, q| p.1 == q.1) {
                     let points: Vec<_> = side.iter().map(|(p, _)| (*p, normal)).collect();
                     add(&points, side[0].1, (Some(tip), nodes))?;
@@ -312,7 +320,7 @@ impl CellIntegrator<'_> {
     }
 
     /// Visits the functions of a cell at the points of one of its edges (2D) or faces that they are integrated with: number in
-    /// the cell, point, region, value.
+    /// the cell, point, region, value. `within`: the parts of a convex piece that are asked for.
     ///
     /// # Errors
     /// A point without a reference position.
@@ -320,6 +328,7 @@ impl CellIntegrator<'_> {
         &self,
         cell: usize,
         local: &[usize],
+        within: Within<'_>,
         functions: &mut CellFunctions<'_>,
         mut visit: impl FnMut(usize, &WeightedPoint, Region, f64),
     ) -> Result<(), CellError> {
@@ -327,7 +336,7 @@ impl CellIntegrator<'_> {
         let own: BTreeSet<Option<u32>> = tips.iter().copied().chain([None]).collect();
         let inverter = functions.map.inverter();
         for tip in own {
-            for (p, region) in self.border_points(cell, local, tip) {
+            for (p, region) in self.border_points(cell, local, tip, within) {
                 let xi = inverter.at(&p.x).ok_or_else(|| lost(&p.x))?;
                 functions.evaluate(&xi, &p.x, region);
                 for (f, value) in functions.values.iter().enumerate() {
@@ -347,6 +356,7 @@ impl CellIntegrator<'_> {
         cell: usize,
         local: &[usize],
         tip: Option<u32>,
+        within: Within<'_>,
     ) -> Vec<(WeightedPoint, Region)> {
         let mesh = self.mesh;
         let nodes = mesh.cell(cell);
@@ -367,22 +377,27 @@ impl CellIntegrator<'_> {
         match (tip, mesh.dim()) {
             (None, dim) => {
                 let pieces = pieces(mesh, self.cracks, self.enrichment, cell, &order).into_iter();
-                let rule = |piece: &[Point]| match dim {
+                let rule = |piece: Vec<Point>| match dim {
                     2 => segment(&piece[0], &piece[1], 2),
-                    _ => fan(piece).iter().flat_map(triangle).collect(),
+                    _ => fan(&piece).iter().flat_map(triangle).collect(),
                 };
-                let points = pieces.map(|(piece, region)| (rule(&piece), region));
-                let points = points.flat_map(|(own, r)| own.into_iter().map(move |p| (p, r)));
+                let own = |piece| within(piece).into_iter().flat_map(rule);
+                let points = pieces.flat_map(|(piece, r)| own(piece).map(move |p| (p, r)));
                 points.collect()
             }
-            (Some(_), 2) => self.branch_edge(cell, &order),
-            (Some(tip), _) => self.branch_face(cell, &order, tip as usize),
+            (Some(_), 2) => self.branch_edge(cell, &order, within),
+            (Some(tip), _) => self.branch_face(cell, &order, tip as usize, within),
         }
     }
 
     /// On an edge: from place to place of the cracks, whether they divide this cell or its neighbour. A continuation that ends
     /// on the edge is none of the neighbour's concern.
-    fn branch_edge(&self, cell: usize, order: &[usize]) -> Vec<(WeightedPoint, Region)> {
+    fn branch_edge(
+        &self,
+        cell: usize,
+        order: &[usize],
+        within: Within<'_>,
+    ) -> Vec<(WeightedPoint, Region)> {
         let mesh = self.mesh;
         let ends = [order[0], order[1]].map(|i| mesh.cell(cell)[i]);
         let [from, to] = ends.map(|n| mesh.nodes[n as usize]);
@@ -393,7 +408,8 @@ impl CellIntegrator<'_> {
         places.extend([from, to]);
         places.sort_by(|a, b| away(a).total_cmp(&away(b)));
         let mut points = Vec::new();
-        for w in places.windows(2) {
+        let parts = places.windows(2).flat_map(|w| within(w.to_vec()));
+        for w in parts {
             for p in graded_segment(&w[0], &w[1], &tips, BRANCH_EDGE, EDGE_DEPTH) {
                 let at = away(&p.x);
                 let own = pieces.iter().find(|(piece, _)| at <= away(&piece[1]));
@@ -409,6 +425,7 @@ impl CellIntegrator<'_> {
         cell: usize,
         order: &[usize],
         tip: usize,
+        within: Within<'_>,
     ) -> Vec<(WeightedPoint, Region)> {
         let map = self.mesh.map(cell);
         let crack = &self.cracks[self.enrichment.tips[tip].crack];
@@ -426,7 +443,8 @@ impl CellIntegrator<'_> {
                 let mut parts = partition.parts.iter();
                 parts.position(|part| part.sides.iter().any(of_crack))
             });
-            for t in fan(&clip(&face, &levels, side)) {
+            let parts = within(clip(&face, &levels, side));
+            for t in parts.iter().flat_map(|part| fan(part)) {
                 let distance = |x: &Point| self.enrichment.tips[tip].distance(x);
                 let rule = graded_triangles(&[t], distance, BRANCH_FACE, FACE_DEPTH).into_iter();
                 points.extend(rule.map(|p| (p, region.unwrap_or(0))));

@@ -94,15 +94,17 @@ pub(super) fn boundary(dim: usize, loaded: Loaded, free_to_slide: bool) -> Strin
         }
         (Loaded::Traction, false) => {
             // Three points hold the body; every piece must touch a support, so a fourth one repeats the closed form.
+            // Where the crack leaves through such a corner they hold side 1.
+            let corner = |on: &str, axes| support(on, &only(axes)) + "crack_side = 1\n";
             let points = if dim == 2 {
-                support("[\"left\", \"bottom\"]", &only(0..=1))
-                    + &support("[\"right\", \"bottom\"]", &only(1..=1))
-                    + &support("[\"left\", \"top\"]", &only(0..=0))
+                corner("[\"left\", \"bottom\"]", 0..=1)
+                    + &corner("[\"right\", \"bottom\"]", 1..=1)
+                    + &corner("[\"left\", \"top\"]", 0..=0)
             } else {
-                support("[\"left\", \"front\", \"bottom\"]", &only(0..=2))
-                    + &support("[\"right\", \"front\", \"bottom\"]", &only(1..=2))
-                    + &support("[\"left\", \"back\", \"bottom\"]", &only(2..=2))
-                    + &support("[\"right\", \"back\", \"top\"]", &only(0..=0))
+                corner("[\"left\", \"front\", \"bottom\"]", 0..=2)
+                    + &corner("[\"right\", \"front\", \"bottom\"]", 1..=2)
+                    + &corner("[\"left\", \"back\", \"bottom\"]", 2..=2)
+                    + &corner("[\"right\", \"back\", \"top\"]", 0..=0)
             };
             sides.iter().map(push).chain([points]).collect()
         }

@@ -1,0 +1,174 @@
+//! What the loads and supports of a case amount to on a mesh: for who checks whether it says what was meant.
+
+use std::collections::BTreeSet;
+
+use stickslip_xfem::geometry::polygon::space_area;
+use stickslip_xfem::geometry::{Point, norm, sub};
+
+use crate::case::{Case, LoadKind, Polynomial, Region};
+use crate::model::body::{Body, BodyError};
+use crate::model::border::Border;
+use crate::model::boundary::region_name;
+use crate::model::loading::Loading;
+use crate::model::nodal_forces::{add_exact_forces, add_fixed_forces, no_force};
+use crate::model::refusals::load_error;
+use crate::model::sides::Sides;
+
+/// Resultant of a load.
+#[derive(Debug, Clone)]
+pub struct LoadExtent {
+    /// Number in the case, from 1.
+    pub number: usize,
+    /// What acts, and where.
+    pub what: String,
+    /// Sum of the nodal forces, `dim` entries, at history factor 1; of the closed form at the end [N, in 2D N/m].
+    pub force: Vec<f64>,
+    /// Length, area or volume that it acts on [m^`power`].
+    pub measure: f64,
+    /// Dimension of what it acts on.
+    pub power: usize,
+}
+
+/// Extent of a support.
+#[derive(Debug, Clone)]
+pub struct SupportExtent {
+    /// Number in the case, from 1.
+    pub number: usize,
+    /// Where it acts.
+    pub on: String,
+    /// Number of nodes held.
+    pub nodes: usize,
+    /// Lowest and highest coordinates of them, `dim` entries each [m].
+    pub ends: [Vec<f64>; 2],
+    /// Length or area between held nodes [m^`power`].
+    pub measure: f64,
+    /// Dimension of what it acts on.
+    pub power: usize,
+}
+
+/// Resultants of all loads, in case order.
+///
+/// # Errors
+/// A load that acts on nothing.
+pub fn load_extents(case: &Case, loading: &Loading<'_>) -> Result<Vec<LoadExtent>, BodyError> {
+    let body = loading.body();
+    let (integrator, dim) = (body.integrator(), body.mesh.dim());
+    let border = Border::new(&body.mesh);
+    let sides = Sides::new(case, &integrator);
+    let field = loading.exact(loading.increments());
+    let mut force = no_force(&integrator);
+    // Standard functions sum to one. What a load left is cleared where it can have acted.
+    let mut sum = |kind: &LoadKind, region: Option<&Region>| -> Result<Vec<f64>, _> {
+        add_fixed_forces(&integrator, &border, sides.as_ref(), kind, &mut force)?;
+        if let (Some(sides), Some(field)) = (&sides, field) {
+            add_exact_forces(&integrator, &border, sides, kind, field, &mut force)?;
+        }
+        let functions: BTreeSet<u32> = match region.map(|on| border.parts(on)) {
+            Some(parts) => {
+                let cells = parts
+                    .iter()
+                    .flat_map(|part| body.enrichment.cell(part.cell));
+                cells.copied().collect()
+            }
+            None => (0..body.enrichment.functions.len() as u32).collect(),
+        };
+        let mut sums = vec![0.0; dim];
+        for f in functions.into_iter().map(|f| f as usize) {
+            let own = &mut force[f * dim..(f + 1) * dim];
+            if f < body.mesh.nodes.len() {
+                sums.iter_mut().zip(own.iter()).for_each(|(s, f)| *s += f);
+            }
+            own.fill(0.0);
+        }
+        Ok(sums)
+    };
+    let mut found = Vec::new();
+    for (index, load) in case.loads.iter().enumerate() {
+        let unit = || vec![1.0; dim];
+        let (name, region, power, alike) = match &load.kind {
+            LoadKind::Traction(on, _) | LoadKind::ExactTraction(on) => {
+                let one = vec![Polynomial::from(1.0); dim];
+                (
+                    "traction",
+                    Some(on),
+                    dim - 1,
+                    LoadKind::Traction(on.clone(), one),
+                )
+            }
+            LoadKind::Pressure(on, _) => {
+                let one = vec![Polynomial::from(1.0); dim];
+                (
+                    "pressure",
+                    Some(on),
+                    dim - 1,
+                    LoadKind::Traction(on.clone(), one),
+                )
+            }
+            LoadKind::Line(on, _) => ("line load", Some(on), 1, LoadKind::Line(on.clone(), unit())),
+            LoadKind::Body(_, side) => (
+                "body force",
+                None,
+                dim,
+                LoadKind::Body(unit(), side.clone()),
+            ),
+            LoadKind::ExactBody => ("body force", None, dim, LoadKind::Body(unit(), None)),
+            LoadKind::InitialStress(_) => {
+                ("initial stress", None, dim, LoadKind::Body(unit(), None))
+            }
+        };
+        let failed = |e| load_error(case, &load.kind, &load.span, e);
+        found.push(LoadExtent {
+            number: index + 1,
+            what: region.map_or(name.into(), |on| format!("{name} on {}", region_name(on))),
+            force: sum(&load.kind, region).map_err(failed)?,
+            measure: sum(&alike, region).map_err(failed)?[0],
+            power,
+        });
+    }
+    Ok(found)
+}
+
+/// Extents of all supports, in case order.
+pub fn support_extents(case: &Case, body: &Body) -> Vec<SupportExtent> {
+    let dim = body.mesh.dim();
+    let border = Border::new(&body.mesh);
+    let of = |on: &Region| {
+        let nodes = border.nodes(on);
+        let mut parts = border.parts(on);
+        parts.retain(|part| {
+            border
+                .nodes_of(part)
+                .all(|n| nodes.binary_search(&n).is_ok())
+        });
+        let measure = |corners: &[Point]| match corners {
+            [p, q] => norm(&sub(q, p)),
+            _ => space_area(corners),
+        };
+        let measure = parts
+            .iter()
+            .map(|part| measure(&border.corners(part)))
+            .sum();
+        (nodes, measure)
+    };
+    let supports = case.supports.iter().enumerate();
+    let extents = supports.map(|(index, support)| {
+        let (nodes, measure) = of(&support.on);
+        let places: Vec<Point> = nodes
+            .iter()
+            .map(|&n| body.place(&body.mesh.nodes[n]))
+            .collect();
+        let end = |pick: fn(f64, f64) -> f64| {
+            let along = |a: usize| places.iter().map(move |x| x[a]).reduce(pick).unwrap_or(0.0);
+            (0..dim).map(along).collect()
+        };
+        SupportExtent {
+            number: index + 1,
+            on: region_name(&support.on),
+            nodes: nodes.len(),
+            ends: [end(f64::min), end(f64::max)],
+            measure,
+            power: dim - support.on.sides.len(),
+        }
+    });
+    extents.collect()
+}
