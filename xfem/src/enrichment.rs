@@ -229,11 +229,8 @@ impl Enrichment {
                                 true => ABSENT,
                                 false => side(part).unwrap_or_else(elsewhere),
                             };
-                            let steps: Vec<f64> = parts.iter().enumerate().map(step).collect();
-                            if steps.iter().all(|&s| s == ABSENT) {
-                                continue;
-                            }
-                            steps
+                            // Absent everywhere, too: what the solver makes of it holds functions that are not.
+                            parts.iter().enumerate().map(step).collect()
                         }
                         FunctionKind::Standard => continue,
                     };
