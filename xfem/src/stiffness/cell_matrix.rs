@@ -19,7 +19,7 @@ use crate::enrichment::basis::Region;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;
-use crate::geometry::{Point, polygon};
+use crate::geometry::{Point, cross, norm, polygon, sub};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
@@ -186,6 +186,13 @@ impl<'a> CellIntegrator<'a> {
         let tip = self.tips_in(cell).first();
         let tip = tip.map(|&(_, tip)| self.enrichment.tips[tip].tips());
         let tip = tip.filter(|own| own.len() == 1 && tips.len() == 1);
+        // Beside other cracks a part may not see the tip from all over its outline.
+        let sees = |part: &Part, tip: &Point| {
+            polygon::edges(&part.polygon).all(|(p, q)| {
+                let [from, to] = [&p, &q].map(|x| sub(x, tip));
+                cross(&from, &to)[2] >= -1e-12 * map.diagonal() * norm(&sub(&q, &p))
+            })
+        };
         // A ramp squared raises the degree by four.
         let order = match self.enrichment.ramps_in(self.mesh.cell(cell), cell) {
             true => [9, 7],
@@ -194,8 +201,10 @@ impl<'a> CellIntegrator<'a> {
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, &tip) {
-                (true, Some(tip)) => tip_points(polygon::edges(&part.polygon), &tip[0], affine),
-                (true, None) => graded_points(&part.triangles(), &tips, order),
+                (true, Some(tip)) if sees(part, &tip[0]) => {
+                    tip_points(polygon::edges(&part.polygon), &tip[0], affine)
+                }
+                (true, _) => graded_points(&part.triangles(), &tips, order),
                 (false, _) if affine => part.points(),
                 (false, _) => part.fine_points(map),
             };
