@@ -193,8 +193,7 @@ impl Tips {
             let zone = match radius {
                 Some(radius) => {
                     let near = near.get_or_insert_with(|| Neighbours::new(mesh));
-                    let free =
-                        |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own).then(BTreeSet::new);
+                    let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }
                 None => Zone::plain(at_front),
@@ -460,8 +459,9 @@ impl Search<'_> {
             Some(radius) => self.within(radius, &arms, nodes),
             None => Zone::plain(nodes),
         };
-        zone.cut_off = self.cut_off(&arms, &zone.nodes);
-        if arms[0].0.shape == FrontShape::Straight && zone.cut_off.is_empty() {
+        if zone.core.is_empty() {
+            zone.cut_off = self.cut_off(&arms, &zone.nodes);
+        } else if arms[0].0.shape == FrontShape::Straight {
             zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
         }
         // Where all of a node's cells are cut off it carries nothing.
@@ -487,23 +487,20 @@ impl Search<'_> {
         }
     }
 
-    /// The nodes within the largest radius around a place, its cells given, where other cracks than the arms that end there
-    /// enter only to cut something off. `arms`: their frames with the lengths that these know.
+    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
+    /// `arms`: their frames with the lengths that these know.
     fn within(&self, radius: f64, arms: &[(TipFrame, f64)], at_tip: BTreeSet<u32>) -> Zone {
-        let near = &self.near;
-        Zone::widest(
-            self.mesh,
-            near,
-            &arms[0].0,
-            radius,
-            at_tip,
-            |cells, nodes| {
-                let cut_off = self.cut_off(arms, nodes);
-                let free = self.parts_cleanly(arms, cells, &cut_off)
-                    && !self.any_blocked(arms, nodes, &cut_off);
-                free.then_some(cut_off)
-            },
-        )
+        let (near, frame) = (&self.near, &arms[0].0);
+        Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
+            self.holds_only(arms, cells) && !self.any_blocked(arms, nodes, &BTreeSet::new())
+        })
+    }
+
+    /// Whether none but some arms run through some cells.
+    fn holds_only(&self, arms: &[(TipFrame, f64)], cells: &BTreeSet<usize>) -> bool {
+        let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
+        let mut faces = parted.flat_map(|p| &p.faces);
+        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
     }
 
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
@@ -523,26 +520,6 @@ impl Search<'_> {
         (!beyond.is_empty()).then(|| Zone {
             cut_off,
             ..Zone::plain(nodes)
-        })
-    }
-
-    /// Whether every other crack in some cells has something that is cut off on one of its sides at least.
-    fn parts_cleanly(
-        &self,
-        arms: &[(TipFrame, f64)],
-        cells: &BTreeSet<usize>,
-        cut_off: &BTreeSet<Place>,
-    ) -> bool {
-        let cells = cells.iter().copied();
-        let mut divided = cells.filter_map(|cell| Some((cell, self.partitions.get(&cell)?)));
-        divided.all(|(cell, partition)| {
-            partition.faces.iter().all(|face| {
-                arms.iter().any(|arm| arm.0.crack == face.crack)
-                    || face
-                        .parts
-                        .iter()
-                        .any(|&region| cut_off.contains(&(cell, region)))
-            })
         })
     }
 

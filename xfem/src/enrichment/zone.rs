@@ -1,7 +1,7 @@
 //! The nodes around a tip or front that carry its branch functions, and the room that a front has.
 //!
-//! The ramp falls to zero over the cells around its nodes. Other cracks may enter it only to cut something off; a radius is
-//! reduced until that is so.
+//! The ramp falls to zero over the cells around its nodes. It may hold no crack but its own; a radius is reduced until that is
+//! so. What other cracks cut off of a zone without ramp carries none of its functions.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -39,14 +39,14 @@ impl Zone {
     }
 
     /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and
-    /// by all nodes, of which it tells what is cut off; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
+    /// by all nodes; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
     pub fn widest(
         mesh: &Mesh,
         near: &Neighbours<'_>,
         frame: &TipFrame,
         mut radius: f64,
         at_tip: BTreeSet<u32>,
-        free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> Option<BTreeSet<Place>>,
+        free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> bool,
     ) -> Self {
         let smallest = near.nodes_around(&at_tip);
         let candidates = near.nodes_in(&frame.extents(radius));
@@ -55,12 +55,11 @@ impl Zone {
             let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
             let core = &inside | &smallest;
             let nodes = near.nodes_around(&core);
-            if let Some(cut_off) = free(&near.cells_around(&core), &nodes) {
+            if free(&near.cells_around(&core), &nodes) {
                 return Zone {
                     nodes,
                     core,
                     radius,
-                    cut_off,
                     ..Zone::default()
                 };
             }

@@ -130,7 +130,7 @@ impl Search<'_> {
         let nodes = self.mesh.nodes_of(cells.iter().copied());
         let ramped = |radius: f64| {
             let mut zone = self.within(radius, arms, nodes.clone());
-            if zone.core.is_empty() || !zone.cut_off.is_empty() {
+            if zone.core.is_empty() {
                 return None;
             }
             zone.surplus = self.deepest(arms, &zone.core, deep)?;
@@ -145,13 +145,6 @@ impl Search<'_> {
         let around = |_| plain(self.near.cells_around(&nodes));
         let zone = radius.and_then(ramped).or_else(|| radius.and_then(around));
         zone.or_else(|| plain(cells.iter().copied().collect()))
-    }
-
-    /// Whether none but some arms run through some cells.
-    fn holds_only(&self, arms: &[Ending], cells: &BTreeSet<usize>) -> bool {
-        let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
-        let mut faces = parted.flat_map(|p| &p.faces);
-        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
     }
 
     /// Frame of a straight arm at an end that parts the cells there, and the length of the arm behind it [m].
