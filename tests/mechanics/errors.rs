@@ -138,7 +138,7 @@ fn opened(jump: [f64; 2]) -> (Body, Snapshot, Vec<SurfacePoint>) {
     let mut now = Snapshot::virgin(&body);
     for (f, function) in body.enrichment.functions.iter().enumerate() {
         let node = function.node as usize;
-        let side = body.cracks[0].side_of(node);
+        let side = body.cracks[0].side_of(&body.mesh, node);
         for a in 0..2 {
             now.u[2 * f + a] = match function.kind {
                 FunctionKind::Standard => 0.5 * (1.0 + side) * jump[a],
@@ -227,7 +227,7 @@ fn the_direction_of_slip_is_off_by_the_angle_between_means() {
     let slip = add_scaled(&a.map(|v| 0.2 * found.cos() * v), 0.2 * found.sin(), &b);
     let mut now = Snapshot::virgin(&body);
     for (f, function) in body.enrichment.functions.iter().enumerate() {
-        let side = body.cracks[0].side_of(function.node as usize);
+        let side = body.cracks[0].side_of(&body.mesh, function.node as usize);
         let share = match function.kind {
             FunctionKind::Standard => 0.5 * side,
             _ => -0.5 * side,

@@ -210,7 +210,9 @@ fn williams(body: &Body, tip: &TipFrame, k: [f64; 2]) -> Vec<f64> {
         let x = &body.mesh.nodes[node];
         for (mode, k) in modes.iter().zip(k) {
             let v = match function.kind {
-                FunctionKind::Standard => mode.at(x, Some(body.cracks[0].side_of(node))).0,
+                FunctionKind::Standard => {
+                    mode.at(x, Some(body.cracks[0].side_of(&body.mesh, node))).0
+                }
                 FunctionKind::Branch { tip: 0, order } => mode.coefficient(order as usize),
                 _ => [0.0; 3],
             };

@@ -140,7 +140,7 @@ fn tips_take_a_radius_and_planes_have_none() {
     assert_eq!(tip(PLANE, "tip = \"branch\"", radius), Tip::Radius(0.5));
     assert_eq!(tip(PLANE, "tip = \"branch\"", "tip = \"none\""), Tip::None);
     let disc = "disc = { centre_m = [0, 1, 0.5], normal = [0, 0, 2], radius_m = 0.3 }";
-    assert_eq!(tip(SOLID, PLANE_CRACK, disc), Tip::Branch);
+    assert_eq!(tip(SOLID, PLANE_CRACK, disc), Tip::Auto);
     let with = format!("{disc}\n{radius}");
     assert_eq!(tip(SOLID, PLANE_CRACK, &with), Tip::Radius(0.5));
     assert_eq!(
