@@ -437,7 +437,7 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<Placed, CaseError> {
         });
     }
     let cracks: Vec<_> = case.cracks.iter().map(|c| (&c.geometry, c.tip)).collect();
-    let cracks = off_facets(mesh, &lengths, &cracks).map_err(refused)?;
+    let cracks = off_facets(mesh, &lengths, &cracks).map_err(|e| refused(e.into()))?;
     let (cracks, joined) = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
     Ok(Placed {
         cracks,

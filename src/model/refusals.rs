@@ -110,8 +110,8 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
             *crack,
             "a contact space other than node-pairs, or a mesh with nodes along the crack",
         ),
-        EnrichmentError::AlongFacet { crack, .. } => (
-            *crack,
+        EnrichmentError::AlongFacet(along) => (
+            along.crack,
             "another number of cells, or a crack moved by a hundredth of a cell",
         ),
     };

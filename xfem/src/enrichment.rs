@@ -15,6 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::{Crack, Geometry, on_crack};
 use crate::cut::is_split;
+use crate::cut::off_facets::AlongFacet;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
@@ -88,10 +89,10 @@ impl Enrichment {
         beside: &BTreeMap<u32, Point>,
     ) -> Result<Self, EnrichmentError> {
         let trace = Trace::new(mesh, cracks).map_err(|e| match e {
-            TraceError::AlongEdge(arm, at) => EnrichmentError::AlongFacet {
+            TraceError::AlongEdge(arm, at) => EnrichmentError::AlongFacet(AlongFacet {
                 crack: cracks[arm].number,
                 at,
-            },
+            }),
             TraceError::Lost(arm, at) => EnrichmentError::Lost {
                 crack: cracks[arm].number,
                 at,

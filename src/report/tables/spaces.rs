@@ -108,7 +108,7 @@ const BOUNDARY: &str = "`displacement` on all sides, or `traction` with just eno
 const ANGLE: &str =
     "angle from the x axis, normal of a plane, or shape; `T` and `X`: two cracks that meet";
 const MOVED: &str = "`regular`, or how far grid points are moved";
-const PATCH_SPACE: &str = "contact space; `node-pairs` where the crack runs along cell edges";
+const PATCH_SPACE: &str = "contact space";
 const TRACTION: &str = "largest difference of P/w from the exact traction over the contact points, over the largest stress component; 0 up to 1e-10, `NaN` without an answer";
 const DISPLACEMENT: &str = "largest difference of displacements at nodes and of jumps on the crack, over the largest displacement; 0 up to 1e-10, `NaN` without an answer";
 

@@ -49,7 +49,7 @@ pub struct PatchRow {
     pub mesh: String,
     /// Distance of the crack from a node in cell sizes; positive with the node on side 2.
     pub distance: f64,
-    /// Contact space; `node-pairs` where the crack runs along cell edges.
+    /// Contact space.
     pub space: String,
     /// Contact points; 0 if the body was refused.
     pub points: usize,
@@ -68,7 +68,7 @@ impl PatchRow {
     }
 }
 
-/// Runs patch tests in some contact spaces, in the order given. A crack along cell edges has one row for all spaces.
+/// Runs patch tests in some contact spaces, in the order given.
 ///
 /// # Errors
 /// A patch that is no case, or that its closed form does not hold for; what the discretisation refuses is a row.

@@ -161,15 +161,6 @@ pub fn divide(
     Ok(partition)
 }
 
-/// Where a segment p q crosses another between its ends: how far from p, in parts of it, and the place.
-fn crossed([p, q]: [&Point; 2], [a, b]: [&Point; 2]) -> Option<(f64, Point)> {
-    let (d, e, from) = (sub(q, p), sub(b, a), sub(a, p));
-    let turn = cross(&d, &e)[2];
-    let [t, s] = [&e, &d].map(|v| cross(&from, v)[2] / turn);
-    let inside = |t: f64| t > HERE && t < 1.0 - HERE;
-    (inside(t) && inside(s)).then(|| (t, add_scaled(p, t, &d)))
-}
-
 impl Division {
     fn new(mesh: &Mesh, cell: usize, trace: &Trace) -> Self {
         let (map, nodes) = (mesh.map(cell), mesh.cell(cell));
@@ -342,8 +333,12 @@ impl Division {
         while i + 1 < chain.vertices.len() {
             let [p, q] = [chain.vertices[i], chain.vertices[i + 1]];
             let beyond = self.segments.iter().filter(|s| s.extension);
-            let places =
-                beyond.filter_map(|s| Some((crossed([&p, &q], [&s.ends[0], &s.ends[1]])?, s.ends)));
+            let places = beyond.filter_map(|s| {
+                Some((
+                    polygon::crossed([&p, &q], [&s.ends[0], &s.ends[1]], HERE)?,
+                    s.ends,
+                ))
+            });
             let nearest = places.min_by(|a, b| a.0.0.total_cmp(&b.0.0));
             if let Some(((_, x), ends)) = nearest {
                 self.add_corner(ends, x);

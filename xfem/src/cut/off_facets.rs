@@ -4,12 +4,21 @@
 //! runs along a facet: what meets still meets, every node near such a crack lies on one side of it, decided once for the
 //! whole body, and the crack is a cut like any other.
 
-use crate::enrichment::EnrichmentError;
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::{Point, mean};
 use crate::mesh::{Lengths, Mesh};
 
 use super::crack::{Crack, Tip};
+
+/// A crack that runs along some facet wherever it is tried.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("crack {} runs along a facet near {at:?}, and beside that along others", crack + 1)]
+pub struct AlongFacet {
+    /// Its number in the case file, from 0.
+    pub crack: usize,
+    /// Where [m].
+    pub at: Point,
+}
 
 /// A facet whose nodes are all closer to a crack than this, in units of the shortest edge there, lies along it.
 const ALONG: f64 = 1e-10;
@@ -35,7 +44,7 @@ pub fn off_facets(
     mesh: &Mesh,
     lengths: &Lengths,
     cracks: &[(&CrackShape, Tip)],
-) -> Result<Vec<Crack>, EnrichmentError> {
+) -> Result<Vec<Crack>, AlongFacet> {
     let step = (STEP * lengths.smallest).max(64.0 * lengths.rounding);
     let mut stuck = None;
     for place in PLACES {
@@ -51,7 +60,7 @@ pub fn off_facets(
         }
     }
     let (crack, at) = stuck.unwrap_or_default();
-    Err(EnrichmentError::AlongFacet { crack, at })
+    Err(AlongFacet { crack, at })
 }
 
 /// Where all nodes of a facet lie on a crack or next to it [m].

@@ -1,6 +1,7 @@
 //! Cracks that a mesh cannot carry.
 
 use crate::cut::arms::Overlap;
+use crate::cut::off_facets::AlongFacet;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
 
@@ -67,13 +68,8 @@ pub enum EnrichmentError {
         at: Point,
     },
     /// It runs along a facet wherever it is moved by next to nothing.
-    #[error("crack {} runs along a facet near {at:?}, and beside that along others", crack + 1)]
-    AlongFacet {
-        /// Crack number, from 0.
-        crack: usize,
-        /// Where [m].
-        at: Point,
-    },
+    #[error(transparent)]
+    AlongFacet(#[from] AlongFacet),
 }
 
 impl EnrichmentError {
@@ -84,7 +80,7 @@ impl EnrichmentError {
             | Self::Lost { at, .. }
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. }
-            | Self::AlongFacet { at, .. } => *at = add_scaled(at, 1.0, by),
+            | Self::AlongFacet(AlongFacet { at, .. }) => *at = add_scaled(at, 1.0, by),
             Self::Outside { .. }
             | Self::TooShort { .. }
             | Self::Undetermined { .. }

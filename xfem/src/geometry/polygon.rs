@@ -47,6 +47,16 @@ pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
     norm(&sub(x, &segment_foot(x, p, q)))
 }
 
+/// Where a segment p q crosses another, both more than a given part of their lengths from their ends: how far from p, in parts
+/// of it, and the place.
+pub fn crossed([p, q]: [&Point; 2], [a, b]: [&Point; 2], least: f64) -> Option<(f64, Point)> {
+    let (d, e, from) = (sub(q, p), sub(b, a), sub(a, p));
+    let turn = cross(&d, &e)[2];
+    let [t, s] = [&e, &d].map(|v| cross(&from, v)[2] / turn);
+    let inside = |t: f64| t > least && t < 1.0 - least;
+    (inside(t) && inside(s)).then(|| (t, add_scaled(p, t, &d)))
+}
+
 /// Distance of a point from the outline [m].
 pub fn border_distance(polygon: &[Point], x: &Point) -> f64 {
     edges(polygon)

@@ -1,0 +1,166 @@
+//! The nodes around a tip or corner of a plane body that can carry its branch functions.
+
+use std::collections::BTreeSet;
+
+use crate::cut::crack::Tip;
+use crate::cut::trace::TracedTip;
+use crate::geometry::Point;
+use crate::geometry::boxes::around;
+use crate::geometry::polygon::{self, segment_distance};
+use crate::geometry::tip_frame::{FrontShape, TipFrame};
+
+use super::super::supports::{Place, parted_from};
+use super::super::zone::Zone;
+use super::{SHARE, Search};
+
+impl Search<'_> {
+    /// What other cracks than some arms part from their common end, of the cells of some nodes.
+    pub(super) fn cut_off(
+        &self,
+        arms: &[(TipFrame, f64)],
+        nodes: &BTreeSet<u32>,
+    ) -> BTreeSet<Place> {
+        let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+        let cells = self.near.cells_around(nodes);
+        let (x, trace) = (&arms[0].0.position, self.trace);
+        parted_from(self.mesh, &own, x, &cells, trace, &self.partitions)
+    }
+
+    /// Whether a cell of some nodes holds, where it is not cut off, a part of the line behind a tip beyond its room.
+    pub(super) fn is_blocked(
+        &self,
+        (frame, room): &(TipFrame, f64),
+        nodes: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
+        let (size, _) = self.mesh.extent();
+        let line = frame.behind(*room, size, 0.1 * self.smallest);
+        let mut cells = self.near.cells_around(nodes).into_iter();
+        cells.any(|cell| {
+            let map = self.mesh.map(cell);
+            let slack = 1e-9 * map.diagonal();
+            let enters = |outline: &[Point]| {
+                let mut line = line.iter();
+                line.any(|[p, q]| polygon::meets(outline, p, q, slack))
+            };
+            let whole = cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none();
+            match self.partitions.get(&cell) {
+                Some(partition) if !whole => {
+                    let mut parts = partition.parts.iter().enumerate();
+                    parts.any(|(region, part)| {
+                        let mut triangles = part.triangles().into_iter();
+                        !cut_off.contains(&(cell, region)) && triangles.any(|t| enters(&t))
+                    })
+                }
+                _ => whole && enters(&map),
+            }
+        })
+    }
+
+    /// The nodes around a tip: within the largest radius that leaves it alone.
+    pub(super) fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
+        let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
+        let arms = [(self.frame(tip), room)];
+        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let mut zone = match radius {
+            Some(radius) => self.within(radius, &arms, nodes),
+            None => Zone::plain(nodes),
+        };
+        if zone.core.is_empty() {
+            zone.cut_off = self.cut_off(&arms, &zone.nodes);
+        } else if arms[0].0.shape == FrontShape::Straight {
+            zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
+        }
+        // Where all of a node's cells are cut off it carries nothing.
+        zone.nodes.retain(|&node| self.lives(node, &zone.cut_off));
+        zone
+    }
+
+    /// Whether some region around a node is not cut off.
+    pub(super) fn lives(&self, node: u32, cut_off: &BTreeSet<Place>) -> bool {
+        let mut cells = self.near.cells_around(&BTreeSet::from([node])).into_iter();
+        cells.any(|cell| {
+            let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
+            (0..parts).any(|region| !cut_off.contains(&(cell, region)))
+        })
+    }
+
+    /// The radius that an arm asks for, if any. `clear`: the distance from other arms and the border [m].
+    pub(super) fn radius(&self, arm: usize, room: f64, clear: f64) -> Option<f64> {
+        match self.arms[arm].tip {
+            Tip::Radius(radius) => Some(radius.min(room)),
+            Tip::Auto => Some(SHARE * room.min(clear)),
+            Tip::Branch | Tip::None => None,
+        }
+    }
+
+    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
+    /// `arms`: their frames with the lengths that these know.
+    pub(super) fn within(
+        &self,
+        radius: f64,
+        arms: &[(TipFrame, f64)],
+        at_tip: BTreeSet<u32>,
+    ) -> Zone {
+        let (near, frame) = (&self.near, &arms[0].0);
+        Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
+            self.holds_only(arms, cells) && !self.any_blocked(arms, nodes, &BTreeSet::new())
+        })
+    }
+
+    /// Whether none but some arms run through some cells.
+    pub(super) fn holds_only(&self, arms: &[(TipFrame, f64)], cells: &BTreeSet<usize>) -> bool {
+        let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
+        let mut faces = parted.flat_map(|p| &p.faces);
+        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
+    }
+
+    /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
+    /// of a narrow ligament feels its end, too.
+    pub(super) fn beyond(&self, tip: &TracedTip, zone: &Zone) -> Option<Zone> {
+        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
+            let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
+            (0..parts).map(move |region| (cell, region))
+        });
+        let (beyond, cut_off): (BTreeSet<Place>, BTreeSet<Place>) =
+            places.partition(|place| zone.cut_off.contains(place));
+        let nodes = nodes
+            .into_iter()
+            .filter(|&node| self.lives(node, &cut_off))
+            .collect();
+        (!beyond.is_empty()).then(|| Zone {
+            cut_off,
+            ..Zone::plain(nodes)
+        })
+    }
+
+    /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
+    pub(super) fn any_blocked(
+        &self,
+        arms: &[(TipFrame, f64)],
+        nodes: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
+        arms.iter().any(|arm| self.is_blocked(arm, nodes, cut_off))
+    }
+
+    /// Distance of a place from arms other than its own and from the border of the body, at most `room` [m].
+    pub(super) fn clearance(&self, x: &Point, own: &[usize], room: f64) -> f64 {
+        let mesh = self.mesh;
+        let facets = mesh.sides.values().flatten().map(|&facet| {
+            let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
+            segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
+        });
+        let others = self.extents.meeting(&around([x], room)).into_iter();
+        let others = others.filter(|arm| !own.contains(arm));
+        facets.fold(room.min(self.away_from(x, others)), f64::min)
+    }
+
+    /// Distance of a place from some arms [m].
+    pub(super) fn away_from(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
+        let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
+        let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
+        away.fold(f64::INFINITY, f64::min)
+    }
+}
