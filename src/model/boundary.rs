@@ -301,12 +301,13 @@ impl<'a> Supports<'a> {
             // Components held on all pieces.
             let mut whole = Components::MAX;
             let pieces = pieces(mesh, cracks, enrichment, part.cell, &part.local);
-            // What a crack a hair beside a node leaves of it is none.
-            let whole_size = diameter(&self.border.corners(&part));
-            for (piece, region) in pieces
-                .iter()
-                .filter(|(p, _)| diameter(p) > HAIR * whole_size)
-            {
+            // Within bounds what a crack leaves of a part a hair beside a node is none.
+            let bounded = acting.iter().any(|&s| self.spec(s).on.condition.is_some());
+            let hair = HAIR * diameter(&self.border.corners(&part));
+            for (piece, region) in &pieces {
+                if bounded && diameter(piece) <= hair {
+                    continue;
+                }
                 let mut on_piece = 0;
                 for &s in &acting {
                     let [inside, outside] = self.border.split(&self.spec(s).on, piece.clone());
@@ -317,7 +318,7 @@ impl<'a> Supports<'a> {
                         0
                     };
                     for &n in &nodes {
-                        let near = |x: &Point| norm(&sub(x, &mesh.nodes[n])) <= HAIR * whole_size;
+                        let near = |x: &Point| norm(&sub(x, &mesh.nodes[n])) <= hair;
                         let beside = || inside.iter().flatten().any(near);
                         if outside.is_empty() || beside() {
                             let copy = copy_at(enrichment, n, part.cell, *region);

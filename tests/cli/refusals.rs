@@ -101,15 +101,26 @@ fn cracks_along_each_other_are_refused_at_the_later() {
 }
 
 #[test]
-fn branch_functions_on_cell_edges_are_refused_at_the_tip() {
-    let text = replaced(POINTS, "[[-0.5, 0.25], [0.5, 0.25]]");
-    assert_refused(
-        &text,
-        "\"branch\"",
-        "branch functions need a tip inside a cell",
-    );
-    // Without branch functions the same crack is a row of doubled nodes.
-    assert!(try_body(&text.replace("\"branch\"", "\"none\"")).is_ok());
+fn node_pairs_are_for_one_crack_from_node_to_node() {
+    let pairs = "\"node-pairs\"";
+    let with = |points: &str, tip: &str| {
+        let text = replaced(POINTS, points).replace("\"edge-pairs\"", pairs);
+        text.replace("tip = \"branch\"", tip)
+    };
+    let along = "[[-0.5, 0.25], [0.5, 0.25]]";
+    assert!(try_body(&with(along, "")).is_ok());
+    for points in [
+        POINTS,
+        "[[-0.5, 0.25], [0.6, 0.25]]",
+        "[[-0.5, 0.25], [0.5, 0.25], [0.5, 0.5]]",
+    ] {
+        assert_refused(&with(points, ""), pairs, "does not follow cell facets");
+    }
+    let second = "[[crack]]\npoints_m = [[-0.4, -0.5], [0.6, -0.3]]\nfriction = 0.1\n";
+    assert_refused(&(with(along, "") + second), pairs, "alone in its body");
+    // In any other space the same crack is a cut, with branch functions.
+    let body = try_body(&replaced(POINTS, along)).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(body.enrichment.tips.len(), 2);
 }
 
 #[test]

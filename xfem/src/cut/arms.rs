@@ -11,6 +11,7 @@ use crate::mesh::Mesh;
 
 use super::crack::{Crack, End, Geometry, Parent, PathVertex};
 use super::is_split;
+use super::placement::cells_at;
 
 /// Bends sharper than this part a crack [rad]: ten degrees.
 const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -77,7 +78,7 @@ pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Join
         .collect();
     for k in 0..cracks.len() {
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
-            if !places.join(&cracks, k, end, &near[k]) {
+            if !places.join(&cracks, (k, end), &near[k], mesh) {
                 places.lead_out(&mut cracks[k], end, mesh);
             }
         }
@@ -116,7 +117,13 @@ fn ending(crack: &Crack, end: usize) -> Option<(PathVertex, Point)> {
 
 impl Places {
     /// Joins an end with the cracks it nearly touches, at the first place behind or before it; whether there are any.
-    fn join(&mut self, cracks: &[Crack], k: usize, end: usize, near: &[usize]) -> bool {
+    fn join(
+        &mut self,
+        cracks: &[Crack],
+        (k, end): (usize, usize),
+        near: &[usize],
+        mesh: &Mesh,
+    ) -> bool {
         let Some((last, ahead)) = ending(&cracks[k], end) else {
             return false;
         };
@@ -159,6 +166,10 @@ impl Places {
         else {
             return false;
         };
+        // Outside of the body nothing has to meet.
+        if cells_at(mesh, &last.x).is_empty() {
+            return false;
+        }
         let x = first.2;
         for (l, s, at) in found {
             if distance(&at, &x) <= SAME_PLACE * self.size {

@@ -447,8 +447,11 @@ impl Division {
             } else {
                 [a, c]
             };
-            self.border.push((x, Some(edge)));
-            self.hits.push(x);
+            // A chain that runs through the cell ends on two of them.
+            if [a, b, c, d].iter().all(|node| edge.contains(node)) {
+                self.border.push((x, Some(edge)));
+                self.hits.push(x);
+            }
         }
     }
 

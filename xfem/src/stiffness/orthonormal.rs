@@ -26,9 +26,12 @@ const DROPPED: f64 = 1e-8;
 /// The same for functions of different nodes: the rules of cells hold what ties them to 1e-8.
 const TIED: f64 = 1e-6;
 
-/// A function is dropped, too, if its energy is smaller than this part of that of its node's standard function: on a sliver
-/// around a point, a junction next to a grid line say, the functions of all nodes of a cell are alike up to rounding.
-const SLIVER: f64 = 1e-12;
+/// Piece functions with less than this part of the energy of their node's standard function live on slivers. On one around a
+/// point, a junction next to a grid line say, those of all nodes of a cell are alike …
+const SLIVER: f64 = 1e-6;
+
+/// … and dropped if the square of what is their own is smaller than this part of it.
+const ALIKE: f64 = 1e-12;
 
 /// The functions of one node.
 #[derive(Debug, Clone)]
@@ -67,6 +70,7 @@ impl SolverBasis {
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let mut basis = SolverBasis::default();
+        let alike = alike(dim, enrichment, users, &matrix);
         let surplus = surplus(dim, enrichment, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
@@ -77,15 +81,14 @@ impl SolverBasis {
             if own.is_empty() || free == [false; 3] {
                 continue;
             }
+            // Pieces are disjoint: of a node their functions depend on no other.
+            let dependent = own.clone().any(branch);
+            if !dependent && !own.clone().any(|f| alike.contains(&f)) {
+                continue;
+            }
             let standard = gram(enrichment, dim, &[node], users, &matrix)[0];
             let all: Vec<usize> = own.clone().collect();
             let gram = gram(enrichment, dim, &all, users, &matrix);
-            let sliver = |i: usize| gram[i * own.len() + i] <= SLIVER * standard;
-            // Pieces are disjoint: of a node their functions depend on no other.
-            let dependent = own.clone().any(branch);
-            if !dependent && !(0..own.len()).any(sliver) {
-                continue;
-            }
             stiffest = standard.max(stiffest);
             if basis.block_of.is_empty() {
                 basis.block_of = vec![None; enrichment.functions.len()];
@@ -96,7 +99,7 @@ impl SolverBasis {
             basis.blocks.push(Block {
                 first: own.start,
                 t: inverse_factor(&gram, own.len(), |i| {
-                    sliver(i) || surplus.contains(&(own.start + i))
+                    alike.contains(&(own.start + i)) || surplus.contains(&(own.start + i))
                 }),
                 count: own.len(),
                 free,
@@ -159,23 +162,11 @@ impl SolverBasis {
                 }
             }
         }
-        // Elimination, without what is left of nothing.
-        let own_squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
-        for k in 0..n {
-            let pivot = gram[k * n + k];
-            if pivot <= TIED * own_squares[k] {
-                if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
-                    let block = &mut self.blocks[*block as usize];
-                    let row = own[k] - block.first;
-                    block.t[row * block.count..(row + 1) * block.count].fill(0.0);
-                }
-                continue;
-            }
-            for i in k + 1..n {
-                let factor = gram[i * n + k] / pivot;
-                if factor != 0.0 {
-                    (k + 1..n).for_each(|j| gram[i * n + j] -= factor * gram[k * n + j]);
-                }
+        for k in tied(&mut gram, TIED) {
+            if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
+                let block = &mut self.blocks[*block as usize];
+                let row = own[k] - block.first;
+                block.t[row * block.count..(row + 1) * block.count].fill(0.0);
             }
         }
     }
@@ -362,6 +353,59 @@ fn gram<'a>(
         }
     }
     gram
+}
+
+/// Functions that are in the span of those before them but for a part of their square; the Gram matrix is eliminated in place.
+fn tied(gram: &mut [f64], least: f64) -> Vec<usize> {
+    let n = gram.len().isqrt();
+    let squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
+    let mut found = Vec::new();
+    for k in 0..n {
+        let pivot = gram[k * n + k];
+        if pivot <= least * squares[k] {
+            found.push(k);
+            continue;
+        }
+        for i in k + 1..n {
+            let factor = gram[i * n + k] / pivot;
+            if factor != 0.0 {
+                (k + 1..n).for_each(|j| gram[i * n + j] -= factor * gram[k * n + j]);
+            }
+        }
+    }
+    found
+}
+
+/// Piece functions on slivers that are alike in some cell.
+fn alike<'a>(
+    dim: usize,
+    enrichment: &Enrichment,
+    users: &[Vec<u32>],
+    matrix: &impl Fn(usize) -> CellView<'a>,
+) -> BTreeSet<usize> {
+    let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
+    let mut slivers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for node in 0..enrichment.nodes() {
+        let own = enrichment.enriched_of(node);
+        let pieces: Vec<usize> = own
+            .filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
+            .collect();
+        if pieces.is_empty() {
+            continue;
+        }
+        let least = SLIVER * square(node);
+        for f in pieces.into_iter().filter(|&f| square(f) <= least) {
+            users[f]
+                .iter()
+                .for_each(|&cell| slivers.entry(cell).or_default().push(f));
+        }
+    }
+    let mut found = BTreeSet::new();
+    for own in slivers.into_values().filter(|own| own.len() > 1) {
+        let mut gram = gram(enrichment, dim, &own, users, matrix);
+        found.extend(tied(&mut gram, ALIKE).into_iter().map(|k| own[k]));
+    }
+    found
 }
 
 /// T = (D L)⁻¹ of a Gram matrix, with zero rows for superfluous functions and those in the span of others before them.
