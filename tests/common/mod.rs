@@ -265,6 +265,14 @@ pub fn crack(p: [f64; 2], q: [f64; 2], friction: f64, tip: &str) -> String {
     )
 }
 
+/// A text with the contact space of all its cracks named.
+pub fn in_space(text: &str, space: &str) -> String {
+    text.replace(
+        "contact = \"edge-pairs\"",
+        &format!("contact = \"{space}\""),
+    )
+}
+
 /// A support on sides (TOML), with its displacement (TOML).
 pub fn support(on: &str, displacement: &str) -> String {
     format!("[[support]]\non = {on}\ndisplacement_m = {displacement}\n")

@@ -47,14 +47,6 @@ fn assert_mixed(found: &Solved) {
     assert!(slip > 0 && open > 0 && open + slip < all);
 }
 
-/// A text with the contact space of all its cracks named.
-fn in_space(text: &str, space: &str) -> String {
-    text.replace(
-        "contact = \"edge-pairs\"",
-        &format!("contact = \"{space}\""),
-    )
-}
-
 /// A plate on its base, a horizontal crack at mid-row, pushed unevenly: open, sticking and slipping pairs.
 ///
 /// ```text

@@ -152,7 +152,11 @@ fn one_sided_body_forces_act_on_their_side_only() {
         let ends = ([-0.2, c - 0.2 * m], [1.2, c + 1.2 * m]);
         let mesh = |rest: &str| {
             let text = plane([0.0, 0.0], [1.0, 1.0], [6, 6], rest);
-            if c == 0.2 { moved(&text) } else { text }
+            match c {
+                0.2 => moved(&text),
+                0.5 => in_space(&text, "node-pairs"),
+                _ => text,
+            }
         };
         for (p, q, upper) in [(ends.0, ends.1, 1), (ends.1, ends.0, 2)] {
             let forces = [1, 2].map(|side| {
@@ -211,14 +215,15 @@ fn an_initial_stress_does_work_on_the_strain_of_each_side() {
             1.0 - height,
         )
     };
+    let on_facets = |(text, upper): (String, f64)| (in_space(&text, "node-pairs"), upper);
     for (text, upper) in [
         through(0.37, 0.0),
         through(0.2, 0.5),
         (moved(&through(0.2, 0.5).0), through(0.2, 0.5).1),
         through(0.0, 1.0),
-        through(0.4, 0.0),
+        on_facets(through(0.4, 0.0)),
         block(0.45, 0.3),
-        block(2.0 / 3.0, 0.0),
+        on_facets(block(2.0 / 3.0, 0.0)),
     ] {
         let (case, body) = bodies(&text);
         let dim = body.mesh.dim();

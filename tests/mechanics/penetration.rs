@@ -73,11 +73,11 @@ fn samples_lie_on_the_crack_up_to_its_tips() {
 }
 
 /// A block of two halves pressed together by springs, which overlap.
-fn pressed(height: f64) -> [f64; 2] {
+fn pressed(height: f64, space: &str) -> [f64; 2] {
     let rest = support("\"bottom\"", "[0, 0, 0]") + &support("\"top\"", "[0, 0, -1e-3]");
     let cracks = [([0.5, 0.5, height], [0.0, 0.0, 1.0], 0.3)];
-    let case = parse(&solid([1.0, 1.0, 1.0], [3, 3, 4], &cracks, &rest));
-    let results = run(&case, &["penalty"]);
+    let text = solid([1.0, 1.0, 1.0], [3, 3, 4], &cracks, &rest);
+    let results = run(&parse(&in_space(&text, space)), &["penalty"]);
     ["max_penetration", "max_penetration_sampled"]
         .map(|quantity| value(&results, |_| true, [quantity, "crack-1", ""]))
 }
@@ -86,12 +86,12 @@ fn pressed(height: f64) -> [f64; 2] {
 /// between the points, and both numbers are the same.
 #[test]
 fn samples_of_a_plane_hold_its_edge_pairs() {
-    let [points, sampled] = pressed(0.6);
+    let [points, sampled] = pressed(0.6, "edge-pairs");
     assert!(
         points > 0.0 && sampled >= points * (1.0 - 1e-12),
         "{points} {sampled}"
     );
     assert!(sampled < 2.0 * points, "{points} {sampled}");
-    let [points, sampled] = pressed(0.5);
+    let [points, sampled] = pressed(0.5, "node-pairs");
     assert!(points > 0.0 && sampled == points, "{points} {sampled}");
 }

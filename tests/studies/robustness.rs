@@ -92,11 +92,13 @@ fn a_problem_taken_alone_gives_the_same_bits() {
             let text = robustness::case_of(&whole, &choices(methods), dim, problem).unwrap();
             let results = run(&parse(&text), methods);
             let own: Vec<&Trial> = expected.iter().filter(|t| t.dim == dim).collect();
-            assert_eq!(results.runs.len(), own.len());
+            // Its load acts at time 0, too, and stays: there the problem is solved.
+            let first = || results.runs.iter().filter(|row| row.key.increment == 0);
+            assert_eq!(first().count(), own.len());
             for trial in own {
                 let same =
                     |key: &RunKey| key.method == trial.method && key.friction == trial.friction;
-                let row = results.runs.iter().find(|r| same(&r.key)).unwrap();
+                let row = first().find(|r| same(&r.key)).unwrap();
                 let found = (row.natural_map, row.iterations, row.points, &row.verdict);
                 let alone = (
                     trial.natural_map,
