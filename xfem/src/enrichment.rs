@@ -337,10 +337,10 @@ impl Enrichment {
         &self.singular.0
     }
 
-    /// Those closer to a cell than its diagonal [m].
-    pub fn singular_points_near(&self, map: &CellMap) -> Vec<Point> {
+    /// Those closer to a cell than some of its diagonals [m].
+    pub fn singular_points_near(&self, map: &CellMap, diagonals: f64) -> Vec<Point> {
         let (points, boxes) = &self.singular;
-        let near = boxes.meeting(&around(map.iter(), map.diagonal()));
+        let near = boxes.meeting(&around(map.iter(), diagonals * map.diagonal()));
         near.into_iter().map(|k| points[k]).collect()
     }
 

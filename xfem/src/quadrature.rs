@@ -212,7 +212,7 @@ impl FanRule {
     pub const fn fine(affine: bool) -> Self {
         FanRule {
             radial: if affine { 5 } else { 10 },
-            angular: 18,
+            angular: 12,
         }
     }
 }

@@ -14,6 +14,9 @@ use crate::mesh::cell::CellMap;
 use super::slice::slice_points;
 use super::{FanRule, WeightedPoint, gauss_cell, segment, tetrahedron, triangle_collapsed};
 
+/// From so many diameters of a triangle on a tip is far.
+pub const FAR: f64 = 4.0;
+
 /// True if no point of the simplex is nearer to the singularity than the simplex is long.
 fn is_far(vertices: &[Point], distance: &impl Fn(&Point) -> f64) -> bool {
     let centre = mean(vertices);
@@ -179,7 +182,7 @@ pub fn graded_points(
         };
         let near: Vec<&Point> = within(1.0).collect();
         if near.is_empty() {
-            let order = if within(4.0).next().is_none() { far } else { n };
+            let order = if within(FAR).next().is_none() { far } else { n };
             points.extend(triangle_collapsed(t, order));
         }
         for tip in &near {

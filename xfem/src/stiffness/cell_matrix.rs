@@ -23,7 +23,7 @@ use crate::geometry::{Point, cross, norm, polygon, sub};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
-use crate::quadrature::graded::graded_points;
+use crate::quadrature::graded::{FAR, graded_points};
 use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
 
 use super::dilatation::ProjectedDilatation;
@@ -181,11 +181,13 @@ impl<'a> CellIntegrator<'a> {
         if branch && self.mesh.dim() == 3 {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
-        let tips = self.enrichment.singular_points_near(map);
+        // As far as a rule asks for them.
+        let tips = self.enrichment.singular_points_near(map, FAR);
+        let near = self.enrichment.singular_points_near(map, 1.0);
         // A pair of tips has none of its own at its middle, and beside another tip a fan around one is no rule.
         let tip = self.tips_in(cell).first();
         let tip = tip.map(|&(_, tip)| self.enrichment.tips[tip].tips());
-        let tip = tip.filter(|own| own.len() == 1 && tips.len() == 1);
+        let tip = tip.filter(|own| own.len() == 1 && near.len() == 1);
         // Beside other cracks a part may not see the tip from all over its outline.
         let sees = |part: &Part, tip: &Point| {
             polygon::edges(&part.polygon).all(|(p, q)| {
