@@ -130,7 +130,8 @@ fn bends_and_junctions_are_the_same_however_they_are_read() {
 fn sticking_corners_feel_the_uniform_pressure() {
     let level = [[0.697579, 0.820779], [0.26254, 0.544187]];
     let of = |t: f64| [0, 1].map(|a| level[0][a] + t * (level[1][a] - level[0][a]));
-    let scenes: [(&str, [usize; 2], Vec<Vec<[f64; 2]>>); 5] = [
+    type Cracks = Vec<Vec<[f64; 2]>>;
+    let scenes: [(&str, [usize; 2], Cracks); 5] = [
         (
             "sharp",
             [17, 17],
