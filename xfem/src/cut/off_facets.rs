@@ -26,14 +26,20 @@ const ALONG: f64 = 1e-10;
 /// How far cracks are moved, in the same unit of the whole mesh: slivers of that thickness stay.
 const STEP: f64 = 8.0 * ALONG;
 
-/// Where cracks are tried, in steps: along no axis and no diagonal of a grid.
-const PLACES: [Point; 6] = [
+/// Where cracks are tried, in steps: along no axis and no diagonal of a grid. Several near one line may need a few.
+const PLACES: [Point; 12] = [
     [0.0; 3],
     [0.36, 0.80, 0.48],
     [-0.80, 0.48, 0.36],
     [0.48, -0.36, 0.80],
     [-0.93, -0.31, 0.20],
     [0.20, 0.93, -0.31],
+    [1.3, -1.1, 0.7],
+    [-0.7, 1.7, -1.2],
+    [1.9, 0.5, 1.4],
+    [-1.6, -0.9, 2.1],
+    [0.6, -2.3, 1.1],
+    [2.7, 1.5, -0.8],
 ];
 
 /// Places cracks of given shapes and tips in a mesh, none of them along a facet.
