@@ -31,8 +31,6 @@ pub struct CrackSpec {
     pub friction: f64,
     /// Enrichment at tips inside the body.
     pub tip: Tip,
-    /// Where `tip` stands in the file, or the crack's table.
-    pub tip_span: Span,
     /// Contact space.
     pub contact: ContactSpace,
     /// Where `contact` stands in the file, or the crack's table.
@@ -89,7 +87,6 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
             ContactSpace::NodePairs => no_tip(tip_value, "node pairs have no branch functions")?,
             _ => tip(tip_value, &shape)?,
         },
-        tip_span: tip_value.map_or(table.span(), |v| v.span()),
         geometry: shape,
         friction: friction(table.required("friction")?)?,
         contact,

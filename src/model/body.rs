@@ -19,8 +19,8 @@ use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::material::{Dilatation, Lame};
-use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::mesh::box_mesh::box_mesh;
+use stickslip_xfem::mesh::{Lengths, Mesh};
 use stickslip_xfem::stiffness::assembly::{Assembly, elimination_order};
 use stickslip_xfem::stiffness::block_matrix::BlockMatrix;
 use stickslip_xfem::stiffness::cell_matrices::CellMatrices;
@@ -126,12 +126,13 @@ impl Body {
         })?;
         mesh.origin = case.origin;
         let Placed {
+            lengths,
             cracks,
             joined,
             doubled,
         } = place_cracks(case, &mut mesh)?;
         let supports = Supports::new(case, &mesh)?;
-        let enrichment = Enrichment::new(&mesh, &cracks, &supports.beside(&cracks))
+        let enrichment = Enrichment::new(&mesh, &lengths, &cracks, &supports.beside(&cracks))
             .map_err(|e| crack_error(case, &e))?;
         let lame = case.lame();
         let integrator = CellIntegrator {
@@ -183,7 +184,7 @@ impl Body {
             free.map(|(i, v)| (i, v / diagonal[i].sqrt())).collect()
         };
         let ContactSurface { points, surface } =
-            faces(case, &integrator, doubled, &numbers, scaled)?;
+            faces(case, &integrator, &lengths, doubled, &numbers, scaled)?;
         let samples = facet_samples(&integrator).map_err(unfilled)?;
         let jump = jump_rows(dim, &points);
         let spaces = case.cracks.iter().map(|spec| spec.contact);
@@ -309,6 +310,7 @@ impl Body {
 fn faces(
     case: &Case,
     integrator: &CellIntegrator<'_>,
+    lengths: &Lengths,
     doubled: Option<ContactSurface>,
     numbers: &[Option<u32>],
     scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)>,
@@ -336,7 +338,7 @@ fn faces(
         let rows = jump_rows(dim, point);
         rows.iter().map(|row| scaled(row)).collect()
     };
-    let size = integrator.mesh.smallest_edge().powi(dim as i32 - 1);
+    let size = lengths.smallest.powi(dim as i32 - 1);
     let hairs = rank::hairs(&surface, &arms, size);
     arms = rank::merge(&mut surface, &arms, &hairs).0;
     loop {
@@ -411,8 +413,8 @@ fn space_name(case: &Case, cracks: &[Crack]) -> String {
 }
 
 /// Cracks in a mesh.
-#[derive(Default)]
 struct Placed {
+    lengths: Lengths,
     cracks: Vec<Crack>,
     joined: Vec<Joined>,
     doubled: Option<ContactSurface>,
@@ -432,14 +434,17 @@ fn place_cracks(case: &Case, mesh: &mut Mesh) -> Result<Placed, CaseError> {
         let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &lengths);
         let surface = conforming::split(mesh, &crack).map_err(refused)?;
         return Ok(Placed {
+            lengths: mesh.lengths(),
+            cracks: Vec::new(),
+            joined: Vec::new(),
             doubled: Some(surface),
-            ..Placed::default()
         });
     }
     let cracks: Vec<_> = case.cracks.iter().map(|c| (&c.geometry, c.tip)).collect();
     let cracks = off_facets(mesh, &lengths, &cracks).map_err(|e| refused(e.into()))?;
-    let (cracks, joined) = arms(cracks, mesh).map_err(|e| refused(e.into()))?;
+    let (cracks, joined) = arms(cracks, mesh, &lengths).map_err(|e| refused(e.into()))?;
     Ok(Placed {
+        lengths,
         cracks,
         joined,
         doubled: None,

@@ -18,14 +18,13 @@ use crate::cut::is_split;
 use crate::cut::off_facets::AlongFacet;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
-use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::clip::{Side, snapped};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
-use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, MOST_NODES};
+use crate::mesh::{Lengths, Mesh};
 
 use self::basis::{ABSENT, Function, FunctionKind, Region, STEP};
 pub use self::error::EnrichmentError;
@@ -85,6 +84,7 @@ impl Enrichment {
     /// A crack wholly outside, along a cell facet, or one that leaves a cell no clean parts.
     pub fn new(
         mesh: &Mesh,
+        lengths: &Lengths,
         cracks: &[Crack],
         beside: &BTreeMap<u32, Point>,
     ) -> Result<Self, EnrichmentError> {
@@ -99,15 +99,15 @@ impl Enrichment {
             },
         })?;
         let tips = match mesh.dim() {
-            2 => Tips::flat(mesh, cracks, &trace)?,
-            _ => Tips::solid(mesh, cracks),
+            2 => Tips::flat(mesh, lengths, cracks, &trace)?,
+            _ => Tips::solid(mesh, lengths, cracks),
         };
         let divided = tips.partitions.values().chain(tips.endings.values());
         let faces = divided.flat_map(|p| &p.faces);
         let present: BTreeSet<usize> = faces.map(|f| cracks[f.crack].number).collect();
         for crack in cracks {
             if !present.contains(&crack.number) {
-                return Err(match enters(mesh, crack) {
+                return Err(match enters(mesh, lengths, crack) {
                     true => EnrichmentError::TooShort {
                         crack: crack.number,
                     },
@@ -176,7 +176,7 @@ impl Enrichment {
             step_ptr: vec![0],
             steps: Vec::new(),
             on_crack: cracks.iter().flat_map(Crack::nodes_on).collect(),
-            sizes: mesh.node_sizes(),
+            sizes: lengths.of_nodes.clone(),
             cut_by,
             standard,
         };
@@ -420,7 +420,7 @@ fn beside(frame: &TipFrame, map: &CellMap, rounding: f64) -> Side {
 }
 
 /// Whether a crack has a part inside the body.
-fn enters(mesh: &Mesh, crack: &Crack) -> bool {
+fn enters(mesh: &Mesh, lengths: &Lengths, crack: &Crack) -> bool {
     let middles = crack.path.windows(2).map(|w| mean([&w[0].x, &w[1].x]));
     let centre = match &crack.geometry {
         Geometry::Ellipse(ellipse) => Some(ellipse.centre),
@@ -428,5 +428,5 @@ fn enters(mesh: &Mesh, crack: &Crack) -> bool {
     };
     middles
         .chain(centre)
-        .any(|x| !cells_at(mesh, &x).is_empty())
+        .any(|x| !lengths.cells_at(mesh, &x).is_empty())
 }

@@ -48,6 +48,8 @@ pub struct Lengths {
     pub of_nodes: Vec<f64>,
     /// Shortest edge [m].
     pub smallest: f64,
+    /// See [`Mesh::extent`] [m].
+    pub extent: (f64, Point),
     /// See [`Mesh::rounding`] [m].
     pub rounding: f64,
     /// Every cell with its neighbourhood, see [`Mesh::surroundings`].
@@ -168,6 +170,7 @@ impl Mesh {
         Lengths {
             smallest: of_nodes.iter().copied().fold(f64::INFINITY, f64::min),
             of_nodes,
+            extent: self.extent(),
             rounding: self.rounding(),
             cells: self.surroundings(),
         }

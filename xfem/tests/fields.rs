@@ -30,8 +30,9 @@ impl Body {
         };
         let lines = corner.iter().zip(cells).map(line).collect();
         let mesh = box_mesh(&GridSpec::new(lines)).unwrap();
-        let cracks = vec![Crack::new(0, shape, tip, &mesh, &mesh.lengths())];
-        let enrichment = Enrichment::new(&mesh, &cracks, &Default::default()).unwrap();
+        let lengths = mesh.lengths();
+        let cracks = vec![Crack::new(0, shape, tip, &mesh, &lengths)];
+        let enrichment = Enrichment::new(&mesh, &lengths, &cracks, &Default::default()).unwrap();
         Body {
             mesh,
             cracks,

@@ -7,11 +7,10 @@
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::polygon::{segment_distance, segment_foot};
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
-use crate::mesh::Mesh;
+use crate::mesh::{Lengths, Mesh};
 
 use super::crack::{Crack, End, Geometry, Parent, PathVertex};
 use super::is_split;
-use super::placement::cells_at;
 
 /// Bends sharper than this part a crack [rad]: ten degrees.
 const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -55,7 +54,11 @@ pub struct Joined {
 ///
 /// # Errors
 /// Two cracks of a plane body that run along each other.
-pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Joined>), Overlap> {
+pub fn arms(
+    mut cracks: Vec<Crack>,
+    mesh: &Mesh,
+    lengths: &Lengths,
+) -> Result<(Vec<Crack>, Vec<Joined>), Overlap> {
     if mesh.dim() == 3 {
         let mut done: Vec<Crack> = Vec::new();
         for crack in cracks {
@@ -63,7 +66,7 @@ pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Join
         }
         return Ok((done, Vec::new()));
     }
-    let size = mesh.smallest_edge();
+    let size = lengths.smallest;
     let mut places = Places {
         size,
         points: Vec::new(),
@@ -76,9 +79,10 @@ pub fn arms(mut cracks: Vec<Crack>, mesh: &Mesh) -> Result<(Vec<Crack>, Vec<Join
         .iter()
         .map(|crack| boxes.meeting(&extents(crack)))
         .collect();
+    let inside = |x: &Point| !lengths.cells_at(mesh, x).is_empty();
     for k in 0..cracks.len() {
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
-            if !places.join(&cracks, (k, end), &near[k], mesh) {
+            if !places.join(&cracks, (k, end), &near[k], inside) {
                 places.lead_out(&mut cracks[k], end, mesh);
             }
         }
@@ -122,7 +126,7 @@ impl Places {
         cracks: &[Crack],
         (k, end): (usize, usize),
         near: &[usize],
-        mesh: &Mesh,
+        inside: impl Fn(&Point) -> bool,
     ) -> bool {
         let Some((last, ahead)) = ending(&cracks[k], end) else {
             return false;
@@ -167,7 +171,7 @@ impl Places {
             return false;
         };
         // Outside of the body nothing has to meet.
-        if cells_at(mesh, &last.x).is_empty() {
+        if !inside(&last.x) {
             return false;
         }
         let x = first.2;

@@ -3,7 +3,7 @@
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled};
-use crate::mesh::Mesh;
+use crate::mesh::{Lengths, Mesh};
 
 use super::crack::{Crack, Geometry};
 use super::is_split;
@@ -128,9 +128,20 @@ pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(usize, Point, Point)> {
 
 /// Cells whose closure contains a point, within 1e-9 of their diagonal.
 pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
-    (0..mesh.cell_count())
-        .filter(|&cell| reference_position(mesh, cell, x, ON_EDGE).is_some())
-        .collect()
+    let near = 0..mesh.cell_count();
+    near.filter(holding(mesh, x)).collect()
+}
+
+impl Lengths {
+    /// The same, found by place.
+    pub fn cells_at(&self, mesh: &Mesh, x: &Point) -> Vec<usize> {
+        let near = self.cells.meeting(&[*x; 2]).into_iter();
+        near.filter(holding(mesh, x)).collect()
+    }
+}
+
+fn holding(mesh: &Mesh, x: &Point) -> impl Fn(&usize) -> bool {
+    move |&cell| reference_position(mesh, cell, x, ON_EDGE).is_some()
 }
 
 /// Reference position of a point in the closure of a cell, give or take `slack` diagonals; `None` if it lies outside.

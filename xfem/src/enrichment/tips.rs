@@ -21,8 +21,8 @@ use crate::cut::trace::{Chain, Trace, TracedTip};
 use crate::geometry::boxes::Boxes;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
-use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
+use crate::mesh::{Lengths, Mesh};
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
@@ -70,11 +70,16 @@ impl Tips {
     ///
     /// # Errors
     /// Cracks that leave a cell no clean parts.
-    pub fn flat(mesh: &Mesh, arms: &[Crack], trace: &Trace) -> Result<Self, EnrichmentError> {
+    pub fn flat(
+        mesh: &Mesh,
+        lengths: &Lengths,
+        arms: &[Crack],
+        trace: &Trace,
+    ) -> Result<Self, EnrichmentError> {
         let mut search = Search {
-            smallest: mesh.smallest_edge(),
             mesh,
-            near: Neighbours::new(mesh),
+            lengths,
+            near: Neighbours::new(mesh, lengths),
             arms,
             trace,
             kept: trace
@@ -126,7 +131,7 @@ impl Tips {
     }
 
     /// Divides the cells of a solid.
-    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Self {
+    pub fn solid(mesh: &Mesh, lengths: &Lengths, arms: &[Crack]) -> Self {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, crack) in arms.iter().enumerate() {
@@ -192,7 +197,7 @@ impl Tips {
             };
             let zone = match radius {
                 Some(radius) => {
-                    let near = near.get_or_insert_with(|| Neighbours::new(mesh));
+                    let near = near.get_or_insert_with(|| Neighbours::new(mesh, lengths));
                     let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }
@@ -240,6 +245,7 @@ fn branches(node: u32, tip: usize, count: u8) -> impl Iterator<Item = Function> 
 /// The search for the tips of a 2D body that can carry branch functions.
 struct Search<'a> {
     mesh: &'a Mesh,
+    lengths: &'a Lengths,
     near: Neighbours<'a>,
     arms: &'a [Crack],
     trace: &'a Trace,
@@ -252,8 +258,6 @@ struct Search<'a> {
     tips_of: Vec<Vec<usize>>,
     chains_of: Vec<Vec<(usize, &'a Chain)>>,
     partitions: BTreeMap<usize, Partition>,
-    /// Shortest edge [m].
-    smallest: f64,
 }
 
 impl Search<'_> {
@@ -403,7 +407,7 @@ impl Search<'_> {
                 && own.count() == 2
                 && alone
                 && !cells.is_empty()
-                && self.inside(index) > SHORTEST * self.smallest
+                && self.inside(index) > SHORTEST * self.lengths.smallest
             {
                 self.pairs.insert(index);
             }

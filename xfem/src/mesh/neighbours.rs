@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::Mesh;
-use crate::geometry::boxes::{Boxes, Extents};
+use super::{Lengths, Mesh};
+use crate::geometry::boxes::Extents;
 
 /// The cells of every node, ascending.
 #[derive(Debug)]
@@ -12,13 +12,12 @@ pub struct Neighbours<'a> {
     /// Where the cells of every node start.
     ptr: Vec<usize>,
     cells: Vec<usize>,
-    /// See [`Mesh::surroundings`].
-    boxes: Boxes,
+    lengths: &'a Lengths,
 }
 
 impl<'a> Neighbours<'a> {
     /// Gathers them.
-    pub fn new(mesh: &'a Mesh) -> Self {
+    pub fn new(mesh: &'a Mesh, lengths: &'a Lengths) -> Self {
         let mut ptr = vec![0; mesh.nodes.len() + 1];
         let nodes = |cell: usize| mesh.cell(cell).iter().map(|&n| n as usize);
         for node in (0..mesh.cell_count()).flat_map(nodes) {
@@ -35,12 +34,11 @@ impl<'a> Neighbours<'a> {
                 next[node] += 1;
             }
         }
-        let boxes = mesh.surroundings();
         Neighbours {
             mesh,
             ptr,
             cells,
-            boxes,
+            lengths,
         }
     }
 
@@ -52,7 +50,7 @@ impl<'a> Neighbours<'a> {
 
     /// All nodes in a box, and some beside it.
     pub fn nodes_in(&self, extents: &Extents) -> BTreeSet<u32> {
-        self.mesh.nodes_of(self.boxes.meeting(extents))
+        self.mesh.nodes_of(self.lengths.cells.meeting(extents))
     }
 
     /// Nodes of all cells with one of some nodes.

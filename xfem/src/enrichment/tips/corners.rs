@@ -24,7 +24,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use crate::cut::crack::{End, Geometry, Tip};
-use crate::cut::placement::cells_at;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
@@ -64,10 +63,10 @@ impl Search<'_> {
                 continue;
             };
             let x = arms[0].0.position;
-            let cells = cells_at(self.mesh, &x);
-            let sizes = self.mesh.node_sizes();
+            let cells = self.lengths.cells_at(self.mesh, &x);
             let nodes = self.mesh.nodes_of(cells.iter().copied());
-            let sizes = nodes.iter().map(|&node| sizes[node as usize]);
+            let sizes = nodes.iter();
+            let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
             let size = sizes.fold(f64::INFINITY, f64::min);
             let Some(zone) = self.corner_zone(&arms, &cells, DEEP * size) else {
                 continue;
@@ -90,7 +89,7 @@ impl Search<'_> {
     /// Two or three ends of arms in one place. By their distances from the middle of the body: in the same order however the
     /// cracks are read, and the body is turned.
     fn meetings(&self) -> Vec<Vec<ArmEnd>> {
-        let (extent, middle) = self.mesh.extent();
+        let (extent, middle) = self.lengths.extent;
         let away = |x: &Point| (norm(&sub(x, &middle)) / extent * 1e9).round() as i64;
         let mut at: BTreeMap<(i64, [u64; 3]), Vec<ArmEnd>> = BTreeMap::new();
         for (index, arm) in self.arms.iter().enumerate() {

@@ -33,8 +33,8 @@ impl Search<'_> {
         nodes: &BTreeSet<u32>,
         cut_off: &BTreeSet<Place>,
     ) -> bool {
-        let (size, _) = self.mesh.extent();
-        let line = frame.behind(*room, size, 0.1 * self.smallest);
+        let (size, _) = self.lengths.extent;
+        let line = frame.behind(*room, size, 0.1 * self.lengths.smallest);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
