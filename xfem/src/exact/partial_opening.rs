@@ -90,25 +90,7 @@ impl Solution for PartialOpening {
 mod tests {
     use super::*;
     use crate::exact::check::{Tolerances, along, check_form, line, setting};
-    use crate::exact::parts::face_load::FaceLoad;
     use crate::material::Model;
-    use std::f64::consts::PI;
-
-    #[test]
-    fn contact_raises_the_intensity_of_linear_loading() {
-        let overlapping = FaceLoad::new(Mode::Opening, 0.0, 1.0, 0.0, 1.0).intensity(1.0);
-        assert!((overlapping - 0.8862269).abs() < 1e-7);
-        assert!((overlapping - 0.5 * PI.sqrt()).abs() < 1e-15);
-        let shape = line([-1.0, 0.0], [1.0, 0.0]);
-        let of = setting(&shape);
-        let field = build(&of, &[0.0, -1.0]).unwrap().at(&[1.0]).unwrap();
-        let k = field.intensity(&[1.0, 0.0, 0.0]).unwrap();
-        assert!((k[0] - 0.9648017).abs() < 1e-7 && k[1] == 0.0, "{k:?}");
-        assert_eq!(field.intensity(&[-1.0, 0.0, 0.0]), Some([0.0; 3]));
-        // Open where s > −1/3.
-        let [open, closed] = [-0.33, -0.34].map(|s| field.jump(&[s, 0.0, 0.0])[0]);
-        assert!(open > 0.0 && closed == 0.0);
-    }
 
     #[test]
     fn the_contact_laws_hold_in_every_state() {

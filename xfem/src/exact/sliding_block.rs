@@ -224,36 +224,6 @@ mod tests {
         assert!((a - b).abs() <= 1e-12 * b.abs(), "{a} {b}");
     }
 
-    /// The numbers of cases/sliding_block_*.toml.
-    #[test]
-    fn one_push_gives_the_numbers_of_the_shipped_cases() {
-        let shape = line(25.0);
-        for (friction, top, corner, dissipation) in [
-            (
-                0.1,
-                0.013323552770329615,
-                -0.11103306169977178,
-                0.00017207882906844214,
-            ),
-            (
-                0.2,
-                0.01914313047163978,
-                -0.09967614826381027,
-                0.00042497043015836064,
-            ),
-            (0.5, 0.07021978021978022, 0.0, 0.0),
-        ] {
-            let of = square(&shape, friction);
-            // From a block under the same pressure all around.
-            let solution = build(&of, &[0.01, 0.06]).unwrap();
-            let field = solution.at(&[0.0052 / 0.06, 1.0]).unwrap();
-            close(-field.stress(&[0.5; 3], 1.0)[1][1], top);
-            close(field.displacement(&[0.0, 1.0, 0.0], 1.0)[0], corner);
-            close(field.displacement(&[0.3, 1.0, 0.0], 1.0)[1], -0.06);
-            close(field.dissipation().unwrap(), dissipation);
-        }
-    }
-
     #[test]
     fn a_cycle_gives_the_numbers_of_the_shipped_case() {
         let shape = line(25.0);

@@ -304,47 +304,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn higher_derivatives_are_differences_of_lower_ones() {
-        let d = 1e-5;
-        for axes in DISCS {
-            for x in [
-                [0.2, 0.1, 0.05],
-                [1.2, 0.3, 0.01],
-                [0.9, -0.2, -0.3],
-                [0.2, 0.7, 1e-3],
-            ] {
-                let here = disc_potential(axes, x, 1.0);
-                for k in 0..3 {
-                    let at = |step: f64| {
-                        let mut y = x;
-                        y[k] += step * d;
-                        disc_potential(axes, y, 1.0)
-                    };
-                    // Fourth order.
-                    let (p, m, pp, mm) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
-                    let slope = |f: &dyn Fn(&DiscPotential) -> f64| {
-                        (8.0 * (f(&p) - f(&m)) - (f(&pp) - f(&mm))) / (12.0 * d)
-                    };
-                    let close = |found: f64, exact: f64, tolerance: f64, scale: f64| {
-                        let error = (found - exact).abs();
-                        assert!(
-                            error < tolerance * (1.0 + scale.abs()),
-                            "{axes:?} {x:?} {k}"
-                        );
-                    };
-                    for i in 0..3 {
-                        let exact = slope(&|v| v.first[i]);
-                        close(here.second[i][k], exact, 1e-7, exact);
-                        close(here.z_second[i][k], x[2] * here.second[i][k], 1e-13, exact);
-                        for j in 0..3 {
-                            let exact = x[2] * slope(&|v| v.second[i][j]);
-                            close(here.z_third[i][j][k], exact, 1e-7, exact);
-                        }
-                    }
-                }
-            }
-        }
-    }
 }

@@ -60,33 +60,6 @@ impl FrictionSpring {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_cycle_dissipates_the_area_of_its_loop() {
-        let (k, clamp) = (3.0, 0.6);
-        for (amplitude, loss) in [
-            (0.15, 0.0),
-            (0.2, 0.0),
-            (0.5, 4.0 * clamp * (0.5 - clamp / k)),
-        ] {
-            let mut state = FrictionSpring {
-                bounds: [-clamp, clamp],
-                ..FrictionSpring::default()
-            };
-            let mut cycle = |targets: &[f64]| {
-                let before = state.dissipation;
-                for u in targets {
-                    state = state.step(k, u * amplitude, [-clamp, clamp]);
-                    assert!(state.force.abs() <= clamp);
-                }
-                state.dissipation - before
-            };
-            cycle(&[1.0]);
-            let coarse = cycle(&[-1.0, 1.0]);
-            let fine = cycle(&[0.7, 0.1, -0.4, -1.0, -0.9, -0.2, 0.6, 1.0]);
-            assert!((coarse - loss).abs() < 1e-15 && (fine - loss).abs() < 1e-15);
-        }
-    }
-
     /// Bounds ±(¼ + ¼ u): slip starts at u = 1/11 under 3/11 and goes on with 2.75 per u. One increment or many.
     #[test]
     fn the_bound_grows_while_the_spring_slides() {
