@@ -78,17 +78,6 @@ mod tests {
         places.iter().filter(near).count()
     }
 
-    #[test]
-    fn a_segment_has_ten_samples_from_end_to_end() {
-        let (p, q) = ([1.0, 2.0, 0.0], [4.0, -2.5, 0.0]);
-        let found = places(&[p, q]);
-        assert_eq!(found.len(), 10);
-        assert_eq!((holds(&found, &p), holds(&found, &q)), (1, 1));
-        let step = norm(&sub(&q, &p)) / 9.0;
-        let steps = found.windows(2).map(|pair| norm(&sub(&pair[1], &pair[0])));
-        assert!(steps.into_iter().all(|s| (s - step).abs() < 1e-12));
-    }
-
     /// Goal: corners, centroid and points on the edges once each, the centroid of the samples that of a regular polygon.
     #[test]
     fn a_polygon_has_its_corners_and_centroid_once() {

@@ -227,31 +227,3 @@ fn cyclic(mut corners: Vec<FaceCorner>) -> Vec<FaceCorner> {
     corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
     corners
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cut::crack::Tip;
-    use crate::geometry::clip::fan;
-    use crate::geometry::crack_shape::CrackShape;
-    use crate::mesh::box_mesh::{GridSpec, box_mesh};
-
-    /// The corners of the face of a plane through the cell [−1, 1]³.
-    fn face(shape: &CrackShape) -> Vec<FaceCorner> {
-        let mesh = box_mesh(&GridSpec::new(vec![vec![-1.0, 1.0]; 3])).unwrap();
-        let crack = Crack::new(0, shape, Tip::None, &mesh, &mesh.lengths());
-        let partition = Partition::solid(&mesh, 0, &[crack], &[0], &[]);
-        assert_eq!((partition.parts.len(), partition.faces.len()), (2, 1));
-        partition.faces[0].corners.clone()
-    }
-
-    #[test]
-    fn the_face_of_an_oblique_plane_is_a_hexagon() {
-        let plane = CrackShape::plane([0.0; 3], [1.0; 3]);
-        let hexagon: Vec<Point> = face(&plane).iter().map(|corner| corner.0).collect();
-        assert_eq!(hexagon.len(), 6);
-        let doubled = |t: &[Point; 3]| norm(&cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0])));
-        let area: f64 = fan(&hexagon).iter().map(|t| 0.5 * doubled(t)).sum();
-        assert!((area - 3.0 * 3.0f64.sqrt()).abs() < 1e-12); // regular hexagon of side √2
-    }
-}

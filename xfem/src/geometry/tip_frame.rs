@@ -435,18 +435,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn only_the_first_branch_function_jumps_and_by_two_roots_of_r() {
-        let tip = frame();
-        for r in [1e-3, 0.2, 1.5] {
-            let x = crate::geometry::add_scaled(&tip.position, -r, &tip.ahead);
-            let (upper, _) = tip.branch(&x, Some(1.0));
-            let (lower, _) = tip.branch(&x, Some(-1.0));
-            assert!((upper[0] - lower[0] - 2.0 * r.sqrt()).abs() < 1e-12);
-            for l in 1..4 {
-                assert!((upper[l] - lower[l]).abs() < 1e-12);
-            }
-        }
-    }
 }

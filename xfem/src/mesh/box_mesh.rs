@@ -197,54 +197,11 @@ pub struct FoldedCell {
 mod tests {
     use super::*;
     use crate::geometry::{norm, sub};
-    use crate::mesh::grid_motion::{Distort, Follow, Twist};
+    use crate::mesh::grid_motion::{Distort, Twist};
 
     fn unit_square(cells: usize) -> GridSpec {
         let line: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
         GridSpec::new(vec![line.clone(), line])
-    }
-
-    #[test]
-    fn sides_hold_their_facets_and_corners_meet() {
-        let mesh = box_mesh(&GridSpec::new(vec![
-            vec![0.0, 1.0, 3.0],
-            vec![0.0, 2.0],
-            vec![0.0, 1.0, 2.0, 4.0],
-        ]))
-        .unwrap();
-        assert_eq!(mesh.cell_count(), 6);
-        assert_eq!(mesh.sides["left"].len(), 3);
-        assert_eq!(mesh.sides["front"].len(), 6);
-        assert_eq!(mesh.sides["top"].len(), 2);
-        for node in mesh.side_nodes("back") {
-            assert_eq!(mesh.nodes[node][1], 2.0);
-        }
-    }
-
-    #[test]
-    fn bent_grid_lines_follow_the_line_and_keep_the_border() {
-        let lines: Vec<f64> = (0..=23)
-            .map(|i| -10.0 + 20.0 * f64::from(i) / 23.0)
-            .collect();
-        let mut spec = GridSpec::new(vec![lines.clone(); 2]);
-        spec.follow = Some(Follow {
-            point: [0.0; 3],
-            angle: std::f64::consts::FRAC_PI_4,
-            half_length: 5.5,
-        });
-        let mesh = box_mesh(&spec).unwrap();
-        let half_row = 10.0 / 23.0;
-        for (x, grid) in mesh.nodes.iter().zip(&mesh.grid) {
-            if x[0].abs() < 5.5 && (grid[1] == 11 || grid[1] == 12) {
-                assert!(((x[1] - x[0]).abs() - half_row).abs() < 1e-12);
-            }
-            if grid[1] == 0 || grid[1] == 23 {
-                assert_eq!(x[1].abs(), 10.0);
-            }
-            if grid[0] == 0 || grid[0] == 23 {
-                assert_eq!(x[1], lines[grid[1] as usize]);
-            }
-        }
     }
 
     fn twist(degrees: f64) -> Option<Twist> {
