@@ -10,7 +10,6 @@ mod check;
 mod circular_interface;
 mod elliptic_crack;
 mod manufactured_slip;
-mod manufactured_slip_3d;
 mod partial_opening;
 mod partial_slip;
 mod parts;
@@ -28,8 +27,8 @@ pub static SOLUTIONS: &[SolutionSpec] = &[
     partial_slip::SPEC,
     partial_opening::SPEC,
     sliding_block::SPEC,
-    manufactured_slip::SPEC,
-    manufactured_slip_3d::SPEC,
+    manufactured_slip::FLAT,
+    manufactured_slip::SOLID,
     circular_interface::SPEC,
     elliptic_crack::SPEC,
 ];

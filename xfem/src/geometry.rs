@@ -72,6 +72,12 @@ pub fn combine(axes: &[Point; 3], components: [f64; 3]) -> Point {
     terms.fold([0.0; 3], |x, (value, e)| add_scaled(&x, *value, e))
 }
 
+/// The tensor with given components along unit vectors.
+pub fn rotated(axes: &[Point; 3], local: &[Point; 3]) -> [Point; 3] {
+    let on = local.map(|row| combine(axes, row));
+    [0, 1, 2].map(|k| combine(axes, on.map(|row| row[k])))
+}
+
 /// Where a condition ends that holds at `holding` and not at `failing`, by bisection.
 pub fn bisect(mut holding: f64, mut failing: f64, holds: impl Fn(f64) -> bool) -> f64 {
     // Halvings down to rounding.

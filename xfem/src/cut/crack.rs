@@ -16,7 +16,7 @@ use crate::geometry::boxes::{Extents, around};
 use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
-use crate::geometry::curve::{Curve, turned};
+use crate::geometry::curve::Curve;
 use crate::geometry::ellipse::Ellipse;
 use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
@@ -144,22 +144,14 @@ impl Crack {
         mesh: &Mesh,
         lengths: &Lengths,
     ) -> Self {
-        let flat = |p: &[f64; 2]| [p[0], p[1], 0.0];
         let geometry = match shape {
-            CrackShape::Polyline(points) => {
-                Geometry::Curve(Curve::Chain(points.iter().map(flat).collect()))
-            }
-            CrackShape::Arc {
+            CrackShape::Polyline(points) => Geometry::Curve(Curve::chain(points)),
+            &CrackShape::Arc {
                 centre,
                 radius,
                 from,
                 to,
-            } => Geometry::Curve(Curve::Arc {
-                centre: flat(centre),
-                radius: *radius,
-                from: *from,
-                to: *to,
-            }),
+            } => Geometry::Curve(Curve::arc(centre, radius, [from, to])),
             CrackShape::Plane { point, normal } => Geometry::Plane {
                 origin: *point,
                 frame: plane_frame(normal),
@@ -262,10 +254,7 @@ impl Crack {
     /// Local frame n, a, b at a point of the crack.
     pub fn frame(&self, x: &Point) -> [Point; 3] {
         match &self.geometry {
-            Geometry::Curve(curve) => {
-                let a = curve.nearest(x).tangent;
-                [turned(&a), a, [0.0, 0.0, 1.0]]
-            }
+            Geometry::Curve(curve) => curve.frame(x),
             Geometry::Plane { frame, .. } => *frame,
             Geometry::Ellipse(e) => e.frame(),
         }
@@ -354,10 +343,14 @@ fn path(curve: &Curve, cell: f64) -> Vec<PathVertex> {
     let length = curve.length();
     match curve {
         Curve::Chain(points) => {
-            let kinks = curve.kinks();
-            let inner = kinks.iter().copied();
-            let s = std::iter::once(0.0).chain(inner).chain([length]);
-            s.zip(points).map(|(s, &x)| PathVertex { s, x }).collect()
+            let mut s = 0.0;
+            let vertex = |(k, &x): (usize, &Point)| {
+                s += k
+                    .checked_sub(1)
+                    .map_or(0.0, |before| norm(&sub(&x, &points[before])));
+                PathVertex { s, x }
+            };
+            points.iter().enumerate().map(vertex).collect()
         }
         Curve::Arc { .. } => {
             let count = (4.0 * length / cell).ceil().clamp(CHORDS[0], CHORDS[1]);

@@ -19,6 +19,7 @@ use crate::cut::partition::Partition;
 use crate::cut::placement::{self, front_frame};
 use crate::cut::trace::{Chain, Trace, TracedTip};
 use crate::geometry::boxes::Boxes;
+use crate::geometry::curve::Curve;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
 use crate::mesh::neighbours::Neighbours;
@@ -351,14 +352,12 @@ impl Search<'_> {
         let arm = &self.arms[tip.arm];
         let from = arm.range[tip.end];
         let other = (self.range(tip.arm)[1 - tip.end] - from).abs();
-        let Geometry::Curve(curve) = &arm.geometry else {
+        let Geometry::Curve(Curve::Chain(_)) = &arm.geometry else {
             return other;
         };
-        let kinks = curve
-            .kinks()
-            .into_iter()
-            .filter(|k| *k > arm.range[0] && *k < arm.range[1]);
-        kinks.map(|k| (k - from).abs()).fold(other, f64::min)
+        let vertices = arm.path.iter().map(|vertex| vertex.s);
+        let kinks = vertices.filter(|s| *s > arm.range[0] && *s < arm.range[1]);
+        kinks.map(|s| (s - from).abs()).fold(other, f64::min)
     }
 
     /// Length of an arm inside the body [m].

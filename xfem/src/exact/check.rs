@@ -4,7 +4,7 @@ use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::{Point, add_scaled, dot, norm, resolve, sub, unit};
 use crate::material::{Lame, Material, Model};
 
-use super::parts::line_crack::{LineCrack, apply, axes};
+use super::parts::line_crack::{LineCrack, apply};
 use super::solution::{Field, Setting, Solution};
 
 /// A setting for tests: E = 2, ν = 0.3, plane strain, μ = 0.5, body [−1, 1]².
@@ -41,8 +41,7 @@ fn check_elasticity(
     field: &dyn Field,
     of: &Setting<'_>,
     points: &[Point],
-    step: f64,
-    tolerance: f64,
+    [step, tolerance]: [f64; 2],
 ) {
     let lame = Lame::new(of.material, of.model);
     let dim = of.model.dim();
@@ -97,7 +96,7 @@ pub fn check_contact(
 ) {
     let [stress, length] = tolerance;
     for x in points {
-        let axes = axes(of.crack, x);
+        let axes = of.crack.frame(x);
         let traction = field.traction(x);
         for side in [1.0, -1.0] {
             let found = resolve(&axes, &apply(&field.stress(x, side), &axes[0]));
@@ -131,29 +130,22 @@ pub fn check_contact(
     }
 }
 
-/// Tolerances of a check: of tractions [Pa], of jumps [m], and the step of differences with that of the field equations.
-#[derive(Clone, Copy)]
-pub struct Tolerances {
-    pub contact: [f64; 2],
-    pub elastic: [f64; 2],
-}
-
 /// A form over a path: contact laws at points `on` the crack after every increment, field equations `off` it, and the
-/// intensities of a straight crack where the form states any; the states.
+/// intensities of a straight crack where the form states any; the states. Tolerances: of tractions [Pa] and jumps [m]; the step
+/// of differences [m] and the tolerance of the field equations [Pa].
 pub fn check_form(
     solution: &dyn Solution,
     of: &Setting<'_>,
     path: &[f64],
     [on, off]: [&[Point]; 2],
-    tolerances: Tolerances,
+    [contact, elastic]: [[f64; 2]; 2],
 ) -> Vec<Box<dyn Field>> {
     let at = |k: usize| solution.at(&path[..k]).unwrap();
     let states: Vec<Box<dyn Field>> = (1..=path.len()).map(at).collect();
     for (k, state) in states.iter().enumerate() {
         let before = k.checked_sub(1).map(|k| states[k].as_ref());
-        check_contact(state.as_ref(), before, of, on, tolerances.contact);
-        let [step, tolerance] = tolerances.elastic;
-        check_elasticity(state.as_ref(), of, off, step, tolerance);
+        check_contact(state.as_ref(), before, of, on, contact);
+        check_elasticity(state.as_ref(), of, off, elastic);
         if let CrackShape::Polyline(points) = of.crack {
             let tip = [points[0][0], points[0][1], 0.0];
             if points.len() == 2 && state.intensity(&tip).is_some() {
@@ -182,7 +174,7 @@ fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
     };
     let ends = [points[0], points[1]].map(|p| [p[0], p[1], 0.0]);
     let length = norm(&sub(&ends[1], &ends[0]));
-    let n = axes(of.crack, &ends[0])[0];
+    let n = of.crack.frame(&ends[0])[0];
     let rho = 1e-9 * length;
     for (tip, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
         let ahead = unit(&sub(&tip, &other));

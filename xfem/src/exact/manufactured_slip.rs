@@ -1,39 +1,46 @@
-//! Manufactured solution: interface through the whole body, pressure, friction and slip that vary along it, no tips.
+//! Manufactured solutions: straight crack or plane through the whole body, pressure, friction and slip that vary over it, no tips.
 //!
-//! In the frame of the crack (x along it from its midpoint, y across it, + for side 1), k = 2π/L, M = λ + 2G:
+//! In the frame of the crack (x₁ along a, x₂ along b from the point of the plane, y across it, + for side 1) with the unit
+//! direction e of slip in the plane, D = e·∇, Δ = ∂₁² + ∂₂², k = 2π/L, H(θ) = max(0, sin θ)³, M = λ + 2G:
 //!
 //! ```text
-//!   p = p₀ + p₁ cos kx       pressure, |p₁| < p₀
-//!   s = s₀ max(0, sin kx)³   slip on every other half wave
-//!   h = 1 − c max(0, −sin kx)³,  0 < c < 2: used share of friction, 1 where the faces slip, |h| < 1 where they stick
+//!   p = p₀ + p₁ cos kx₁ cos kx₂      pressure, |p₁| < p₀
+//!   s = s₀ H(kx₁) (1 + m cos kx₂)    slip along e on every other half wave, |m| < 1
+//!   h = 1 − c H(kx₁ + π), 0 < c < 2   used share of friction, 1 where the faces slip, |h| < 1 where they stick
+//!   g = μ p h,   w = ± s/2 + y g/G,   l = p ± λ Ds/2
 //!
-//!   u_x = ± s/2 + y μ p h/G                 u_y = −y (p ± λ s'/2)/M
-//!   σ_xx = M (± s'/2 + y μ(ph)'/G) − λ (p ± λ s'/2)/M
-//!   σ_yy = λ y μ(ph)'/G − p                 σ_xy = μ p h − G y (p' ± λ s''/2)/M
-//!   f_x = −M (± s''/2 + y μ(ph)''/G) + (λ + G)(p' ± λ s''/2)/M
-//!   f_y = −(1 + λ/G) μ(ph)' + G y (p'' ± λ s'''/2)/M
+//!   u_α = e_α w                       u_y = −y l/M
+//!   σ_αβ = λ (Dw − l/M) δ_αβ + G (e_α ∂_β w + e_β ∂_α w)
+//!   σ_yα = g e_α − G y ∂_α l/M        σ_yy = λ y Dg/G − p
+//!   f_α = −(λ+G) ∂_α Dw − G e_α Δw + (λ+G) ∂_α l/M
+//!   f_y = −(1 + λ/G) Dg + G y Δl/M
 //! ```
 //!
-//! On both faces σ_yy = −p, σ_xy = μ p h, the jump is (s, 0): Coulomb's law holds for an increment from zero slip. The body
-//! force f = −div σ jumps across the crack. s is twice continuously differentiable, so f leaps where slip ends.
-//! The load factor scales the whole field; it may grow from increment to increment but not fall.
-//! Dissipation: ½ (f² − f₀²) ∫ μ p s over the part of the crack inside the body, f₀ the first factor: p and s grow together.
+//! On both faces σ_yy = −p, σ_yα = μ p h e_α, the jump is s e: Coulomb's law holds for an increment from zero slip. In the
+//! plane x₂ = 0, m = 0, e = a, nothing varies along x₂, and σ_22 is not of the plane. s is twice continuously differentiable: the
+//! body force jumps across the crack, and leaps where slip ends. The load factor scales the whole field; it may grow from increment to increment but not fall. Dissipation:
+//! ½ (f² − f₀²) ∫ μ p s over the part of the crack inside the body, f₀ the first factor: p and s grow together.
 //! The displacement is stated, with no rigid motion to choose. Manufactured for this project after P. J. Roache (2002).
 
 use std::f64::consts::{PI, TAU};
 
-use crate::geometry::Point;
-use crate::material::Lame;
+use crate::geometry::clip::{clip, crossing};
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, combine, dot, norm, rotated, sub};
+use crate::material::{Lame, Model};
+use crate::quadrature::gauss;
 
-use super::parts::jet::hump;
+use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
 use super::parts::line_crack::LineCrack;
-use super::parts::plane_elasticity::PlaneElasticity;
 use super::solution::{
-    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, required,
+    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, plane, required,
 };
 
-/// Registry entry.
-pub const SPEC: SolutionSpec = SolutionSpec {
+/// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
+const ON_PLANE: f64 = 1e-10;
+
+/// Registry entry of the plane.
+pub const FLAT: SolutionSpec = SolutionSpec {
     name: "manufactured-slip",
     summary: "2D body cut by a straight crack: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
@@ -53,146 +60,270 @@ pub const SPEC: SolutionSpec = SolutionSpec {
             1.0,
         ),
     ],
-    build,
+    build: flat,
 };
 
-fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+/// Registry entry of solids.
+pub const SOLID: SolutionSpec = SolutionSpec {
+    name: "manufactured-slip-3d",
+    summary: "solid cut by a plane: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
+    parameters: &[
+        required("pressure_pa", "mean pressure p₀ > 0"),
+        required(
+            "pressure_wave_pa",
+            "amplitude p₁ of its variation, |p₁| < p₀",
+        ),
+        required("slip_m", "slip s₀ >= 0 of a half wave's middle"),
+        required(
+            "wave_length_m",
+            "length L of a slipping and a sticking half wave, which meet at the point of the plane",
+        ),
+        optional(
+            "slip_wave",
+            "m, |m| < 1: variation of the slip along the half waves",
+            0.5,
+        ),
+        optional(
+            "slip_angle_deg",
+            "direction of slip, from the local axis a towards b",
+            30.0,
+        ),
+        optional(
+            "stick_dip",
+            "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
+            1.0,
+        ),
+    ],
+    build: solid,
+};
+
+fn flat(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
     let &[pressure, wave, slip, length, dip] = exactly(values)?;
+    let crack = LineCrack::new(setting)?;
+    // Refuses solids.
+    plane(setting)?;
+    let values = [pressure, wave, slip, length, 0.0, 0.0, dip];
+    cut(setting, crack.centre, crack.half_length, values)
+}
+
+fn solid(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
+    let CrackShape::Plane { point, .. } = *setting.crack else {
+        return Err("the crack must be a plane".into());
+    };
+    if setting.model != Model::Solid {
+        return Err("manufactured-slip-3d is a solution of solids".into());
+    }
+    cut(setting, point, f64::INFINITY, *exactly(values)?)
+}
+
+/// The solution of a crack that reaches so far from an origin, by the values of a solid.
+fn cut(
+    setting: &Setting<'_>,
+    origin: Point,
+    reach: f64,
+    [pressure, wave, slip, length, slip_wave, angle, dip]: [f64; 7],
+) -> Result<Box<dyn Solution>, String> {
     needed(&[
         (wave.abs() < pressure, "|pressure_wave_pa| < pressure_pa"),
         (slip >= 0.0, "slip_m >= 0"),
         (length > 0.0, "wave_length_m > 0"),
+        (slip_wave.abs() < 1.0, "|slip_wave| < 1"),
         (0.0 < dip && dip < 2.0, "0 < stick_dip < 2"),
     ])?;
-    let crack = LineCrack::new(setting)?;
-    // Refuses solids.
-    PlaneElasticity::new(setting)?;
-    let inside = inside(&crack, &setting.body).ok_or("the crack does not meet the body")?;
-    if inside
-        .iter()
-        .any(|s| s.abs() > crack.half_length * (1.0 + 1e-12))
-    {
-        return Err("the crack must cut the whole body".into());
-    }
-    Ok(Box::new(ManufacturedSlip {
-        crack,
+    let [n, a, b] = setting.crack.frame(&origin);
+    let angle = angle.to_radians();
+    let flat = setting.model != Model::Solid;
+    let wave_number = TAU / length;
+    let mut solution = ManufacturedSlip {
+        origin,
+        frame: [a, b, n],
+        flat,
+        size: norm(&sub(&setting.body[1], &setting.body[0])),
         lame: Lame::new(setting.material, setting.model),
         friction: setting.friction,
         pressure,
         wave,
         slip,
-        wave_number: TAU / length,
+        slip_wave,
+        wave_numbers: [wave_number, if flat { 0.0 } else { wave_number }],
+        direction: [angle.cos(), angle.sin()],
         dip,
-        inside,
+        work: 0.0,
         scale: 1.0,
         dissipation: 0.0,
-    }))
-}
-
-/// Abscissae between which the line of a crack lies in a box [m].
-fn inside(crack: &LineCrack, body: &[Point; 2]) -> Option<[f64; 2]> {
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    for k in 0..2 {
-        let (low, high) = (body[0][k] - crack.centre[k], body[1][k] - crack.centre[k]);
-        let t = crack.tangent[k];
-        if t == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return None;
-            }
-        } else {
-            from = from.max((low / t).min(high / t));
-            to = to.min((low / t).max(high / t));
-        }
+    };
+    let mut body = setting.body;
+    if flat {
+        // One metre thick.
+        body[1][2] = 1.0;
     }
-    (from < to).then_some([from, to])
+    solution.work = solution.work_inside(&body, reach)?;
+    Ok(Box::new(solution))
 }
 
 #[derive(Debug, Clone)]
 struct ManufacturedSlip {
-    crack: LineCrack,
+    /// Point of the plane, midpoint of a straight crack [m].
+    origin: Point,
+    /// a, b, n.
+    frame: [Point; 3],
+    /// Whether the body is plane.
+    flat: bool,
+    /// Diagonal of the body [m].
+    size: f64,
     lame: Lame,
     friction: f64,
     /// p₀, p₁ [Pa].
     pressure: f64,
     wave: f64,
-    /// s₀ [m].
+    /// s₀ [m] and m.
     slip: f64,
-    /// k [1/m].
-    wave_number: f64,
+    slip_wave: f64,
+    /// k along x₁ and x₂, there 0 in the plane [1/m].
+    wave_numbers: [f64; 2],
+    /// e.
+    direction: [f64; 2],
     /// c.
     dip: f64,
-    /// Abscissae between which the crack lies in the body [m].
-    inside: [f64; 2],
+    /// ∫ μ p s over the crack inside the body, at factor 1 [J, in the plane J/m].
+    work: f64,
     /// Present load factor.
     scale: f64,
     dissipation: f64,
 }
 
-/// Functions of x and their derivatives.
-struct Profile {
-    /// p, p', p''.
-    p: [f64; 3],
-    /// s to s'''.
-    s: [f64; 4],
-    /// g = μ p h, g', g''.
-    g: [f64; 3],
+const ONE: Jet = [1.0, 0.0, 0.0, 0.0];
+const NONE: (Jet, Jet) = ([0.0; 4], [0.0; 4]);
+
+/// The functions at a point, and its place across the plane.
+struct Place {
+    p: Separable,
+    s: Separable,
+    /// μ p h
+    g: Separable,
+    y: f64,
+    sign: f64,
 }
 
 impl ManufacturedSlip {
-    fn profile(&self, x: f64) -> Profile {
-        let k = self.wave_number;
-        let (sin, cos) = (k * x).sin_cos();
-        let p = [
-            self.pressure + self.wave * cos,
-            -self.wave * k * sin,
-            -self.wave * k * k * cos,
-        ];
-        let stuck = hump(k, x, PI);
-        let h = [
-            1.0 - self.dip * stuck[0],
-            -self.dip * stuck[1],
-            -self.dip * stuck[2],
-        ];
-        let g = [
-            p[0] * h[0],
-            p[1] * h[0] + p[0] * h[1],
-            p[2] * h[0] + 2.0 * p[1] * h[1] + p[0] * h[2],
-        ];
-        Profile {
-            p: p.map(|v| self.scale * v),
-            s: hump(k, x, 0.0).map(|v| self.scale * self.slip * v),
-            g: g.map(|v| self.scale * self.friction * v),
+    fn place(&self, x: &Point, side: f64) -> Place {
+        let d = sub(x, &self.origin);
+        let [x1, x2, y] = self.frame.map(|e| dot(&e, &d));
+        let y = if y.abs() <= ON_PLANE * self.size {
+            0.0_f64.copysign(side)
+        } else {
+            y
+        };
+        let [k, k2] = self.wave_numbers;
+        let (c1, c2) = (cosine(k, x1), cosine(k2, x2));
+        let stuck = hump(k, x1, PI);
+        let mut h = times(-self.dip, stuck);
+        h[0] += 1.0;
+        let mut across = times(self.slip_wave, c2);
+        across[0] += 1.0;
+        let f = self.scale;
+        Place {
+            p: Separable([
+                (times(f * self.pressure, ONE), ONE),
+                (times(f * self.wave, c1), c2),
+            ]),
+            s: Separable([(times(f * self.slip, hump(k, x1, 0.0)), across), NONE]),
+            g: Separable([
+                (times(f * self.friction * self.pressure, h), ONE),
+                (times(f * self.friction * self.wave, product(c1, h)), c2),
+            ]),
+            y,
+            sign: 1.0_f64.copysign(y),
         }
     }
 
-    /// Profile at the abscissa of a point, its ordinate y and the sign of its side.
-    fn place(&self, x: &Point, side: f64) -> (Profile, f64, f64) {
-        let (along, y) = self.crack.place(x, side);
-        (self.profile(along), y, 1.0_f64.copysign(y))
-    }
-
-    /// ∫ μ p s at factor 1 from x = 0 to a point of the crack [J/m].
-    fn work(&self, x: f64) -> f64 {
-        let angle = self.wave_number * x;
-        let waves = (angle / TAU).floor();
-        let part = (angle - waves * TAU).min(PI);
-        let (sin, cos) = part.sin_cos();
-        let integral = self.pressure * (2.0 / 3.0 - cos + cos.powi(3) / 3.0)
-            + 0.25 * self.wave * sin.powi(4)
-            + self.pressure * waves * 4.0 / 3.0;
-        self.friction * self.slip * integral / self.wave_number
+    /// ∫ μ p s dA over the crack inside a box, which it must leave everywhere: exact along x₂, Gauss along x₁ between
+    /// vertices and ends of half waves.
+    fn work_inside(&self, body: &[Point; 2], reach: f64) -> Result<f64, String> {
+        /// Points per interval, at most half a wave.
+        const POINTS: usize = 20;
+        let [a, b, _] = self.frame;
+        let centre = [0, 1, 2].map(|k| 0.5 * (body[0][k] + body[1][k]));
+        let size = norm(&sub(&body[1], &body[0]));
+        let d = sub(&centre, &self.origin);
+        let middle = add_scaled(&centre, -dot(&d, &self.frame[2]), &self.frame[2]);
+        // A square of the plane that holds its part inside the body, cut by the faces.
+        let mut polygon: Vec<Point> = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .iter()
+            .map(|[p, q]| add_scaled(&add_scaled(&middle, p * size, &a), q * size, &b))
+            .collect();
+        for k in 0..3 {
+            for (sign, wall) in [(1.0, body[0][k]), (-1.0, body[1][k])] {
+                let levels: Vec<f64> = polygon.iter().map(|x| sign * (x[k] - wall)).collect();
+                polygon = clip(&polygon, &levels, 1.0);
+            }
+        }
+        if polygon.len() < 3 {
+            return Err("the crack does not meet the body".into());
+        }
+        let flat: Vec<Point> = polygon
+            .iter()
+            .map(|x| sub(x, &self.origin))
+            .map(|d| [dot(&d, &a), dot(&d, &b), 0.0])
+            .collect();
+        let mut breaks: Vec<f64> = flat.iter().map(|x| x[0]).collect();
+        breaks.sort_by(f64::total_cmp);
+        let (low, high) = (breaks[0], breaks[breaks.len() - 1]);
+        if high.max(-low) > reach * (1.0 + 1e-12) {
+            return Err("the crack must cut the whole body".into());
+        }
+        let [k, k2] = self.wave_numbers;
+        let half = PI / k;
+        let mut at = (low / half).ceil();
+        while at * half < high {
+            breaks.push(at * half);
+            at += 1.0;
+        }
+        breaks.sort_by(f64::total_cmp);
+        // ∫ cos(n k₂ x₂) dx₂ from 0.
+        let sine = |n: f64, x2: f64| match n * k2 {
+            0.0 => x2,
+            k => (k * x2).sin() / k,
+        };
+        let mut work = 0.0;
+        for pair in breaks.windows(2) {
+            let width = 0.5 * (pair[1] - pair[0]);
+            for (t, weight) in gauss(POINTS) {
+                let x1 = pair[0] + width * (1.0 + t);
+                let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+                for (i, p) in flat.iter().enumerate() {
+                    let q = &flat[(i + 1) % flat.len()];
+                    if (p[0] - x1) * (q[0] - x1) < 0.0 {
+                        let x2 = crossing(p, p[0] - x1, q, q[0] - x1)[1];
+                        from = from.min(x2);
+                        to = to.max(x2);
+                    }
+                }
+                if from >= to {
+                    continue;
+                }
+                // ∫ (1 + m cos)(p₀ + p₁ c₁ cos) dx₂
+                let wave = self.wave * (k * x1).cos();
+                let integral = |x2: f64| {
+                    self.pressure * x2
+                        + (self.slip_wave * self.pressure + wave) * sine(1.0, x2)
+                        + 0.5 * self.slip_wave * wave * (x2 + sine(2.0, x2))
+                };
+                work += width * weight * hump(k, x1, 0.0)[0] * (integral(to) - integral(from));
+            }
+        }
+        Ok(self.friction * self.slip * work)
     }
 }
 
 impl Solution for ManufacturedSlip {
     fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
-        let unit = self.work(self.inside[1]) - self.work(self.inside[0]);
         let mut now = ManufacturedSlip {
             scale: 0.0,
             ..self.clone()
         };
         growing(factors, |factor, before| {
-            now.dissipation += 0.5 * (factor + before) * (factor - before) * unit;
+            now.dissipation += 0.5 * (factor + before) * (factor - before) * self.work;
             now.scale = factor;
         })?;
         Ok(Box::new(now))
@@ -201,44 +332,72 @@ impl Solution for ManufacturedSlip {
 
 impl Field for ManufacturedSlip {
     fn displacement(&self, x: &Point, side: f64) -> Point {
-        let (Profile { p, s, g }, y, sign) = self.place(x, side);
+        let Place { p, s, g, y, sign } = self.place(x, side);
         let Lame { lambda, mu, .. } = self.lame;
-        self.crack.vector([
-            0.5 * sign * s[0] + y * g[0] / mu,
-            -y * (p[0] + 0.5 * sign * lambda * s[1]) / (lambda + 2.0 * mu),
-        ])
+        let e = self.direction;
+        let w = 0.5 * sign * s.d(0, 0) + y * g.d(0, 0) / mu;
+        let l = p.d(0, 0) + 0.5 * sign * lambda * s.along(e, 0, 0);
+        combine(
+            &self.frame,
+            [e[0] * w, e[1] * w, -y * l / (lambda + 2.0 * mu)],
+        )
     }
 
     fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
-        let (Profile { p, s, g }, y, sign) = self.place(x, side);
+        let Place { p, s, g, y, sign } = self.place(x, side);
         let Lame { lambda, mu, .. } = self.lame;
         let m = lambda + 2.0 * mu;
-        let lift = [0, 1].map(|k| p[k] + 0.5 * sign * lambda * s[k + 1]);
-        self.crack.tensor([
-            m * (0.5 * sign * s[1] + y * g[1] / mu) - lambda * lift[0] / m,
-            lambda * y * g[1] / mu - p[0],
-            g[0] - mu * y * lift[1] / m,
-        ])
+        let e = self.direction;
+        let w = [(1, 0), (0, 1)].map(|(i, j)| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu);
+        let l = [(0, 0), (1, 0), (0, 1)]
+            .map(|(i, j)| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j));
+        let spherical = lambda * (e[0] * w[0] + e[1] * w[1] - l[0] / m);
+        let plane = |i: usize, j: usize| mu * (e[i] * w[j] + e[j] * w[i]);
+        let across = [0, 1].map(|i| g.d(0, 0) * e[i] - mu * y * l[i + 1] / m);
+        let normal = lambda * y * g.along(e, 0, 0) / mu - p.d(0, 0);
+        let along = match self.flat {
+            true => 0.0,
+            false => spherical + plane(1, 1),
+        };
+        let local = [
+            [spherical + plane(0, 0), plane(0, 1), across[0]],
+            [plane(1, 0), along, across[1]],
+            [across[0], across[1], normal],
+        ];
+        rotated(&self.frame, &local)
     }
 
     fn body_force(&self, x: &Point, side: f64) -> Point {
-        let (Profile { p, s, g }, y, sign) = self.place(x, side);
+        let Place { p, s, g, y, sign } = self.place(x, side);
         let Lame { lambda, mu, .. } = self.lame;
         let m = lambda + 2.0 * mu;
-        let lift = [1, 2].map(|k| p[k] + 0.5 * sign * lambda * s[k + 1]);
-        self.crack.vector([
-            -m * (0.5 * sign * s[2] + y * g[2] / mu) + (lambda + mu) * lift[0] / m,
-            -(1.0 + lambda / mu) * g[1] + mu * y * lift[1] / m,
-        ])
+        let e = self.direction;
+        let w = |i: usize, j: usize| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu;
+        let along = |i: usize, j: usize| 0.5 * sign * s.along(e, i, j) + y * g.along(e, i, j) / mu;
+        let l = |i: usize, j: usize| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j);
+        let laplace = w(2, 0) + w(0, 2);
+        let in_plane = |a: usize, i: usize, j: usize| {
+            (lambda + mu) * (l(i, j) / m - along(i, j)) - mu * e[a] * laplace
+        };
+        combine(
+            &self.frame,
+            [
+                in_plane(0, 1, 0),
+                in_plane(1, 0, 1),
+                -(1.0 + lambda / mu) * g.along(e, 0, 0) + mu * y * (l(2, 0) + l(0, 2)) / m,
+            ],
+        )
     }
 
     fn traction(&self, x: &Point) -> [f64; 3] {
-        let Profile { p, g, .. } = self.profile(self.crack.abscissa(x));
-        [p[0], -g[0], 0.0]
+        let Place { p, g, .. } = self.place(x, 1.0);
+        let [e0, e1] = self.direction;
+        [p.d(0, 0), -g.d(0, 0) * e0, -g.d(0, 0) * e1]
     }
 
     fn jump(&self, x: &Point) -> [f64; 3] {
-        [0.0, self.profile(self.crack.abscissa(x)).s[0], 0.0]
+        let s = self.place(x, 1.0).s.d(0, 0);
+        [0.0, s * self.direction[0], s * self.direction[1]]
     }
 
     fn dissipation(&self) -> Option<f64> {
@@ -249,75 +408,93 @@ impl Field for ManufacturedSlip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{Tolerances, check_form, line, setting};
-    use crate::geometry::crack_shape::CrackShape;
-    use crate::material::Model;
+    use crate::exact::check::{check_form, line, setting};
+    use crate::geometry::unit;
 
-    const VALUES: [f64; 5] = [1.0, 0.4, 0.03, 0.9, 1.3];
+    const VALUES: [f64; 7] = [1.0, 0.4, 0.03, 0.9, 0.6, 35.0, 1.3];
+    const FLAT_VALUES: [f64; 5] = [1.0, 0.4, 0.03, 0.9, 1.3];
 
-    fn shapes() -> [CrackShape; 3] {
+    fn shapes() -> [CrackShape; 6] {
+        let plane = |normal| CrackShape::plane([0.1, -0.05, 0.2], unit(&normal));
         [
             line([-1.2, 0.0], [1.2, 0.0]),
             line([-1.3, -0.7], [1.2, 0.5]),
             line([0.1, 1.4], [-0.2, -1.3]),
+            plane([0.0, 0.0, 1.0]),
+            plane([1.0, -2.0, 3.0]),
+            plane([1.0, 1.0, 0.0]),
         ]
+    }
+
+    /// Settings of a shape, and the middle of the crack.
+    fn settings(shape: &CrackShape) -> (Vec<Setting<'_>>, Point) {
+        let of = setting(shape);
+        if let CrackShape::Plane { point, .. } = shape {
+            let (model, body) = (Model::Solid, [[-1.0; 3], [1.0, 0.9, 0.8]]);
+            return (vec![Setting { model, body, ..of }], *point);
+        }
+        let centre = LineCrack::new(&of).unwrap().centre;
+        let model = Model::PlaneStress;
+        (vec![of.clone(), Setting { model, ..of }], centre)
+    }
+
+    fn built(of: &Setting<'_>) -> Result<Box<dyn Solution>, String> {
+        match of.model {
+            Model::Solid => solid(of, &VALUES),
+            _ => flat(of, &FLAT_VALUES),
+        }
     }
 
     #[test]
     fn the_field_equations_and_the_contact_laws_hold() {
         for shape in &shapes() {
-            for model in [Model::PlaneStrain, Model::PlaneStress] {
-                let mut of = setting(shape);
-                of.model = model;
-                let crack = LineCrack::new(&of).unwrap();
-                let solution = build(&of, &VALUES).unwrap();
-                let on = (-20..=20).map(|k| crack.point(k as f64 / 20.0, 0.0));
-                let on: Vec<Point> = on.collect();
-                // Off the crack, and off the lines where s''' leaps.
-                let off: Vec<Point> = (-7..8)
-                    .flat_map(|k| [-0.6, -0.2, 0.2, 0.6].map(|y| crack.point(0.13 * k as f64, y)))
-                    .filter(|x| (crack.abscissa(x) * TAU / 0.9).sin().abs() > 0.02)
+            let (settings, middle) = settings(shape);
+            for of in settings {
+                let rows = if of.model == Model::Solid { 3 } else { 0 };
+                let places: Vec<[f64; 2]> = (-8..=8)
+                    .flat_map(|i| (-rows..=rows).map(move |j| [i, j]))
+                    .map(|[i, j]| [0.11 * f64::from(i), 0.27 * f64::from(j)])
                     .collect();
-                assert!(off.len() > 50);
-                let (contact, elastic) = ([1e-14; 2], [2e-4, 1e-9]);
-                let tolerances = Tolerances { contact, elastic };
-                check_form(&*solution, &of, &[0.3, 0.3, 1.0], [&on, &off], tolerances);
+                let frame = shape.frame(&middle);
+                let at = |[x1, x2]: [f64; 2], y: f64| {
+                    add_scaled(&middle, 1.0, &combine(&frame, [y, x1, x2]))
+                };
+                let on: Vec<Point> = places.iter().map(|x| at(*x, 0.0)).collect();
+                // Off the crack, and off the lines where s''' leaps.
+                let off: Vec<Point> = places
+                    .iter()
+                    .filter(|[p, _]| (p * TAU / 0.9).sin().abs() > 0.02)
+                    .flat_map(|x| [-0.6, -0.1, 0.2].map(|y| at(*x, y)))
+                    .collect();
+                assert!(off.len() >= 45);
+                let tolerances = [[1e-14; 2], [1e-4, 1e-9]];
+                let path = [0.3, 0.3, 1.0];
+                check_form(&*built(&of).unwrap(), &of, &path, [&on, &off], tolerances);
             }
         }
     }
 
     #[test]
-    fn dissipation_is_the_integral_over_the_crack() {
-        for shape in &shapes() {
-            let of = setting(shape);
-            let crack = LineCrack::new(&of).unwrap();
-            let field = build(&of, &VALUES).unwrap().at(&[0.0, 1.0]).unwrap();
-            let n = 400_000;
-            let step = 2.0 * crack.half_length / n as f64;
-            let sum: f64 = (0..n)
-                .map(|k| crack.point((k as f64 + 0.5) * step - crack.half_length, 0.0))
-                .filter(|x| x[0].abs() <= 1.0 && x[1].abs() <= 1.0)
-                .map(|x| -0.5 * field.traction(&x)[1] * field.jump(&x)[1] * step)
-                .sum();
-            let stated = field.dissipation().unwrap();
-            let error = (stated - sum).abs();
-            assert!(stated > 1e-3 && error < 1e-6, "{stated} {sum}");
-        }
-    }
-
-    #[test]
     fn values_and_paths_out_of_range_are_refused() {
-        let [shape, ..] = shapes();
-        let of = setting(&shape);
-        for (k, value) in [(0, 0.3), (2, -0.1), (3, 0.0), (4, 2.0)] {
+        let shapes = shapes();
+        let [plane, solids] = [0, 3].map(|k| settings(&shapes[k]).0.remove(0));
+        for (k, value) in [(0, 0.3), (2, -0.1), (3, 0.0), (4, 1.0), (6, 2.0)] {
             let mut values = VALUES;
             values[k] = value;
-            assert!(build(&of, &values).is_err());
+            assert!(solid(&solids, &values).is_err());
+            let [p, wave, slip, length, _, _, dip] = values;
+            let refused = flat(&plane, &[p, wave, slip, length, dip]).is_err();
+            assert_eq!(refused, k != 4);
         }
-        assert!(build(&of, &VALUES).unwrap().at(&[1.0, 0.9]).is_err());
+        for of in [&plane, &solids] {
+            assert!(built(of).unwrap().at(&[1.0, 0.9]).is_err());
+        }
+        let far = CrackShape::plane([5.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
         let short = line([-0.9, 0.0], [1.2, 0.0]);
-        assert!(build(&setting(&short), &VALUES).is_err());
+        for shape in [&far, &short] {
+            assert!(built(&settings(shape).0[0]).is_err());
+        }
         let model = Model::Solid;
-        assert!(build(&Setting { model, ..of }, &VALUES).is_err());
+        assert!(flat(&Setting { model, ..plane }, &FLAT_VALUES).is_err());
     }
 }

@@ -8,4 +8,3 @@ pub mod face_load;
 pub mod jet;
 pub mod line_crack;
 pub mod one_dof;
-pub mod plane_elasticity;

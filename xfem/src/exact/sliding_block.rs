@@ -18,12 +18,13 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::geometry::{Point, add_scaled};
+use crate::geometry::{Point, add_scaled, sub};
+use crate::intensity::williams::{plane_modulus, plane_ratio};
+use crate::material::strain;
 
-use super::parts::line_crack::LineCrack;
+use super::parts::line_crack::{LineCrack, apply};
 use super::parts::one_dof::FrictionSpring;
-use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, required};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, plane, required};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -83,81 +84,56 @@ fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, Str
         };
         [backward, forward]
     };
-    Ok(Box::new(SlidingBlock {
-        crack,
-        elastic: PlaneElasticity::new(setting)?,
-        corner: low,
-        width: high[0] - low[0],
-        height: high[1] - low[1],
-        pressure,
-        displacement,
-        limits,
-    }))
-}
-
-struct SlidingBlock {
-    crack: LineCrack,
-    elastic: PlaneElasticity,
-    /// Lower left corner [m].
-    corner: Point,
-    width: f64,
-    height: f64,
-    /// q [Pa].
-    pressure: f64,
-    /// v at factor 1 [m].
-    displacement: f64,
-    /// s_r, s_f [Pa].
-    limits: [f64; 2],
-}
-
-impl Solution for SlidingBlock {
-    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
-        let PlaneElasticity { modulus, ratio, .. } = self.elastic;
-        let q = self.pressure;
-        let stiffness = modulus / self.height;
+    let elastic = plane(setting)?;
+    let (stiffness, ratio) = (
+        plane_modulus(elastic) / (high[1] - low[1]),
+        plane_ratio(elastic),
+    );
+    Ok(Box::new(move |factors: &[f64]| {
         let mut spring = FrictionSpring {
-            force: (ratio - 1.0) * q,
+            force: (ratio - 1.0) * pressure,
             ..FrictionSpring::default()
         };
         for (k, factor) in factors.iter().enumerate() {
-            let u = factor * self.displacement + (ratio - 1.0) * q / stiffness;
-            spring = spring.step(stiffness, u, self.limits.map(|s| s - q));
+            let u = factor * displacement + (ratio - 1.0) * pressure / stiffness;
+            spring = spring.step(stiffness, u, limits.map(|s| s - pressure));
             if k == 0 {
                 spring = spring.rest();
             }
         }
-        let vertical = spring.force + q;
-        let local = self.crack.components([-q, -vertical, 0.0]);
+        let vertical = spring.force + pressure;
+        let local = crack.components([-pressure, -vertical, 0.0]);
         if local[1] > 0.0 {
             return Err(format!("the interface opens: tension of {} Pa", local[1]));
         }
         // Down the slope, along t for a falling interface; a level one does not slip.
-        let sine = self.crack.tangent[1];
+        let sine = crack.tangent[1];
         let slip = if sine == 0.0 {
             0.0
         } else {
             -spring.slip / sine
         };
-        Ok(Box::new(Block {
-            crack: self.crack,
-            corner: self.corner,
-            stress: [-q, -vertical],
-            strain: self.elastic.strain([-q, -vertical, 0.0]),
+        let stress = [[-pressure, 0.0, 0.0], [0.0, -vertical, 0.0], [0.0; 3]];
+        let field: Box<dyn Field> = Box::new(Block {
+            crack,
+            corner: low,
+            stress,
+            strain: strain(elastic, 2, &stress),
             traction: [-local[1], -local[2], 0.0],
             slip,
-            dissipation: spring.dissipation * self.width,
-        }))
-    }
+            dissipation: spring.dissipation * (high[0] - low[0]),
+        });
+        Ok(field)
+    }))
 }
 
 /// Uniform stress and rigid slip.
 struct Block {
     crack: LineCrack,
     corner: Point,
-    /// xx, yy [Pa].
-    stress: [f64; 2],
-    /// xx, yy, xy.
-    strain: [f64; 3],
+    /// [Pa]
+    stress: [Point; 3],
+    strain: [Point; 3],
     traction: [f64; 3],
     /// Of the upper part along the tangent of `crack` [m].
     slip: f64,
@@ -166,19 +142,14 @@ struct Block {
 
 impl Field for Block {
     fn displacement(&self, x: &Point, side: f64) -> Point {
-        let u = [
-            self.strain[0] * (x[0] - self.corner[0]),
-            self.strain[1] * (x[1] - self.corner[1]),
-            0.0,
-        ];
+        let u = apply(&self.strain, &sub(x, &self.corner));
         let (_, m) = self.crack.place(x, side);
         let upper = if m.is_sign_positive() { 1.0 } else { 0.0 };
         add_scaled(&u, upper * self.slip, &self.crack.tangent)
     }
 
     fn stress(&self, _x: &Point, _side: f64) -> [Point; 3] {
-        let [xx, yy] = self.stress;
-        [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0; 3]]
+        self.stress
     }
 
     fn traction(&self, _x: &Point) -> [f64; 3] {
@@ -197,7 +168,7 @@ impl Field for Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{Tolerances, check_form, setting};
+    use crate::exact::check::{check_form, setting};
     use crate::geometry::crack_shape::CrackShape;
     use crate::material::Material;
 
@@ -259,8 +230,7 @@ mod tests {
                     let on = [-0.4, 0.0, 0.3].map(|s| crack.point(s, 0.0));
                     let off = [[0.1, 0.05, 0.0], [0.8, 0.95, 0.0]];
                     let solution = build(&of, &[0.01, 0.01]).unwrap();
-                    let (contact, elastic) = ([1e-15, 1e-15], [1e-3, 1e-12]);
-                    let tolerances = Tolerances { contact, elastic };
+                    let tolerances = [[1e-15, 1e-15], [1e-3, 1e-12]];
                     let states = check_form(&*solution, &of, &PATH, [&on, &off], tolerances);
                     for (now, factor) in states.iter().zip(PATH) {
                         let top = now.displacement(&[0.6, 1.0, 0.0], 1.0)[1];

@@ -2,7 +2,7 @@
 
 use crate::geometry::Point;
 use crate::geometry::crack_shape::CrackShape;
-use crate::material::{Material, Model};
+use crate::material::{Lame, Material, Model};
 
 /// What a case says about the body a solution lives in.
 #[derive(Debug, Clone)]
@@ -17,6 +17,14 @@ pub struct Setting<'a> {
     pub crack: &'a CrackShape,
     /// Lowest and highest corner of the box [m]; third entries 0 in 2D.
     pub body: [Point; 2],
+}
+
+/// Lamé's constants of a plane setting; an error for a solid.
+pub(super) fn plane(setting: &Setting<'_>) -> Result<Lame, String> {
+    match setting.model {
+        Model::Solid => Err("the model must be plane-strain or plane-stress".into()),
+        model => Ok(Lame::new(setting.material, model)),
+    }
 }
 
 /// A number that a solution asks for in the case file.
@@ -92,6 +100,16 @@ pub trait Solution: Send + Sync {
     /// State after a path of load factors: at time 0, then increment by increment, the last one is now. That at time 0 is
     /// reached from rest. The error says why the closed form does not hold there.
     fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String>;
+}
+
+/// A form without history of its own is a function of the path.
+impl<F> Solution for F
+where
+    F: Fn(&[f64]) -> Result<Box<dyn Field>, String> + Send + Sync,
+{
+    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
+        self(factors)
+    }
 }
 
 /// Exact state of a body at one time. `side` is that of the crack, +1 or −1; a formula that holds in the whole body

@@ -20,12 +20,13 @@
 
 use std::f64::consts::PI;
 
+use crate::intensity::williams::plane_modulus;
+
 use super::parts::crack_field::{Background, CrackField};
 use super::parts::face_load::{FaceLoad, Mode};
 use super::parts::line_crack::LineCrack;
 use super::parts::one_dof::FrictionSpring;
-use super::parts::plane_elasticity::PlaneElasticity;
-use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, stress};
+use super::solution::{Field, Setting, Solution, SolutionSpec, exactly, plane, stress};
 
 /// Registry entry.
 pub const SPEC: SolutionSpec = SolutionSpec {
@@ -41,70 +42,48 @@ pub const SPEC: SolutionSpec = SolutionSpec {
 
 fn build(setting: &Setting<'_>, values: &[f64]) -> Result<Box<dyn Solution>, String> {
     let crack = LineCrack::new(setting)?;
-    let &[xx, yy, xy] = exactly(values)?;
-    Ok(Box::new(UniformSlip {
-        crack,
-        elastic: PlaneElasticity::new(setting)?,
-        friction: setting.friction,
-        remote: crack.components([xx, yy, xy]),
-    }))
-}
-
-struct UniformSlip {
-    crack: LineCrack,
-    elastic: PlaneElasticity,
-    friction: f64,
-    /// (tt, nn, tn) at factor 1 [Pa].
-    remote: [f64; 3],
-}
-
-impl Solution for UniformSlip {
-    fn at(&self, factors: &[f64]) -> Result<Box<dyn Field>, String> {
-        let [_, nn, tn] = self.remote;
+    let remote = crack.components(*exactly(values)?);
+    let (elastic, friction) = (plane(setting)?, setting.friction);
+    Ok(Box::new(move |factors: &[f64]| {
+        let [_, nn, tn] = remote;
         // The spring's displacement is the remote shear, its slip the face load A, its force the traction.
         let mut spring = FrictionSpring::default();
         for (k, factor) in factors.iter().enumerate() {
-            let bound = self.friction * (-factor * nn).max(0.0);
+            let bound = friction * (-factor * nn).max(0.0);
             spring = spring.step(1.0, factor * tn, [-bound, bound]);
             if k == 0 {
                 spring = spring.rest();
             }
         }
         let now = factors.last().copied().unwrap_or(0.0);
-        let a = self.crack.half_length;
-        let mut zones = Vec::new();
-        for (mode, load) in [
-            (Mode::Opening, (now * nn).max(0.0)),
-            (Mode::Shear, spring.slip),
-        ] {
-            if load != 0.0 {
-                zones.push((1.0, FaceLoad::new(mode, 0.0, a, load, 0.0)));
-            }
-        }
-        Ok(Box::new(CrackField {
-            crack: self.crack,
-            elastic: self.elastic,
+        let a = crack.half_length;
+        let opening = (now * nn).max(0.0);
+        let loads = [(Mode::Opening, opening), (Mode::Shear, spring.slip)];
+        let loads = loads.into_iter().filter(|(_, load)| *load != 0.0);
+        let field: Box<dyn Field> = Box::new(CrackField {
+            crack,
+            elastic,
             background: Background {
-                uniform: self.remote.map(|s| now * s),
+                uniform: remote.map(|s| now * s),
                 bending: 0.0,
             },
-            zones,
-            dissipation: spring.dissipation * 2.0 * PI * a * a / self.elastic.modulus,
-        }))
-    }
+            zones: loads
+                .map(|(mode, load)| (1.0, FaceLoad::new(mode, 0.0, a, load, 0.0)))
+                .collect(),
+            dissipation: spring.dissipation * 2.0 * PI * a * a / plane_modulus(elastic),
+        });
+        Ok(field)
+    }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::check::{Tolerances, along, check_form, line, setting};
+    use crate::exact::check::{along, check_form, line, setting};
     use crate::geometry::Point;
 
     const OFF: [Point; 3] = [[0.8, 0.3, 0.0], [-0.6, 0.5, 0.0], [0.2, -0.7, 0.0]];
-    const TOLERANCES: Tolerances = Tolerances {
-        contact: [1e-13, 1e-14],
-        elastic: [3e-4, 1e-9],
-    };
+    const TOLERANCES: [[f64; 2]; 2] = [[1e-13, 1e-14], [3e-4, 1e-9]];
 
     /// States along a path under (xx, yy, xy), checked.
     fn states(of: &Setting<'_>, stress: [f64; 3], path: &[f64]) -> Vec<Box<dyn Field>> {

@@ -1,5 +1,6 @@
 //! Place and shape of a crack, as a case states it.
 
+use super::curve::Curve;
 use super::ellipse::Ellipse;
 use super::{Point, add_scaled, cross, unit};
 
@@ -61,6 +62,22 @@ impl CrackShape {
                 CrackShape::plane(add_scaled(point, 1.0, by), *normal)
             }
         }
+    }
+
+    /// Local frame n, a, b at a point of the crack; in the plane b = e_z.
+    pub fn frame(&self, x: &Point) -> [Point; 3] {
+        let curve = match self {
+            CrackShape::Polyline(points) => Curve::chain(points),
+            &CrackShape::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => Curve::arc(centre, radius, [from, to]),
+            CrackShape::Ellipse(ellipse) => return ellipse.frame(),
+            CrackShape::Plane { normal, .. } => return plane_frame(normal),
+        };
+        curve.frame(x)
     }
 
     /// A plane through a point with a unit normal.

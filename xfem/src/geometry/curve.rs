@@ -46,6 +46,27 @@ pub fn turned(a: &Point) -> Point {
 }
 
 impl Curve {
+    /// Straight segments through points of the plane.
+    pub fn chain(points: &[[f64; 2]]) -> Self {
+        Curve::Chain(points.iter().map(|p| [p[0], p[1], 0.0]).collect())
+    }
+
+    /// Part of a circle of the plane.
+    pub fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2]) -> Self {
+        Curve::Arc {
+            centre: [centre[0], centre[1], 0.0],
+            radius,
+            from,
+            to,
+        }
+    }
+
+    /// Local frame n, a, b at the point nearest to one: a along the curve, b = e_z.
+    pub fn frame(&self, x: &Point) -> [Point; 3] {
+        let a = self.nearest(x).tangent;
+        [turned(&a), a, [0.0, 0.0, 1.0]]
+    }
+
     /// Length L [m].
     pub fn length(&self) -> f64 {
         match self {
@@ -124,39 +145,6 @@ impl Curve {
                 )
             }
         }
-    }
-
-    /// Points strictly between two abscissas a < b that a chord would miss: kinks, or three points of an arc.
-    pub fn between(&self, a: f64, b: f64) -> Vec<Point> {
-        match self {
-            Curve::Chain(points) => {
-                // The ends are no kinks: the chain goes on straight.
-                let slack = 1e-9 * (b - a);
-                let inside = |s: f64| s > a + slack && s < b - slack;
-                let kinks = self.kinks().into_iter().zip(&points[1..]);
-                kinks.filter(|(s, _)| inside(*s)).map(|(_, x)| *x).collect()
-            }
-            Curve::Arc { .. } => (1..4)
-                .map(|k| self.at(a + (b - a) * f64::from(k) / 4.0).0)
-                .collect(),
-        }
-    }
-
-    /// Abscissas of the kinks.
-    pub fn kinks(&self) -> Vec<f64> {
-        let Curve::Chain(points) = self else {
-            return Vec::new();
-        };
-        let mut s = 0.0;
-        let lengths = points.windows(2).map(|w| norm(&sub(&w[1], &w[0])));
-        let mut found: Vec<f64> = lengths
-            .map(|length| {
-                s += length;
-                s
-            })
-            .collect();
-        found.pop();
-        found
     }
 
     /// True for a single straight segment: φ is linear.
@@ -271,6 +259,5 @@ mod tests {
     fn arcs_measure_their_length_and_close() {
         assert!((arc(0.0, 1.0).length() - 1.7).abs() < 1e-14);
         assert!(arc(0.5, 0.5 + 2.0 * PI).is_closed() && !arc(0.0, 6.0).is_closed());
-        assert_eq!(arc(0.0, 1.0).between(0.0, 1.0).len(), 3);
     }
 }

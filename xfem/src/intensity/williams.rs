@@ -18,9 +18,14 @@ use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, cross};
 use crate::material::Lame;
 
-/// E' of plane strain or plane stress, 8 μ/(κ + 1) [Pa].
+/// E' of plane strain or plane stress, 8 μ/(κ + 1) = 4 μ (λ + μ)/(λ + 2μ) [Pa].
 pub fn plane_modulus(lame: Lame) -> f64 {
-    8.0 * lame.mu / (kolosov(lame) + 1.0)
+    4.0 * lame.mu * (lame.lambda + lame.mu) / (lame.lambda + 2.0 * lame.mu)
+}
+
+/// ν' of plane strain or plane stress: ε_xx = (σ_xx − ν' σ_yy)/E'.
+pub fn plane_ratio(lame: Lame) -> f64 {
+    lame.lambda / (lame.lambda + 2.0 * lame.mu)
 }
 
 /// Kolosov's constant κ.

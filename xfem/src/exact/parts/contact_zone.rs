@@ -26,7 +26,8 @@ pub fn released(mode: Mode, a: f64, excess: f64, growth: f64) -> Option<FaceLoad
         Some(FaceLoad::new(mode, 0.0, a, excess, slope))
     } else {
         let b = 2.0 * a * (excess / growth + 1.0) / 3.0;
-        Some(FaceLoad::smooth_at_far_end(mode, b - a, b, slope))
+        // No singularity at the inner end.
+        Some(FaceLoad::new(mode, b - a, b, -0.5 * slope * b, slope))
     }
 }
 

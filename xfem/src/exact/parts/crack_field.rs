@@ -13,8 +13,9 @@ use crate::geometry::Point;
 
 use super::face_load::{FaceLoad, Mode};
 use super::line_crack::LineCrack;
-use super::plane_elasticity::PlaneElasticity;
 use crate::exact::solution::Field;
+use crate::intensity::williams::{plane_modulus, plane_ratio};
+use crate::material::Lame;
 
 /// The uncracked field.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,7 +32,7 @@ pub struct CrackField {
     /// Where the crack is.
     pub crack: LineCrack,
     /// Elastic constants.
-    pub elastic: PlaneElasticity,
+    pub elastic: Lame,
     /// Uncracked field.
     pub background: Background,
     /// Loaded zones, each with its factor.
@@ -57,15 +58,16 @@ impl CrackField {
 impl Field for CrackField {
     fn displacement(&self, x: &Point, side: f64) -> Point {
         let (s, m) = self.crack.place(x, side);
-        let PlaneElasticity { modulus, ratio, .. } = self.elastic;
+        let (modulus, ratio) = (plane_modulus(self.elastic), plane_ratio(self.elastic));
         let k = self.background.bending / modulus;
-        let [tt, nn, tn] = self.elastic.strain(self.background.uniform);
+        let [tt, nn, tn] = self.background.uniform;
+        let [e_t, e_n] = [tt - ratio * nn, nn - ratio * tt].map(|s| s / modulus);
         let mut u = [
-            tt * s + 2.0 * tn * m - 0.5 * k * (ratio * s * s + m * m),
-            nn * m + k * s * m,
+            e_t * s + tn / self.elastic.mu * m - 0.5 * k * (ratio * s * s + m * m),
+            e_n * m + k * s * m,
         ];
         for (factor, zone) in &self.zones {
-            for (total, value) in u.iter_mut().zip(zone.displacement(&self.elastic, s, m)) {
+            for (total, value) in u.iter_mut().zip(zone.displacement(self.elastic, s, m)) {
                 *total += factor * value;
             }
         }
@@ -87,7 +89,7 @@ impl Field for CrackField {
         let mut jump = [0.0; 3];
         for (factor, zone) in &self.zones {
             let component = if zone.mode == Mode::Opening { 0 } else { 1 };
-            jump[component] += factor * zone.jump(&self.elastic, s);
+            jump[component] += factor * zone.jump(self.elastic, s);
         }
         jump
     }

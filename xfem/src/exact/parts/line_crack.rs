@@ -1,4 +1,4 @@
-//! Frames of a crack: the straight 2D crack with its own coordinates, and the local axes at a point of any crack.
+//! The straight 2D crack with its own coordinates.
 //!
 //! ```text
 //!   s = t · (x − centre)    along the crack, −a <= s <= a
@@ -6,9 +6,8 @@
 //! ```
 
 use crate::geometry::crack_shape::CrackShape;
-use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::turned;
-use crate::geometry::{Point, add_scaled, dot, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, dot, norm, rotated, sub, unit};
 
 use crate::exact::solution::Setting;
 
@@ -94,15 +93,8 @@ impl LineCrack {
 
     /// Symmetric tensor with components (tt, nn, tn).
     pub fn tensor(&self, [tt, nn, tn]: [f64; 3]) -> [Point; 3] {
-        let (t, n) = (&self.tangent, &self.normal);
-        let mut sigma = [[0.0; 3]; 3];
-        for a in 0..2 {
-            for b in 0..2 {
-                sigma[a][b] =
-                    tt * t[a] * t[b] + nn * n[a] * n[b] + tn * (t[a] * n[b] + n[a] * t[b]);
-            }
-        }
-        sigma
+        let axes = [self.tangent, self.normal, [0.0, 0.0, 1.0]];
+        rotated(&axes, &[[tt, tn, 0.0], [tn, nn, 0.0], [0.0; 3]])
     }
 
     /// Components (tt, nn, tn) of a symmetric tensor given by xx, yy, xy.
@@ -125,55 +117,4 @@ impl LineCrack {
 /// σ v
 pub fn apply(sigma: &[Point; 3], v: &Point) -> Point {
     [dot(&sigma[0], v), dot(&sigma[1], v), dot(&sigma[2], v)]
-}
-
-/// Local axes (n, a, b) of a crack at one of its points; in 2D b = e_z, n and a as for the case's segments and arcs.
-pub fn axes(shape: &CrackShape, x: &Point) -> [Point; 3] {
-    let e_z = [0.0, 0.0, 1.0];
-    match shape {
-        CrackShape::Polyline(points) => {
-            // The segment nearest to the point.
-            let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
-            for ends in points.windows(2) {
-                let p = [ends[0][0], ends[0][1], 0.0];
-                let along = sub(&[ends[1][0], ends[1][1], 0.0], &p);
-                let from = sub(x, &p);
-                let share = (dot(&from, &along) / dot(&along, &along)).clamp(0.0, 1.0);
-                let distance = norm(&add_scaled(&from, -share, &along));
-                if distance < best.0 {
-                    best = (distance, unit(&along));
-                }
-            }
-            let a = best.1;
-            [turned(&a), a, e_z]
-        }
-        CrackShape::Arc {
-            centre, from, to, ..
-        } => {
-            let outward = unit(&sub(x, &[centre[0], centre[1], 0.0]));
-            let turn = (to - from).signum();
-            let n = outward.map(|v| -turn * v);
-            [n, [n[1], -n[0], 0.0], e_z]
-        }
-        CrackShape::Ellipse(ellipse) => ellipse.frame(),
-        CrackShape::Plane { normal, .. } => plane_frame(normal),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_normal_is_the_tangent_turned_to_the_left() {
-        let line = CrackShape::Polyline(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]);
-        assert_eq!(axes(&line, &[0.3, 0.1, 0.0])[0], [0.0, 1.0, 0.0]);
-        assert_eq!(axes(&line, &[1.1, 1.5, 0.0])[0], [-1.0, 0.0, 0.0]);
-        for (from, to, sign) in [(0.0, 1.0, -1.0), (1.0, 0.0, 1.0)] {
-            let arc = CrackShape::arc([1.0, 1.0], 2.0, [from, to]);
-            let [n, a, _] = axes(&arc, &[3.0, 1.0, 0.0]);
-            assert_eq!(n, [sign, 0.0, 0.0]);
-            assert_eq!(a[1], -sign);
-        }
-    }
 }
