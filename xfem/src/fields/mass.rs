@@ -8,6 +8,7 @@
 //! two Heaviside functions on affine cells in 2D, of degree 5 per tetrahedron in 3D, graded towards tips and fronts. All
 //! weights but those of bent parts about a tip are positive and lie in their part, so that a sliver has the mass of a sliver.
 
+use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
 use crate::stiffness::assembly::Assembly;
@@ -31,32 +32,21 @@ pub fn mass(integrator: &CellIntegrator<'_>) -> Result<BlockMatrix, CellError> {
         .map(|cell| cell_mass(integrator, cell))
         .collect::<Result<_, _>>()?;
     let assembly = Assembly::new(integrator.mesh.dim(), integrator.enrichment);
-    Ok(assembly.sum(|cell| cells[cell].view()))
+    Ok(assembly.sum(|cell| cells[cell].as_view()))
 }
 
 fn cell_mass(integrator: &CellIntegrator<'_>, cell: usize) -> Result<CellMatrix, CellError> {
     let dim = integrator.mesh.dim();
     let mut functions = integrator.functions(cell);
     let n = functions.numbers.len();
-    let mut scalar = CellMatrix::zero(n);
+    let mut scalar = DMatrix::zeros(n, n);
     let tips = &integrator.enrichment.tips;
     let rule = RULES[usize::from(integrator.enrichment.has_branch(cell))];
     for p in comparison_points(integrator, cell, tips, rule)? {
         let p = p.point;
         functions.evaluate(&p.xi, &p.x, p.region);
-        for i in 0..n {
-            for j in 0..n {
-                scalar.add(i, j, p.weight * functions.values[i] * functions.values[j]);
-            }
-        }
+        let values = DVectorView::from_slice(&functions.values, n);
+        scalar.ger(p.weight, &values, &values, 1.0);
     }
-    let mut full = CellMatrix::zero(n * dim);
-    for i in 0..n {
-        for j in 0..n {
-            for a in 0..dim {
-                full.set(i * dim + a, j * dim + a, scalar.get(i, j));
-            }
-        }
-    }
-    Ok(full)
+    Ok(scalar.kronecker(&DMatrix::identity(dim, dim)))
 }

@@ -79,7 +79,7 @@ impl<'a> Assembly<'a> {
                     let block = &mut values[positions[row] as usize * dim * dim..][..dim * dim];
                     for a in 0..dim {
                         for b in 0..dim {
-                            block[a * dim + b] += k.get(row * dim + a, l * dim + b);
+                            block[a * dim + b] += k[(l * dim + b, row * dim + a)];
                         }
                     }
                 }

@@ -18,6 +18,8 @@
 //!
 //! With H = R Rᵀ the modes R⁻¹ P are orthonormal, and V = R⁻¹ L gives K^r = Vᵀ V, σ = (R⁻¹ P)ᵀ V u.
 
+use nalgebra::{DMatrix, DVectorView};
+
 use crate::geometry::{Point, add_scaled, dot, sub, unit};
 use crate::material::{Lame, double_dot, strain};
 use crate::mesh::cell::{CellMap, Nodal};
@@ -41,10 +43,10 @@ pub struct AssumedStress {
     modes: Vec<(usize, [Point; 3])>,
     /// Centre of the region in reference coordinates.
     centre: Point,
-    /// R, row by row, its lower triangle.
-    root: Vec<f64>,
-    /// V, row by row: mode, node and component.
-    rows: Vec<f64>,
+    /// R, lower triangular.
+    root: DMatrix<f64>,
+    /// V, by mode, and by node and component.
+    rows: DMatrix<f64>,
 }
 
 impl AssumedStress {
@@ -61,8 +63,8 @@ impl AssumedStress {
         let mut found = AssumedStress {
             modes,
             centre: points.iter().fold([0.0; 3], add),
-            root: vec![0.0; m * m],
-            rows: vec![0.0; m * n],
+            root: DMatrix::zeros(m, m),
+            rows: DMatrix::zeros(m, n),
         };
         // ∫ c_i c_j and ∫ c_i ∇N of the scalars c.
         let mut products = [[0.0; SCALARS]; SCALARS];
@@ -80,69 +82,39 @@ impl AssumedStress {
         for (p, (c, s)) in found.modes.iter().enumerate() {
             let e = strain(lame, dim, s);
             for (q, (d, t)) in found.modes[..=p].iter().enumerate() {
-                found.root[p * m + q] = double_dot(&e, t) * products[*c.max(d)][*c.min(d)];
+                found.root[(p, q)] = double_dot(&e, t) * products[*c.max(d)][*c.min(d)];
             }
             for (k, g) in moments[*c].iter().enumerate() {
-                (0..dim).for_each(|a| found.rows[p * n + k * dim + a] = dot(&s[a], g));
+                (0..dim).for_each(|a| found.rows[(p, k * dim + a)] = dot(&s[a], g));
             }
         }
-        let singular = CellError::new(map.centre(), "stress modes that nothing tells apart");
-        found.factor().ok_or(singular)?;
+        let squares = found.root.diagonal();
+        let r = &mut found.root;
+        for (i, j) in (0..m).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            let known: f64 = (0..j).map(|k| r[(i, k)] * r[(j, k)]).sum();
+            let own = r[(i, j)] - known;
+            r[(i, j)] = if j < i { own / r[(j, j)] } else { own.sqrt() };
+        }
+        // The root of a negative pivot is no number.
+        if !(0..m).all(|i| r[(i, i)].powi(2) > ROUNDING * squares[i]) {
+            let what = "stress modes that nothing tells apart";
+            return Err(CellError::new(map.centre(), what));
+        }
+        found.root.solve_lower_triangular_mut(&mut found.rows);
         Ok(found)
-    }
-
-    /// Nodes times components.
-    fn size(&self) -> usize {
-        self.rows.len() / self.modes.len()
-    }
-
-    /// From H and L to R and V; `None`: H is singular.
-    fn factor(&mut self) -> Option<()> {
-        let (m, n) = (self.modes.len(), self.size());
-        for i in 0..m {
-            let r = &mut self.root;
-            let diagonal = r[i * m + i];
-            for j in 0..=i {
-                let sum: f64 = (0..j).map(|k| r[i * m + k] * r[j * m + k]).sum();
-                let value = r[i * m + j] - sum;
-                r[i * m + j] = match j < i {
-                    true => value / r[j * m + j],
-                    false if value > ROUNDING * diagonal => value.sqrt(),
-                    false => return None,
-                };
-            }
-            let (known, own) = self.rows.split_at_mut(i * n);
-            for (k, known) in known.chunks_exact(n).enumerate() {
-                let pairs = own.iter_mut().zip(known);
-                pairs.for_each(|(own, known)| *own -= r[i * m + k] * known);
-            }
-            own[..n].iter_mut().for_each(|own| *own /= r[i * m + i]);
-        }
-        Some(())
     }
 
     /// K^r = Vᵀ V, by node and component.
     pub fn stiffness(&self) -> CellMatrix {
-        let n = self.size();
-        let mut k = CellMatrix::zero(n);
-        for i in 0..n {
-            for j in 0..=i {
-                let value = self.rows.chunks_exact(n).map(|v| v[i] * v[j]).sum();
-                k.set(i, j, value);
-                k.set(j, i, value);
-            }
-        }
-        k
+        self.rows.tr_mul(&self.rows)
     }
 
     /// σ n at ξ per unit displacement, by node and component [Pa/m].
     pub fn response(&self, xi: &Point, n: &Point) -> Vec<Point> {
-        let size = self.size();
-        let mut found = vec![[0.0; 3]; size];
-        let modes = self.orthonormal(xi);
-        for (s, row) in modes.iter().zip(self.rows.chunks_exact(size)) {
+        let mut found = vec![[0.0; 3]; self.rows.ncols()];
+        for (s, row) in self.orthonormal(xi).iter().zip(self.rows.row_iter()) {
             let t = s.map(|row| dot(&row, n));
-            for (sum, v) in found.iter_mut().zip(row) {
+            for (sum, v) in found.iter_mut().zip(row.iter()) {
                 *sum = add_scaled(sum, *v, &t);
             }
         }
@@ -152,9 +124,8 @@ impl AssumedStress {
     /// σ at ξ [Pa] from the displacements of the nodes, by node and component.
     pub fn at(&self, xi: &Point, u: &[f64]) -> [Point; 3] {
         let mut sigma = [[0.0; 3]; 3];
-        let modes = self.orthonormal(xi);
-        for (s, row) in modes.iter().zip(self.rows.chunks_exact(self.size())) {
-            let amount: f64 = row.iter().zip(u).map(|(v, u)| v * u).sum();
+        let amounts = &self.rows * DVectorView::from_slice(u, u.len());
+        for (s, amount) in self.orthonormal(xi).iter().zip(amounts.iter()) {
             sigma = [0, 1, 2].map(|a| [0, 1, 2].map(|b| sigma[a][b] + amount * s[a][b]));
         }
         sigma
@@ -165,7 +136,7 @@ impl AssumedStress {
         let (m, c) = (self.modes.len(), self.scalars(xi));
         let mut found: Vec<[Point; 3]> = Vec::with_capacity(m);
         for (i, (scalar, tensor)) in self.modes.iter().enumerate() {
-            let row = &self.root[i * m..][..=i];
+            let row = self.root.row(i);
             let entry = |a: usize, b: usize| {
                 let known: f64 = row.iter().zip(&found).map(|(r, s)| r * s[a][b]).sum();
                 (c[*scalar] * tensor[a][b] - known) / row[i]

@@ -72,7 +72,7 @@ impl CellMatrices {
             };
             let matrices = some.par_iter().map(stiffness);
             for k in matrices.collect::<Result<Vec<_>, _>>()? {
-                own.extend_from_slice(k.values());
+                own.extend_from_slice(k.as_slice());
             }
         }
         let mut of_cell = shape;
@@ -91,12 +91,13 @@ impl CellMatrices {
     pub fn of(&self, cell: usize) -> CellView<'_> {
         let matrix = self.of_cell[cell] as usize;
         let Some(place) = matrix.checked_sub(self.plain.len()) else {
-            return self.plain[matrix].view();
+            return self.plain[matrix].as_view();
         };
         let from = self.enriched[place].1;
         let next = self.enriched.get(place + 1);
         let values = &self.own[from..next.map_or(self.own.len(), |e| e.1)];
-        CellView::new(values.len().isqrt(), values)
+        let size = values.len().isqrt();
+        CellView::from_slice(values, size, size)
     }
 
     /// Goes over to the basis of the solver.
@@ -109,7 +110,7 @@ impl CellMatrices {
                 k.map(|k| (from, k))
             });
             for (from, k) in changed.collect::<Vec<_>>().into_iter().flatten() {
-                let values = k.values();
+                let values = k.as_slice();
                 self.own[from..from + values.len()].copy_from_slice(values);
             }
         }

@@ -114,7 +114,8 @@ impl<'a> CellIntegrator<'a> {
             1 => vec![plain.clone()],
             _ => self.region_stiffness(cell)?,
         };
-        let mut k = CellMatrix::zero(functions.numbers.len() * dim);
+        let size = functions.numbers.len() * dim;
+        let mut k = CellMatrix::zeros(size, size);
         for (region, part) in parts.iter().enumerate() {
             for (p, (i, fp)) in functions.steps(region).enumerate() {
                 for (q, (j, fq)) in functions.steps(region).enumerate() {
@@ -124,8 +125,8 @@ impl<'a> CellIntegrator<'a> {
                     }
                     for a in 0..dim {
                         for b in 0..dim {
-                            let value = f * part.get(i * dim + a, j * dim + b);
-                            k.add(p * dim + a, q * dim + b, value);
+                            let value = f * part[(j * dim + b, i * dim + a)];
+                            k[(q * dim + b, p * dim + a)] += value;
                         }
                     }
                 }

@@ -14,6 +14,7 @@
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::{DMatrix, DMatrixView};
 
 use crate::geometry::{Point, Points};
 use crate::material::{Dilatation, Lame};
@@ -183,7 +184,7 @@ impl Gram {
         }
     }
 
-    /// Stiffness matrix of the functions, symmetric, full storage row by row, N/m.
+    /// Stiffness matrix of the functions, symmetric, full storage [N/m].
     pub fn stiffness(self, lame: Lame) -> CellMatrix {
         match lame.dilatation {
             Dilatation::Full => self.stiffness_over(lame, Self::at),
@@ -205,7 +206,7 @@ impl Gram {
         self.gather();
         let Lame { lambda, mu, .. } = lame;
         let dim = self.dim;
-        let mut k = CellMatrix::zero(self.size);
+        let mut k = DMatrix::zeros(self.size, self.size);
         for i in 0..self.size / dim {
             for j in 0..=i {
                 let laplace: f64 = (0..dim).map(|c| self.at(i * dim + c, j * dim + c)).sum();
@@ -215,8 +216,8 @@ impl Gram {
                         let swapped = self.at(i * dim + b, j * dim + a);
                         let same = if a == b { mu * laplace } else { 0.0 };
                         let value = lambda * direct + mu * swapped + same;
-                        k.set(i * dim + a, j * dim + b, value);
-                        k.set(j * dim + b, i * dim + a, value);
+                        k[(i * dim + a, j * dim + b)] = value;
+                        k[(j * dim + b, i * dim + a)] = value;
                     }
                 }
             }
@@ -236,72 +237,11 @@ fn total(values: &[f64]) -> f64 {
     sums.iter().chain(rest).sum()
 }
 
-/// Dense square matrix of one cell, row by row [N/m].
-#[derive(Debug, Clone, PartialEq)]
-pub struct CellMatrix {
-    size: usize,
-    values: Vec<f64>,
-}
+/// Dense symmetric matrix of one cell [N/m].
+pub type CellMatrix = DMatrix<f64>;
 
 /// A cell matrix that lies elsewhere.
-#[derive(Debug, Clone, Copy)]
-pub struct CellView<'a> {
-    size: usize,
-    values: &'a [f64],
-}
-
-impl<'a> CellView<'a> {
-    /// size² entries, row by row.
-    pub fn new(size: usize, values: &'a [f64]) -> Self {
-        debug_assert_eq!(values.len(), size * size);
-        CellView { size, values }
-    }
-
-    /// Entry (i, j).
-    pub fn get(&self, i: usize, j: usize) -> f64 {
-        self.values[i * self.size + j]
-    }
-}
-
-impl CellMatrix {
-    /// Zero matrix.
-    pub fn zero(size: usize) -> Self {
-        CellMatrix {
-            size,
-            values: vec![0.0; size * size],
-        }
-    }
-
-    /// Number of rows.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// The matrix for reading.
-    pub fn view(&self) -> CellView<'_> {
-        CellView::new(self.size, &self.values)
-    }
-
-    /// Entries, row by row.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// Entry (i, j).
-    pub fn get(&self, i: usize, j: usize) -> f64 {
-        self.values[i * self.size + j]
-    }
-
-    /// Sets entry (i, j).
-    pub fn set(&mut self, i: usize, j: usize, value: f64) {
-        self.values[i * self.size + j] = value;
-    }
-
-    /// Adds to entry (i, j).
-    pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        self.values[i * self.size + j] += value;
-    }
-}
+pub type CellView<'a> = DMatrixView<'a, f64>;
 
 /// Stiffness of an uncut cell: 2 Gauss points per direction, exact on affine cells.
 ///
@@ -354,7 +294,7 @@ mod tests {
             (6, nu / 6.0),
             (7, (1.0 - 3.0 * nu) / 8.0),
         ] {
-            assert!((k.get(0, j) - c * exact).abs() < 1e-12 * c, "column {j}");
+            assert!((k[(0, j)] - c * exact).abs() < 1e-12 * c, "column {j}");
         }
     }
 }

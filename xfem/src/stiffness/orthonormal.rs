@@ -281,23 +281,18 @@ impl SolverBasis {
         let parts: Vec<Vec<(usize, f64)>> =
             functions.iter().enumerate().flat_map(of_unknown).collect();
         let n = functions.len() * dim;
-        let mut half = CellMatrix::zero(n);
-        for (p, part) in parts.iter().enumerate() {
-            for &(q, t) in part {
-                for column in 0..n {
-                    half.add(p, column, t * k.get(q, column));
+        // K Tᵀ of any matrix K.
+        let on_columns = |k: CellView<'_>| {
+            let mut found = CellMatrix::zeros(n, n);
+            for (p, part) in parts.iter().enumerate() {
+                for &(q, t) in part {
+                    found.column_mut(p).axpy(t, &k.column(q), 1.0);
                 }
             }
-        }
-        let mut found = CellMatrix::zero(n);
-        for (p, part) in parts.iter().enumerate() {
-            for &(q, t) in part {
-                for row in 0..n {
-                    found.add(row, p, t * half.get(row, q));
-                }
-            }
-        }
-        Some(found)
+            found
+        };
+        let half = on_columns(k).transpose();
+        Some(on_columns(half.as_view()).transpose())
     }
 }
 
@@ -347,7 +342,7 @@ fn gram<'a>(
         let k = matrix(cell);
         for &(i, p) in &places {
             for &(j, q) in &places {
-                let diagonal = (0..dim).map(|a| k.get(p * dim + a, q * dim + a));
+                let diagonal = (0..dim).map(|a| k[(p * dim + a, q * dim + a)]);
                 gram[i * count + j] += diagonal.sum::<f64>();
             }
         }
