@@ -193,12 +193,7 @@ impl Mesh {
 
     /// Lowest and highest coordinates [m].
     pub fn extents(&self) -> [Point; 2] {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for x in &self.nodes {
-            low = [0, 1, 2].map(|a| low[a].min(x[a]));
-            high = [0, 1, 2].map(|a| high[a].max(x[a]));
-        }
-        [low, high]
+        around(&self.nodes, 0.0)
     }
 
     /// Half the diagonal of the bounding box [m], and its centre.

@@ -79,9 +79,7 @@ impl GridSpec {
         };
         GridSpec {
             lines: self.lines.iter().map(divided).collect(),
-            follow: self.follow.clone(),
-            twist: self.twist.clone(),
-            distort: self.distort.clone(),
+            ..self.clone()
         }
     }
 }

@@ -13,7 +13,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::geometry::{Point, Points, dot, norm, sub};
+use crate::geometry::{Point, Points, mean, norm, sub};
 
 use super::inverter::Inverter;
 
@@ -245,24 +245,22 @@ impl CellMap {
 
     /// Longest edge [m].
     pub fn longest_edge(&self) -> f64 {
-        let edges = self.kind.edges().iter();
-        let lengths = edges.map(|&[i, j]| norm(&sub(&self[i], &self[j])));
-        lengths.fold(0.0, f64::max)
+        self.edge_lengths().fold(0.0, f64::max)
     }
 
     /// Longest over shortest edge.
     pub fn aspect(&self) -> f64 {
+        self.longest_edge() / self.edge_lengths().fold(f64::INFINITY, f64::min)
+    }
+
+    fn edge_lengths(&self) -> impl Iterator<Item = f64> + '_ {
         let edges = self.kind.edges().iter();
-        let lengths = edges.map(|&[i, j]| norm(&sub(&self[i], &self[j])));
-        let shortest = lengths.fold(f64::INFINITY, f64::min);
-        self.longest_edge() / shortest
+        edges.map(|&[i, j]| norm(&sub(&self[i], &self[j])))
     }
 
     /// Mean of the corners [m].
     pub fn centre(&self) -> Point {
-        let count = self.len() as f64;
-        let sum = |c: Point, x: &Point| [0, 1, 2].map(|a| c[a] + x[a] / count);
-        self.iter().fold([0.0; 3], sum)
+        mean(self.iter())
     }
 
     /// x(ξ).
@@ -280,7 +278,8 @@ impl CellMap {
     pub fn gradients(&self, xi: &Point) -> (Nodal<Point>, f64) {
         let reference = self.kind.reference_gradients(xi);
         let (inverse, det) = self.inverse_jacobian(&reference);
-        (self.in_space(reference, &inverse), det)
+        let slopes = self.slopes(&xi.map(|v| [v]), Some(&inverse));
+        (Nodal::new(self.len(), |i| slopes[i].map(|[v]| v)), det)
     }
 
     /// Gradients ∂N_i/∂x [1/m] at L points ξ, by node and direction; `inverse`: ∂ξ/∂x if it is the same everywhere.
@@ -312,17 +311,6 @@ impl CellMap {
             }
         }
         slopes
-    }
-
-    fn in_space(&self, mut reference: Nodal<Point>, inverse: &[Point; 3]) -> Nodal<Point> {
-        for gradient in reference.iter_mut() {
-            let own = *gradient;
-            for a in 0..self.kind.dim() {
-                // ∂N/∂x_a = Σ_b ∂N/∂ξ_b ∂ξ_b/∂x_a
-                gradient[a] = dot(&own, &[inverse[0][a], inverse[1][a], inverse[2][a]]);
-            }
-        }
-        reference
     }
 
     /// ∂ξ_b/∂x_a by b and a [1/m], where it is the same all over the cell.
