@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Geometry};
+use crate::cut::crack::{Crack, Geometry, crossings};
 use crate::cut::is_split;
 use crate::cut::placement::ends_inside;
 use crate::enrichment::EnrichmentError;
@@ -24,24 +24,17 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
         crack: crack.number,
         at,
     };
+    // A node has one frame: a bend is no place for a pair.
+    let bends = crack.path.windows(3).map(|w| w[1].x);
+    let ends = ends_inside(mesh, crack).into_iter().map(|end| end.1);
+    let mut loose = bends.chain(ends.filter(|x| mesh.node_at(x).is_none()));
+    if let Some(x) = loose.next() {
+        return Err(off(x));
+    }
     let cut =
         |cell: &usize| is_split(&crack.cell_phi(mesh, *cell)) && centre_on(mesh, crack, *cell);
     if let Some(&cell) = crack.cells().iter().find(|cell| cut(cell)) {
         return Err(off(mesh.centre(cell)));
-    }
-    // A node has one frame: a bend is no place for a pair.
-    let mut bends = crack
-        .path
-        .iter()
-        .skip(1)
-        .take(crack.path.len().saturating_sub(2));
-    let mut ends = ends_inside(mesh, crack).into_iter().map(|end| end.1);
-    let loose = bends
-        .next()
-        .map(|v| v.x)
-        .or_else(|| ends.find(|x| mesh.node_at(x).is_none()));
-    if let Some(x) = loose {
-        return Err(off(x));
     }
     let facets = crack_facets(mesh, crack);
     if let Geometry::Ellipse(Ellipse { centre, .. }) = crack.geometry {
@@ -83,9 +76,8 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
     }
     let faces = facets
         .iter()
-        .map(|&facet| mesh.facet_nodes(facet).collect())
-        .collect();
-    let surface = ContactSurface::new(points, faces);
+        .map(|&facet| mesh.facet_nodes(facet).collect());
+    let surface = ContactSurface::new(points, faces.collect());
     for &cell in crack.cells() {
         if crack.distance(&mesh.centre(cell)) > 0.0 {
             for node in mesh.cell_mut(cell) {
@@ -98,31 +90,21 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
     Ok(surface)
 }
 
-/// Facets of side-2 cells on the crack that a side-1 cell shares.
+/// Facets of side-2 cells on the crack that a side-1 cell shares: those not on the border.
 fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
-    let mut upper: BTreeSet<Vec<usize>> = BTreeSet::new();
-    let mut lower: Vec<(Vec<usize>, Facet)> = Vec::new();
+    let on_border = |facet: &Facet| mesh.sides.values().flatten().any(|b| b == facet);
+    let mut found = Vec::new();
     for &cell in crack.cells() {
-        let phi = crack.cell_phi(mesh, cell);
-        if phi.iter().filter(|&&f| f == 0.0).count() < mesh.dim() {
+        if crack.distance(&mesh.centre(cell)) > 0.0 {
             continue;
         }
-        for (local, nodes) in mesh.kind.facets().iter().enumerate() {
-            let facet = Facet { cell, local };
-            if nodes.iter().any(|&i| phi[i] != 0.0) || !within(mesh, crack, facet) {
-                continue;
-            }
-            let mut key: Vec<usize> = mesh.facet_nodes(facet).collect();
-            key.sort_unstable();
-            if crack.distance(&mesh.centre(cell)) > 0.0 {
-                upper.insert(key);
-            } else {
-                lower.push((key, facet));
-            }
-        }
+        let phi = crack.cell_phi(mesh, cell);
+        let facets = mesh.kind.facets().iter().enumerate();
+        let on = facets.filter(|(_, nodes)| nodes.iter().all(|&i| phi[i] == 0.0));
+        let on = on.map(|(local, _)| Facet { cell, local });
+        found.extend(on.filter(|f| within(mesh, crack, *f) && !on_border(f)));
     }
-    lower.retain(|(key, _)| upper.contains(key));
-    lower.into_iter().map(|(_, facet)| facet).collect()
+    found
 }
 
 /// True if a facet on the crack's curve or plane lies between its ends.
@@ -135,7 +117,7 @@ fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
 /// True if the crack inside a split cell has its middle between the ends of the crack.
 fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
     let map = mesh.map(cell);
-    let facet = crack.crossings(&map, &crack.cell_phi(mesh, cell));
+    let facet = crossings(&map, &crack.cell_phi(mesh, cell));
     let off = |x: &Point| crack.distance(x).abs() >= 1e-6 * map.diagonal();
     let middle = mean(facet.iter().map(|v| &v.0));
     !facet.iter().any(|v| off(&v.0)) && crack.jumps_at(&middle, 0.0)

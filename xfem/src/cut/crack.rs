@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::geometry::boxes::{Extents, around};
-use crate::geometry::clip::{Side, bent_crossing, crossing, snapped};
+use crate::geometry::clip::{Side, crossing, snapped};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::Curve;
@@ -266,26 +266,6 @@ impl Crack {
         Nodal::new(nodes.len(), |i| self.phi(mesh, nodes[i]))
     }
 
-    /// Nodes on the crack and crossed edges of a cell with levels φ: the place, and the local nodes it lies between
-    /// (equal at a node).
-    pub fn crossings(&self, map: &CellMap, phi: &[f64]) -> Vec<(Point, [usize; 2])> {
-        let nodes = (0..map.len()).filter(|&i| phi[i] == 0.0);
-        let mut found: Vec<_> = nodes.map(|i| (map[i], [i, i])).collect();
-        for &[i, j] in map.kind.edges() {
-            if phi[i] * phi[j] < 0.0 {
-                let x = match &self.geometry {
-                    // φ is monotone enough for bisection.
-                    Geometry::Curve(curve) if !curve.is_straight() => {
-                        bent_crossing(&map[i], phi[i], &map[j], |x| self.distance(x))
-                    }
-                    _ => crossing(&map[i], phi[i], &map[j], phi[j]),
-                };
-                found.push((x, [i, j]));
-            }
-        }
-        found
-    }
-
     /// Side of a node: +1 on side 1 and on the crack, −1 on side 2.
     pub fn side_of(&self, mesh: &Mesh, node: usize) -> Side {
         match self.phi(mesh, node as u32) >= 0.0 {
@@ -327,6 +307,18 @@ impl Crack {
             .map(tip)
             .collect()
     }
+}
+
+/// Nodes on the crack and crossed edges of a cell with levels φ, linear in between: the place, and the local nodes it lies
+/// between (equal at a node).
+pub fn crossings(map: &CellMap, phi: &[f64]) -> Vec<(Point, [usize; 2])> {
+    let nodes = (0..map.len()).filter(|&i| phi[i] == 0.0);
+    let edges = map.kind.edges().iter().copied();
+    let crossed = edges.filter(|&[i, j]| phi[i] * phi[j] < 0.0);
+    nodes
+        .map(|i| (map[i], [i, i]))
+        .chain(crossed.map(|[i, j]| (crossing(&map[i], phi[i], &map[j], phi[j]), [i, j])))
+        .collect()
 }
 
 /// The first crack on whose curve or plane a node lies, by node.

@@ -13,7 +13,7 @@ use crate::geometry::{Point, cross, dot, mean, norm, polygon, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
-use super::crack::Crack;
+use super::crack::{Crack, crossings};
 use super::part::{Face, FaceCorner, Part};
 
 /// A divided cell.
@@ -152,7 +152,7 @@ impl Partition {
                 }
             }
         }
-        let crossings = crack.crossings(map, phi).into_iter();
+        let crossings = crossings(map, phi).into_iter();
         let facet = cyclic(crossings.map(|(x, nodes)| (x, Some(nodes))).collect());
         // Its own face, clipped to every part it divides by the cracks that divide those from each other.
         for (host, half) in halves.iter().enumerate() {

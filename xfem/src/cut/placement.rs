@@ -5,7 +5,7 @@ use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled};
 use crate::mesh::{Lengths, Mesh};
 
-use super::crack::{Crack, Geometry};
+use super::crack::{Crack, Geometry, crossings};
 use super::is_split;
 
 /// Lengths along the crack are equal within this, in units of the cell's diagonal: a tip this close to an edge is on it.
@@ -22,44 +22,23 @@ pub enum Along {
     Ends,
 }
 
-/// Where a cell lies along a crack.
+/// Where a cell of a solid lies along a crack: φ is linear.
 pub fn along(mesh: &Mesh, crack: &Crack, cell: usize) -> Along {
     let phi = crack.cell_phi(mesh, cell);
     if !is_split(&phi) {
         return Along::Away;
     }
+    let Geometry::Ellipse(ellipse) = &crack.geometry else {
+        return Along::Through;
+    };
     let map = mesh.map(cell);
-    let size = map.diagonal();
-    // Far from a bent crack φ changes sign where two of its parts are equally near.
-    if phi.iter().any(|f| f.abs() > 2.0 * size) {
-        return Along::Away;
-    }
-    let points = crack.crossings(&map, &phi);
-    if points
-        .iter()
-        .any(|(x, _)| crack.distance(x).abs() > 1e-6 * size)
-    {
-        return Along::Away;
-    }
-    let tolerance = ON_EDGE * size;
-    match &crack.geometry {
-        Geometry::Plane { .. } => Along::Through,
-        Geometry::Ellipse(ellipse) => {
-            let inside = points
-                .iter()
-                .filter(|(x, _)| ellipse.nearest(x).psi <= tolerance)
-                .count();
-            let strictly = points
-                .iter()
-                .any(|(x, _)| ellipse.nearest(x).psi < -tolerance);
-            match inside {
-                _ if !strictly => Along::Away,
-                n if n == points.len() => Along::Through,
-                _ => Along::Ends,
-            }
-        }
-        // A plane crack is traced from edge to edge.
-        Geometry::Curve(_) => Along::Away,
+    let tolerance = ON_EDGE * map.diagonal();
+    let crossings = crossings(&map, &phi).into_iter();
+    let psi: Vec<f64> = crossings.map(|(x, _)| ellipse.nearest(&x).psi).collect();
+    match psi.iter().filter(|psi| **psi <= tolerance).count() {
+        _ if psi.iter().all(|psi| *psi >= -tolerance) => Along::Away,
+        inside if inside == psi.len() => Along::Through,
+        _ => Along::Ends,
     }
 }
 
