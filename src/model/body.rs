@@ -202,7 +202,7 @@ impl Body {
             let rows: Vec<_> = rows.iter().map(|row| basis.row(dim, row)).collect();
             free_rows(&rows, &solver_numbers, free)
         };
-        for mode in &mut motions.modes {
+        for mode in &mut motions {
             basis.solver_unknowns(dim, mode);
             let kept = (0..mode.len()).filter(|&i| solver_numbers[i].is_some());
             *mode = kept.map(|i| mode[i]).collect();
@@ -219,7 +219,7 @@ impl Body {
             weight: points.iter().map(|p| p.weight).collect(),
             order,
             free_order,
-            floating: motions.modes,
+            floating: motions,
             frictionless: needs.frictionless,
             traction: needs.traction.then(|| rows(&traction)).transpose()?,
         });

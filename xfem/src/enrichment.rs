@@ -122,7 +122,7 @@ impl Enrichment {
             let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
             own.into_iter().for_each(|crack| cut_by[crack].push(cell));
         }
-        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions, beside);
+        let pieces = support_pieces(mesh, lengths, cracks, &trace, &tips.partitions, beside);
         let standard = mesh.nodes.len();
         let plain = (0..standard as u32).map(|node| Function {
             node,

@@ -101,6 +101,12 @@ pub fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
+/// Joins the sets of two items; the lower root stays.
+pub fn unite(parent: &mut [usize], i: usize, j: usize) {
+    let [a, b] = [i, j].map(|k| root(parent, k));
+    parent[a.max(b)] = a.min(b);
+}
+
 /// a / |a|; the argument must not vanish.
 pub fn unit(a: &Point) -> Point {
     let length = norm(a);

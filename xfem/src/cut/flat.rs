@@ -170,8 +170,9 @@ impl Division {
             border.push((map[i], Some([i, i])));
             let key = [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])];
             let mut on: Vec<Point> = trace.on_edges.get(&key).cloned().unwrap_or_default();
-            let away = |x: &Point| norm(&sub(x, &map[i]));
-            on.sort_by(|a, b| away(a).total_cmp(&away(b)));
+            if nodes[i] > nodes[j] {
+                on.reverse();
+            }
             border.extend(on.into_iter().map(|x| (x, Some([i, j]))));
         }
         Division {

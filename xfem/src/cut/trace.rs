@@ -65,7 +65,7 @@ pub enum TraceError {
 pub struct Trace {
     /// Chains by cell.
     pub chains: BTreeMap<usize, Vec<Chain>>,
-    /// Places on mesh edges (lower node first), in no order.
+    /// Places on mesh edges (lower node first), from the lower node on.
     pub on_edges: BTreeMap<[u32; 2], Vec<Point>>,
     /// Free ends inside the body.
     pub tips: Vec<TracedTip>,
@@ -99,6 +99,10 @@ impl Trace {
         }
         for (index, arm) in arms.iter().enumerate() {
             trace.follow(&near, index, arm)?;
+        }
+        for (edge, places) in &mut trace.on_edges {
+            let away = |x: &Point| norm(&sub(x, near.at(edge[0])));
+            places.sort_by(|a, b| away(a).total_cmp(&away(b)));
         }
         Ok(trace)
     }

@@ -5,20 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, SVD, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SVD, SymmetricEigen};
 
-use crate::geometry::{Point, root};
+use crate::geometry::{Point, root, unite};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
 use super::basis::FunctionKind;
-
-/// Rigid motions left free.
-#[derive(Debug, Clone)]
-pub struct FreeMotions {
-    /// Basis of the motions over all unknowns; empty if the supports hold every piece.
-    pub modes: Vec<Vec<f64>>,
-}
 
 /// A body that can move without any contact point telling.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -70,11 +63,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
                 });
                 let constants = constants.collect();
                 let copy = copy_at(&mut parent, node as usize, constants);
-                let copy = root(&mut parent, copy);
-                match first {
-                    None => first = Some(copy),
-                    Some(other) => parent[copy] = root(&mut parent, other),
-                }
+                unite(&mut parent, copy, *first.get_or_insert(copy));
             }
         }
     }
@@ -148,7 +137,7 @@ impl Pieces {
     }
 }
 
-/// The rigid motions that the prescribed unknowns leave free, checked against contact.
+/// A basis over all unknowns of the rigid motions that the prescribed ones leave free, checked against contact.
 ///
 /// `numbers`: number of every unknown among the free ones, `None` if prescribed; `jump(mode)`: largest jump of a motion
 /// at the contact points, `mode` over all unknowns.
@@ -157,7 +146,7 @@ pub fn free_motions(
     enrichment: &Enrichment,
     numbers: &[Option<u32>],
     jump: impl Fn(&[f64]) -> Vec<f64>,
-) -> Result<FreeMotions, MotionError> {
+) -> Result<Vec<Vec<f64>>, MotionError> {
     /// Eigenvalues of the normalised support matrix below this are zero: supports act on motions of order one.
     const ZERO: f64 = 1e-10;
     let pieces = pieces(mesh, enrichment);
@@ -180,8 +169,7 @@ pub fn free_motions(
     let mut parent: Vec<usize> = (0..m).collect();
     for (k, l) in (0..m).flat_map(|k| (0..k).map(move |l| (k, l))) {
         if support[(k, l)] != 0.0 {
-            let [a, b] = [k, l].map(|i| root(&mut parent, i));
-            parent[a.max(b)] = a.min(b);
+            unite(&mut parent, k, l);
         }
     }
     let mut blocks: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -201,10 +189,9 @@ pub fn free_motions(
     }
     if !free.is_empty() {
         // Contact must feel every free motion: the Gram matrix of their jumps must be regular.
-        let jumps: Vec<Vec<f64>> = free.iter().map(|mode| jump(mode)).collect();
-        let gram = DMatrix::<f64>::from_fn(free.len(), free.len(), |k, l| {
-            jumps[k].iter().zip(&jumps[l]).map(|(a, b)| a * b).sum()
-        });
+        let jumps: Vec<DVector<f64>> = free.iter().map(|mode| jump(mode).into()).collect();
+        let jumps = DMatrix::from_columns(&jumps);
+        let gram = jumps.tr_mul(&jumps);
         let size = gram.diagonal().max().max(f64::MIN_POSITIVE);
         let eigen = SymmetricEigen::new(gram / size);
         let motions: Vec<Vec<f64>> = (0..free.len())
@@ -215,7 +202,7 @@ pub fn free_motions(
             return Err(MotionError { motions });
         }
     }
-    Ok(FreeMotions { modes: free })
+    Ok(free)
 }
 
 /// Σ_l c_l mode_l.

@@ -15,8 +15,9 @@ use crate::cut::crack::{Crack, HAIR, first_on};
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
-use crate::geometry::{Point, norm, root, sub};
-use crate::mesh::Mesh;
+use crate::geometry::{Point, norm, root, sub, unite};
+use crate::mesh::neighbours::Neighbours;
+use crate::mesh::{Lengths, Mesh};
 
 use super::basis::Region;
 use super::cell_facets::clipped;
@@ -33,31 +34,19 @@ type FacetKey = [u32; 4];
 /// Finds the pieces of the supports of all nodes of divided cells. `beside`: as in [`Enrichment::new`](super::Enrichment::new).
 pub fn support_pieces(
     mesh: &Mesh,
+    lengths: &Lengths,
     cracks: &[Crack],
     trace: &Trace,
     partitions: &BTreeMap<usize, Partition>,
     beside: &BTreeMap<u32, Point>,
 ) -> Pieces {
-    let mut touched = vec![false; mesh.nodes.len()];
-    for &cell in partitions.keys() {
-        mesh.cell(cell)
-            .iter()
-            .for_each(|&n| touched[n as usize] = true);
-    }
-    let mut cells_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    let near = Neighbours::new(mesh, lengths);
+    let touched = mesh.nodes_of(partitions.keys().copied());
     let mut facets: BTreeMap<FacetKey, Vec<usize>> = BTreeMap::new();
-    for cell in 0..mesh.cell_count() {
-        let nodes = mesh.cell(cell);
-        for &node in nodes.iter().filter(|&&n| touched[n as usize]) {
-            cells_of.entry(node).or_default().push(cell);
-        }
-        if nodes.iter().any(|&n| touched[n as usize]) {
-            for local in mesh.kind.facets() {
-                facets
-                    .entry(key(local.iter().map(|&i| nodes[i])))
-                    .or_default()
-                    .push(cell);
-            }
+    for cell in near.cells_around(&touched) {
+        for local in mesh.kind.facets() {
+            let facet = key(local.iter().map(|&i| mesh.cell(cell)[i]));
+            facets.entry(facet).or_default().push(cell);
         }
     }
     let joiner = Joiner {
@@ -75,14 +64,15 @@ pub fn support_pieces(
         };
         let own = joiner.over(facet, [one, two]);
         let nodes: BTreeSet<u32> = facet.iter().copied().collect();
-        for node in nodes.into_iter().filter(|&n| touched[n as usize]) {
+        for node in nodes.intersection(&touched).copied() {
             joins.entry(node).or_default().extend(&own);
         }
     }
     let mut found = Pieces::new();
-    for (&node, cells) in &cells_of {
+    for node in touched {
         let own = joins.get(&node).map_or(&[][..], Vec::as_slice);
-        let pieces = joiner.pieces(node, cells, own);
+        let cells: Vec<usize> = near.cells_around(&[node].into()).into_iter().collect();
+        let pieces = joiner.pieces(node, &cells, own);
         if !pieces.is_empty() {
             found.insert(node, pieces);
         }
@@ -118,10 +108,7 @@ pub fn parted_from(
         .collect();
     let number = |place: &Place| places.binary_search(place).unwrap_or_default();
     let mut parent: Vec<usize> = (0..places.len()).collect();
-    let mut join = |[one, two]: [Place; 2]| {
-        let [a, b] = [one, two].map(|place| root(&mut parent, number(&place)));
-        parent[a.max(b)] = a.min(b);
-    };
+    let mut join = |[one, two]: [Place; 2]| unite(&mut parent, number(&one), number(&two));
     let mut facets: BTreeMap<FacetKey, usize> = BTreeMap::new();
     for &cell in cells {
         for local in mesh.kind.facets() {
@@ -194,8 +181,6 @@ impl Joiner<'_> {
     fn over_edge(&self, edge: [u32; 2], cells: [usize; 2]) -> Vec<[Place; 2]> {
         let [from, to] = edge.map(|n| self.mesh.nodes[n as usize]);
         let mut places: Vec<Point> = self.trace.on_edges.get(&edge).cloned().unwrap_or_default();
-        let away = |x: &Point| norm(&sub(x, &from));
-        places.sort_by(|a, b| away(a).total_cmp(&away(b)));
         places.insert(0, from);
         places.push(to);
         let parts = places.windows(2);
@@ -214,18 +199,12 @@ impl Joiner<'_> {
     /// In 3D: where the polygons that the regions leave of the face overlap.
     fn over_face(&self, facet: &FacetKey, cells: [usize; 2]) -> Vec<[Place; 2]> {
         let nodes = self.mesh.cell(cells[0]);
-        let local = self.mesh.kind.facets().iter();
-        let local = local
-            .into_iter()
-            .find(|l| key(l.iter().map(|&i| nodes[i])) == *facet);
-        let corners: Vec<u32> = local
-            .into_iter()
-            .flat_map(|l| l.iter().map(|&i| nodes[i]))
-            .collect();
-        let face: Vec<Point> = corners
-            .iter()
-            .map(|&n| self.mesh.nodes[n as usize])
-            .collect();
+        let facets = self.mesh.kind.facets().iter();
+        let mut corners = facets.map(|l| l.iter().map(|&i| nodes[i]).collect::<Vec<u32>>());
+        let corners = corners.find(|own| key(own.iter().copied()) == *facet);
+        let corners = corners.unwrap_or_default();
+        let at = |&n: &u32| self.mesh.nodes[n as usize];
+        let face: Vec<Point> = corners.iter().map(at).collect();
         let whole = space_area(&face);
         let mut joins = Vec::new();
         for one in 0..self.regions(cells[0]) {
@@ -268,11 +247,7 @@ impl Joiner<'_> {
             pairs.map(move |pair| pair.map(|region| (cell, region)))
         });
         for [one, two] in joins.iter().copied().chain(within) {
-            let (a, b) = (
-                root(&mut parent, number(&one)),
-                root(&mut parent, number(&two)),
-            );
-            parent[a.max(b)] = a.min(b);
+            unite(&mut parent, number(&one), number(&two));
         }
         let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
         let own = roots[self.own(node, &places)];
