@@ -4,11 +4,14 @@
 //! place. A chain with a free end goes on straight to the border of its polygon, one inside the cell to both sides: the two
 //! parts beside such an extension are one. What leads nowhere divides nothing.
 
+mod pending;
+
 use crate::geometry::clip::Side;
 use crate::geometry::polygon::{self, Polygon};
-use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, cross, dot, sub, unit};
 use crate::mesh::Mesh;
 
+use self::pending::Pending;
 use super::crack::Crack;
 use super::part::{Face, FaceCorner, Part};
 use super::partition::{Partition, PartitionError};
@@ -20,71 +23,6 @@ const HERE: f64 = 1e-12;
 /// Free ends shorter than this divide nothing, in sizes of the cell: √r jumps by 1e-4 of what it does on a whole cell, over
 /// 1e-8 of its length.
 const SHORT: f64 = 1e-8;
-
-/// A chain on its way into the cell.
-struct Pending {
-    vertices: Vec<Point>,
-    /// Arm of every segment, and the side that lies to its left: 1, or −1 if the chain runs against its arm.
-    arms: Vec<(usize, Side)>,
-    /// Whether its last vertex is a free end.
-    free: bool,
-    /// Whether its first is one too.
-    loose: bool,
-}
-
-impl Pending {
-    fn new(chain: &Chain) -> Self {
-        let vertices: Vec<Point> = chain.vertices.iter().map(|v| v.x).collect();
-        let mut pending = Pending {
-            arms: vec![(chain.arm, 1.0); vertices.len() - 1],
-            vertices,
-            free: false,
-            loose: chain.tip == [true; 2],
-        };
-        if chain.tip[0] && !pending.loose {
-            pending.reverse();
-        }
-        pending.free = chain.tip != [false; 2];
-        pending
-    }
-
-    fn reverse(&mut self) {
-        self.vertices.reverse();
-        self.arms.reverse();
-        for (_, side) in &mut self.arms {
-            *side = -*side;
-        }
-    }
-
-    fn first(&self) -> &Point {
-        &self.vertices[0]
-    }
-
-    fn last(&self) -> &Point {
-        &self.vertices[self.vertices.len() - 1]
-    }
-
-    fn length(&self) -> f64 {
-        let segments = self.vertices.windows(2);
-        segments.map(|w| norm(&sub(&w[1], &w[0]))).sum()
-    }
-
-    /// From vertex to vertex.
-    fn piece(&self, from: usize, to: usize) -> Self {
-        let mut piece = Pending {
-            vertices: self.vertices[from..=to].to_vec(),
-            arms: self.arms[from..to].to_vec(),
-            free: self.free && to + 1 == self.vertices.len(),
-            loose: self.loose && from == 0,
-        };
-        // Of two free ends one is left.
-        if piece.loose && !piece.free {
-            piece.reverse();
-            (piece.loose, piece.free) = (false, true);
-        }
-        piece
-    }
-}
 
 /// A segment between two polygons, side 1 to its left.
 struct Segment {
@@ -125,7 +63,7 @@ pub fn divide(
 ) -> Result<Partition, PartitionError> {
     let mut division = Division::new(mesh, cell, trace);
     let mut pending: Vec<Pending> = chains.iter().map(|chain| Pending::new(chain)).collect();
-    let mut dropped = Vec::new();
+    let mut dropped: Vec<Pending> = Vec::new();
     loop {
         while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
         // Free ends one by one: others may wait for their chains.
@@ -141,7 +79,7 @@ pub fn divide(
             break;
         };
         if short(&chain) {
-            dropped.extend(chain.arms.iter().map(|arm| arm.0));
+            dropped.push(chain);
         } else if division.part_at_extensions(&mut chain) {
             pending.push(chain);
         } else if chain.loose {
@@ -151,13 +89,9 @@ pub fn divide(
             division.extend(chain)?;
         }
     }
-    dropped.extend(
-        pending
-            .iter()
-            .flat_map(|chain| chain.arms.iter().map(|arm| arm.0)),
-    );
     let mut partition = division.finish(&mesh.map(cell))?;
-    partition.dropped = dropped;
+    let lost = dropped.iter().chain(&pending).flat_map(|chain| &chain.arms);
+    partition.dropped = lost.map(|arm| arm.0).collect();
     Ok(partition)
 }
 
@@ -185,6 +119,11 @@ impl Division {
             border,
             size: map.diagonal(),
         }
+    }
+
+    /// Local nodes that a point of the border lies between.
+    fn local(&self, x: &Point) -> Option<[usize; 2]> {
+        self.border.iter().find(|c| c.0 == *x)?.1
     }
 
     fn is_corner(&self, x: &Point) -> bool {
@@ -438,8 +377,7 @@ impl Division {
             };
             self.segments.push(rest);
         }
-        let local = |x: &Point| self.border.iter().find(|c| c.0 == *x).and_then(|c| c.1);
-        if let (Some([a, b]), Some([c, d])) = (local(&p), local(&q)) {
+        if let (Some([a, b]), Some([c, d])) = (self.local(&p), self.local(&q)) {
             // Both on one edge of the cell: the point too.
             let edge = if a != b {
                 [a, b]
@@ -458,7 +396,6 @@ impl Division {
 
     /// The parts and faces.
     fn finish(self, map: &crate::mesh::cell::CellMap) -> Result<Partition, PartitionError> {
-        let local = |x: &Point| self.border.iter().find(|c| c.0 == *x).and_then(|c| c.1);
         // A polygon lies to the left of its edges.
         let left_of = |from: &Point, to: &Point| {
             let runs = |r: &Region| polygon::edges(&r.polygon).any(|(p, q)| p == *from && q == *to);
@@ -477,7 +414,7 @@ impl Division {
             } else {
                 faces.push(Face {
                     crack: segment.arm,
-                    corners: vec![(*a, local(a)), (*b, local(b))],
+                    corners: vec![(*a, self.local(a)), (*b, self.local(b))],
                     parts: [one, two],
                 });
             }
