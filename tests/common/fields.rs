@@ -232,7 +232,10 @@ pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
 pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
     let mesh = &body.mesh;
     let mut points = Vec::new();
-    for (cell, partition) in body.enrichment.cut_cells() {
+    for cell in 0..mesh.cell_count() {
+        let Some(partition) = body.enrichment.partition(cell) else {
+            continue;
+        };
         let crack = &body.cracks[partition.faces[0].crack];
         let vertices = &partition.faces[0].corners;
         // A face ends inside a cell where the crack does.

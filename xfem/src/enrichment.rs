@@ -267,11 +267,6 @@ impl Enrichment {
             .map_or(&[], Vec::as_slice)
     }
 
-    /// Divided cells in order.
-    pub fn cut_cells(&self) -> impl Iterator<Item = (usize, &Partition)> {
-        self.partitions.iter().map(|(&cell, part)| (cell, part))
-    }
-
     /// Divided cells with faces of a crack, in order.
     pub fn cut_by(&self, crack: usize) -> &[usize] {
         &self.cut_by[crack]
@@ -356,11 +351,7 @@ impl Enrichment {
 
     /// True if the ramp of some tip falls within a cell of these nodes.
     pub fn ramps_in(&self, nodes: &[u32], cell: usize) -> bool {
-        let kinds = self
-            .cell(cell)
-            .iter()
-            .map(|&f| self.functions[f as usize].kind);
-        let tips = kinds.filter_map(|kind| match kind {
+        let tips = self.kinds(cell).filter_map(|kind| match kind {
             FunctionKind::Branch { tip, .. } => Some(tip as usize),
             _ => None,
         });
@@ -376,13 +367,13 @@ impl Enrichment {
 
     /// True if a function of the cell is a branch function.
     pub fn has_branch(&self, cell: usize) -> bool {
-        let kinds = self
-            .cell(cell)
-            .iter()
-            .map(|&f| self.functions[f as usize].kind);
-        kinds
-            .into_iter()
-            .any(|kind| matches!(kind, FunctionKind::Branch { .. }))
+        let is_branch = |kind| matches!(kind, FunctionKind::Branch { .. });
+        self.kinds(cell).any(is_branch)
+    }
+
+    fn kinds(&self, cell: usize) -> impl Iterator<Item = FunctionKind> + '_ {
+        let functions = self.cell(cell).iter();
+        functions.map(|&f| self.functions[f as usize].kind)
     }
 
     /// Cells that carry each function.

@@ -93,14 +93,6 @@ impl<'a> CellFunctions<'a> {
             .zip(steps.iter().copied())
     }
 
-    /// Whether each function is a branch function.
-    pub fn are_branches(&self) -> Vec<bool> {
-        let kinds = self.functions.iter().map(|f| f.kind);
-        kinds
-            .map(|kind| matches!(kind, FunctionKind::Branch { .. }))
-            .collect()
-    }
-
     /// Evaluates all functions at ξ (position x) in a region of the cell.
     pub fn evaluate(&mut self, xi: &Point, x: &Point, region: Region) {
         let (mut values, mut gradients) = (take(&mut self.values), take(&mut self.gradients));

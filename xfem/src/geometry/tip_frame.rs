@@ -72,11 +72,6 @@ impl TipFrame {
         }
     }
 
-    /// True for the front of a 3D crack.
-    pub fn shape_is_ellipse(&self) -> bool {
-        matches!(self.shape, FrontShape::Ellipse(_))
-    }
-
     /// Coordinates of a point.
     pub fn coordinates(&self, x: &Point) -> TipCoordinates {
         let d = sub(x, &self.position);

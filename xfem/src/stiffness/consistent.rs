@@ -145,14 +145,14 @@ impl CellIntegrator<'_> {
     ) -> Result<Vec<Vec<Point>>, CellError> {
         let exact = self.shape_moments(cell, &functions.map)?;
         let nodes = functions.map.len();
-        let kinds = functions.are_branches();
+        let tips = self.tips_of(functions);
         let whole: f64 = moments.iter().map(|m| m.measure).sum();
         // On a sliver the difference of border integrals is rounding, and what its rule misses is nothing to the cell.
         let least = match functions.map.is_affine() {
             true => 0.0,
             false => SLIVER * whole,
         };
-        let mut found = vec![vec![[0.0; 3]; kinds.len()]; moments.len()];
+        let mut found = vec![vec![[0.0; 3]; tips.len()]; moments.len()];
         // Evenly over a region: piece functions follow the shape functions.
         let regions = moments.iter().zip(&mut found).enumerate();
         for (region, (own, found)) in regions.filter(|(_, (own, _))| own.measure > least) {
@@ -162,19 +162,19 @@ impl CellIntegrator<'_> {
                 missing[local] = sub(&exact[region][local], sum);
             }
             for (f, (local, step)) in functions.steps(region).enumerate() {
-                if !kinds[f] {
+                if tips[f].is_none() {
                     found[f] = missing[local].map(|v| step / own.measure * v);
                 }
             }
         }
-        if kinds.contains(&true) {
+        if tips.iter().any(Option::is_some) {
             // Evenly over where it lives in the cell.
             let flux = self.flux(cell, functions)?;
             let steps = self.enrichment.steps(cell);
-            for f in (0..kinds.len()).filter(|&f| kinds[f]) {
+            for f in (0..tips.len()).filter(|&f| tips[f].is_some()) {
                 let sums = moments.iter().map(|m| &m.gradients[f]);
                 let missing = sums.fold(flux[f], |missing, sum| sub(&missing, sum));
-                let lives = |region: &usize| steps[region * kinds.len() + f] != ABSENT;
+                let lives = |region: &usize| steps[region * tips.len() + f] != ABSENT;
                 let regions: Vec<usize> = (0..moments.len()).filter(lives).collect();
                 let whole: f64 = regions.iter().map(|&region| moments[region].measure).sum();
                 for region in regions {

@@ -167,17 +167,11 @@ impl<'a> ProjectedDilatation<'a> {
         mut h: [Point; 3],
     ) -> [Point; 3] {
         let (dim, Lame { lambda, mu, .. }) = (self.dim, self.lame);
-        let shapes = self.shapes(region, x);
-        let trace: f64 = (0..dim).map(|a| h[a][a]).sum();
-        let mut excess = -trace;
-        for mode in &self.regions[region] {
-            let mut integral = 0.0;
-            for (&f, g) in functions.iter().zip(&mode.integrals) {
-                integral += (0..dim)
-                    .map(|a| u[f as usize * dim + a] * g[a])
-                    .sum::<f64>();
-            }
-            excess += mode.at(&shapes) * integral;
+        let mut excess = -(0..dim).map(|a| h[a][a]).sum::<f64>();
+        let gradients = self.gradients(region, x, functions.len());
+        for (&f, g) in functions.iter().zip(&gradients) {
+            let own = &u[f as usize * dim..][..dim];
+            excess += own.iter().zip(g).map(|(u, g)| u * g).sum::<f64>();
         }
         for (a, row) in h.iter_mut().enumerate().take(dim) {
             row[a] += lambda / (dim as f64 * lambda + 2.0 * mu) * excess;
