@@ -97,24 +97,13 @@ fn assemble(
     points: &[ContactPoint],
     facets: &CrackFacets,
     multipliers: &Multipliers,
-    mut quadrature: Vec<SurfacePoint>,
+    quadrature: Vec<SurfacePoint>,
 ) -> ContactSurface {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&i, &j| points[i].compare(&points[j]));
     let mut number = vec![0; points.len()];
     for (position, &old) in order.iter().enumerate() {
         number[old] = position as u32;
-    }
-    let renumbered = |shares: &[(u32, f64)]| -> Vec<(u32, f64)> {
-        let mut shares: Vec<_> = shares
-            .iter()
-            .map(|&(k, v)| (number[k as usize], v))
-            .collect();
-        shares.sort_by_key(|share| share.0);
-        shares
-    };
-    for q in &mut quadrature {
-        q.shares = renumbered(&q.shares);
     }
     let mut corners: Vec<SurfaceCorner> = Vec::new();
     let mut known: BTreeMap<(usize, Vec<(u32, u64)>), usize> = BTreeMap::new();
@@ -124,11 +113,10 @@ fn assemble(
             continue;
         }
         let face = facet.corners.iter().zip(shares).map(|(&corner, own)| {
-            let shares = renumbered(own);
-            let key = (
-                corner,
-                shares.iter().map(|&(k, v)| (k, v.to_bits())).collect(),
-            );
+            let mut shares = own.clone();
+            shares.sort_by_key(|share| share.0);
+            let bits = shares.iter().map(|&(k, v)| (k, v.to_bits()));
+            let key = (corner, bits.collect());
             *known.entry(key).or_insert_with(|| {
                 corners.push(SurfaceCorner {
                     x: facets.corners[corner].x,
@@ -139,12 +127,14 @@ fn assemble(
         });
         faces.push(face.collect());
     }
+    let mut surface = CrackSurface {
+        corners,
+        facets: faces,
+        quadrature,
+    };
+    surface.renumber(|k| number[k as usize]);
     ContactSurface {
         points: order.into_iter().map(|old| points[old].clone()).collect(),
-        surface: CrackSurface {
-            corners,
-            facets: faces,
-            quadrature,
-        },
+        surface,
     }
 }

@@ -117,6 +117,21 @@ pub struct CrackSurface {
     pub quadrature: Vec<SurfacePoint>,
 }
 
+impl CrackSurface {
+    /// Gives the contact points other numbers; parts of points that become one are summed.
+    pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+        let corners = self.corners.iter_mut().map(|corner| &mut corner.shares);
+        let quadrature = self.quadrature.iter_mut().map(|q| &mut q.shares);
+        for shares in corners.chain(quadrature) {
+            let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
+            for &(k, share) in shares.iter() {
+                *sum.entry(number(k)).or_default() += share;
+            }
+            *shares = sum.into_iter().collect();
+        }
+    }
+}
+
 /// Contact points of one or more cracks, and the crack surface they stand for.
 #[derive(Debug, Clone, Default)]
 pub struct ContactSurface {
@@ -166,33 +181,16 @@ impl ContactSurface {
     }
 
     /// Adds another surface behind this one.
-    pub fn append(&mut self, other: ContactSurface) {
-        let (points, own) = (self.points.len() as u32, &mut self.surface);
-        let corners = own.corners.len();
-        let moved = |shares: Vec<(u32, f64)>| -> Vec<(u32, f64)> {
-            shares.into_iter().map(|(k, v)| (k + points, v)).collect()
-        };
-        let CrackSurface {
-            corners: further,
-            facets,
-            quadrature,
-        } = other.surface;
-        own.corners
-            .extend(further.into_iter().map(|corner| SurfaceCorner {
-                shares: moved(corner.shares),
-                ..corner
-            }));
-        own.facets.extend(
-            facets
-                .into_iter()
-                .map(|f| f.into_iter().map(|i| i + corners).collect()),
-        );
-        own.quadrature
-            .extend(quadrature.into_iter().map(|q| SurfacePoint {
-                shares: moved(q.shares),
-                ..q
-            }));
+    pub fn append(&mut self, mut other: ContactSurface) {
+        let (points, corners) = (self.points.len() as u32, self.surface.corners.len());
+        other.surface.renumber(|k| k + points);
         self.points.extend(other.points);
+        let (own, other) = (&mut self.surface, other.surface);
+        own.corners.extend(other.corners);
+        let facets = other.facets.into_iter();
+        let moved = facets.map(|f| f.into_iter().map(|i| i + corners).collect());
+        own.facets.extend(moved);
+        own.quadrature.extend(other.quadrature);
     }
 }
 

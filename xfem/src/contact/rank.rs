@@ -242,22 +242,7 @@ pub fn merge(
         })
     });
     surface.points = points.collect();
-    let renumber = |shares: &mut Vec<(u32, f64)>| {
-        let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
-        for &(k, share) in shares.iter() {
-            *sum.entry(numbers[k as usize]).or_default() += share;
-        }
-        *shares = sum.into_iter().collect();
-    };
-    let surface = &mut surface.surface;
-    surface
-        .corners
-        .iter_mut()
-        .for_each(|corner| renumber(&mut corner.shares));
-    surface
-        .quadrature
-        .iter_mut()
-        .for_each(|q| renumber(&mut q.shares));
+    surface.surface.renumber(|k| numbers[k as usize]);
     let mut start = 0;
     let arms = arms.iter().map(|arm| {
         let own = arm.clone().filter(|&k| target[k] == k).count();
