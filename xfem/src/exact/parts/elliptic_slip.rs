@@ -97,16 +97,5 @@ mod tests {
                 );
             }
         }
-        // The disc, and an ellipse that nearly is one.
-        for ratio in [1.0, 1.0 - 1e-12] {
-            let found = compliance([1.0, ratio], MATERIAL);
-            let shear = 8.0 * (1.0 - nu) / (PI * g * (2.0 - nu));
-            for (c, exact) in found
-                .iter()
-                .zip([shear, shear, 4.0 * (1.0 - nu) / (PI * g)])
-            {
-                assert!((c - exact).abs() < 1e-11 * exact);
-            }
-        }
     }
 }
