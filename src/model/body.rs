@@ -227,7 +227,7 @@ impl Body {
             // Pieces are found by what cracks leave whole: their motions are rigid unless a crack was bent.
             Err(MethodError::NotRigid { .. }) if !cracks.is_empty() => {
                 let crack = cracks.iter().map(|c| c.number).max().unwrap_or(0);
-                return Err(crack_error(case, &EnrichmentError::Bent { crack }).into());
+                return Err(crack_error(case, &EnrichmentError::Bent(crack)).into());
             }
             other => other?,
         };
@@ -352,14 +352,14 @@ fn faces(
         if merged == 0 {
             if let Some(&point) = rank::singular(&arms, |k| rows(&surface.points[k..=k])).first() {
                 let crack = surface.points[point].crack;
-                return Err(crack_error(case, &EnrichmentError::Undetermined { crack }).into());
+                return Err(crack_error(case, &EnrichmentError::Undetermined(crack)).into());
             }
             break;
         }
     }
     for number in 0..case.cracks.len() {
         if !surface.points.iter().any(|p| p.crack == number) {
-            return Err(crack_error(case, &EnrichmentError::TooShort { crack: number }).into());
+            return Err(crack_error(case, &EnrichmentError::TooShort(number)).into());
         }
     }
     Ok(surface)

@@ -91,11 +91,11 @@ pub fn check_probes(case: &Case, mesh: &Mesh, enrichment: &Enrichment) -> Result
 pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     let error = &error.clone().moved(&case.origin);
     let (crack, allowed) = match error {
-        EnrichmentError::Outside { crack } => (*crack, "a crack that cuts at least one cell"),
-        EnrichmentError::TooShort { crack } => (*crack, "a longer crack or a finer mesh"),
-        EnrichmentError::Undetermined { crack } => (*crack, "a finer mesh, or longer pieces"),
-        EnrichmentError::Loose { crack } => (*crack, "a finer mesh, or supports on the piece"),
-        EnrichmentError::Bent { crack } => (
+        EnrichmentError::Outside(crack) => (*crack, "a crack that cuts at least one cell"),
+        EnrichmentError::TooShort(crack) => (*crack, "a longer crack or a finer mesh"),
+        EnrichmentError::Undetermined(crack) => (*crack, "a finer mesh, or longer pieces"),
+        EnrichmentError::Loose(crack) => (*crack, "a finer mesh, or supports on the piece"),
+        EnrichmentError::Bent(crack) => (
             *crack,
             "cracks that meet in one place, or farther apart than a thousandth of a cell",
         ),
@@ -121,7 +121,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         _ => &spec.geometry_span,
     };
     let fitting = match (&spec.geometry, error) {
-        (_, EnrichmentError::TooShort { .. }) => fitting_cell(&spec.geometry),
+        (_, EnrichmentError::TooShort(_)) => fitting_cell(&spec.geometry),
         _ => None,
     };
     match fitting {
@@ -200,7 +200,7 @@ pub fn motion_error(
         open.map(|q| q.crack)
     };
     if let Some(crack) = error.motions.iter().find_map(opened) {
-        return crack_error(case, &EnrichmentError::Loose { crack });
+        return crack_error(case, &EnrichmentError::Loose(crack));
     }
     let (span, allowed) = match case.supports.first() {
         Some(support) => (&support.span, "supports that hold every rigid motion"),

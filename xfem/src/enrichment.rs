@@ -108,12 +108,8 @@ impl Enrichment {
         for crack in cracks {
             if !present.contains(&crack.number) {
                 return Err(match enters(mesh, lengths, crack) {
-                    true => EnrichmentError::TooShort {
-                        crack: crack.number,
-                    },
-                    false => EnrichmentError::Outside {
-                        crack: crack.number,
-                    },
+                    true => EnrichmentError::TooShort(crack.number),
+                    false => EnrichmentError::Outside(crack.number),
                 });
             }
         }

@@ -41,9 +41,7 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
         return Err(off(centre));
     }
     if facets.is_empty() {
-        return Err(EnrichmentError::Outside {
-            crack: crack.number,
-        });
+        return Err(EnrichmentError::Outside(crack.number));
     }
     let mut weight: BTreeMap<usize, f64> = BTreeMap::new();
     let mut uses: BTreeMap<usize, usize> = BTreeMap::new();

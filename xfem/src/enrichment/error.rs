@@ -5,39 +5,24 @@ use crate::cut::off_facets::AlongFacet;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
 
-/// What is wrong with a crack in a mesh.
+/// What is wrong with a crack in a mesh; crack numbers are from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EnrichmentError {
     /// The crack cuts no cell.
-    #[error("crack {} lies wholly outside the mesh", crack + 1)]
-    Outside {
-        /// Crack number, from 0.
-        crack: usize,
-    },
+    #[error("crack {} lies wholly outside the mesh", .0 + 1)]
+    Outside(usize),
     /// Both tips in one cell, or in neighbours that share all contact: no contact point is left.
-    #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", crack + 1)]
-    TooShort {
-        /// Crack number, from 0.
-        crack: usize,
-    },
+    #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", .0 + 1)]
+    TooShort(usize),
     /// Pieces of it share all displacements: no contact force can be told from another.
-    #[error("crack {} has a piece between its bends, junctions and ends that is too short for this mesh: nothing tells the force on it from those beside it", crack + 1)]
-    Undetermined {
-        /// Crack number, from 0.
-        crack: usize,
-    },
+    #[error("crack {} has a piece between its bends, junctions and ends that is too short for this mesh: nothing tells the force on it from those beside it", .0 + 1)]
+    Undetermined(usize),
     /// It cuts off a piece that can move without any of its contact points telling.
-    #[error("crack {} has too few contact points on this mesh for the piece that it cuts off: it can move freely", crack + 1)]
-    Loose {
-        /// Crack number, from 0.
-        crack: usize,
-    },
+    #[error("crack {} has too few contact points on this mesh for the piece that it cuts off: it can move freely", .0 + 1)]
+    Loose(usize),
     /// Places where it meets others that lie too close to be told apart were made one, and a piece was bent by it.
-    #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", crack + 1)]
-    Bent {
-        /// Crack number, from 0.
-        crack: usize,
-    },
+    #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", .0 + 1)]
+    Bent(usize),
     /// Two cracks in one place.
     #[error(transparent)]
     Overlap(#[from] Overlap),
@@ -81,11 +66,11 @@ impl EnrichmentError {
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. }
             | Self::AlongFacet(AlongFacet { at, .. }) => *at = add_scaled(at, 1.0, by),
-            Self::Outside { .. }
-            | Self::TooShort { .. }
-            | Self::Undetermined { .. }
-            | Self::Loose { .. }
-            | Self::Bent { .. } => {}
+            Self::Outside(_)
+            | Self::TooShort(_)
+            | Self::Undetermined(_)
+            | Self::Loose(_)
+            | Self::Bent(_) => {}
         }
         self
     }
