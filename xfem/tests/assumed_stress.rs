@@ -29,7 +29,7 @@ fn rule(map: &CellMap, inside: impl Fn(&Point) -> bool) -> Vec<ShapePoint> {
 }
 
 /// u · K u
-fn energy(k: &CellMatrix, u: &[f64]) -> f64 {
+fn square(k: &CellMatrix, u: &[f64]) -> f64 {
     let u = DVectorView::from_slice(u, u.len());
     u.dot(&(k * u))
 }
@@ -74,7 +74,7 @@ fn uniform_stress_is_exact_in_any_part_of_any_cell() {
                 assert!((t - dot(&exact[a], &n)).abs() < 1e-13, "{kind:?}");
             }
             let k = assumed.stiffness();
-            let energy = energy(&k, &u);
+            let energy = square(&k, &u);
             let volume: f64 = points.iter().map(|(at, _)| at.weight).sum();
             let expected = volume * double_dot(&exact, &strain(lame, dim, &exact));
             assert!((energy / expected - 1.0).abs() < 1e-13, "{kind:?}");
@@ -117,7 +117,7 @@ fn a_slender_box_bends_exactly() {
                 .map(|(at, _)| at.weight * at.xi[1].powi(2))
                 .sum::<f64>()
                 * modulus;
-            let found = self::energy(&k, &u);
+            let found = square(&k, &u);
             assert!((found / energy - 1.0).abs() < BENT, "{kind:?} {nu}");
         }
     }

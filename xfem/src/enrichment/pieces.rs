@@ -155,13 +155,9 @@ pub fn free_motions(
     let m = modes.len();
     let mut support = DMatrix::<f64>::zeros(m, m);
     for unknown in (0..numbers.len()).filter(|&i| numbers[i].is_none()) {
-        let values: Vec<f64> = modes.iter().map(|mode| mode[unknown]).collect();
-        for k in 0..m {
-            if values[k] != 0.0 {
-                for l in 0..m {
-                    support[(k, l)] += values[k] * values[l];
-                }
-            }
+        let values = DVector::from_fn(m, |k, _| modes[k][unknown]);
+        for k in (0..m).filter(|&k| values[k] != 0.0) {
+            support.column_mut(k).axpy(values[k], &values, 1.0);
         }
     }
     let scale = support.diagonal().max().max(f64::MIN_POSITIVE);
@@ -239,17 +235,12 @@ fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<V
         r
     };
     let kinds = dim + rotations.len();
-    let mut modes = Vec::with_capacity(pieces.count * kinds);
-    for piece in 0..pieces.count {
-        for kind in 0..kinds {
-            modes.push(pieces.field(mesh, enrichment, |p, x| {
-                if p == piece {
-                    motion(kind, x)
-                } else {
-                    [0.0; 3]
-                }
-            }));
-        }
-    }
-    modes
+    let all = (0..pieces.count).flat_map(|piece| (0..kinds).map(move |kind| (piece, kind)));
+    all.map(|(piece, kind)| {
+        pieces.field(mesh, enrichment, |p, x| match p == piece {
+            true => motion(kind, x),
+            false => [0.0; 3],
+        })
+    })
+    .collect()
 }

@@ -9,9 +9,8 @@ pub type Extents = [Point; 2];
 pub fn around<'a>(points: impl IntoIterator<Item = &'a Point>, margin: f64) -> Extents {
     let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     let grown = |[low, high]: Extents, x: &Point| {
-        let at = |a: usize| [low[a].min(x[a] - margin), high[a].max(x[a] + margin)];
-        let [p, q, r] = [at(0), at(1), at(2)];
-        [[p[0], q[0], r[0]], [p[1], q[1], r[1]]]
+        let low = [0, 1, 2].map(|a| low[a].min(x[a] - margin));
+        [low, [0, 1, 2].map(|a| high[a].max(x[a] + margin))]
     };
     points.into_iter().fold(nothing, grown)
 }
