@@ -30,7 +30,7 @@ const TIED: f64 = 1e-6;
 /// point, a junction next to a grid line say, those of all nodes of a cell are alike …
 const SLIVER: f64 = 1e-6;
 
-/// … and dropped if the square of what is their own is smaller than this part of it.
+/// … and dropped, whatever is held of their nodes, if the square of what is their own is smaller than this part of it.
 const ALIKE: f64 = 1e-12;
 
 /// The functions of one node.
@@ -57,6 +57,8 @@ pub struct SolverBasis {
     blocks: Vec<Block>,
     /// Block of every function; empty if there are none.
     block_of: Vec<Option<u32>>,
+    /// Functions that are dropped for others of their cell.
+    alike: BTreeSet<usize>,
 }
 
 impl SolverBasis {
@@ -69,8 +71,10 @@ impl SolverBasis {
         matrix: impl Fn(usize) -> CellView<'a>,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
-        let mut basis = SolverBasis::default();
-        let alike = alike(dim, enrichment, users, &matrix);
+        let mut basis = SolverBasis {
+            alike: alike(dim, enrichment, users, &matrix),
+            ..SolverBasis::default()
+        };
         let surplus = surplus(dim, enrichment, &held);
         let mut stiffest = f64::MIN_POSITIVE;
         for node in 0..enrichment.nodes() {
@@ -82,8 +86,7 @@ impl SolverBasis {
                 continue;
             }
             // Pieces are disjoint: of a node their functions depend on no other.
-            let dependent = own.clone().any(branch);
-            if !dependent && !own.clone().any(|f| alike.contains(&f)) {
+            if !own.clone().any(branch) {
                 continue;
             }
             let standard = gram(enrichment, dim, &[node], users, &matrix)[0];
@@ -96,16 +99,19 @@ impl SolverBasis {
             for f in own.clone() {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
             }
+            let t = inverse_factor(&gram, own.len(), |i| {
+                let f = own.start + i;
+                basis.alike.contains(&f) || surplus.contains(&f)
+            });
             basis.blocks.push(Block {
                 first: own.start,
-                t: inverse_factor(&gram, own.len(), |i| {
-                    alike.contains(&(own.start + i)) || surplus.contains(&(own.start + i))
-                }),
+                t,
                 count: own.len(),
                 free,
             });
         }
-        for tip in (0..enrichment.tips.len()).filter(|&tip| enrichment.is_cut(tip)) {
+        let plain = |tip: &usize| enrichment.radii[*tip] == 0.0;
+        for tip in (0..enrichment.tips.len()).filter(plain) {
             basis.drop_tied(dim, enrichment, tip, users, &matrix);
         }
         // A power of two changes no bit of a scaled matrix.
@@ -115,8 +121,8 @@ impl SolverBasis {
         basis
     }
 
-    /// Drops branch functions of a tip that are in the span of all functions at its nodes before them: on the little that other
-    /// cracks leave of its zone, those of different nodes depend on each other.
+    /// Drops branch functions of a tip or corner that are in the span of all functions at its nodes before them: on the little
+    /// that cracks leave of a zone without ramp, those of different nodes depend on each other.
     fn drop_tied<'a>(
         &mut self,
         dim: usize,
@@ -173,7 +179,7 @@ impl SolverBasis {
 
     /// True if the solver works with the functions themselves.
     pub fn is_identity(&self) -> bool {
-        self.blocks.is_empty()
+        self.blocks.is_empty() && self.alike.is_empty()
     }
 
     /// The block that acts on an unknown, and the place of its function there.
@@ -187,7 +193,8 @@ impl SolverBasis {
     /// True for an unknown that the solver does not see.
     pub fn drops(&self, dim: usize, unknown: usize) -> bool {
         let block = self.block(dim, unknown);
-        block.is_some_and(|(block, i)| block.t(i, i) == 0.0)
+        self.alike.contains(&(unknown / dim))
+            || block.is_some_and(|(block, i)| block.t(i, i) == 0.0)
     }
 
     /// Changes the values of every block, component by component.
