@@ -339,15 +339,17 @@ fn faces(
         rows.iter().map(|row| scaled(row)).collect()
     };
     let size = lengths.smallest.powi(dim as i32 - 1);
-    let hairs = rank::hairs(&surface, &arms, size);
-    arms = rank::merge(&mut surface, &arms, &hairs).0;
+    for (least, anywhere) in [(rank::HAIR, false), (rank::NOTHING, true)] {
+        let hairs = rank::hairs(&surface, &arms, least * size);
+        arms = rank::merge(&mut surface, &arms, &hairs, anywhere).0;
+    }
     loop {
         let weight = |k: usize| surface.points[k].weight;
         let lost = rank::dependent(&arms, weight, |k| rows(&surface.points[k..=k]));
         if lost.is_empty() {
             break;
         }
-        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost);
+        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost, false);
         arms = fewer;
         if merged == 0 {
             if let Some(&point) = rank::singular(&arms, |k| rows(&surface.points[k..=k])).first() {

@@ -31,7 +31,10 @@ pub const UNRESISTED: f64 = 1e-3;
 const SINGULAR: f64 = 1e-10;
 
 /// Areas below this, in facets of the smallest cell, carry no force of their own.
-const HAIR: f64 = 1e-6;
+pub const HAIR: f64 = 1e-6;
+
+/// Areas below this belong to whatever is next to them: cracks that were moved off facets leave such arms.
+pub const NOTHING: f64 = 5e-9;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
@@ -204,29 +207,35 @@ impl Factor {
     }
 }
 
-/// Points on next to nothing of a facet of given size [m^(dim − 1)], between a junction and a mesh edge a hair from it say: their
+/// Points on next to nothing of a facet, at most `least` [m^(dim − 1)], between a junction and a mesh edge a hair from it say: their
 /// traction would be a rounding over no area.
-pub fn hairs(surface: &ContactSurface, arms: &[std::ops::Range<usize>], size: f64) -> Vec<usize> {
+pub fn hairs(surface: &ContactSurface, arms: &[std::ops::Range<usize>], least: f64) -> Vec<usize> {
     let points = arms.iter().flat_map(|arm| arm.clone());
     points
-        .filter(|&k| surface.points[k].weight <= HAIR * size)
+        .filter(|&k| surface.points[k].weight <= least)
         .collect()
 }
 
-/// Merges points into the nearest others of their arms; what has no other stays. The arms, and how many points went.
+/// Merges points into the nearest others of their arms, or of any arm if `anywhere`; what has no other stays. The arms, and how
+/// many points went.
 pub fn merge(
     surface: &mut ContactSurface,
     arms: &[std::ops::Range<usize>],
     lost: &[usize],
+    anywhere: bool,
 ) -> (Vec<std::ops::Range<usize>>, usize) {
     let count = surface.points.len();
     let mut target: Vec<usize> = (0..count).collect();
+    let away = |a: usize, b: usize| norm(&sub(&surface.points[a].x, &surface.points[b].x));
+    let nearest = |k: usize, among: &mut dyn Iterator<Item = usize>| {
+        let others = among.filter(|m| !lost.contains(m));
+        others.min_by(|&a, &b| away(k, a).total_cmp(&away(k, b)))
+    };
     for arm in arms {
-        let away = |a: usize, b: usize| norm(&sub(&surface.points[a].x, &surface.points[b].x));
         for k in arm.clone().filter(|k| lost.contains(k)) {
-            let others = arm.clone().filter(|m| !lost.contains(m));
-            let nearest = others.min_by(|&a, &b| away(k, a).total_cmp(&away(k, b)));
-            target[k] = nearest.unwrap_or(k);
+            let all = || arms.iter().flat_map(Clone::clone).filter(|_| anywhere);
+            let own = nearest(k, &mut arm.clone());
+            target[k] = own.or_else(|| nearest(k, &mut all())).unwrap_or(k);
         }
     }
     let kept: Vec<usize> = (0..count).filter(|&k| target[k] == k).collect();
