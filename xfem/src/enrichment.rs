@@ -214,7 +214,8 @@ impl Enrichment {
                             let crack = &cracks[self.tips[tip as usize].crack];
                             let frame = &self.tips[tip as usize];
                             let elsewhere = || beside(frame, &mesh.map(cell), rounding);
-                            let of_crack = |s: &&(usize, Side)| cracks[s.0].shares_tips(crack);
+                            let of_crack =
+                                |s: &&(usize, Side)| cracks[s.0].jumps_with(frame, crack);
                             let side = |part: &Option<&Part>| {
                                 part.and_then(|p| p.sides.iter().find(of_crack))
                                     .map(|s| s.1)
@@ -328,10 +329,10 @@ impl Enrichment {
         &self.singular.0
     }
 
-    /// Those closer to a cell than some of its diagonals [m].
-    pub fn singular_points_near(&self, map: &CellMap, diagonals: f64) -> Vec<Point> {
+    /// Those closer than a distance to the box of some corners [m].
+    pub fn singular_points_near(&self, corners: &[Point], distance: f64) -> Vec<Point> {
         let (points, boxes) = &self.singular;
-        let near = boxes.meeting(&around(map.iter(), diagonals * map.diagonal()));
+        let near = boxes.meeting(&around(corners, distance));
         near.into_iter().map(|k| points[k]).collect()
     }
 

@@ -104,7 +104,7 @@ fn jump_terms(
                 FunctionKind::Branch { tip, order: 0 } => {
                     let frame = &enrichment.tips[tip as usize];
                     // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
-                    if !cracks[index].shares_tips(&cracks[frame.crack])
+                    if !cracks[index].jumps_with(frame, &cracks[frame.crack])
                         || frame.distance(x) <= at_tip
                     {
                         continue;

@@ -100,9 +100,10 @@ impl<'a> FreeJumps<'a> {
                 one != two
             }
             FunctionKind::Branch { tip, order: 0 } => {
-                let crack = &cracks[enrichment.tips[tip as usize].crack];
+                let frame = &enrichment.tips[tip as usize];
                 let lives = |region| enrichment.step(cell, region, *f) != ABSENT;
-                cracks[self.index].shares_tips(crack) && regions.into_iter().all(lives)
+                cracks[self.index].jumps_with(frame, &cracks[frame.crack])
+                    && regions.into_iter().all(lives)
             }
             _ => false,
         };

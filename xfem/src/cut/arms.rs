@@ -22,6 +22,9 @@ const JOINED: f64 = 1e-2;
 /// How far an end is followed to where it really crosses, in the same units: so it keeps its direction.
 const FOLLOWED: f64 = 10.0 * JOINED;
 
+/// A crack that another's end is nearer to than this, in the same units, is parted at the foot of that end.
+const BESIDE: f64 = 1.0;
+
 /// Places where one crack meets others closer than this are one, in the same units; no arm between them is shorter.
 const SAME_PLACE: f64 = 1e-3;
 
@@ -84,6 +87,7 @@ pub fn arms(
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
             if !places.join(&cracks, (k, end), &near[k], inside) {
                 places.lead_out(&mut cracks[k], end, mesh);
+                places.part_at_foot(&cracks, (k, end), &near[k]);
             }
         }
     }
@@ -134,13 +138,7 @@ impl Places {
         let (joined, followed) = (JOINED * self.size, FOLLOWED * self.size);
         // The place on another crack, its abscissa there.
         let place = |l: usize| {
-            let feet = cracks[l].path.windows(2).map(|w| {
-                let foot = segment_foot(&last.x, &w[0].x, &w[1].x);
-                let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
-                let s = w[0].s + share * (w[1].s - w[0].s);
-                (distance(&last.x, &foot), s, foot)
-            });
-            let (away, s, foot) = feet.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let (away, s, foot) = foot(&cracks[l], &last.x)?;
             if away > joined {
                 return None;
             }
@@ -182,6 +180,26 @@ impl Places {
         }
         self.note(&cracks[k], &last.x, &x);
         true
+    }
+
+    /// Parts straight cracks at the foot of an end that stops beside them: what they carry is singular there, too.
+    fn part_at_foot(&mut self, cracks: &[Crack], (k, end): (usize, usize), near: &[usize]) {
+        let Some((last, _)) = ending(&cracks[k], end) else {
+            return;
+        };
+        for &l in near.iter().filter(|&&l| l != k) {
+            let Some((away, s, foot)) = foot(&cracks[l], &last.x) else {
+                continue;
+            };
+            let apart = FOLLOWED * self.size;
+            let inner = cracks[l].path.iter().all(|v| distance(&v.x, &foot) > apart);
+            if inner
+                && crossings(&cracks[k], &cracks[l], 0.0).is_empty()
+                && away <= BESIDE * self.size
+            {
+                self.cuts[l].push(PathVertex { s, x: foot });
+            }
+        }
     }
 
     /// Leads an end that nearly touches a side of the body through it.
@@ -287,6 +305,16 @@ impl Places {
         }
         Ok(())
     }
+}
+
+/// The nearest place of a crack: its distance, its abscissa, itself [m].
+fn foot(crack: &Crack, x: &Point) -> Option<(f64, f64, Point)> {
+    let feet = crack.path.windows(2).map(|w| {
+        let foot = segment_foot(x, &w[0].x, &w[1].x);
+        let share = distance(&w[0].x, &foot) / distance(&w[0].x, &w[1].x);
+        (distance(x, &foot), w[0].s + share * (w[1].s - w[0].s), foot)
+    });
+    feet.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 fn distance(a: &Point, b: &Point) -> f64 {

@@ -18,6 +18,7 @@ use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::Curve;
 use crate::geometry::ellipse::Ellipse;
+use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
 use crate::mesh::{Lengths, Mesh};
@@ -134,6 +135,20 @@ impl Crack {
     pub fn shares_tips(&self, other: &Crack) -> bool {
         let solid = matches!(self.geometry, Geometry::Ellipse(_));
         self.number == other.number && (solid || self.range == other.range)
+    }
+
+    /// Whether the functions of a tip with the given frame jump over this arm; `own`: the arm that ends there.
+    pub fn jumps_with(&self, frame: &TipFrame, own: &Crack) -> bool {
+        /// What is this close to the line of a tip lies on it, in parts of the arm.
+        const ON_LINE: f64 = 1e-9;
+        let slack = ON_LINE * (self.range[1] - self.range[0]);
+        let on_line = |v: &PathVertex| frame.coordinates(&v.x).phi.abs() <= slack;
+        let along = match frame.shape {
+            FrontShape::Straight => self.path.iter().all(on_line),
+            FrontShape::Bent(_) => true,
+            _ => false,
+        };
+        self.number == own.number && (along || self.shares_tips(own))
     }
 
     /// Places a crack in a mesh of these lengths, alone.

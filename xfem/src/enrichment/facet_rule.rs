@@ -2,11 +2,12 @@
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::ellipse::Ellipse;
+use crate::geometry::polygon::segment_distance;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::mesh::Mesh;
 use crate::quadrature::front::FrontPiece;
 use crate::quadrature::front_facet::front_facet_points;
-use crate::quadrature::graded::graded_triangles;
+use crate::quadrature::graded::{graded_segment, graded_triangles};
 use crate::quadrature::rational::rational_order;
 use crate::quadrature::{WeightedPoint, gauss, triangle, triangle_collapsed};
 
@@ -75,6 +76,11 @@ enum Integrand<'a> {
 fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
     /// Points in ρ: exact for √r × quartics, and with slack for the √r of another tip.
     const ROOT: usize = 10;
+    /// Tips farther away than this from the segment, in its lengths, leave a smooth function on it.
+    const NEAR: f64 = 2.0;
+    /// Points and halvings towards one of several: exact to 1e-14.
+    const SEVERAL: usize = 12;
+    const DEPTH: usize = 40;
     let d = sub(&ends[1], &ends[0]);
     let length = norm(&d);
     let point = |t: f64, weight: f64| FacetPoint {
@@ -93,6 +99,13 @@ fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint
         Integrand::Rational(n) => return plain(n),
         Integrand::Root(tips) => tips,
     };
+    let near = |tip: &&Point| segment_distance(tip, &ends[0], &ends[1]) < NEAR * length;
+    let near: Vec<Point> = tips.iter().filter(near).copied().collect();
+    if near.len() > 1 {
+        let points = graded_segment(&ends[0], &ends[1], &near, SEVERAL, DEPTH).into_iter();
+        let place = |x: &Point| dot(&sub(x, &ends[0]), &d) / (length * length);
+        return points.map(|p| point(place(&p.x), p.weight)).collect();
+    }
     let nearest = |x: &Point| {
         let away = |tip: &Point| norm(&sub(x, tip));
         tips.iter().min_by(|a, b| away(a).total_cmp(&away(b)))

@@ -8,18 +8,18 @@
 //! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards.
 
 pub mod corners;
+mod ends;
 mod room;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use self::corners::Corner;
-use crate::cut::crack::{Crack, End, Geometry, Tip};
+use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::flat;
 use crate::cut::partition::Partition;
 use crate::cut::placement::{self, front_frame};
-use crate::cut::trace::{Chain, Trace, TracedTip};
+use crate::cut::trace::{Chain, Trace};
 use crate::geometry::boxes::Boxes;
-use crate::geometry::curve::Curve;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{add_scaled, norm, sub};
 use crate::mesh::neighbours::Neighbours;
@@ -111,11 +111,12 @@ impl Tips {
             ..Tips::default()
         };
         for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
-            let zone = search.zone(tip, search.room(number));
+            let end = search.end(number);
+            let zone = search.zone(tip, &end);
             let beyond = search.beyond(tip, &zone);
-            tips.add(search.frame(tip), &tip.cells, zone);
+            tips.add(end.0.clone(), &tip.cells, zone);
             if let Some(zone) = beyond {
-                tips.add(search.frame(tip), &[], zone);
+                tips.add(end.0, &[], zone);
             }
         }
         for &arm in &search.pairs {
@@ -324,50 +325,10 @@ impl Search<'_> {
         cells
     }
 
-    /// From where to where an arm parts the cells [m].
-    fn range(&self, arm: usize) -> [f64; 2] {
-        let mut range = self.arms[arm].range;
-        for &number in self.tips_of[arm].iter().filter(|&&t| !self.kept[t]) {
-            let tip = &self.trace.tips[number];
-            range[tip.end] = tip.entry;
-        }
-        for (cell, chain) in self.chains_of[arm].iter().filter(|c| self.divides(c.1)) {
-            let partition = self.partitions.get(cell);
-            if partition.is_none_or(|p| p.dropped.contains(&arm)) {
-                // At the end that it is nearer to.
-                let [low, high] = chain.range;
-                if low - range[0] < range[1] - high {
-                    range[0] = range[0].max(high);
-                } else {
-                    range[1] = range[1].min(low);
-                }
-            }
-        }
-        range
-    }
-
-    /// Length of the crack behind a tip that its branch functions know [m].
-    fn room(&self, number: usize) -> f64 {
-        let tip = &self.trace.tips[number];
-        let arm = &self.arms[tip.arm];
-        let from = arm.range[tip.end];
-        let other = (self.range(tip.arm)[1 - tip.end] - from).abs();
-        let Geometry::Curve(Curve::Chain(_)) = &arm.geometry else {
-            return other;
-        };
-        let vertices = arm.path.iter().map(|vertex| vertex.s);
-        let kinks = vertices.filter(|s| *s > arm.range[0] && *s < arm.range[1]);
-        kinks.map(|s| (s - from).abs()).fold(other, f64::min)
-    }
-
     /// Length of an arm inside the body [m].
     fn inside(&self, arm: usize) -> f64 {
         let own = self.chains_of[arm].iter();
         own.map(|(_, c)| c.range[1] - c.range[0]).sum()
-    }
-
-    fn frame(&self, tip: &TracedTip) -> TipFrame {
-        placement::tip_frame(tip.arm, &self.arms[tip.arm], tip.end, &tip.x)
     }
 
     /// Whether the cells of a tip can carry its functions.
@@ -387,8 +348,8 @@ impl Search<'_> {
         };
         let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
         let slender = aspects.any(|aspect| aspect > longest);
-        let frame = [(self.frame(tip), self.room(number))];
-        parted && !slender && !self.any_blocked(&frame, &nodes, &self.cut_off(&frame, &nodes))
+        let end = self.end(number);
+        parted && !slender && !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
     }
 
     /// Straight arms with two ends inside the body, none of which has room: they take functions of both.

@@ -4,7 +4,7 @@ use super::boxes::{Extents, around};
 use super::clip::Side;
 use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
-use super::{Point, Points, add_scaled, cross, dot, norm, sub};
+use super::{Point, Points, add_scaled, cross, dot, norm, sub, unit};
 
 /// A point this near to the line of an arm lies on it, in parts of its distance from the corner.
 const ON_ARM: f64 = 1e-8;
@@ -38,6 +38,8 @@ pub enum FrontShape {
         /// Whether the tip is its last end.
         last: bool,
     },
+    /// A chain: its vertices from the tip on, each farther away than those before. θ starts on it at every distance.
+    Bent(Vec<Point>),
     /// A straight crack with both its ends; the position is its middle.
     Pair {
         /// Half of its length [m].
@@ -98,6 +100,19 @@ impl TipFrame {
                     phi_gradient: turned(&near.tangent),
                 }
             }
+            FrontShape::Bent(path) => {
+                let (turn, slope) = self.turn(path, norm(&d));
+                let (sin, cos) = turn.sin_cos();
+                let rotated = |v: &Point| add_scaled(&v.map(|c| cos * c), sin, &turned(v));
+                let across = turned(&d).map(|c| slope * c / dot(&d, &d).max(f64::MIN_POSITIVE));
+                let [a, n] = [&self.ahead, &self.normal].map(rotated);
+                TipCoordinates {
+                    psi: dot(&d, &a),
+                    phi: dot(&d, &n),
+                    psi_gradient: add_scaled(&a, -dot(&across, &a), &d),
+                    phi_gradient: add_scaled(&n, -dot(&across, &n), &d),
+                }
+            }
             FrontShape::Ellipse(ellipse) => {
                 let near = ellipse.nearest(x);
                 TipCoordinates {
@@ -108,6 +123,26 @@ impl TipFrame {
                 }
             }
         }
+    }
+
+    /// Angle β by which a chain has turned at distance r from its tip, and r dβ/dr, the tangent of its angle with the radius.
+    fn turn(&self, path: &[Point], r: f64) -> (f64, f64) {
+        let away = |x: &Point| norm(&sub(x, &self.position));
+        let last = path.len() - 2;
+        let first_beyond = path.iter().skip(1).position(|x| away(x) >= r);
+        let k = first_beyond.unwrap_or(last);
+        if k == 0 {
+            return (0.0, 0.0);
+        }
+        let from = sub(&path[k], &self.position);
+        let u = unit(&sub(&path[k + 1], &path[k]));
+        let along = dot(&from, &u);
+        // Where |from + t u| = r.
+        let t = -along + (along * along + r * r - dot(&from, &from)).max(0.0).sqrt();
+        let x = add_scaled(&from, t, &u);
+        let back = self.ahead.map(|v| -v);
+        let turn = cross(&back, &x)[2].atan2(dot(&back, &x));
+        (turn, cross(&x, &u)[2] / dot(&x, &u))
     }
 
     /// Distance r from the tip or front, the nearer of two [m].
@@ -122,7 +157,7 @@ impl TipFrame {
     /// A box around all points within a distance of the tip or front [m].
     pub fn extents(&self, radius: f64) -> Extents {
         let reach = match &self.shape {
-            FrontShape::Straight | FrontShape::Corner => radius,
+            FrontShape::Straight | FrontShape::Corner | FrontShape::Bent(_) => radius,
             // ψ along a circle within the distance of it.
             FrontShape::Arc { curve, .. } => match curve {
                 Curve::Arc { radius: r, .. } => radius * (2.0 + radius / r),
@@ -138,6 +173,11 @@ impl TipFrame {
     /// not: segments up to `far`, no longer than `step` where it is bent [m].
     pub fn behind(&self, room: f64, far: f64, step: f64) -> Vec<[Point; 2]> {
         let straight = |s: f64| add_scaled(&self.position, -s, &self.ahead);
+        if let FrontShape::Bent(path) = &self.shape
+            && let [.., from, to] = path.as_slice()
+        {
+            return vec![[*to, add_scaled(to, 4.0 * far, &unit(&sub(to, from)))]];
+        }
         let FrontShape::Arc { curve, last } = &self.shape else {
             return vec![[straight(room), straight(room + 4.0 * far)]];
         };
@@ -413,10 +453,53 @@ mod tests {
         }
     }
 
+    /// A tip with a chain behind it that turns by 60 degrees.
+    fn bent() -> TipFrame {
+        let mut tip = frame();
+        let [back, aside] = [tip.ahead.map(|v| -0.2 * v), tip.normal.map(|v| 0.3 * v)];
+        let first = add_scaled(&tip.position, 1.0, &back);
+        let second = add_scaled(&add_scaled(&first, 1.0, &back), 1.0, &aside);
+        tip.shape = FrontShape::Bent(vec![tip.position, first, second]);
+        tip
+    }
+
+    /// Source: the map itself. Goal: on either side of a chain θ is ±π, and nowhere else does a function jump: half a turn around
+    /// the tip from there all are continuous. Tolerance: √ of the distance from the chain.
+    #[test]
+    fn functions_of_a_chain_jump_on_it_alone() {
+        let tip = bent();
+        let FrontShape::Bent(path) = &tip.shape else {
+            panic!("no chain");
+        };
+        let on = |a: &Point, b: &Point, t: f64| add_scaled(a, t, &sub(b, a));
+        for (w, t) in path.windows(2).flat_map(|w| [0.2, 0.7].map(|t| (w, t))) {
+            let x = on(&w[0], &w[1], t);
+            let across = turned(&unit(&sub(&w[1], &w[0])));
+            let r = norm(&sub(&x, &tip.position));
+            for sign in [1.0, -1.0] {
+                let beside = tip.branch(&add_scaled(&x, 1e-9 * sign, &across), None).0;
+                // The first segment leads back from the tip: its left is side 2.
+                assert!((beside[0] + sign * r.sqrt()).abs() < 1e-7, "{t} {sign}");
+                assert!(beside[1..].iter().all(|g| g.abs() < 1e-7), "{t} {sign}");
+            }
+            let opposite = add_scaled(&tip.position, -1.0, &sub(&x, &tip.position));
+            let [p, q] = [1e-9, -1e-9].map(|d| add_scaled(&opposite, d, &across));
+            let jumps = tip
+                .branch(&p, None)
+                .0
+                .into_iter()
+                .zip(tip.branch(&q, None).0);
+            assert!(jumps.into_iter().all(|(a, b)| (a - b).abs() < 1e-7), "{t}");
+        }
+    }
+
     #[test]
     fn branch_gradients_are_the_derivatives() {
-        let tip = frame();
-        for x in [[0.5, 0.1, 0.0], [0.1, -0.5, 0.0], [-0.4, -0.2, 0.0]] {
+        let places = [[0.5, 0.1, 0.0], [0.1, -0.5, 0.0], [-0.4, -0.2, 0.0]];
+        for (tip, x) in [frame(), bent()]
+            .iter()
+            .flat_map(|tip| places.map(|x| (tip, x)))
+        {
             let (_, gradients) = tip.branch(&x, None);
             let h = 1e-6;
             for a in 0..2 {

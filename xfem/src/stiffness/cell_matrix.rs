@@ -183,8 +183,10 @@ impl<'a> CellIntegrator<'a> {
             return self.near_front_points(cell, parts, Effort::WORKING);
         }
         // As far as a rule asks for them.
-        let tips = self.enrichment.singular_points_near(map, FAR);
-        let near = self.enrichment.singular_points_near(map, 1.0);
+        let tips = self
+            .enrichment
+            .singular_points_near(map, FAR * map.diagonal());
+        let near = self.enrichment.singular_points_near(map, map.diagonal());
         // A pair of tips has none of its own at its middle, and beside another tip a fan around one is no rule.
         let tip = self.tips_in(cell).first();
         let tip = tip.map(|&(_, tip)| self.enrichment.tips[tip].tips());

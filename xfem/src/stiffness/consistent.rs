@@ -403,7 +403,9 @@ impl CellIntegrator<'_> {
         let [from, to] = ends.map(|n| mesh.nodes[n as usize]);
         let pieces = pieces(mesh, self.cracks, self.enrichment, cell, order);
         let away = |x: &Point| norm(&sub(x, &from));
-        let tips = self.enrichment.singular_points_near(&mesh.map(cell), 1.0);
+        // By the edge: the cell on its other side must take the same.
+        let tips = self.enrichment;
+        let tips = tips.singular_points_near(&[from, to], away(&to));
         let mut places = self.enrichment.places_on(ends).to_vec();
         places.extend([from, to]);
         places.sort_by(|a, b| away(a).total_cmp(&away(b)));

@@ -18,24 +18,30 @@
 //! ```
 //!
 //! Both relations are resolved by leaving out g₃ and g₄ at the node deepest in the wedge; without one deep enough there is no
-//! ramp. Two or three arms: at crossings, where nothing ends, the pieces of the supports suffice.
+//! ramp. One to three arms, others that end within their cells aside: at crossings, where nothing ends, the pieces of the
+//! supports suffice. A crack beside which another ends is parted at the foot of that end: it is as singular there.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use crate::cut::crack::{End, Geometry, Tip};
+use crate::cut::trace::TracedTip;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, norm, sub, unit};
+use crate::geometry::{Point, dot, norm, sub, unit};
 
 use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
 
-/// An arm shorter than this, in edges, has no multipliers of its own in a corner: the displacement could not balance them.
+/// An arm shorter than this, in edges, has no multipliers of its own in a corner: the displacement could not balance them. If its
+/// functions would jump beyond its tip, it has none at all there.
 const LONG: f64 = 2.0;
+
+/// Arms on one line, by the cosine of their angle.
+const STRAIGHT: f64 = 1.0 - 1e-9;
 
 /// A place where arms with branch functions bend or meet.
 #[derive(Debug, Clone)]
@@ -57,18 +63,16 @@ type ArmEnd = (usize, usize);
 impl Search<'_> {
     /// Adds the functions of the corners that have room for them.
     pub(super) fn add_corners(&self, tips: &mut Tips) {
-        for ends in self.meetings() {
-            let arms = ends.iter().map(|&(arm, end)| self.ending(arm, end));
-            let Some(arms) = arms.collect::<Option<Vec<Ending>>>() else {
-                continue;
-            };
-            let x = arms[0].0.position;
+        for (x, ends) in self.meetings() {
             let cells = self.lengths.cells_at(self.mesh, &x);
             let nodes = self.mesh.nodes_of(cells.iter().copied());
             let sizes = nodes.iter();
             let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
             let size = sizes.fold(f64::INFINITY, f64::min);
-            let Some(zone) = self.corner_zone(&arms, &cells, DEEP * size) else {
+            let Some((arms, others)) = self.corner_arms((&x, ends), &nodes, size) else {
+                continue;
+            };
+            let Some(zone) = self.corner_zone(&arms, &others, &cells, DEEP * size) else {
                 continue;
             };
             let first = tips.frames.len();
@@ -86,24 +90,25 @@ impl Search<'_> {
         }
     }
 
-    /// Two or three ends of arms in one place. By their distances from the middle of the body: in the same order however the
+    /// Two or more ends of arms in one place. By their distances from the middle of the body: in the same order however the
     /// cracks are read, and the body is turned.
-    fn meetings(&self) -> Vec<Vec<ArmEnd>> {
+    fn meetings(&self) -> Vec<(Point, Vec<ArmEnd>)> {
         let (extent, middle) = self.lengths.extent;
         let away = |x: &Point| (norm(&sub(x, &middle)) / extent * 1e9).round() as i64;
-        let mut at: BTreeMap<(i64, [u64; 3]), Vec<ArmEnd>> = BTreeMap::new();
+        let mut at: BTreeMap<(i64, [u64; 3]), (Point, Vec<ArmEnd>)> = BTreeMap::new();
         for (index, arm) in self.arms.iter().enumerate() {
             let ends = [arm.path.first(), arm.path.last()];
             for (end, vertex) in ends.into_iter().enumerate() {
                 if let (End::Bend | End::Meeting, Some(vertex)) = (arm.ends[end], vertex) {
                     let place = (away(&vertex.x), vertex.x.map(f64::to_bits));
-                    at.entry(place).or_default().push((index, end));
+                    let found = at.entry(place).or_insert_with(|| (vertex.x, Vec::new()));
+                    found.1.push((index, end));
                 }
             }
         }
         let mut found: Vec<_> = at.into_values().collect();
-        found.retain(|ends| (2..=3).contains(&ends.len()));
-        for ends in &mut found {
+        found.retain(|(_, ends)| ends.len() > 1);
+        for (_, ends) in &mut found {
             ends.sort_by_key(|&(arm, end)| {
                 let path = &self.arms[arm].path;
                 let other = if end == 0 { path.last() } else { path.first() };
@@ -113,12 +118,48 @@ impl Search<'_> {
         found
     }
 
-    /// The nodes around a corner with the cells given. `deep`: see [`DEEP`] [m].
-    fn corner_zone(&self, arms: &[Ending], cells: &[usize], deep: f64) -> Option<Zone> {
+    /// The arms that a corner gives functions and others in its cells: those too short for functions that reach over all of the
+    /// cells, which have those of their own tips, and an arm that ends just beside a straight crack. `None`: it is no corner.
+    fn corner_arms(
+        &self,
+        (x, ends): (&Point, Vec<ArmEnd>),
+        nodes: &BTreeSet<u32>,
+        size: f64,
+    ) -> Option<(Vec<Ending>, Vec<usize>)> {
+        let mut arms = Vec::new();
+        let mut others = Vec::new();
+        for (arm, end) in ends {
+            match self.ending(arm, end) {
+                Some(own) if !self.is_blocked(&own, nodes, &BTreeSet::new()) => arms.push(own),
+                _ if self.inside(arm) <= LONG * size => others.push(arm),
+                _ => return None,
+            }
+        }
+        if let [one, two] = arms.as_slice()
+            && dot(&one.0.ahead, &two.0.ahead) < -STRAIGHT
+        {
+            let near = |tip: &&TracedTip| norm(&sub(&tip.x, x)) <= size;
+            others.extend(self.trace.tips.iter().filter(near).map(|tip| tip.arm));
+            if others.is_empty() {
+                return None;
+            }
+        }
+        (1..=3).contains(&arms.len()).then_some((arms, others))
+    }
+
+    /// The nodes around a corner with the cells given; `others`: arms that may run through them, too. `deep`: see [`DEEP`] [m].
+    fn corner_zone(
+        &self,
+        arms: &[Ending],
+        others: &[usize],
+        cells: &[usize],
+        deep: f64,
+    ) -> Option<Zone> {
         let own: Vec<usize> = arms.iter().map(|(frame, _)| frame.crack).collect();
+        let all = [&own[..], others].concat();
         let rooms = arms.iter().map(|arm| arm.1);
         let room = rooms.fold(f64::INFINITY, f64::min);
-        let room = self.clearance(&arms[0].0.position, &own, room);
+        let room = self.clearance(&arms[0].0.position, &all, room);
         let slender = |&cell: &usize| self.mesh.map(cell).aspect() > SLENDER;
         let least = SHORTEST * self.mesh.map(*cells.first()?).diagonal();
         if cells.iter().any(slender) || room <= least {
@@ -137,7 +178,7 @@ impl Search<'_> {
         };
         let plain = |core: BTreeSet<usize>| {
             let nodes = self.mesh.nodes_of(core.iter().copied());
-            let alone = self.holds_only(arms, &core);
+            let alone = self.holds_only(&all, &core);
             let alone = alone && !self.any_blocked(arms, &nodes, &BTreeSet::new());
             alone.then(|| Zone::plain(nodes))
         };

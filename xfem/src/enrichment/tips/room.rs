@@ -13,16 +13,21 @@ use super::super::supports::{Place, parted_from};
 use super::super::zone::Zone;
 use super::{SHARE, Search};
 
+/// Nodes around a ramp are no farther away than this, in lengths of the arm.
+const FAR: f64 = 4.0;
+
 impl Search<'_> {
-    /// What other cracks than some arms part from their common end, of the cells of some nodes.
+    /// What others than the arms along which the functions of a tip jump part from it, of the cells of some nodes.
     pub(super) fn cut_off(
         &self,
-        arms: &[(TipFrame, f64)],
+        (frame, _): &(TipFrame, f64),
         nodes: &BTreeSet<u32>,
     ) -> BTreeSet<Place> {
-        let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+        let arms = 0..self.arms.len();
+        let own = |&arm: &usize| self.arms[arm].jumps_with(frame, &self.arms[frame.crack]);
+        let own: Vec<usize> = arms.filter(own).collect();
         let cells = self.near.cells_around(nodes);
-        let (x, trace) = (&arms[0].0.position, self.trace);
+        let (x, trace) = (&frame.position, self.trace);
         parted_from(self.mesh, &own, x, &cells, trace, &self.partitions)
     }
 
@@ -58,16 +63,16 @@ impl Search<'_> {
     }
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
-    pub(super) fn zone(&self, tip: &TracedTip, room: f64) -> Zone {
+    pub(super) fn zone(&self, tip: &TracedTip, end: &(TipFrame, f64)) -> Zone {
+        let (arms, room) = ([end.clone()], end.1);
         let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
-        let arms = [(self.frame(tip), room)];
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let mut zone = match radius {
             Some(radius) => self.within(radius, &arms, nodes),
             None => Zone::plain(nodes),
         };
         if zone.core.is_empty() {
-            zone.cut_off = self.cut_off(&arms, &zone.nodes);
+            zone.cut_off = self.cut_off(end, &zone.nodes);
         } else if arms[0].0.shape == FrontShape::Straight {
             zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
         }
@@ -104,15 +109,22 @@ impl Search<'_> {
     ) -> Zone {
         let (near, frame) = (&self.near, &arms[0].0);
         Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
-            self.holds_only(arms, cells) && !self.any_blocked(arms, nodes, &BTreeSet::new())
+            let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+            // From far away a short arm, or one in long cells, is nothing: its functions become dependent.
+            let away = nodes
+                .iter()
+                .map(|&node| frame.distance(&self.mesh.nodes[node as usize]));
+            away.fold(0.0, f64::max) <= FAR * arms[0].1
+                && self.holds_only(&own, cells)
+                && !self.any_blocked(arms, nodes, &BTreeSet::new())
         })
     }
 
     /// Whether none but some arms run through some cells.
-    pub(super) fn holds_only(&self, arms: &[(TipFrame, f64)], cells: &BTreeSet<usize>) -> bool {
+    pub(super) fn holds_only(&self, arms: &[usize], cells: &BTreeSet<usize>) -> bool {
         let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
         let mut faces = parted.flat_map(|p| &p.faces);
-        faces.all(|f| arms.iter().any(|(frame, _)| frame.crack == f.crack))
+        faces.all(|f| arms.contains(&f.crack))
     }
 
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
