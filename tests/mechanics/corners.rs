@@ -144,8 +144,7 @@ fn short_arms() -> Vec<(&'static str, Scene, f64)> {
 }
 
 /// Source: as above. Goal: a tip keeps its functions where its arm is shorter than a cell: they follow the crack around the bend or
-/// through the junction, whose other arms have their own. Bound: 1 % (found: 0.4 to 0.8 %; before 12, 15, 4 and 2 %, for the
-/// short arm was drawn back, or its junction had no functions).
+/// through the junction, whose other arms have their own. Bound: 1 % (found: 0.4 to 0.8 %).
 #[test]
 fn arms_shorter_than_a_cell_slide_as_between_conforming_elements() {
     for (name, scene, exact) in short_arms() {

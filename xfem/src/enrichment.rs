@@ -319,11 +319,6 @@ impl Enrichment {
         self.standard
     }
 
-    /// True if other cracks cut off something of a tip's functions.
-    pub fn is_cut(&self, tip: usize) -> bool {
-        !self.cut_off[tip].is_empty()
-    }
-
     /// Where branch functions are singular in 2D: the tips and corners that carry them [m].
     pub fn singular_points(&self) -> &[Point] {
         &self.singular.0

@@ -33,7 +33,8 @@ const SINGULAR: f64 = 1e-10;
 /// Areas below this, in facets of the smallest cell, carry no force of their own.
 pub const HAIR: f64 = 1e-6;
 
-/// Areas below this belong to whatever is next to them: cracks that were moved off facets leave such arms.
+/// Areas below this belong to whatever is next to them: cracks that were moved off facets, by at most half of this, leave such
+/// arms.
 pub const NOTHING: f64 = 5e-9;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
@@ -252,12 +253,8 @@ pub fn merge(
     });
     surface.points = points.collect();
     surface.surface.renumber(|k| numbers[k as usize]);
-    let mut start = 0;
-    let arms = arms.iter().map(|arm| {
-        let own = arm.clone().filter(|&k| target[k] == k).count();
-        start += own;
-        start - own..start
-    });
+    let place = |k: usize| kept.partition_point(|&old| old < k);
+    let arms = arms.iter().map(|arm| place(arm.start)..place(arm.end));
     (arms.collect(), count - kept.len())
 }
 

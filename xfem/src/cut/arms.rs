@@ -5,6 +5,7 @@
 //! have the forces on them. In a solid a crack that crosses an earlier plane is parted by it.
 
 use crate::geometry::boxes::{Boxes, around};
+use crate::geometry::curve::Curve;
 use crate::geometry::polygon::{segment_distance, segment_foot};
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub, unit};
 use crate::mesh::{Lengths, Mesh};
@@ -87,7 +88,6 @@ pub fn arms(
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
             if !places.join(&cracks, (k, end), &near[k], inside) {
                 places.lead_out(&mut cracks[k], end, mesh);
-                places.part_at_foot(&cracks, (k, end), &near[k]);
             }
         }
     }
@@ -96,6 +96,7 @@ pub fn arms(
             places.meet(&cracks, [earlier, later])?;
         }
     }
+    places.part_at_feet(&cracks, &near, inside);
     let parts = cracks.iter().zip(places.cuts);
     let arms = parts.flat_map(|(crack, cuts)| parted(crack, cuts, SAME_PLACE * size));
     Ok((arms.collect(), places.joined))
@@ -182,22 +183,31 @@ impl Places {
         true
     }
 
-    /// Parts straight cracks at the foot of an end that stops beside them: what they carry is singular there, too.
-    fn part_at_foot(&mut self, cracks: &[Crack], (k, end): (usize, usize), near: &[usize]) {
-        let Some((last, _)) = ending(&cracks[k], end) else {
-            return;
-        };
-        for &l in near.iter().filter(|&&l| l != k) {
-            let Some((away, s, foot)) = foot(&cracks[l], &last.x) else {
-                continue;
-            };
-            let apart = FOLLOWED * self.size;
-            let inner = cracks[l].path.iter().all(|v| distance(&v.x, &foot) > apart);
-            if inner
-                && crossings(&cracks[k], &cracks[l], 0.0).is_empty()
-                && away <= BESIDE * self.size
-            {
-                self.cuts[l].push(PathVertex { s, x: foot });
+    /// Parts straight cracks at the feet of ends that stop beside them: what they carry is singular there, too. The nearest come
+    /// first, however the cracks are ordered.
+    fn part_at_feet(
+        &mut self,
+        cracks: &[Crack],
+        near: &[Vec<usize>],
+        inside: impl Fn(&Point) -> bool,
+    ) {
+        let straight = |crack: &Crack| matches!(crack.geometry, Geometry::Curve(Curve::Chain(_)));
+        let mut feet = Vec::new();
+        for k in 0..cracks.len() {
+            let ends = (0..2).filter_map(|end| Some(ending(&cracks[k], end)?.0.x));
+            for x in ends.filter(&inside) {
+                let others = near[k].iter().filter(|&&l| l != k && straight(&cracks[l]));
+                let on = others.filter_map(|&l| Some((l, foot(&cracks[l], &x)?)));
+                feet.extend(on.filter(|(_, (away, ..))| *away <= BESIDE * self.size));
+            }
+        }
+        feet.sort_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+        for (l, (_, s, x)) in feet {
+            let near = |known: &[PathVertex], by: f64| known.iter().any(|v| (v.s - s).abs() <= by);
+            // Within a cell one corner does.
+            let [bent, met] = [FOLLOWED, BESIDE].map(|by| by * self.size);
+            if !near(&cracks[l].path, bent) && !near(&self.cuts[l], met) {
+                self.cuts[l].push(PathVertex { s, x });
             }
         }
     }

@@ -142,13 +142,17 @@ impl Crack {
         /// What is this close to the line of a tip lies on it, in parts of the arm.
         const ON_LINE: f64 = 1e-9;
         let slack = ON_LINE * (self.range[1] - self.range[0]);
-        let on_line = |v: &PathVertex| frame.coordinates(&v.x).phi.abs() <= slack;
-        let along = match frame.shape {
-            FrontShape::Straight => self.path.iter().all(on_line),
-            FrontShape::Bent(_) => true,
+        let behind = |v: &PathVertex| {
+            let at = frame.coordinates(&v.x);
+            at.phi.abs() <= slack && at.psi <= slack
+        };
+        let leads_there = || match frame.shape {
+            FrontShape::Straight | FrontShape::Bent(_) => {
+                self.path.windows(2).any(|w| w.iter().all(behind))
+            }
             _ => false,
         };
-        self.number == own.number && (along || self.shares_tips(own))
+        self.number == own.number && (self.shares_tips(own) || leads_there())
     }
 
     /// Places a crack in a mesh of these lengths, alone.

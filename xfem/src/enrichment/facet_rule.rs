@@ -2,7 +2,6 @@
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::polygon::segment_distance;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::mesh::Mesh;
 use crate::quadrature::front::FrontPiece;
@@ -26,6 +25,9 @@ pub struct FacetPoint {
     pub hats: Vec<f64>,
 }
 
+/// Tips farther away than this from a segment, in its lengths, leave a smooth function on it.
+const NEAR: f64 = 2.0;
+
 /// Rule of one facet of a crack by what lives in its cell.
 pub fn facet_points(
     mesh: &Mesh,
@@ -39,9 +41,10 @@ pub fn facet_points(
     let affine = map.is_affine();
     let branch = enrichment.has_branch(facet.cell);
     if let &[p, q] = polygon.as_slice() {
-        let tips = enrichment.singular_points();
+        let near = NEAR * norm(&sub(&q, &p));
+        let tips = || enrichment.singular_points_near(&[p, q], near);
         let integrand = match (branch, affine) {
-            (true, _) => Integrand::Root(tips),
+            (true, _) => Integrand::Root(tips()),
             (false, true) => Integrand::Polynomial,
             (false, false) => Integrand::Rational(rational_order(&map, [&p, &q])),
         };
@@ -58,14 +61,13 @@ pub fn facet_points(
 }
 
 /// How the jump varies on a facet.
-#[derive(Debug, Clone, Copy)]
-enum Integrand<'a> {
+enum Integrand {
     /// Polynomial: the cell is affine and carries no branch function.
     Polynomial,
     /// Rational, the cell is distorted: takes so many points.
     Rational(usize),
-    /// Like √r from one of the tips (2D).
-    Root(&'a [Point]),
+    /// Like √r from tips this near (2D).
+    Root(Vec<Point>),
 }
 
 /// Points of a segment.
@@ -73,14 +75,14 @@ enum Integrand<'a> {
 /// ```text
 ///   jump × hat is cubic on an affine cell: 2 points;    with branch functions: x = tip + ρ² e, a polynomial in ρ
 /// ```
-fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint> {
-    /// Points in ρ: exact for √r × quartics, and with slack for the √r of another tip.
+fn segment_points(ends: &[Point; 2], integrand: Integrand) -> Vec<FacetPoint> {
+    /// Points in ρ: exact for √r × quartics, and far from tips.
     const ROOT: usize = 10;
-    /// Tips farther away than this from the segment, in its lengths, leave a smooth function on it.
-    const NEAR: f64 = 2.0;
-    /// Points and halvings towards one of several: exact to 1e-14.
+    /// A tip on the line of the segment, in its lengths.
+    const ON_LINE: f64 = 1e-9;
+    /// Points and halvings towards tips beside it, or one of several: exact to 1e-12.
     const SEVERAL: usize = 12;
-    const DEPTH: usize = 40;
+    const DEPTH: usize = 28;
     let d = sub(&ends[1], &ends[0]);
     let length = norm(&d);
     let point = |t: f64, weight: f64| FacetPoint {
@@ -99,46 +101,30 @@ fn segment_points(ends: &[Point; 2], integrand: Integrand<'_>) -> Vec<FacetPoint
         Integrand::Rational(n) => return plain(n),
         Integrand::Root(tips) => tips,
     };
-    let near = |tip: &&Point| segment_distance(tip, &ends[0], &ends[1]) < NEAR * length;
-    let near: Vec<Point> = tips.iter().filter(near).copied().collect();
-    if near.len() > 1 {
-        let points = graded_segment(&ends[0], &ends[1], &near, SEVERAL, DEPTH).into_iter();
-        let place = |x: &Point| dot(&sub(x, &ends[0]), &d) / (length * length);
-        return points.map(|p| point(place(&p.x), p.weight)).collect();
-    }
-    let nearest = |x: &Point| {
-        let away = |tip: &Point| norm(&sub(x, tip));
-        tips.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    let from = |tip: &Point| [0, 1].map(|i| sub(&ends[i], tip));
+    let on_line = |tip: &&Point| {
+        let [p, q] = from(tip);
+        norm(&cross(&p, &q)) <= ON_LINE * length * length
     };
-    let (Some(one), Some(two)) = (nearest(&ends[0]), nearest(&ends[1])) else {
-        return plain(ROOT);
-    };
-    // Halfway between two tips the other takes over.
-    let (middle, apart) = (mean([one, two]), sub(one, two));
-    let [low, high] = [0, 1].map(|i| dot(&apart, &sub(&ends[i], &middle)));
-    let half = if one == two { 1.0 } else { low / (low - high) };
-    let mut points = Vec::new();
-    for (tip, from, to) in [(one, 0.0, half), (two, half, 1.0)] {
-        if from >= to {
-            continue;
+    let tip = match tips.as_slice() {
+        [] => return plain(ROOT),
+        [tip] if on_line(&tip) => tip,
+        _ => {
+            let points = graded_segment(&ends[0], &ends[1], &tips, SEVERAL, DEPTH).into_iter();
+            let place = |x: &Point| dot(&sub(x, &ends[0]), &d) / (length * length);
+            return points.map(|p| point(place(&p.x), p.weight)).collect();
         }
-        // r along the segment, from the end next to the tip; a tip beside the line is a smooth function of it.
-        let places = [from, to].map(|t| add_scaled(&ends[0], t, &d));
-        let r = places.map(|x| dot(&sub(&x, tip), &d).abs() / length);
-        let least = r[0].min(r[1]);
-        let (low, high) = (least.sqrt(), (least + (to - from) * length).sqrt());
-        points.extend(unit(ROOT).map(|(q, w)| {
-            let rho = low + q * (high - low);
-            let along = (rho * rho - low * low) / length;
-            let t = if r[0] <= r[1] {
-                from + along
-            } else {
-                to - along
-            };
-            point(t, 2.0 * rho * (high - low) * w)
-        }));
-    }
-    points
+    };
+    // r along the segment, from the end next to the tip.
+    let r = from(tip).map(|v| norm(&v));
+    let (low, high) = (r[0].min(r[1]).sqrt(), r[0].max(r[1]).sqrt());
+    let of_rho = |(q, w): (f64, f64)| {
+        let rho = low + q * (high - low);
+        let along = (rho * rho - low * low) / length;
+        let t = if r[0] <= r[1] { along } else { 1.0 - along };
+        point(t, 2.0 * rho * (high - low) * w)
+    };
+    unit(ROOT).map(of_rho).collect()
 }
 
 /// Points of a convex polygon in space.

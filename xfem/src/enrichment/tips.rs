@@ -348,8 +348,11 @@ impl Search<'_> {
         };
         let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
         let slender = aspects.any(|aspect| aspect > longest);
+        if !parted || slender {
+            return false;
+        }
         let end = self.end(number);
-        parted && !slender && !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
+        !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
     }
 
     /// Straight arms with two ends inside the body, none of which has room: they take functions of both.

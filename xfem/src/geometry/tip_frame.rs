@@ -453,7 +453,7 @@ mod tests {
         }
     }
 
-    /// A tip with a chain behind it that turns by 60 degrees.
+    /// A tip with a chain behind it that turns by 56 degrees.
     fn bent() -> TipFrame {
         let mut tip = frame();
         let [back, aside] = [tip.ahead.map(|v| -0.2 * v), tip.normal.map(|v| 0.3 * v)];

@@ -179,7 +179,7 @@ impl SolverBasis {
 
     /// True if the solver works with the functions themselves.
     pub fn is_identity(&self) -> bool {
-        self.blocks.is_empty() && self.alike.is_empty()
+        self.blocks.is_empty()
     }
 
     /// The block that acts on an unknown, and the place of its function there.

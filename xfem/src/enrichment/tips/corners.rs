@@ -131,20 +131,26 @@ impl Search<'_> {
         for (arm, end) in ends {
             match self.ending(arm, end) {
                 Some(own) if !self.is_blocked(&own, nodes, &BTreeSet::new()) => arms.push(own),
-                _ if self.inside(arm) <= LONG * size => others.push(arm),
+                _ if self.carries(arm) && self.inside(arm) <= LONG * size => others.push(arm),
                 _ => return None,
             }
         }
         if let [one, two] = arms.as_slice()
             && dot(&one.0.ahead, &two.0.ahead) < -STRAIGHT
         {
-            let near = |tip: &&TracedTip| norm(&sub(&tip.x, x)) <= size;
+            let near = |tip: &&TracedTip| self.carries(tip.arm) && norm(&sub(&tip.x, x)) <= size;
             others.extend(self.trace.tips.iter().filter(near).map(|tip| tip.arm));
             if others.is_empty() {
                 return None;
             }
         }
         (1..=3).contains(&arms.len()).then_some((arms, others))
+    }
+
+    /// Whether an arm is straight and asks for branch functions.
+    fn carries(&self, arm: usize) -> bool {
+        let crack = &self.arms[arm];
+        crack.tip != Tip::None && matches!(crack.geometry, Geometry::Curve(Curve::Chain(_)))
     }
 
     /// The nodes around a corner with the cells given; `others`: arms that may run through them, too. `deep`: see [`DEEP`] [m].
@@ -191,14 +197,13 @@ impl Search<'_> {
     fn ending(&self, arm: usize, end: usize) -> Option<Ending> {
         let crack = &self.arms[arm];
         let (range, path) = (self.range(arm), &crack.path);
-        let straight = matches!(crack.geometry, Geometry::Curve(Curve::Chain(_)));
         let parted = range[end] == crack.range[end] && range[0] < range[1];
-        if crack.tip == Tip::None || !straight || !parted {
+        if !self.carries(arm) || !parted {
             return None;
         }
         // Where it was traced to: on a node or an edge, if it is that close.
-        let mut chains = self.trace.chains.values().flatten();
-        let last = chains.find(|c| c.arm == arm && c.range[end] == crack.range[end])?;
+        let mut chains = self.chains_of[arm].iter().map(|own| own.1);
+        let last = chains.find(|c| c.range[end] == crack.range[end])?;
         let (x, next) = match end {
             0 => (last.vertices.first()?.x, path.get(1)?.x),
             _ => (last.vertices.last()?.x, path.get(path.len() - 2)?.x),

@@ -1,6 +1,6 @@
 //! What lies behind a tip: how far its crack leads away from it, and the frame of its functions.
 
-use crate::cut::crack::Geometry;
+use crate::cut::crack::{Crack, Geometry};
 use crate::cut::placement;
 use crate::cut::trace::TracedTip;
 use crate::geometry::curve::Curve;
@@ -57,6 +57,9 @@ impl Search<'_> {
             return arm;
         }
         let path = self.leading_away(tip);
+        if path.len() < 3 {
+            return arm;
+        }
         let mut bent = arm.clone();
         bent.1 = path.last().map_or(0.0, |x| norm(&sub(x, &tip.x)));
         bent.0.shape = FrontShape::Bent(path);
@@ -65,7 +68,7 @@ impl Search<'_> {
 
     /// The vertices of a crack from a tip on, as long as it leads away from there.
     fn leading_away(&self, tip: &TracedTip) -> Vec<Point> {
-        /// Least cosine of a crack's angle with the distance from its tip: up to 75 degrees.
+        /// Least cosine of its angle with the radius, 75 degrees: θ turns with the crack by the tangent of that, at every radius.
         const LEADING: f64 = 0.25;
         let mut path = vec![tip.x];
         let (mut arm, end) = (tip.arm, tip.end);
@@ -74,13 +77,20 @@ impl Search<'_> {
             let Geometry::Curve(curve @ Curve::Chain(_)) = &own.geometry else {
                 return path;
             };
+            let whole = range[1 - end] == own.range[1 - end];
             let inner = own.path.iter().filter(|v| v.s > range[0] && v.s < range[1]);
             let mut next: Vec<Point> = inner.map(|v| v.x).collect();
-            let far = curve.at(range[1 - end]).0;
             if end == 1 {
                 next.reverse();
             }
-            next.push(far);
+            // Where it meets others the path was moved there, the curve was not.
+            let last = if end == 1 {
+                own.path.first()
+            } else {
+                own.path.last()
+            };
+            let last = last.filter(|_| whole).map(|v| v.x);
+            next.push(last.unwrap_or_else(|| curve.at(range[1 - end]).0));
             for x in next {
                 let from = path[path.len() - 1];
                 let (back, on) = (sub(&from, &tip.x), sub(&x, &from));
@@ -90,20 +100,19 @@ impl Search<'_> {
                 path.push(x);
             }
             let other = if end == 1 {
-                arm.checked_sub(1)
+                arm.wrapping_sub(1)
             } else {
-                Some(arm + 1)
+                arm + 1
             };
-            let follows = |k: &usize| {
-                let next = self.arms.get(*k)?;
-                let at = [next.range, own.range];
-                let whole = range[1 - end] == own.range[1 - end];
-                (whole && next.number == own.number && at[0][end] == at[1][1 - end]).then_some(())
+            let follows = |next: &&Crack| {
+                let range = self.range(other);
+                let begins = next.range[end] == own.range[1 - end] && range[end] == next.range[end];
+                whole && next.number == own.number && begins && range[0] < range[1]
             };
-            match other.filter(|k| follows(k).is_some()) {
-                Some(k) => arm = k,
-                None => return path,
+            if self.arms.get(other).filter(follows).is_none() {
+                return path;
             }
+            arm = other;
         }
     }
 }

@@ -13,7 +13,8 @@ use super::super::supports::{Place, parted_from};
 use super::super::zone::Zone;
 use super::{SHARE, Search};
 
-/// Nodes around a ramp are no farther away than this, in lengths of the arm.
+/// Nodes around a ramp are no farther away than this, in lengths of the arm: seen from there a short arm, or one in long cells, is
+/// nothing, and its functions become dependent.
 const FAR: f64 = 4.0;
 
 impl Search<'_> {
@@ -108,13 +109,11 @@ impl Search<'_> {
         at_tip: BTreeSet<u32>,
     ) -> Zone {
         let (near, frame) = (&self.near, &arms[0].0);
+        let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
+        let far = FAR * arms.iter().map(|arm| arm.1).fold(f64::INFINITY, f64::min);
         Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
-            let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
-            // From far away a short arm, or one in long cells, is nothing: its functions become dependent.
-            let away = nodes
-                .iter()
-                .map(|&node| frame.distance(&self.mesh.nodes[node as usize]));
-            away.fold(0.0, f64::max) <= FAR * arms[0].1
+            let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
+            nodes.iter().all(close)
                 && self.holds_only(&own, cells)
                 && !self.any_blocked(arms, nodes, &BTreeSet::new())
         })
