@@ -197,7 +197,8 @@ impl<'a> Supports<'a> {
     /// Prescribed unknowns by number (function-major). A later support wins.
     ///
     /// Under the closed form a piece function takes the value that interpolates both sides, and 0 beside a stated number; branch
-    /// functions on what is held are 0, which leaves the interpolation of the standard ones.
+    /// functions on what is held are 0, which leaves the interpolation of the standard ones; those whose ramp is zero there are
+    /// free.
     ///
     /// # Errors
     /// A support that does not tell which lip of a crack it holds.
@@ -346,9 +347,13 @@ impl<'a> Supports<'a> {
                     *held.between.entry(copy).or_default() |= whole;
                 }
             }
+            let corners: Vec<u32> = nodes.iter().map(|&n| n as u32).collect();
             for &f in enrichment.cell(part.cell) {
                 let function = &enrichment.functions[f as usize];
-                let branch = matches!(function.kind, FunctionKind::Branch { .. });
+                // Where its ramp is zero a branch function holds nothing.
+                let rises = |tip: u32| enrichment.ramp(tip as usize, &corners) != 0;
+                let branch =
+                    matches!(function.kind, FunctionKind::Branch { tip, .. } if rises(tip));
                 if branch && nodes.contains(&(function.node as usize)) {
                     *held.branches.entry(f as usize).or_default() |= whole;
                 }

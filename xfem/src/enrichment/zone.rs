@@ -1,7 +1,8 @@
 //! The nodes around a tip or front that carry its branch functions, and the room that a front has.
 //!
-//! The ramp falls to zero over the cells around its nodes. It may hold no crack but its own; a radius is reduced until that is
-//! so. What other cracks cut off of a zone without ramp carries none of its functions.
+//! The ramp falls to zero over the cells around its nodes, and towards sides that cells of the tip do not touch: supports then
+//! hold none of the functions, and g₃ and g₄ of the nodes there are superfluous. It may hold no crack but its own; a radius is
+//! reduced until that is so. What other cracks cut off of a zone without ramp carries none of its functions.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -48,15 +49,20 @@ impl Zone {
         at_tip: BTreeSet<u32>,
         free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> bool,
     ) -> Self {
-        let smallest = near.nodes_around(&at_tip);
+        let of_side = |side| mesh.side_nodes(side).into_iter().map(|n| n as u32);
+        let sides = mesh.sides.keys().map(|side| of_side(side).collect());
+        let beside = sides.filter(|nodes: &BTreeSet<u32>| nodes.is_disjoint(&at_tip));
+        let beside: BTreeSet<u32> = beside.flatten().collect();
+        let smallest = &near.nodes_around(&at_tip) - &beside;
         let candidates = near.nodes_in(&frame.extents(radius));
         loop {
             let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
             let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
-            let core = &inside | &smallest;
+            let core = &(&inside - &beside) | &smallest;
             let nodes = near.nodes_around(&core);
             if free(&near.cells_around(&core), &nodes) {
                 return Zone {
+                    surplus: (&nodes & &beside).into_iter().collect(),
                     nodes,
                     core,
                     radius,

@@ -74,7 +74,7 @@ impl Search<'_> {
         };
         if zone.core.is_empty() {
             zone.cut_off = self.cut_off(end, &zone.nodes);
-        } else if arms[0].0.shape == FrontShape::Straight {
+        } else if arms[0].0.shape == FrontShape::Straight && zone.surplus.is_empty() {
             zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
         }
         // Where all of a node's cells are cut off it carries nothing.
