@@ -260,7 +260,7 @@ mod tests {
         let tip = [1.0, 2.0, 0.0];
         for (far, near) in [(2.0, 0.0), (1.5, 0.3), (0.3, 1.5)] {
             let end = |r: f64| [1.0 - 0.6 * r, 2.0 - 0.8 * r, 0.0];
-            let points = segment_points(&[end(far), end(near)], Integrand::Root(&[tip]));
+            let points = segment_points(&[end(far), end(near)], Integrand::Root(vec![tip]));
             let r = |p: &FacetPoint| norm(&sub(&p.x, &tip));
             let power =
                 |k: f64| ((far.max(near)).powf(k + 1.0) - far.min(near).powf(k + 1.0)) / (k + 1.0);
