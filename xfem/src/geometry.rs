@@ -1,6 +1,7 @@
 //! Points, curves, convex parts, crack shapes and the coordinates of their tips. Knows nothing of meshes.
 
 pub mod boxes;
+mod branch_functions;
 pub mod clip;
 pub mod crack_shape;
 pub mod curve;
