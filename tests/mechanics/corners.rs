@@ -12,6 +12,14 @@ struct Scene {
 }
 
 impl Scene {
+    fn new(cracks: &[(&[[f64; 2]], f64)], aside: f64, cells: [usize; 2]) -> Self {
+        Scene {
+            cracks: cracks.iter().map(|(x, mu)| (x.to_vec(), *mu)).collect(),
+            aside,
+            cells,
+        }
+    }
+
     /// Left and right changed, so that it is the same body seen from behind.
     fn mirrored(mut self) -> Self {
         self.cracks
@@ -60,11 +68,7 @@ impl Scene {
 }
 
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
-    let scene = |cracks: &[(&[[f64; 2]], f64)], aside| Scene {
-        cracks: cracks.iter().map(|(x, mu)| (x.to_vec(), *mu)).collect(),
-        aside,
-        cells: [41, 41],
-    };
+    let scene = |cracks: &[(&[[f64; 2]], f64)], aside| Scene::new(cracks, aside, [41, 41]);
     let square: &[[f64; 2]] = &[[-0.9, -0.23], [0.31, 0.17], [-0.1, 1.1]];
     let zigzag: &[[f64; 2]] = &[
         [-1.3, -0.3],
@@ -102,11 +106,6 @@ fn bends_and_junctions_slide_as_between_conforming_elements() {
 
 /// Arms shorter than a cell, and an end 0.3 of a cell beside another crack: what they are, and the work between conforming elements.
 fn short_arms() -> Vec<(&'static str, Scene, f64)> {
-    let scene = |cracks: &[(&[[f64; 2]], f64)], aside, cells| Scene {
-        cracks: cracks.iter().map(|(x, mu)| (x.to_vec(), *mu)).collect(),
-        aside,
-        cells,
-    };
     let bent: &[[f64; 2]] = &[
         [0.91, 0.29],
         [0.95, -0.2],
@@ -122,22 +121,22 @@ fn short_arms() -> Vec<(&'static str, Scene, f64)> {
     vec![
         (
             "bend near a tip",
-            scene(&[(bent, 0.435)], 1.08e-4, [51, 54]),
+            Scene::new(&[(bent, 0.435)], 1.08e-4, [51, 54]),
             56.475,
         ),
         (
             "T near a tip",
-            scene(&[(host, 0.377), (branch, 0.298)], 3.27e-4, [41, 57]),
+            Scene::new(&[(host, 0.377), (branch, 0.298)], 3.27e-4, [41, 57]),
             68.34,
         ),
         (
             "stub",
-            scene(&[(level, 0.211), (stub, 0.172)], 1.88e-4, [41, 53]),
+            Scene::new(&[(level, 0.211), (stub, 0.172)], 1.88e-4, [41, 53]),
             25.75,
         ),
         (
             "beside",
-            scene(&[(long, 0.2), (beside, 0.2)], 4e-4, [41, 41]),
+            Scene::new(&[(long, 0.2), (beside, 0.2)], 4e-4, [41, 41]),
             29.331,
         ),
     ]

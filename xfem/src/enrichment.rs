@@ -319,12 +319,8 @@ impl Enrichment {
         self.standard
     }
 
-    /// Where branch functions are singular in 2D: the tips and corners that carry them [m].
-    pub fn singular_points(&self) -> &[Point] {
-        &self.singular.0
-    }
-
-    /// Those closer than a distance to the box of some corners [m].
+    /// Where branch functions are singular in 2D, the tips and corners that carry them, closer than a distance to the box of some
+    /// points [m].
     pub fn singular_points_near(&self, corners: &[Point], distance: f64) -> Vec<Point> {
         let (points, boxes) = &self.singular;
         let near = boxes.meeting(&around(corners, distance));
@@ -382,7 +378,7 @@ impl Enrichment {
 
 /// Side of the line of a tip's crack on which a cell lies that this crack does not divide; 0 where the place tells.
 ///
-/// The line is that of the tip's own arm: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
+/// The line is that along which its functions jump: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
 /// enters.
 fn beside(frame: &TipFrame, map: &CellMap, rounding: f64) -> Side {
     let near = on_crack(map.diagonal(), rounding);

@@ -11,7 +11,7 @@
 //! that no displacement determines: at tips and junctions, on slivers, beside supports, on cracks of few cells. Forces of
 //! many points that nothing resists together (constant ones that change sign from facet to facet around a circle) leave no
 //! small pivot but a small eigenvalue; the point that has most of it is such a point too. It is merged with the nearest point
-//! of its arm: their multiplier functions add up, so constant tractions stay exact. One rule, from what the rows are, not
+//! of its arm (one on next to nothing with any): their multiplier functions add up, so constant tractions stay exact. One rule, from what the rows are, not
 //! from where they come from.
 
 use std::collections::BTreeMap;

@@ -185,7 +185,7 @@ impl Search<'_> {
         let plain = |core: BTreeSet<usize>| {
             let nodes = self.mesh.nodes_of(core.iter().copied());
             let alone = self.holds_only(&all, &core);
-            let alone = alone && !self.any_blocked(arms, &nodes, &BTreeSet::new());
+            let alone = alone && !self.any_blocked(arms, &nodes);
             alone.then(|| Zone::plain(nodes))
         };
         let around = |_| plain(self.near.cells_around(&nodes));

@@ -115,7 +115,7 @@ impl Search<'_> {
             let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
             nodes.iter().all(close)
                 && self.holds_only(&own, cells)
-                && !self.any_blocked(arms, nodes, &BTreeSet::new())
+                && !self.any_blocked(arms, nodes)
         })
     }
 
@@ -147,13 +147,9 @@ impl Search<'_> {
     }
 
     /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
-    pub(super) fn any_blocked(
-        &self,
-        arms: &[(TipFrame, f64)],
-        nodes: &BTreeSet<u32>,
-        cut_off: &BTreeSet<Place>,
-    ) -> bool {
-        arms.iter().any(|arm| self.is_blocked(arm, nodes, cut_off))
+    pub(super) fn any_blocked(&self, arms: &[(TipFrame, f64)], nodes: &BTreeSet<u32>) -> bool {
+        let none = BTreeSet::new();
+        arms.iter().any(|arm| self.is_blocked(arm, nodes, &none))
     }
 
     /// Distance of a place from arms other than its own and from the border of the body, at most `room` [m].
