@@ -256,11 +256,24 @@ impl ContactProblem<'_> {
         if !u.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
+        let f = u.clone();
         elastic.solve(&mut u)?;
         self.counters.solves += 1;
         let amplitudes = self.operator.modes.amplitudes(&step.beta);
-        for (r, alpha) in elastic.floating().iter().zip(amplitudes) {
+        for (r, alpha) in elastic.floating().iter().zip(&amplitudes) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
+        }
+        if let Some(k) = elastic.stiffness()
+            && !amplitudes.is_empty()
+            && elastic.imbalance(&u, &[&f]) > BALANCED
+        {
+            // K r vanishes to rounding of K alone, and r may be far larger than what deforms.
+            let mut rest = vec![0.0; u.len()];
+            k.mul(&u, &mut rest);
+            let mut rest = minus(&f, &rest);
+            elastic.solve(&mut rest)?;
+            self.counters.solves += 1;
+            u.iter_mut().zip(&rest).for_each(|(u, rest)| *u += rest);
         }
         if let Some(anchor) = &self.anchor {
             let known = &anchor.state.u;
