@@ -38,16 +38,17 @@ const ALIKE: f64 = 1e-12;
 struct Block {
     /// First of the functions, which follow each other.
     first: usize,
-    /// T, lower triangular, row by row; the row of a dropped function is zero.
-    t: Vec<f64>,
     count: usize,
-    /// Components it acts on: those of which nothing is prescribed.
-    free: [bool; 3],
+    /// T for every set of prescribed functions, the smallest first; lower triangular, row by row. The row of a dropped function
+    /// is zero, that of a prescribed one the identity.
+    forms: Vec<Vec<f64>>,
+    /// Form of every component.
+    form: [usize; 3],
 }
 
 impl Block {
-    fn t(&self, row: usize, column: usize) -> f64 {
-        self.t[row * self.count + column]
+    fn t(&self, component: usize, row: usize, column: usize) -> f64 {
+        self.forms[self.form[component]][row * self.count + column]
     }
 }
 
@@ -62,8 +63,8 @@ pub struct SolverBasis {
 }
 
 impl SolverBasis {
-    /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its
-    /// functions; `held`: whether a component of a function is prescribed, which keeps this component of its node as it is.
+    /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its functions; `held`: whether a component
+    /// of a function is prescribed, which keeps this component as it is.
     pub fn new<'a>(
         dim: usize,
         enrichment: &Enrichment,
@@ -76,48 +77,57 @@ impl SolverBasis {
             ..SolverBasis::default()
         };
         let surplus = surplus(dim, enrichment, &held);
-        let mut stiffest = f64::MIN_POSITIVE;
-        for node in 0..enrichment.nodes() {
+        // Pieces are disjoint: of a node without branch functions they depend on no other.
+        let is_branch =
+            |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
+        let free = |f: usize| (0..dim).any(|a| !held(f, a));
+        let acts = |node: &usize| {
+            let mut own = enrichment.enriched_of(*node);
+            own.clone().any(is_branch) && own.any(free)
+        };
+        let nodes: Vec<usize> = (0..enrichment.nodes()).filter(acts).collect();
+        let standard = |&node: &usize| gram(enrichment, dim, &[node], users, &matrix)[0];
+        let stiffest = nodes.iter().map(standard).fold(f64::MIN_POSITIVE, f64::max);
+        // A power of two changes no bit of a scaled matrix.
+        let unit = (0.5 * stiffest.log2()).round().exp2();
+        for node in nodes {
             let own = enrichment.enriched_of(node);
-            let kind = |f: usize| enrichment.functions[f].kind;
-            let branch = |f: usize| matches!(kind(f), FunctionKind::Branch { .. });
-            let free = [0, 1, 2].map(|a| a < dim && !own.clone().any(|f| held(f, a)));
-            if own.is_empty() || free == [false; 3] {
-                continue;
-            }
-            // Pieces are disjoint: of a node their functions depend on no other.
-            if !own.clone().any(branch) {
-                continue;
-            }
-            let standard = gram(enrichment, dim, &[node], users, &matrix)[0];
             let all: Vec<usize> = own.clone().collect();
             let gram = gram(enrichment, dim, &all, users, &matrix);
-            stiffest = standard.max(stiffest);
             if basis.block_of.is_empty() {
                 basis.block_of = vec![None; enrichment.functions.len()];
             }
             for f in own.clone() {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
             }
-            let t = inverse_factor(&gram, own.len(), |i| {
-                let f = own.start + i;
-                basis.alike.contains(&f) || surplus.contains(&f)
-            });
+            let of = |a: usize| all.iter().map(|&f| held(f, a)).collect::<Vec<bool>>();
+            let mut sets: Vec<Vec<bool>> = (0..dim).map(of).collect();
+            sets.sort_by_key(|set| set.iter().filter(|held| **held).count());
+            sets.dedup();
+            let form = |set: &Vec<bool>| {
+                // What is prescribed breaks the relations of what is left.
+                let whole = !set.contains(&true);
+                let left_out = |i: usize| {
+                    set[i] || basis.alike.contains(&all[i]) || whole && surplus.contains(&all[i])
+                };
+                let mut t = inverse_factor(&gram, all.len(), left_out);
+                t.iter_mut().for_each(|t| *t *= unit);
+                let kept = (0..all.len()).filter(|&i| set[i]);
+                kept.for_each(|i| t[i * all.len() + i] = 1.0);
+                t
+            };
+            let place = |a: usize| sets.iter().position(|set| a < dim && *set == of(a));
             basis.blocks.push(Block {
                 first: own.start,
-                t,
-                count: own.len(),
-                free,
+                count: all.len(),
+                forms: sets.iter().map(form).collect(),
+                form: [0, 1, 2].map(|a| place(a).unwrap_or(0)),
             });
         }
         let plain = |tip: &usize| enrichment.radii[*tip] == 0.0;
         for tip in (0..enrichment.tips.len()).filter(plain) {
             basis.drop_tied(dim, enrichment, tip, users, &matrix);
         }
-        // A power of two changes no bit of a scaled matrix.
-        let unit = (0.5 * stiffest.log2()).round().exp2();
-        let entries = basis.blocks.iter_mut().flat_map(|block| &mut block.t);
-        entries.for_each(|t| *t *= unit);
         basis
     }
 
@@ -162,7 +172,9 @@ impl SolverBasis {
                         }
                     };
                     for i in (0..block.count).rev() {
-                        let sum = (0..=i).map(|j| block.t(i, j) * gram[index(j)]).sum();
+                        let sum = (0..=i)
+                            .map(|j| block.forms[0][i * block.count + j] * gram[index(j)])
+                            .sum();
                         gram[index(i)] = sum;
                     }
                 }
@@ -172,7 +184,10 @@ impl SolverBasis {
             if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
                 let block = &mut self.blocks[*block as usize];
                 let row = own[k] - block.first;
-                block.t[row * block.count..(row + 1) * block.count].fill(0.0);
+                let entries = row * block.count..(row + 1) * block.count;
+                for t in &mut block.forms {
+                    t[entries.clone()].fill(0.0);
+                }
             }
         }
     }
@@ -182,28 +197,27 @@ impl SolverBasis {
         self.blocks.is_empty()
     }
 
-    /// The block that acts on an unknown, and the place of its function there.
-    fn block(&self, dim: usize, unknown: usize) -> Option<(&Block, usize)> {
-        let (function, a) = (unknown / dim, unknown % dim);
+    /// The block that acts on a function, and its place there.
+    fn block(&self, function: usize) -> Option<(&Block, usize)> {
         let number = self.block_of.get(function).copied().flatten()?;
         let block = &self.blocks[number as usize];
-        block.free[a].then(|| (block, function - block.first))
+        Some((block, function - block.first))
     }
 
     /// True for an unknown that the solver does not see.
     pub fn drops(&self, dim: usize, unknown: usize) -> bool {
-        let block = self.block(dim, unknown);
-        self.alike.contains(&(unknown / dim))
-            || block.is_some_and(|(block, i)| block.t(i, i) == 0.0)
+        let (function, a) = (unknown / dim, unknown % dim);
+        let block = self.block(function);
+        self.alike.contains(&function) || block.is_some_and(|(block, i)| block.t(a, i, i) == 0.0)
     }
 
     /// Changes the values of every block, component by component.
-    fn change(&self, dim: usize, v: &mut [f64], change: impl Fn(&Block, &mut [f64])) {
+    fn change(&self, dim: usize, v: &mut [f64], change: impl Fn(&Block, usize, &mut [f64])) {
         for block in &self.blocks {
-            for a in (0..dim).filter(|&a| block.free[a]) {
+            for a in 0..dim {
                 let at = |i: usize| (block.first + i) * dim + a;
                 let mut own: Vec<f64> = (0..block.count).map(|i| v[at(i)]).collect();
-                change(block, &mut own);
+                change(block, a, &mut own);
                 own.into_iter().enumerate().for_each(|(i, x)| v[at(i)] = x);
             }
         }
@@ -211,28 +225,28 @@ impl SolverBasis {
 
     /// f' = T f, in place.
     pub fn force(&self, dim: usize, f: &mut [f64]) {
-        self.change(dim, f, |block, f| {
+        self.change(dim, f, |block, a, f| {
             for i in (0..block.count).rev() {
-                f[i] = (0..=i).map(|j| block.t(i, j) * f[j]).sum();
+                f[i] = (0..=i).map(|j| block.t(a, i, j) * f[j]).sum();
             }
         });
     }
 
     /// u = Tᵀ u', in place.
     pub fn unknowns(&self, dim: usize, u: &mut [f64]) {
-        self.change(dim, u, |block, u| {
+        self.change(dim, u, |block, a, u| {
             for j in 0..block.count {
-                u[j] = (j..block.count).map(|i| block.t(i, j) * u[i]).sum();
+                u[j] = (j..block.count).map(|i| block.t(a, i, j) * u[i]).sum();
             }
         });
     }
 
     /// The u' of a u, in place; what only dropped functions could carry is lost.
     pub fn solver_unknowns(&self, dim: usize, u: &mut [f64]) {
-        self.change(dim, u, |block, u| {
+        self.change(dim, u, |block, a, u| {
             for j in (0..block.count).rev() {
-                let rest: f64 = (j + 1..block.count).map(|i| block.t(i, j) * u[i]).sum();
-                let pivot = block.t(j, j);
+                let rest: f64 = (j + 1..block.count).map(|i| block.t(a, i, j) * u[i]).sum();
+                let pivot = block.t(a, j, j);
                 u[j] = if pivot == 0.0 {
                     0.0
                 } else {
@@ -244,11 +258,12 @@ impl SolverBasis {
 
     /// Column of T: the unknowns of the solver to which one unknown contributes, with the factors.
     pub fn column(&self, dim: usize, unknown: usize) -> Vec<(usize, f64)> {
-        match self.block(dim, unknown) {
+        let (function, a) = (unknown / dim, unknown % dim);
+        match self.block(function) {
             None => vec![(unknown, 1.0)],
             Some((block, j)) => {
-                let at = |i: usize| (block.first + i) * dim + unknown % dim;
-                let rows = (j..block.count).map(|i| (at(i), block.t(i, j)));
+                let at = |i: usize| (block.first + i) * dim + a;
+                let rows = (j..block.count).map(|i| (at(i), block.t(a, i, j)));
                 rows.filter(|(_, t)| *t != 0.0).collect()
             }
         }
@@ -276,11 +291,12 @@ impl SolverBasis {
         }
         // (T restricted to the cell's unknowns) one after the other on rows and columns.
         let of_unknown = |(p, &f): (usize, &u32)| {
-            (0..dim).map(move |a| match self.block(dim, f as usize * dim + a) {
+            (0..dim).map(move |a| match self.block(f as usize) {
                 None => vec![(p * dim + a, 1.0)],
                 Some((block, i)) => {
                     let place = |f: usize| functions.iter().position(|&g| g as usize == f);
-                    let entry = |j: usize| Some((place(block.first + j)? * dim + a, block.t(i, j)));
+                    let entry =
+                        |j: usize| Some((place(block.first + j)? * dim + a, block.t(a, i, j)));
                     (0..=i).filter_map(entry).collect()
                 }
             })
