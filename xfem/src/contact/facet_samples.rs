@@ -7,7 +7,9 @@
 //!                   x = (i c + j p + k q)/3,  i + j + k = 3, shared points once    1 + 6 points per edge
 //! ```
 
+use crate::cut::crack::Geometry;
 use crate::enrichment::facets::CrackFacets;
+use crate::geometry::curve::Curve;
 use crate::geometry::{Point, add_scaled};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
@@ -35,7 +37,12 @@ pub fn facet_samples(integrator: &CellIntegrator<'_>) -> Result<Vec<SurfacePoint
         let facets = CrackFacets::new(mesh, index, crack, enrichment);
         for facet in &facets.facets {
             for x in places(&facets.polygon(facet)) {
-                samples.push(SurfacePoint::on_facet(integrator, index, facet, x)?);
+                let mut sample = SurfacePoint::on_facet(integrator, index, facet, x)?;
+                // Chords stand for the arc: what slides along it does not overlap.
+                if let Geometry::Curve(curve @ Curve::Arc { .. }) = &crack.geometry {
+                    sample.frame = curve.frame(&x);
+                }
+                samples.push(sample);
             }
         }
     }
