@@ -156,7 +156,7 @@ fn a_layer_that_holds_too_few_digits_is_suspect() {
 fn a_piece_that_no_contact_point_feels_is_refused_at_its_crack() {
     let text = r#"
 [[crack]]
-arc = { centre_m = [-0.326198, 1.083495], radius_m = 0.104764, from_deg = -90.0, to_deg = 270.0 }
+points_m = [[0.15, 1.75], [0.35, 1.5]]
 friction = 0.1
 [[support]]
 on = "bottom"
@@ -165,7 +165,7 @@ displacement_m = [0.0, 0.0]
     let text = plane([-1.272147, 0.733396], [0.305327, 1.683271], [8, 5], text);
     let error = try_body(&text).err().expect("a refusal").to_string();
     assert!(
-        error.contains("crack[1].arc: crack 1 has too few contact points"),
+        error.contains("crack[1].points_m: crack 1 has too few contact points"),
         "{error}"
     );
     assert!(error.contains("a finer mesh"), "{error}");

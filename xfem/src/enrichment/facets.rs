@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::cut::crack::{Crack, Geometry};
 use crate::cut::part::Face;
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
-use crate::geometry::curve::turned;
+use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::space_area;
 use crate::geometry::{Point, add_scaled, norm, sub, unit};
 use crate::mesh::Mesh;
@@ -112,7 +112,7 @@ impl CrackFacets {
                 let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
                     continue;
                 };
-                let frame = piece_frame(crack, face, &polygon);
+                let frame = piece_frame(crack, face, tolerance);
                 let corners = polygon
                     .into_iter()
                     .map(|corner| {
@@ -181,14 +181,20 @@ impl CrackFacets {
     }
 }
 
-/// Frame of a piece: in 2D that of its chord.
-fn piece_frame(crack: &Crack, face: &Face, polygon: &[Corner]) -> [Point; 3] {
+/// Frame of a piece: that of its chord where the crack bends, or was moved to meet others.
+fn piece_frame(crack: &Crack, face: &Face, tolerance: f64) -> [Point; 3] {
+    let chord = || {
+        let a = unit(&sub(&face.corners[1].0, &face.corners[0].0));
+        [turned(&a), a, [0.0, 0.0, 1.0]]
+    };
+    let moved = || {
+        let mut ends = face.corners.iter();
+        ends.any(|(x, _)| crack.distance(x).abs() > tolerance)
+    };
     match &crack.geometry {
-        Geometry::Curve(curve) if !curve.is_straight() => {
-            let a = unit(&sub(&face.corners[1].0, &face.corners[0].0));
-            [turned(&a), a, [0.0, 0.0, 1.0]]
-        }
-        _ => crack.frame(&polygon[0].x),
+        Geometry::Curve(Curve::Arc { .. }) => chord(),
+        Geometry::Curve(_) if moved() => chord(),
+        _ => crack.frame(&face.middle()),
     }
 }
 

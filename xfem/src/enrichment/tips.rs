@@ -113,7 +113,7 @@ impl Tips {
         for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
             let end = search.end(number);
             let zone = search.zone(tip, &end);
-            let beyond = search.beyond(tip, &zone);
+            let beyond = search.beyond(tip, &end, &zone);
             tips.add(end.0.clone(), &tip.cells, zone);
             if let Some(zone) = beyond {
                 tips.add(end.0, &[], zone);

@@ -146,11 +146,6 @@ impl Curve {
             }
         }
     }
-
-    /// True for a single straight segment: φ is linear.
-    pub fn is_straight(&self) -> bool {
-        matches!(self, Curve::Chain(points) if points.len() == 2)
-    }
 }
 
 fn nearest_of_chain(points: &[Point], x: &Point) -> Nearest {

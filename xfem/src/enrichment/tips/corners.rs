@@ -18,8 +18,8 @@
 //! ```
 //!
 //! Both relations are resolved by leaving out g₃ and g₄ at the node deepest in the wedge; without one deep enough there is no
-//! ramp. One to three arms, others that end within their cells aside: at crossings, where nothing ends, the pieces of the
-//! supports suffice. A crack beside which another ends is parted at the foot of that end: it is as singular there.
+//! ramp. One to four arms, others that end within their cells aside. A crack beside which another ends is parted at the foot of
+//! that end: it is as singular there.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -36,9 +36,14 @@ use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
 
-/// An arm shorter than this, in edges, has no multipliers of its own in a corner: the displacement could not balance them. If its
-/// functions would jump beyond its tip, it has none at all there.
-const LONG: f64 = 2.0;
+/// Most arms with functions of a corner.
+const MOST: usize = 4;
+
+/// An arm shorter than this, in edges, may go without functions of the corner where those would jump beyond its tip.
+const SHORT: f64 = 2.0;
+
+/// One shorter than this, in edges, has no multipliers of its own there: the displacement could not balance them.
+const LONG: f64 = 0.3;
 
 /// Arms on one line, by the cosine of their angle.
 const STRAIGHT: f64 = 1.0 - 1e-9;
@@ -69,6 +74,12 @@ impl Search<'_> {
             let sizes = nodes.iter();
             let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
             let size = sizes.fold(f64::INFINITY, f64::min);
+            let long = ends.iter().filter(|&&(arm, end)| {
+                let range = self.range(arm);
+                let parted = range[end] == self.arms[arm].range[end];
+                parted && range[1] - range[0] >= LONG * size
+            });
+            let long = long.map(|end| end.0).collect();
             let Some((arms, others)) = self.corner_arms((&x, ends), &nodes, size) else {
                 continue;
             };
@@ -81,8 +92,6 @@ impl Search<'_> {
                 tips.functions.extend(branches(node, first + arm, count));
             }
             tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
-            let mut long: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
-            long.retain(|&arm| self.range(arm)[1] - self.range(arm)[0] >= LONG * size);
             let corner = Corner { x, long, size };
             tips.corners.push(corner);
             arms.into_iter()
@@ -131,7 +140,7 @@ impl Search<'_> {
         for (arm, end) in ends {
             match self.ending(arm, end) {
                 Some(own) if !self.is_blocked(&own, nodes, &BTreeSet::new()) => arms.push(own),
-                _ if self.carries(arm) && self.inside(arm) <= LONG * size => others.push(arm),
+                _ if self.carries(arm) && self.inside(arm) <= SHORT * size => others.push(arm),
                 _ => return None,
             }
         }
@@ -144,7 +153,7 @@ impl Search<'_> {
                 return None;
             }
         }
-        (1..=3).contains(&arms.len()).then_some((arms, others))
+        (1..=MOST).contains(&arms.len()).then_some((arms, others))
     }
 
     /// Whether an arm is straight and asks for branch functions.
@@ -188,7 +197,8 @@ impl Search<'_> {
             let alone = alone && !self.any_blocked(arms, &nodes);
             alone.then(|| Zone::plain(nodes))
         };
-        let around = |_| plain(self.near.cells_around(&nodes));
+        // On a ring with four sets of them what is new in some is lost in rounding.
+        let around = |_| (arms.len() < MOST).then(|| plain(self.near.cells_around(&nodes)))?;
         let zone = radius.and_then(ramped).or_else(|| radius.and_then(around));
         zone.or_else(|| plain(cells.iter().copied().collect()))
     }
@@ -245,7 +255,7 @@ impl Search<'_> {
             let cells = self.near.cells_around(&BTreeSet::from([node]));
             cells.into_iter().any(|cell| {
                 let map = self.mesh.map(cell);
-                let slack = 1e-9 * map.diagonal();
+                let slack = 1e-12 * map.diagonal();
                 let mut path = self.arms[frame.crack].path.windows(2);
                 path.any(|w| meets(&map, &w[0].x, &w[1].x, slack))
             })

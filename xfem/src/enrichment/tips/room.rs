@@ -44,7 +44,8 @@ impl Search<'_> {
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
-            let slack = 1e-9 * map.diagonal();
+            // Finer than cracks are moved off facets.
+            let slack = 1e-12 * map.diagonal();
             let enters = |outline: &[Point]| {
                 let mut line = line.iter();
                 line.any(|[p, q]| polygon::meets(outline, p, q, slack))
@@ -128,7 +129,12 @@ impl Search<'_> {
 
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
     /// of a narrow ligament feels its end, too.
-    pub(super) fn beyond(&self, tip: &TracedTip, zone: &Zone) -> Option<Zone> {
+    pub(super) fn beyond(
+        &self,
+        tip: &TracedTip,
+        end: &(TipFrame, f64),
+        zone: &Zone,
+    ) -> Option<Zone> {
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
             let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
@@ -136,11 +142,13 @@ impl Search<'_> {
         });
         let (beyond, cut_off): (BTreeSet<Place>, BTreeSet<Place>) =
             places.partition(|place| zone.cut_off.contains(place));
-        let nodes = nodes
+        let nodes: BTreeSet<u32> = nodes
             .into_iter()
             .filter(|&node| self.lives(node, &cut_off))
             .collect();
-        (!beyond.is_empty()).then(|| Zone {
+        // Behind the end of the crack they would jump where nothing does.
+        let lives = !beyond.is_empty() && !self.is_blocked(end, &nodes, &cut_off);
+        lives.then(|| Zone {
             cut_off,
             ..Zone::plain(nodes)
         })
