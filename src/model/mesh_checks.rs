@@ -53,7 +53,8 @@ impl MeshChecks {
     /// What is wrong with the mesh, if anything is.
     pub fn reason(&self) -> Option<String> {
         // NaN passes no comparison.
-        if !(self.uniform <= UNIFORM.max(self.rounding)) {
+        let exact = self.uniform <= UNIFORM.max(self.rounding);
+        if !exact {
             let [x, y, z] = self.at;
             let off = self.uniform;
             return Some(format!(
