@@ -26,7 +26,7 @@ pub const UNIFORM: f64 = 1e-9;
 
 /// A body one of whose cracks is farther than this from where it was put, in shortest edges, is suspect: tractions are off by as much
 /// over its length in edges.
-const MOVED: f64 = 1e-8;
+const MOVED: f64 = 5e-8;
 
 /// Steps from coordinates to N_k on a crack, each of which rounds: its place, where it crosses an edge, ξ, N.
 const STEPS: f64 = 4.0;

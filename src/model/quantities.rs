@@ -79,8 +79,10 @@ pub struct Snapshot {
     pub external: Vec<f64>,
     /// Open, stick or slip of every point.
     pub status: Vec<PointStatus>,
-    /// ½ u·K u: that of the strain, without the initial stress [J, in 2D J/m].
+    /// ½ u·K u: that of the strain, without the initial stress [J, in 2D J/m]; 0 if it is rounding.
     pub strain_energy: f64,
+    /// ε ½ Σ K_ii u_i²: what rounding makes of it where the body moves without strain.
+    pub rounding: f64,
     /// Work since time 0.
     pub work: Work,
     /// Deepest overlap of the faces of every crack of the case, between its contact points too [m].
@@ -101,6 +103,7 @@ impl Snapshot {
             external: vec![0.0; n],
             status: vec![PointStatus::Open; body.points.len()],
             strain_energy: 0.0,
+            rounding: 0.0,
             work: Work::none(body.integrated.len()),
             overlap: vec![0.0; body.integrated.len()],
         }
@@ -126,7 +129,10 @@ impl Snapshot {
         let u = loading.all_unknowns(increment, &state.u);
         let jump = body.jump(&u);
         let internal = body.stiffness.mul(&u);
-        let mut force = internal.clone();
+        let energy = 0.5 * u.iter().zip(&internal).map(|(u, f)| u * f).sum::<f64>();
+        let diagonal = body.stiffness.diagonal().into_iter().zip(&u);
+        let rounding = 0.5 * f64::EPSILON * diagonal.map(|(k, u)| k * u * u).sum::<f64>();
+        let mut force = internal;
         let contact = body.jump_rows.iter().zip(&state.p);
         let further = body.traction_rows.iter().zip(consistency.unwrap_or(&[]));
         for (row, p) in contact.chain(further) {
@@ -143,7 +149,8 @@ impl Snapshot {
             consistency: consistency.unwrap_or_default().to_vec(),
             force,
             status,
-            strain_energy: 0.5 * u.iter().zip(&internal).map(|(u, f)| u * f).sum::<f64>(),
+            strain_energy: if energy > rounding { energy } else { 0.0 },
+            rounding,
             work: Work::none(0),
             u,
         };

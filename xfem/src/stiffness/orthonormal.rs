@@ -14,8 +14,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::{Function, FunctionKind};
+use crate::enrichment::basis::FunctionKind;
 
 use super::elasticity::{CellMatrix, CellView};
 
@@ -25,6 +27,13 @@ const DROPPED: f64 = 1e-8;
 
 /// The same for functions of different nodes: the rules of cells hold what ties them to 1e-8.
 const TIED: f64 = 1e-6;
+
+/// Nodes of a zone with a ramp in which other tips have functions, too, that is searched for ties: larger ones reach far beyond the
+/// cells of a tip.
+const SMALL: usize = 64;
+
+/// A combination of functions of unit length with less than this square vanishes: the pivots before it do not tell.
+const VANISHING: f64 = 1e-8;
 
 /// Piece functions with less than this part of the energy of their node's standard function live on slivers. On one around a
 /// point, a junction next to a grid line say, those of all nodes of a cell are alike …
@@ -124,32 +133,35 @@ impl SolverBasis {
                 form: [0, 1, 2].map(|a| place(a).unwrap_or(0)),
             });
         }
-        let plain = |tip: &usize| enrichment.radii[*tip] == 0.0;
-        for tip in (0..enrichment.tips.len()).filter(plain) {
-            basis.drop_tied(dim, enrichment, tip, users, &matrix);
+        let mut nodes = vec![BTreeSet::new(); enrichment.tips.len()];
+        let mut tips = BTreeMap::<u32, BTreeSet<u32>>::new();
+        for function in &enrichment.functions {
+            if let FunctionKind::Branch { tip, .. } = function.kind {
+                nodes[tip as usize].insert(function.node as usize);
+                tips.entry(function.node).or_default().insert(tip);
+            }
+        }
+        for (tip, own) in nodes.into_iter().enumerate() {
+            let mixed = || own.iter().any(|&node| tips[&(node as u32)].len() > 1);
+            if enrichment.radii[tip] == 0.0 || own.len() <= SMALL && mixed() {
+                basis.drop_tied(dim, enrichment, own, users, &matrix);
+            }
         }
         basis
     }
 
-    /// Drops branch functions of a tip or corner that are in the span of all functions at its nodes before them: on the little
-    /// that cracks leave of a zone without ramp, those of different nodes depend on each other.
+    /// Drops branch functions at the nodes of a tip or corner that are in the span of all functions there: on the little that cracks
+    /// leave of a zone without ramp, and far from a short crack, those of different nodes depend on each other.
     fn drop_tied<'a>(
         &mut self,
         dim: usize,
         enrichment: &Enrichment,
-        tip: usize,
+        nodes: BTreeSet<usize>,
         users: &[Vec<u32>],
         matrix: &impl Fn(usize) -> CellView<'a>,
     ) {
         let is_branch =
             |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
-        let of_tip = |f: &&Function| matches!(f.kind, FunctionKind::Branch { tip: t, .. } if t as usize == tip);
-        let nodes: BTreeSet<usize> = enrichment
-            .functions
-            .iter()
-            .filter(of_tip)
-            .map(|f| f.node as usize)
-            .collect();
         let enriched = nodes.iter().flat_map(|&node| enrichment.enriched_of(node));
         let mut own: Vec<usize> = nodes.iter().copied().chain(enriched).collect();
         own.sort_by_key(|&f| is_branch(f));
@@ -180,8 +192,8 @@ impl SolverBasis {
                 }
             }
         }
-        for k in tied(&mut gram, TIED) {
-            if let (true, Some(Some(block))) = (is_branch(own[k]), self.block_of.get(own[k])) {
+        for k in dependent(&gram, |k| is_branch(own[k])) {
+            if let Some(Some(block)) = self.block_of.get(own[k]) {
                 let block = &mut self.blocks[*block as usize];
                 let row = own[k] - block.first;
                 let entries = row * block.count..(row + 1) * block.count;
@@ -392,6 +404,41 @@ fn tied(gram: &mut [f64], least: f64) -> Vec<usize> {
         }
     }
     found
+}
+
+/// Functions that may go until none left is in the span of those before it, and none of their combinations of unit length
+/// nearly vanishes: of each the one with the largest part.
+fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usize> {
+    /// Inverse iterations: one less would do where the smallest eigenvalue stands alone.
+    const ROUNDS: usize = 4;
+    let n = gram.len().isqrt();
+    let mut found = tied(&mut gram.to_vec(), TIED);
+    let mut kept: Vec<usize> = (0..n).filter(|k| !found.contains(k)).collect();
+    found.retain(|&k| may_go(k));
+    loop {
+        let scale = |k: usize| gram[k * n + k].sqrt();
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (kept[i], kept[j]);
+            gram[i * n + j] / (scale(i) * scale(j))
+        };
+        let Some(factor) = DMatrix::from_fn(kept.len(), kept.len(), entry).cholesky() else {
+            return found;
+        };
+        // No pattern of the mesh is orthogonal to it.
+        let mut x = DVector::from_fn(kept.len(), |i, _| (1.0 + i as f64).sin());
+        let mut smallest = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let before = x.norm();
+            factor.solve_mut(&mut x);
+            smallest = before / x.norm();
+            x.normalize_mut();
+        }
+        let candidates = (0..kept.len()).filter(|&i| may_go(kept[i]));
+        match candidates.max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())) {
+            Some(i) if smallest < VANISHING => found.push(kept.remove(i)),
+            _ => return found,
+        }
+    }
 }
 
 /// Piece functions on slivers that are alike in some cell.

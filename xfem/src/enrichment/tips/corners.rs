@@ -197,8 +197,7 @@ impl Search<'_> {
             let alone = alone && !self.any_blocked(arms, &nodes);
             alone.then(|| Zone::plain(nodes))
         };
-        // On a ring with four sets of them what is new in some is lost in rounding.
-        let around = |_| (arms.len() < MOST).then(|| plain(self.near.cells_around(&nodes)))?;
+        let around = |_| plain(self.near.cells_around(&nodes));
         let zone = radius.and_then(ramped).or_else(|| radius.and_then(around));
         zone.or_else(|| plain(cells.iter().copied().collect()))
     }
