@@ -12,35 +12,23 @@
 //! solver sees is transformed. A is divided by that of a standard function, rounded to a power of four: all unknowns of the
 //! solver are displacements then, and residuals compare whatever the units.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod ties;
 
-use nalgebra::{DMatrix, DVector};
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
 
 use super::elasticity::{CellMatrix, CellView};
+use ties::{alike, dependent, gram};
 
 /// A function is dropped if the square of its part outside the span of the others is smaller than this part of its own
 /// square: K' carries the rounding of K divided by it.
 const DROPPED: f64 = 1e-8;
 
-/// The same for functions of different nodes: the rules of cells hold what ties them to 1e-8.
-const TIED: f64 = 1e-6;
-
 /// Nodes of a zone with a ramp in which other tips have functions, too, that is searched for ties: larger ones reach far beyond the
 /// cells of a tip.
 const SMALL: usize = 64;
-
-/// A combination of functions of unit length with less than this square vanishes: the pivots before it do not tell.
-const VANISHING: f64 = 1e-8;
-
-/// Piece functions with less than this part of the energy of their node's standard function live on slivers. On one around a
-/// point, a junction next to a grid line say, those of all nodes of a cell are alike …
-const SLIVER: f64 = 1e-6;
-
-/// … and dropped, whatever is held of their nodes, if the square of what is their own is smaller than this part of it.
-const ALIKE: f64 = 1e-12;
 
 /// The functions of one node.
 #[derive(Debug, Clone)]
@@ -141,9 +129,12 @@ impl SolverBasis {
                 tips.entry(function.node).or_default().insert(tip);
             }
         }
+        let mut searched = BTreeSet::new();
         for (tip, own) in nodes.into_iter().enumerate() {
             let mixed = || own.iter().any(|&node| tips[&(node as u32)].len() > 1);
-            if enrichment.radii[tip] == 0.0 || own.len() <= SMALL && mixed() {
+            let asks = enrichment.radii[tip] == 0.0 || own.len() <= SMALL && mixed();
+            // The arms of a corner share their nodes.
+            if asks && searched.insert(own.clone()) {
                 basis.drop_tied(dim, enrichment, own, users, &matrix);
             }
         }
@@ -353,122 +344,6 @@ fn surplus(
             let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
             !broken && last && function.node == node
         }));
-    }
-    found
-}
-
-/// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
-fn gram<'a>(
-    enrichment: &Enrichment,
-    dim: usize,
-    own: &[usize],
-    users: &[Vec<u32>],
-    matrix: &impl Fn(usize) -> CellView<'a>,
-) -> Vec<f64> {
-    let count = own.len();
-    let mut gram = vec![0.0; count * count];
-    let cells: BTreeSet<u32> = own.iter().flat_map(|&f| users[f].iter().copied()).collect();
-    let number: BTreeMap<usize, usize> = own.iter().copied().zip(0..).collect();
-    for cell in cells.into_iter().map(|c| c as usize) {
-        let functions = enrichment.cell(cell).iter().enumerate();
-        let places: Vec<(usize, usize)> = functions
-            .filter_map(|(p, &f)| Some((*number.get(&(f as usize))?, p)))
-            .collect();
-        let k = matrix(cell);
-        for &(i, p) in &places {
-            for &(j, q) in &places {
-                let diagonal = (0..dim).map(|a| k[(p * dim + a, q * dim + a)]);
-                gram[i * count + j] += diagonal.sum::<f64>();
-            }
-        }
-    }
-    gram
-}
-
-/// Functions that are in the span of those before them but for a part of their square; the Gram matrix is eliminated in place.
-fn tied(gram: &mut [f64], least: f64) -> Vec<usize> {
-    let n = gram.len().isqrt();
-    let squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
-    let mut found = Vec::new();
-    for k in 0..n {
-        let pivot = gram[k * n + k];
-        if pivot <= least * squares[k] {
-            found.push(k);
-            continue;
-        }
-        for i in k + 1..n {
-            let factor = gram[i * n + k] / pivot;
-            if factor != 0.0 {
-                (k + 1..n).for_each(|j| gram[i * n + j] -= factor * gram[k * n + j]);
-            }
-        }
-    }
-    found
-}
-
-/// Functions that may go until none left is in the span of those before it, and none of their combinations of unit length
-/// nearly vanishes: of each the one with the largest part.
-fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usize> {
-    /// Inverse iterations: one less would do where the smallest eigenvalue stands alone.
-    const ROUNDS: usize = 4;
-    let n = gram.len().isqrt();
-    let mut found = tied(&mut gram.to_vec(), TIED);
-    let mut kept: Vec<usize> = (0..n).filter(|k| !found.contains(k)).collect();
-    found.retain(|&k| may_go(k));
-    loop {
-        let scale = |k: usize| gram[k * n + k].sqrt();
-        let entry = |i: usize, j: usize| {
-            let (i, j) = (kept[i], kept[j]);
-            gram[i * n + j] / (scale(i) * scale(j))
-        };
-        let Some(factor) = DMatrix::from_fn(kept.len(), kept.len(), entry).cholesky() else {
-            return found;
-        };
-        // No pattern of the mesh is orthogonal to it.
-        let mut x = DVector::from_fn(kept.len(), |i, _| (1.0 + i as f64).sin());
-        let mut smallest = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let before = x.norm();
-            factor.solve_mut(&mut x);
-            smallest = before / x.norm();
-            x.normalize_mut();
-        }
-        let candidates = (0..kept.len()).filter(|&i| may_go(kept[i]));
-        match candidates.max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())) {
-            Some(i) if smallest < VANISHING => found.push(kept.remove(i)),
-            _ => return found,
-        }
-    }
-}
-
-/// Piece functions on slivers that are alike in some cell.
-fn alike<'a>(
-    dim: usize,
-    enrichment: &Enrichment,
-    users: &[Vec<u32>],
-    matrix: &impl Fn(usize) -> CellView<'a>,
-) -> BTreeSet<usize> {
-    let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
-    let mut slivers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for node in 0..enrichment.nodes() {
-        let own = enrichment.enriched_of(node);
-        let pieces: Vec<usize> = own
-            .filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
-            .collect();
-        if pieces.is_empty() {
-            continue;
-        }
-        let least = SLIVER * square(node);
-        for f in pieces.into_iter().filter(|&f| square(f) <= least) {
-            users[f]
-                .iter()
-                .for_each(|&cell| slivers.entry(cell).or_default().push(f));
-        }
-    }
-    let mut found = BTreeSet::new();
-    for own in slivers.into_values().filter(|own| own.len() > 1) {
-        let mut gram = gram(enrichment, dim, &own, users, matrix);
-        found.extend(tied(&mut gram, ALIKE).into_iter().map(|k| own[k]));
     }
     found
 }

@@ -1,0 +1,139 @@
+//! Functions of several nodes that depend on each other, from their Gram matrix.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::enrichment::Enrichment;
+use crate::enrichment::basis::FunctionKind;
+use crate::stiffness::elasticity::CellView;
+
+/// A function is dropped if the square of its part outside the span of those before it, of other nodes, is smaller than this part of
+/// its own: the rules of cells hold what ties them to 1e-8.
+const TIED: f64 = 1e-6;
+
+/// A combination of functions of unit length with less than this square vanishes: the pivots before it do not tell.
+const VANISHING: f64 = 1e-8;
+
+/// Piece functions with less than this part of the energy of their node's standard function live on slivers. On one around a
+/// point, a junction next to a grid line say, those of all nodes of a cell are alike …
+const SLIVER: f64 = 1e-6;
+
+/// … and dropped, whatever is held of their nodes, if the square of what is their own is smaller than this part of it.
+const ALIKE: f64 = 1e-12;
+
+/// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
+pub(super) fn gram<'a>(
+    enrichment: &Enrichment,
+    dim: usize,
+    own: &[usize],
+    users: &[Vec<u32>],
+    matrix: &impl Fn(usize) -> CellView<'a>,
+) -> Vec<f64> {
+    let count = own.len();
+    let mut gram = vec![0.0; count * count];
+    let cells: BTreeSet<u32> = own.iter().flat_map(|&f| users[f].iter().copied()).collect();
+    let number: BTreeMap<usize, usize> = own.iter().copied().zip(0..).collect();
+    for cell in cells.into_iter().map(|c| c as usize) {
+        let functions = enrichment.cell(cell).iter().enumerate();
+        let places: Vec<(usize, usize)> = functions
+            .filter_map(|(p, &f)| Some((*number.get(&(f as usize))?, p)))
+            .collect();
+        let k = matrix(cell);
+        for &(i, p) in &places {
+            for &(j, q) in &places {
+                let diagonal = (0..dim).map(|a| k[(p * dim + a, q * dim + a)]);
+                gram[i * count + j] += diagonal.sum::<f64>();
+            }
+        }
+    }
+    gram
+}
+
+/// Functions that are in the span of those before them but for a part of their square; the Gram matrix is eliminated in place.
+fn tied(gram: &mut [f64], least: f64) -> Vec<usize> {
+    let n = gram.len().isqrt();
+    let squares: Vec<f64> = (0..n).map(|i| gram[i * n + i]).collect();
+    let mut found = Vec::new();
+    for k in 0..n {
+        let pivot = gram[k * n + k];
+        if pivot <= least * squares[k] {
+            found.push(k);
+            continue;
+        }
+        for i in k + 1..n {
+            let factor = gram[i * n + k] / pivot;
+            if factor != 0.0 {
+                (k + 1..n).for_each(|j| gram[i * n + j] -= factor * gram[k * n + j]);
+            }
+        }
+    }
+    found
+}
+
+/// Functions that may go until none left is in the span of those before it, and none of their combinations of unit length
+/// nearly vanishes: of each the one with the largest part.
+pub(super) fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usize> {
+    /// Inverse iterations: one less would do where the smallest eigenvalue stands alone.
+    const ROUNDS: usize = 4;
+    let n = gram.len().isqrt();
+    let mut found = tied(&mut gram.to_vec(), TIED);
+    let mut kept: Vec<usize> = (0..n).filter(|k| !found.contains(k)).collect();
+    found.retain(|&k| may_go(k));
+    loop {
+        let scale = |k: usize| gram[k * n + k].sqrt();
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (kept[i], kept[j]);
+            gram[i * n + j] / (scale(i) * scale(j))
+        };
+        let Some(factor) = DMatrix::from_fn(kept.len(), kept.len(), entry).cholesky() else {
+            return found;
+        };
+        // No pattern of the mesh is orthogonal to it.
+        let mut x = DVector::from_fn(kept.len(), |i, _| (1.0 + i as f64).sin());
+        let mut smallest = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let before = x.norm();
+            factor.solve_mut(&mut x);
+            smallest = before / x.norm();
+            x.normalize_mut();
+        }
+        let candidates = (0..kept.len()).filter(|&i| may_go(kept[i]));
+        match candidates.max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())) {
+            Some(i) if smallest < VANISHING => found.push(kept.remove(i)),
+            _ => return found,
+        }
+    }
+}
+
+/// Piece functions on slivers that are alike in some cell.
+pub(super) fn alike<'a>(
+    dim: usize,
+    enrichment: &Enrichment,
+    users: &[Vec<u32>],
+    matrix: &impl Fn(usize) -> CellView<'a>,
+) -> BTreeSet<usize> {
+    let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
+    let mut slivers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for node in 0..enrichment.nodes() {
+        let own = enrichment.enriched_of(node);
+        let pieces: Vec<usize> = own
+            .filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
+            .collect();
+        if pieces.is_empty() {
+            continue;
+        }
+        let least = SLIVER * square(node);
+        for f in pieces.into_iter().filter(|&f| square(f) <= least) {
+            users[f]
+                .iter()
+                .for_each(|&cell| slivers.entry(cell).or_default().push(f));
+        }
+    }
+    let mut found = BTreeSet::new();
+    for own in slivers.into_values().filter(|own| own.len() > 1) {
+        let mut gram = gram(enrichment, dim, &own, users, matrix);
+        found.extend(tied(&mut gram, ALIKE).into_iter().map(|k| own[k]));
+    }
+    found
+}
