@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use stickslip_xfem::cut::arms::Joined;
+use stickslip_xfem::enrichment::Zone;
 use stickslip_xfem::geometry::{norm, sub};
 
 use super::error::CliError;
@@ -47,7 +48,7 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
                 body.space,
                 body.checks.uniform,
                 predicted_gb(case.model.dim(), body.mesh.cell_count() as f64),
-                radii(&body.enrichment.radii)
+                radii(&body.enrichment.zones)
             )];
             lines.extend(body.joined.iter().map(|joined| joined_line(&body, joined)));
             for (index, per_crack) in friction_values(&case).into_iter().enumerate() {
@@ -68,8 +69,8 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
 }
 
 /// Radii of the branch functions, from the least to the largest; empty without any.
-fn radii(all: &[f64]) -> String {
-    let ramps = || all.iter().copied().filter(|r| *r > 0.0);
+fn radii(all: &[Zone]) -> String {
+    let ramps = || all.iter().map(|zone| zone.radius).filter(|r| *r > 0.0);
     let [least, largest] = [
         ramps().fold(f64::INFINITY, f64::min),
         ramps().fold(0.0, f64::max),

@@ -282,8 +282,9 @@ fn a_front_takes_a_quarter_of_its_room_by_default() {
     let crack = disc("[0, 0, 1]", 0.3, "\"auto\"");
     for crack in [crack.replace("tip = \"auto\"", ""), crack] {
         let body = try_body(&held(&crack, [8, 8, 4], SHEAR)).unwrap();
-        let radii = &body.enrichment.radii;
-        assert_eq!(radii.len(), 1);
-        assert_below((radii[0] - 0.25 * 0.479).abs(), 1e-9, radii[0]);
+        let zones = &body.enrichment.zones;
+        assert_eq!(zones.len(), 1);
+        let radius = zones[0].radius;
+        assert_below((radius - 0.25 * 0.479).abs(), 1e-9, radius);
     }
 }

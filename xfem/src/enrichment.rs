@@ -31,6 +31,7 @@ pub use self::error::EnrichmentError;
 use self::supports::{Pieces, Place, support_pieces};
 use self::tips::Tips;
 use self::tips::corners::Corner;
+pub use self::zone::Zone;
 
 /// All functions of the body and of every cell.
 #[derive(Debug, Clone)]
@@ -41,20 +42,14 @@ pub struct Enrichment {
     pub shifts: Vec<f64>,
     /// Tips and fronts inside the body that carry branch functions.
     pub tips: Vec<TipFrame>,
+    /// Nodes around each of them.
+    pub zones: Vec<Zone>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
-    /// Straight tips with a ramp, and the node where g₃ and g₄ are superfluous unless a function of the tip is prescribed.
-    pub surplus: Vec<(u32, u32)>,
     /// 2D: where arms with branch functions bend or meet.
     pub corners: Vec<Corner>,
     /// Where branch functions are singular in 2D, and the same by place.
     singular: (Vec<Point>, Boxes),
-    /// Nodes of the ramp of every tip's branch functions; empty: they have none.
-    cores: Vec<BTreeSet<u32>>,
-    /// Regions where the branch functions of every tip vanish, beyond other cracks.
-    cut_off: Vec<BTreeSet<Place>>,
-    /// Radius of every ramp, within which all nodes carry the functions of the tip [m]; 0: there is none.
-    pub radii: Vec<f64>,
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
     /// 2D: where arms cross mesh edges (lower node first) [m].
@@ -158,12 +153,9 @@ impl Enrichment {
             shifts,
             singular: (singular, at_place),
             tips: tips.frames,
+            zones: tips.zones,
             tip_cells: tips.cells,
-            surplus: tips.surplus,
             corners: tips.corners,
-            cores: tips.cores,
-            cut_off: tips.cut_off,
-            radii: tips.radii,
             partitions: tips.partitions,
             endings: tips.endings,
             on_edges: trace.on_edges,
@@ -220,7 +212,7 @@ impl Enrichment {
                                 part.and_then(|p| p.sides.iter().find(of_crack))
                                     .map(|s| s.1)
                             };
-                            let cut_off = &self.cut_off[tip as usize];
+                            let cut_off = &self.zones[tip as usize].cut_off;
                             let step = |(region, part): (usize, &Option<&Part>)| match cut_off
                                 .contains(&(cell, region))
                             {
@@ -329,7 +321,7 @@ impl Enrichment {
 
     /// Local nodes of a cell in the ramp of a tip, one bit each.
     pub fn ramp(&self, tip: usize, nodes: &[u32]) -> u8 {
-        let core = &self.cores[tip];
+        let core = &self.zones[tip].core;
         if core.is_empty() {
             return u8::MAX;
         }

@@ -2,3 +2,6 @@
 
 pub mod mass;
 pub mod sampling;
+
+#[cfg(test)]
+mod tests;

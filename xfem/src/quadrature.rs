@@ -1,7 +1,7 @@
 //! Quadrature rules: Gauss on the line and on cells, triangles and tetrahedra in space, the crack-tip fan.
 
 #[cfg(test)]
-mod check;
+pub(crate) mod check;
 pub mod front;
 pub mod front_facet;
 pub mod graded;

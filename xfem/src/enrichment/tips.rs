@@ -27,7 +27,6 @@ use crate::mesh::{Lengths, Mesh};
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
-use super::supports::Place;
 use super::zone::{Zone, front_room};
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
@@ -52,16 +51,10 @@ pub struct Tips {
     pub frames: Vec<TipFrame>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub cells: Vec<(usize, usize)>,
-    /// Nodes of the ramp of every tip's branch functions; empty: they have none.
-    pub cores: Vec<BTreeSet<u32>>,
-    /// Regions where the functions of every tip vanish, beyond other cracks.
-    pub cut_off: Vec<BTreeSet<Place>>,
-    /// Radius of every ramp [m]; 0: there is none.
-    pub radii: Vec<f64>,
+    /// Nodes around each of them.
+    pub zones: Vec<Zone>,
     /// Branch functions.
     pub functions: BTreeSet<Function>,
-    /// Tips and nodes where a ramp makes g₃ and g₄ superfluous.
-    pub surplus: Vec<(u32, u32)>,
     /// Corners with branch functions.
     pub corners: Vec<Corner>,
 }
@@ -218,18 +211,8 @@ impl Tips {
         let nodes = zone.nodes.iter();
         self.functions
             .extend(nodes.flat_map(|&node| branches(node, tip, 4)));
-        self.add_frame(frame, &zone);
-    }
-
-    /// Adds a tip whose functions are given.
-    fn add_frame(&mut self, frame: TipFrame, zone: &Zone) {
-        let tip = self.frames.len() as u32;
-        self.surplus
-            .extend(zone.surplus.iter().map(|&node| (tip, node)));
-        self.cores.push(zone.core.clone());
-        self.cut_off.push(zone.cut_off.clone());
-        self.radii.push(zone.radius);
         self.frames.push(frame);
+        self.zones.push(zone);
     }
 }
 

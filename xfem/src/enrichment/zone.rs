@@ -16,8 +16,8 @@ use crate::mesh::neighbours::Neighbours;
 use super::supports::Place;
 
 /// Nodes around a tip.
-#[derive(Default)]
-pub(super) struct Zone {
+#[derive(Debug, Clone, Default)]
+pub struct Zone {
     /// Those that carry its branch functions.
     pub nodes: BTreeSet<u32>,
     /// Those of the ramp; empty: there is none.
@@ -32,7 +32,7 @@ pub(super) struct Zone {
 
 impl Zone {
     /// Without a ramp.
-    pub fn plain(nodes: BTreeSet<u32>) -> Self {
+    pub(super) fn plain(nodes: BTreeSet<u32>) -> Self {
         Zone {
             nodes,
             ..Zone::default()
@@ -41,7 +41,7 @@ impl Zone {
 
     /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and
     /// by all nodes; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
-    pub fn widest(
+    pub(super) fn widest(
         mesh: &Mesh,
         near: &Neighbours<'_>,
         frame: &TipFrame,

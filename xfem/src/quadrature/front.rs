@@ -193,7 +193,6 @@ mod tests {
     use crate::geometry::ellipse::Ellipse;
     use crate::mesh::cell::CellKind;
     use crate::quadrature::graded::graded_triangles;
-    use crate::quadrature::tip_triangle;
 
     fn cell(shear: f64) -> CellMap {
         CellMap::new(CellKind::Hex8, |i| {
@@ -255,29 +254,12 @@ mod tests {
                 let d = sub(x, a);
                 norm(&add_scaled(&d, -dot(&d, z), z))
             };
-            let inside = pierce.filter(|t| {
-                let areas: Vec<f64> = (0..part.len())
-                    .map(|i| {
-                        dot(
-                            &normal,
-                            &cross(&sub(&part[i], t), &sub(&part[(i + 1) % part.len()], t)),
-                        )
-                    })
-                    .collect();
-                areas
-                    .iter()
-                    .all(|x| x * areas.iter().sum::<f64>() >= -1e-12 * size.powi(4))
-            });
-            let points: Vec<WeightedPoint> = match inside {
-                Some(t) => (0..part.len())
-                    // Edges in eight: the angular error then vanishes.
-                    .flat_map(|i| (0..8).map(move |j| (i, j)))
-                    .flat_map(|(i, j)| {
-                        let edge = sub(&part[(i + 1) % part.len()], &part[i]);
-                        let at = |j: usize| add_scaled(&part[i], j as f64 / 8.0, &edge);
-                        tip_triangle(&t, &at(j), &at(j + 1), false)
-                    })
-                    .collect(),
+            let rule = FanRule {
+                radial: 10,
+                angular: 40,
+            };
+            let points = match pierce {
+                Some(t) => slice_points(&part, &normal, Some(t), size, rule),
                 None => graded_triangles(&fan(&part), distance, 9, 30),
             };
             for p in points {

@@ -121,21 +121,16 @@ impl SolverBasis {
                 form: [0, 1, 2].map(|a| place(a).unwrap_or(0)),
             });
         }
-        let mut nodes = vec![BTreeSet::new(); enrichment.tips.len()];
-        let mut tips = BTreeMap::<u32, BTreeSet<u32>>::new();
-        for function in &enrichment.functions {
-            if let FunctionKind::Branch { tip, .. } = function.kind {
-                nodes[tip as usize].insert(function.node as usize);
-                tips.entry(function.node).or_default().insert(tip);
-            }
-        }
+        let mut zones_of = BTreeMap::<u32, usize>::new();
+        let nodes = enrichment.zones.iter().flat_map(|zone| &zone.nodes);
+        nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
         let mut searched = BTreeSet::new();
-        for (tip, own) in nodes.into_iter().enumerate() {
-            let mixed = || own.iter().any(|&node| tips[&(node as u32)].len() > 1);
-            let asks = enrichment.radii[tip] == 0.0 || own.len() <= SMALL && mixed();
+        for zone in &enrichment.zones {
+            let mixed = || zone.nodes.iter().any(|node| zones_of[node] > 1);
+            let asks = zone.radius == 0.0 || zone.nodes.len() <= SMALL && mixed();
             // The arms of a corner share their nodes.
-            if asks && searched.insert(own.clone()) {
-                basis.drop_tied(dim, enrichment, own, users, &matrix);
+            if asks && searched.insert(&zone.nodes) {
+                basis.drop_tied(dim, enrichment, &zone.nodes, users, &matrix);
             }
         }
         basis
@@ -147,14 +142,15 @@ impl SolverBasis {
         &mut self,
         dim: usize,
         enrichment: &Enrichment,
-        nodes: BTreeSet<usize>,
+        nodes: &BTreeSet<u32>,
         users: &[Vec<u32>],
         matrix: &impl Fn(usize) -> CellView<'a>,
     ) {
         let is_branch =
             |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
-        let enriched = nodes.iter().flat_map(|&node| enrichment.enriched_of(node));
-        let mut own: Vec<usize> = nodes.iter().copied().chain(enriched).collect();
+        let nodes = nodes.iter().map(|&node| node as usize);
+        let enriched = nodes.clone().flat_map(|node| enrichment.enriched_of(node));
+        let mut own: Vec<usize> = nodes.chain(enriched).collect();
         own.sort_by_key(|&f| is_branch(f));
         let mut gram = gram(enrichment, dim, &own, users, matrix);
         let n = own.len();
@@ -331,19 +327,17 @@ fn surplus(
     let mut found = BTreeSet::new();
     let mut of_tips = vec![Vec::new(); enrichment.tips.len()];
     for (f, function) in enrichment.functions.iter().enumerate() {
-        if let FunctionKind::Branch { tip, .. } = function.kind {
-            of_tips[tip as usize].push(f);
+        if let FunctionKind::Branch { tip, order } = function.kind {
+            of_tips[tip as usize].push((f, function.node, order));
         }
     }
-    for &(tip, node) in &enrichment.surplus {
-        let functions = &of_tips[tip as usize];
+    for (zone, functions) in enrichment.zones.iter().zip(of_tips) {
         // A prescribed component breaks the relations of that component alone.
-        let broken = (0..dim).all(|a| functions.iter().any(|&f| held(f, a)));
-        found.extend(functions.iter().copied().filter(|&f| {
-            let function = enrichment.functions[f];
-            let last = matches!(function.kind, FunctionKind::Branch { order: 2..=3, .. });
-            !broken && last && function.node == node
-        }));
+        let broken = (0..dim).all(|a| functions.iter().any(|&(f, ..)| held(f, a)));
+        let gone = functions
+            .into_iter()
+            .filter(|(_, node, order)| !broken && *order >= 2 && zone.surplus.contains(node));
+        found.extend(gone.map(|own| own.0));
     }
     found
 }

@@ -94,8 +94,8 @@ impl Search<'_> {
             tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
             let corner = Corner { x, long, size };
             tips.corners.push(corner);
-            arms.into_iter()
-                .for_each(|arm| tips.add_frame(arm.0, &zone));
+            tips.zones.resize(first + arms.len(), zone);
+            tips.frames.extend(arms.into_iter().map(|arm| arm.0));
         }
     }
 
