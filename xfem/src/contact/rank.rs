@@ -30,6 +30,10 @@ pub const UNRESISTED: f64 = 1e-3;
 /// Pivots and eigenvalues below this are rounding. Between two cracks that nearly touch both fall with their distance.
 const SINGULAR: f64 = 1e-10;
 
+/// A row with less than this of the largest square in S moves no displacement that a tolerance tells: on a sliver only functions
+/// jump that nearly vanish there.
+const WEAK: f64 = 1e-9;
+
 /// Areas below this, in facets of the smallest cell, carry no force of their own.
 pub const HAIR: f64 = 1e-6;
 
@@ -76,6 +80,9 @@ fn search(
     rows: impl Fn(usize) -> Vec<Row>,
     [pivot, eigenvalue]: [f64; 2],
 ) -> Vec<usize> {
+    let points = arms.iter().flatten().flat_map(|&point| rows(point));
+    let largest = points.map(|row| square(&row)).fold(0.0, f64::max);
+    let weak = |row: &Row| !row.is_empty() && square(row) < WEAK * largest;
     let mut factor = Factor::default();
     let mut found = Vec::new();
     // Points by row of the factor.
@@ -90,7 +97,7 @@ fn search(
             let mut own = own.map(|row| row.0);
             let known = factor.len();
             // All rows of a point, or none.
-            if own.all(|row| factor.push(row, pivot)) {
+            if own.all(|row| !weak(&row) && factor.push(row, pivot)) {
                 owners.resize(factor.len(), point);
             } else {
                 factor.truncate(known);
@@ -102,6 +109,10 @@ fn search(
         found.extend(factor.unresisted(eigenvalue).map(|row| owners[row]));
     }
     found
+}
+
+fn square(row: &Row) -> f64 {
+    row.iter().map(|(_, v)| v * v).sum()
 }
 
 /// The rows kept so far and the Cholesky factor of their Gram matrix, row by row from the first entry that may not vanish.
@@ -168,7 +179,7 @@ impl Factor {
 
     /// Adds a row if its pivot reaches a least one.
     fn push(&mut self, mut row: Row, least: f64) -> bool {
-        let length = row.iter().map(|(_, v)| v * v).sum::<f64>().sqrt();
+        let length = square(&row).sqrt();
         if !(length > 0.0 && length.is_finite()) {
             return false;
         }

@@ -28,7 +28,7 @@ const DROPPED: f64 = 1e-8;
 
 /// Nodes of a zone with a ramp in which other tips have functions, too, that is searched for ties: larger ones reach far beyond the
 /// cells of a tip.
-const SMALL: usize = 64;
+const SMALL: usize = 160;
 
 /// The functions of one node.
 #[derive(Debug, Clone)]

@@ -20,7 +20,10 @@ const VANISHING: f64 = 1e-8;
 const SLIVER: f64 = 1e-6;
 
 /// … and dropped, whatever is held of their nodes, if the square of what is their own is smaller than this part of it.
-const ALIKE: f64 = 1e-12;
+const ALIKE: f64 = 1e-10;
+
+/// Piece functions that live on less than this part of their cells' edges are rounding.
+const VOID: f64 = 1e-11;
 
 /// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
 pub(super) fn gram<'a>(
@@ -83,8 +86,10 @@ pub(super) fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usi
     loop {
         let scale = |k: usize| gram[k * n + k].sqrt();
         let entry = |i: usize, j: usize| {
+            // A little more than rounding may take from the smallest eigenvalue.
+            let shift = if i == j { 0.1 * VANISHING } else { 0.0 };
             let (i, j) = (kept[i], kept[j]);
-            gram[i * n + j] / (scale(i) * scale(j))
+            shift + gram[i * n + j] / (scale(i) * scale(j))
         };
         let Some(factor) = DMatrix::from_fn(kept.len(), kept.len(), entry).cholesky() else {
             return found;
@@ -115,6 +120,7 @@ pub(super) fn alike<'a>(
 ) -> BTreeSet<usize> {
     let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
     let mut slivers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    let mut found = BTreeSet::new();
     for node in 0..enrichment.nodes() {
         let own = enrichment.enriched_of(node);
         let pieces: Vec<usize> = own
@@ -123,14 +129,20 @@ pub(super) fn alike<'a>(
         if pieces.is_empty() {
             continue;
         }
-        let least = SLIVER * square(node);
-        for f in pieces.into_iter().filter(|&f| square(f) <= least) {
+        let standard = square(node);
+        for f in pieces {
+            let part = square(f) / standard;
+            if part <= VOID.powi(dim as i32) {
+                found.insert(f);
+            }
+            if part > SLIVER {
+                continue;
+            }
             users[f]
                 .iter()
                 .for_each(|&cell| slivers.entry(cell).or_default().push(f));
         }
     }
-    let mut found = BTreeSet::new();
     for own in slivers.into_values().filter(|own| own.len() > 1) {
         let mut gram = gram(enrichment, dim, &own, users, matrix);
         found.extend(tied(&mut gram, ALIKE).into_iter().map(|k| own[k]));
