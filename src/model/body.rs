@@ -155,7 +155,7 @@ impl Body {
         let mut matrices = CellMatrices::new(&integrator).map_err(unfilled)?;
         let stiffness = assembly.sum(|cell| matrices.of(cell));
         let basis = SolverBasis::new(
-            dim,
+            &mesh,
             &enrichment,
             &assembly.users,
             |cell| matrices.of(cell),

@@ -18,6 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
+use crate::geometry::{Point, norm, sub};
+use crate::mesh::Mesh;
 
 use super::elasticity::{CellMatrix, CellView};
 use ties::{alike, dependent, gram};
@@ -63,12 +65,13 @@ impl SolverBasis {
     /// Orthonormalises the nodes of branch functions. `matrix`: stiffness of a cell over its functions; `held`: whether a component
     /// of a function is prescribed, which keeps this component as it is.
     pub fn new<'a>(
-        dim: usize,
+        mesh: &Mesh,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
         matrix: impl Fn(usize) -> CellView<'a>,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
+        let dim = mesh.dim();
         let mut basis = SolverBasis {
             alike: alike(dim, enrichment, users, &matrix),
             ..SolverBasis::default()
@@ -124,13 +127,21 @@ impl SolverBasis {
         let mut zones_of = BTreeMap::<u32, usize>::new();
         let nodes = enrichment.zones.iter().flat_map(|zone| &zone.nodes);
         nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
+        let (extent, middle) = mesh.extent();
         let mut searched = BTreeSet::new();
-        for zone in &enrichment.zones {
+        for (tip, zone) in enrichment.tips.iter().zip(&enrichment.zones) {
             let mixed = || zone.nodes.iter().any(|node| zones_of[node] > 1);
             let asks = zone.radius == 0.0 || zone.nodes.len() <= SMALL && mixed();
             // The arms of a corner share their nodes.
             if asks && searched.insert(&zone.nodes) {
-                basis.drop_tied(dim, enrichment, &zone.nodes, users, &matrix);
+                // Which of equals goes must not depend on how the body is turned.
+                let key = |&node: &u32| {
+                    let from = |x: &Point| norm(&sub(&mesh.nodes[node as usize], x)) / extent;
+                    [&tip.position, &middle].map(|x| (from(x) * 1e9).round() as i64)
+                };
+                let mut nodes: Vec<u32> = zone.nodes.iter().copied().collect();
+                nodes.sort_by_cached_key(key);
+                basis.drop_tied(dim, enrichment, &nodes, users, &matrix);
             }
         }
         basis
@@ -142,7 +153,7 @@ impl SolverBasis {
         &mut self,
         dim: usize,
         enrichment: &Enrichment,
-        nodes: &BTreeSet<u32>,
+        nodes: &[u32],
         users: &[Vec<u32>],
         matrix: &impl Fn(usize) -> CellView<'a>,
     ) {
