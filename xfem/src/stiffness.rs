@@ -8,6 +8,7 @@ pub mod cell_matrix;
 pub mod consistent;
 pub mod dilatation;
 pub mod elasticity;
+pub(crate) mod inverse_iteration;
 pub mod lanes;
 pub mod near_front;
 pub mod orthonormal;

@@ -16,7 +16,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{Point, add_scaled, norm, sub};
+use crate::geometry::{Point, add_scaled, norm, root, sub, unite};
+use crate::stiffness::inverse_iteration::smallest_eigenvalue;
 
 use super::pairs::{ContactPoint, ContactSurface};
 
@@ -75,33 +76,60 @@ fn ordered(arms: &[std::ops::Range<usize>], weight: impl Fn(usize) -> f64) -> Ve
 }
 
 /// Points that are dependent on those before them in the arms' order.
-fn search(
-    arms: &[Vec<usize>],
-    rows: impl Fn(usize) -> Vec<Row>,
+fn search(arms: &[Vec<usize>], rows: impl Fn(usize) -> Vec<Row>, limits: [f64; 2]) -> Vec<usize> {
+    let points = arms.iter().flatten();
+    let rows: BTreeMap<usize, Vec<Row>> = points.map(|&point| (point, rows(point))).collect();
+    let squares = rows.values().flatten().map(square);
+    let least = WEAK * squares.fold(0.0, f64::max);
+    let groups = coupled(arms, &rows).into_iter();
+    groups
+        .flat_map(|group| search_group(&group, &rows, least, limits))
+        .collect()
+}
+
+/// Arms that share unknowns, directly or through others: what is dependent is so among these.
+fn coupled<'a>(arms: &'a [Vec<usize>], rows: &BTreeMap<usize, Vec<Row>>) -> Vec<Vec<&'a [usize]>> {
+    let mut parent: Vec<usize> = (0..arms.len()).collect();
+    let mut first = BTreeMap::new();
+    for (arm, points) in arms.iter().enumerate() {
+        for (unknown, _) in points.iter().flat_map(|point| &rows[point]).flatten() {
+            unite(&mut parent, *first.entry(*unknown).or_insert(arm), arm);
+        }
+    }
+    let mut groups: BTreeMap<usize, Vec<&[usize]>> = BTreeMap::new();
+    for (arm, points) in arms.iter().enumerate() {
+        let group = groups.entry(root(&mut parent, arm)).or_default();
+        group.push(points);
+    }
+    groups.into_values().collect()
+}
+
+fn search_group(
+    arms: &[&[usize]],
+    rows: &BTreeMap<usize, Vec<Row>>,
+    least: f64,
     [pivot, eigenvalue]: [f64; 2],
 ) -> Vec<usize> {
-    let points = arms.iter().flatten().flat_map(|&point| rows(point));
-    let largest = points.map(|row| square(&row)).fold(0.0, f64::max);
-    let weak = |row: &Row| !row.is_empty() && square(row) < WEAK * largest;
+    let weak = |row: &Row| !row.is_empty() && square(row) < least;
     let mut factor = Factor::default();
     let mut found = Vec::new();
     // Points by row of the factor.
     let mut owners = Vec::new();
     for arm in arms {
         // A slip direction that supports hold on a whole arm has no force to tell; they hold it, too.
-        let void = |k: usize| k > 0 && arm.iter().all(|&point| rows(point)[k].is_empty());
-        let dim = arm.first().map_or(0, |&point| rows(point).len());
+        let void = |k: usize| k > 0 && arm.iter().all(|point| rows[point][k].is_empty());
+        let dim = arm.first().map_or(0, |point| rows[point].len());
         let told: Vec<bool> = (0..dim).map(|k| !void(k)).collect();
-        for &point in arm {
-            let own = rows(point).into_iter().zip(&told).filter(|row| *row.1);
+        for point in *arm {
+            let own = rows[point].iter().zip(&told).filter(|row| *row.1);
             let mut own = own.map(|row| row.0);
             let known = factor.len();
             // All rows of a point, or none.
-            if own.all(|row| !weak(&row) && factor.push(row, pivot)) {
-                owners.resize(factor.len(), point);
+            if own.all(|row| !weak(row) && factor.push(row.clone(), pivot)) {
+                owners.resize(factor.len(), *point);
             } else {
                 factor.truncate(known);
-                found.push(point);
+                found.push(*point);
             }
         }
     }
@@ -144,20 +172,8 @@ impl Factor {
 
     /// The row with the largest part in the forces that least resists, if that is next to nothing: inverse iteration.
     fn unresisted(&self, least: f64) -> Option<usize> {
-        /// One less would do where the smallest eigenvalue stands alone.
-        const ROUNDS: usize = 4;
         let count = self.len();
-        let length = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        // No pattern of the mesh is orthogonal to it.
-        let mut x: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sin()).collect();
-        let mut eigenvalue = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let before = length(&x);
-            self.solve(&mut x);
-            let after = length(&x);
-            eigenvalue = before / after;
-            x.iter_mut().for_each(|v| *v /= after);
-        }
+        let (eigenvalue, x) = smallest_eigenvalue(count, |x| self.solve(x));
         let largest = (0..count).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()));
         largest.filter(|_| eigenvalue < least)
     }

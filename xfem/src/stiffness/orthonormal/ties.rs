@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVectorViewMut};
 
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
 use crate::stiffness::elasticity::CellView;
+use crate::stiffness::inverse_iteration::smallest_eigenvalue;
 
 /// A function is dropped if the square of its part outside the span of those before it, of other nodes, is smaller than this part of
 /// its own: the rules of cells hold what ties them to 1e-8.
@@ -77,8 +78,6 @@ fn tied(gram: &mut [f64], least: f64) -> Vec<usize> {
 /// Functions that may go until none left is in the span of those before it, and none of their combinations of unit length
 /// nearly vanishes: of each the one with the largest part.
 pub(super) fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usize> {
-    /// Inverse iterations: one less would do where the smallest eigenvalue stands alone.
-    const ROUNDS: usize = 4;
     let n = gram.len().isqrt();
     let mut found = tied(&mut gram.to_vec(), TIED);
     let mut kept: Vec<usize> = (0..n).filter(|k| !found.contains(k)).collect();
@@ -94,15 +93,11 @@ pub(super) fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usi
         let Some(factor) = DMatrix::from_fn(kept.len(), kept.len(), entry).cholesky() else {
             return found;
         };
-        // No pattern of the mesh is orthogonal to it.
-        let mut x = DVector::from_fn(kept.len(), |i, _| (1.0 + i as f64).sin());
-        let mut smallest = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let before = x.norm();
-            factor.solve_mut(&mut x);
-            smallest = before / x.norm();
-            x.normalize_mut();
-        }
+        let solve = |x: &mut [f64]| {
+            let count = x.len();
+            factor.solve_mut(&mut DVectorViewMut::from_slice(x, count));
+        };
+        let (smallest, x) = smallest_eigenvalue(kept.len(), solve);
         let candidates = (0..kept.len()).filter(|&i| may_go(kept[i]));
         match candidates.max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())) {
             Some(i) if smallest < VANISHING => found.push(kept.remove(i)),
