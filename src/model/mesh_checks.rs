@@ -7,8 +7,11 @@
 //!
 //! K u integrates the gradients over the parts of the cells, the other term the jumps over the facets that carry multipliers:
 //! a part lost or counted twice, a wrong side or normal, a function that jumps where there is no crack, a facet without
-//! multiplier leave a residual. And the cracks run where they were put: only where several meet are they moved. It bounds the error of a uniform stress in the energy of a cell. On a sliver N_k is a difference of
-//! coordinates: what their rounding ε_x makes of the jumps, 4 (ε_x/h) |σ| ∫_Γ dΓ over the facets where φ_f jumps, counts as none.
+//! multiplier leave a residual. It bounds the error of a uniform stress in the energy of a cell. On a sliver N_k is a
+//! difference of coordinates: what their rounding ε_x makes of the jumps, 4 (ε_x/h) |σ| ∫_Γ dΓ over the facets where φ_f
+//! jumps, counts as none.
+//!
+//! Cracks are moved to where several meet in nearly one place: how far, is told.
 
 use std::collections::BTreeSet;
 

@@ -256,15 +256,14 @@ impl ContactProblem<'_> {
         if !u.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
-        let f = u.clone();
+        let amplitudes = self.operator.modes.amplitudes(&step.beta);
+        let f = (!amplitudes.is_empty()).then(|| u.clone());
         elastic.solve(&mut u)?;
         self.counters.solves += 1;
-        let amplitudes = self.operator.modes.amplitudes(&step.beta);
         for (r, alpha) in elastic.floating().iter().zip(&amplitudes) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u += alpha * r);
         }
-        if let Some(k) = elastic.stiffness()
-            && !amplitudes.is_empty()
+        if let (Some(f), Some(k)) = (f, elastic.stiffness())
             && elastic.imbalance(&u, &[&f]) > BALANCED
         {
             // K r vanishes to rounding of K alone, and r may be far larger than what deforms.

@@ -118,7 +118,9 @@ fn part_bent(
     }
     let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (edge, star) in stars.iter().enumerate() {
-        star.map(|star| members.entry(star).or_default().push(edge));
+        if let Some(star) = *star {
+            members.entry(star).or_default().push(edge);
+        }
     }
     let mut count = members.len();
     for own in members.into_values() {

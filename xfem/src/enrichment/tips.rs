@@ -32,6 +32,9 @@ use super::zone::{Zone, front_room};
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
 
+/// A line no deeper than this in a cell, in diagonals, is not in it: finer than cracks are moved off facets.
+const GRAZING: f64 = 1e-12;
+
 /// Cells longer than this times their width take no branch functions by themselves …
 const SLENDER: f64 = 6.0;
 /// … and longer ones none at all.

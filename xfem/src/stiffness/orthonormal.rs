@@ -16,8 +16,8 @@ mod ties;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
+use crate::enrichment::{Enrichment, Zone};
 use crate::geometry::{Point, norm, sub};
 use crate::mesh::Mesh;
 
@@ -46,6 +46,38 @@ struct Block {
 }
 
 impl Block {
+    /// Of the functions of a node. `left_out`: whether one is not to be used, where nothing is prescribed or anyhow.
+    fn new(
+        dim: usize,
+        own: &[usize],
+        gram: &[f64],
+        unit: f64,
+        held: impl Fn(usize, usize) -> bool,
+        left_out: impl Fn(usize, bool) -> bool,
+    ) -> Self {
+        let count = own.len();
+        let of = |a: usize| own.iter().map(|&f| held(f, a)).collect::<Vec<bool>>();
+        let mut sets: Vec<Vec<bool>> = (0..dim).map(of).collect();
+        sets.sort_by_key(|set| set.iter().filter(|held| **held).count());
+        sets.dedup();
+        let form = |set: &Vec<bool>| {
+            // What is prescribed breaks the relations of what is left.
+            let whole = !set.contains(&true);
+            let mut t = inverse_factor(gram, count, |i| set[i] || left_out(own[i], whole));
+            t.iter_mut().for_each(|t| *t *= unit);
+            let kept = (0..count).filter(|&i| set[i]);
+            kept.for_each(|i| t[i * count + i] = 1.0);
+            t
+        };
+        let place = |a: usize| sets.iter().position(|set| a < dim && *set == of(a));
+        Block {
+            first: own[0],
+            count,
+            forms: sets.iter().map(form).collect(),
+            form: [0, 1, 2].map(|a| place(a).unwrap_or(0)),
+        }
+    }
+
     fn t(&self, component: usize, row: usize, column: usize) -> f64 {
         self.forms[self.form[component]][row * self.count + column]
     }
@@ -100,51 +132,45 @@ impl SolverBasis {
             for f in own.clone() {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
             }
-            let of = |a: usize| all.iter().map(|&f| held(f, a)).collect::<Vec<bool>>();
-            let mut sets: Vec<Vec<bool>> = (0..dim).map(of).collect();
-            sets.sort_by_key(|set| set.iter().filter(|held| **held).count());
-            sets.dedup();
-            let form = |set: &Vec<bool>| {
-                // What is prescribed breaks the relations of what is left.
-                let whole = !set.contains(&true);
-                let left_out = |i: usize| {
-                    set[i] || basis.alike.contains(&all[i]) || whole && surplus.contains(&all[i])
-                };
-                let mut t = inverse_factor(&gram, all.len(), left_out);
-                t.iter_mut().for_each(|t| *t *= unit);
-                let kept = (0..all.len()).filter(|&i| set[i]);
-                kept.for_each(|i| t[i * all.len() + i] = 1.0);
-                t
-            };
-            let place = |a: usize| sets.iter().position(|set| a < dim && *set == of(a));
-            basis.blocks.push(Block {
-                first: own.start,
-                count: all.len(),
-                forms: sets.iter().map(form).collect(),
-                form: [0, 1, 2].map(|a| place(a).unwrap_or(0)),
-            });
+            let left_out =
+                |f: usize, whole: bool| basis.alike.contains(&f) || whole && surplus.contains(&f);
+            let block = Block::new(dim, &all, &gram, unit, &held, left_out);
+            basis.blocks.push(block);
         }
+        basis.search_zones(mesh, enrichment, users, &matrix);
+        basis
+    }
+
+    /// Looks for ties where there may be any: in zones without ramp, and in those of short cracks, which overlap.
+    fn search_zones<'a>(
+        &mut self,
+        mesh: &Mesh,
+        enrichment: &Enrichment,
+        users: &[Vec<u32>],
+        matrix: &impl Fn(usize) -> CellView<'a>,
+    ) {
+        // The arms of a corner share their nodes.
+        let mut seen = BTreeSet::new();
+        let zones = (enrichment.tips.iter().zip(&enrichment.zones))
+            .filter(|(_, zone)| seen.insert(&zone.nodes));
+        let zones: Vec<_> = zones.collect();
         let mut zones_of = BTreeMap::<u32, usize>::new();
-        let nodes = enrichment.zones.iter().flat_map(|zone| &zone.nodes);
+        let nodes = zones.iter().flat_map(|(_, zone)| &zone.nodes);
         nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
         let (extent, middle) = mesh.extent();
-        let mut searched = BTreeSet::new();
-        for (tip, zone) in enrichment.tips.iter().zip(&enrichment.zones) {
-            let mixed = || zone.nodes.iter().any(|node| zones_of[node] > 1);
-            let asks = zone.radius == 0.0 || zone.nodes.len() <= SMALL && mixed();
-            // The arms of a corner share their nodes.
-            if asks && searched.insert(&zone.nodes) {
+        for (tip, Zone { nodes, radius, .. }) in zones {
+            let mixed = || nodes.iter().any(|node| zones_of[node] > 1);
+            if *radius == 0.0 || nodes.len() <= SMALL && mixed() {
                 // Which of equals goes must not depend on how the body is turned.
                 let key = |&node: &u32| {
                     let from = |x: &Point| norm(&sub(&mesh.nodes[node as usize], x)) / extent;
                     [&tip.position, &middle].map(|x| (from(x) * 1e9).round() as i64)
                 };
-                let mut nodes: Vec<u32> = zone.nodes.iter().copied().collect();
+                let mut nodes: Vec<u32> = nodes.iter().copied().collect();
                 nodes.sort_by_cached_key(key);
-                basis.drop_tied(dim, enrichment, &nodes, users, &matrix);
+                self.drop_tied(mesh.dim(), enrichment, &nodes, users, matrix);
             }
         }
-        basis
     }
 
     /// Drops branch functions at the nodes of a tip or corner that are in the span of all functions there: on the little that cracks
@@ -353,12 +379,12 @@ fn surplus(
     found
 }
 
-/// T = (D L)⁻¹ of a Gram matrix, with zero rows for superfluous functions and those in the span of others before them.
-fn inverse_factor(gram: &[f64], n: usize, surplus: impl Fn(usize) -> bool) -> Vec<f64> {
+/// T = (D L)⁻¹ of a Gram matrix, with zero rows for functions left out and those in the span of others before them.
+fn inverse_factor(gram: &[f64], n: usize, left_out: impl Fn(usize) -> bool) -> Vec<f64> {
     let scale: Vec<f64> = (0..n).map(|i| gram[i * n + i].sqrt()).collect();
     let mut t = vec![0.0; n * n];
     for i in 0..n {
-        if scale[i] == 0.0 || surplus(i) {
+        if scale[i] == 0.0 || left_out(i) {
             continue;
         }
         // Gram–Schmidt against the functions kept so far, twice for orthogonality.

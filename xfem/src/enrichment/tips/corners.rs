@@ -31,7 +31,7 @@ use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub, unit};
 
-use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
+use super::{GRAZING, SHORTEST, SLENDER, Search, Tips, Zone, branches};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -254,7 +254,7 @@ impl Search<'_> {
             let cells = self.near.cells_around(&BTreeSet::from([node]));
             cells.into_iter().any(|cell| {
                 let map = self.mesh.map(cell);
-                let slack = 1e-12 * map.diagonal();
+                let slack = GRAZING * map.diagonal();
                 let mut path = self.arms[frame.crack].path.windows(2);
                 path.any(|w| meets(&map, &w[0].x, &w[1].x, slack))
             })

@@ -11,7 +11,7 @@ use crate::geometry::tip_frame::{FrontShape, TipFrame};
 
 use super::super::supports::{Place, parted_from};
 use super::super::zone::Zone;
-use super::{SHARE, Search};
+use super::{GRAZING, SHARE, Search};
 
 /// Nodes around a ramp are no farther away than this, in lengths of the arm: seen from there a short arm, or one in long cells, is
 /// nothing, and its functions become dependent.
@@ -44,8 +44,7 @@ impl Search<'_> {
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
-            // Finer than cracks are moved off facets.
-            let slack = 1e-12 * map.diagonal();
+            let slack = GRAZING * map.diagonal();
             let enters = |outline: &[Point]| {
                 let mut line = line.iter();
                 line.any(|[p, q]| polygon::meets(outline, p, q, slack))
