@@ -60,7 +60,7 @@ pub fn comparison_points(
             map: &map,
             parts,
             fronts,
-            chord: None,
+            chords: Vec::new(),
         };
         let effort = [Effort::WORKING, Effort::REFERENCE][usize::from(n > 4)];
         near.points(|crack| integrator.plane(cell, crack), effort)

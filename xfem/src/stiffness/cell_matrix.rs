@@ -249,17 +249,23 @@ impl<'a> CellIntegrator<'a> {
             map: &self.mesh.map(cell),
             parts,
             fronts: &self.enrichment.tips,
-            chord: self.tips_in(cell).first().and_then(|&(_, tip)| {
-                let index = self.enrichment.tips[tip].crack;
-                let crack = &self.cracks[index];
-                let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
-                let mut cuts = facets.facets.iter().filter_map(|f| f.front.as_ref());
-                cuts.next().map(|cut| cut.chord)
-            }),
+            chords: self.chords(cell),
         };
         let mut points = near.points(|crack| self.plane(cell, crack), effort);
         fill(parts, &mut points);
         self.located(cell, points, 1e-6)
+    }
+
+    /// The fronts that cross the faces of their cracks in a 3D cell: where each enters and leaves it [m].
+    fn chords(&self, cell: usize) -> Vec<(usize, [Point; 2])> {
+        let chord = |&(_, tip): &(usize, usize)| {
+            let index = self.enrichment.tips[tip].crack;
+            let crack = &self.cracks[index];
+            let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
+            let mut cuts = facets.facets.iter().filter_map(|f| f.front.as_ref());
+            cuts.next().map(|cut| (tip, cut.chord))
+        };
+        self.tips_in(cell).iter().filter_map(chord).collect()
     }
 
     /// Reference positions of points that must fill the cell up to a relative tolerance.

@@ -64,8 +64,8 @@ pub struct NearFront<'a> {
     pub parts: &'a [Part],
     /// Fronts.
     pub fronts: &'a [TipFrame],
-    /// Where a front enters the cell and where it leaves it, if it crosses the border of the crack's face in it [m].
-    pub chord: Option<[Point; 2]>,
+    /// The fronts that cross the border of their crack's face in the cell: where they enter it and leave it [m].
+    pub chords: Vec<(usize, [Point; 2])>,
 }
 
 impl NearFront<'_> {
@@ -80,8 +80,8 @@ impl NearFront<'_> {
             own.fold(f64::INFINITY, f64::min)
         };
         let nearer = |x: &Point| effort.nearer * distance(x);
-        if let Some((front, nearest)) = self.sliced(&distance) {
-            return self.slices(front, &nearest, crack, effort.slices);
+        if let Some((front, chord)) = self.sliced(&distance) {
+            return self.slices(front, chord, crack, effort.slices);
         }
         match self.parts {
             [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH)
@@ -99,37 +99,39 @@ impl NearFront<'_> {
         }
     }
 
-    /// The front to slice around, and a place of the cell next to it.
-    fn sliced(&self, distance: &impl Fn(&Point) -> f64) -> Option<(&TipFrame, Point)> {
+    /// The front to slice around, of those in the cell first, and its chord, or a piece of its tangent next to the cell.
+    fn sliced(&self, distance: &impl Fn(&Point) -> f64) -> Option<(&TipFrame, [Point; 2])> {
         let cut = self.parts.len() > 1;
         let reach = REACH[usize::from(cut)] * self.map.longest_edge();
-        let nearest = nearest_in_box(self.map, &[0.0; 3], 1.0, distance);
-        if nearest.1 > reach && self.chord.is_none() {
+        let (place, nearest) = nearest_in_box(self.map, &[0.0; 3], 1.0, distance);
+        let from_place = |tip: usize| self.fronts[tip].distance(&place);
+        let chords = self.chords.iter();
+        let inside = chords.min_by(|f, g| from_place(f.0).total_cmp(&from_place(g.0)));
+        if let Some(&(tip, chord)) = inside {
+            return Some((&self.fronts[tip], chord));
+        }
+        if nearest > reach {
             return None;
         }
-        let place = nearest.0;
         let fronts = self.fronts.iter();
         let front = fronts.min_by(|f, g| f.distance(&place).total_cmp(&g.distance(&place)))?;
-        Some((front, place))
+        let [ahead, normal, tangent] = front.frame(&place);
+        let at = front.coordinates(&place);
+        let foot = add_scaled(&place, -at.psi, &ahead);
+        let foot = add_scaled(&foot, -at.phi, &normal);
+        // Ends far outside of the cell.
+        let far = 10.0 * self.map.diagonal();
+        Some((front, [-far, far].map(|s| add_scaled(&foot, s, &tangent))))
     }
 
-    /// Slices perpendicular to the chord of the front, or to its tangent next to the cell.
+    /// Slices perpendicular to a chord.
     fn slices(
         &self,
         front: &TipFrame,
-        place: &Point,
+        chord: [Point; 2],
         crack: impl Fn(usize) -> (Nodal<f64>, Point),
         rule: FrontRule,
     ) -> Vec<(WeightedPoint, Region)> {
-        let chord = self.chord.unwrap_or_else(|| {
-            let [ahead, normal, tangent] = front.frame(place);
-            let at = front.coordinates(place);
-            let foot = add_scaled(place, -at.psi, &ahead);
-            let foot = add_scaled(&foot, -at.phi, &normal);
-            // Ends far outside of the cell.
-            let far = 10.0 * self.map.diagonal();
-            [-far, far].map(|s| add_scaled(&foot, s, &tangent))
-        });
         let along = sub(&chord[1], &chord[0]);
         let across = cross(&front.normal, &along);
         let across = across.map(|v| v / dot(&across, &across).sqrt());
