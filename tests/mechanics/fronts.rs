@@ -288,3 +288,53 @@ fn a_front_takes_a_quarter_of_its_room_by_default() {
         assert_below((radius - 0.25 * 0.479).abs(), 1e-9, radius);
     }
 }
+
+/// Source: geometry. Goal: the points of a cell that two fronts cross fill it, wherever two crossing discs lie. Tolerance: that of
+/// the rule; slices across another front's chord were 0.1 to 50 % off.
+#[test]
+fn points_of_cells_with_two_fronts_measure_the_cell() {
+    let mut shared = 0;
+    for shift in [0.0, 0.007, 0.013, 0.02] {
+        let x = 0.52 + shift;
+        let text = format!(
+            "title = \"discs\"\nmodel = \"solid\"\nmaterial = {{ young_pa = 1e10, poisson = 0.3 }}\n\
+             mesh = {{ box = {{ min_m = [0, 0, 0], max_m = [1, 1, 1], cells = [10, 10, 10] }} }}\n\
+             [[crack]]\ndisc = {{ centre_m = [0.5, 0.51, 0.49], normal = [0.1, 0.2, 1.0], radius_m = 0.31 }}\nfriction = 0.3\n\
+             [[crack]]\ndisc = {{ centre_m = [{x}, 0.5, 0.5], normal = [1.0, 0.3, 0.15], radius_m = 0.29 }}\nfriction = 0.3\n{}",
+            clamped(3)
+        );
+        let body = body(&text);
+        for cells in body.enrichment.tip_cells.windows(2) {
+            let cell = cells[0].0;
+            if cell != cells[1].0 {
+                continue;
+            }
+            shared += 1;
+            let points = body.integrator().points(cell).unwrap();
+            let sum: f64 = points.iter().map(|p| p.weight).sum();
+            assert_below((sum / 1e-3 - 1.0).abs(), 1e-6, (shift, cell, sum));
+        }
+    }
+    assert!(shared > 3, "only {shared} cells have two fronts");
+}
+
+/// Source: geometry. Goal: a plane along diagonals of cells and a disc on a plane of the grid that meet on a side of the body, 1e-9
+/// of a cell inside: the prism between them, which its nodes took for their own, leaves the stiffness regular.
+#[test]
+fn a_sliver_between_two_cracks_at_a_side_is_no_function_of_its_own() {
+    let held = support("\"top\"", "[0, 0, -1e-3]");
+    let free = "[[load]]\non = \"top\"\npressure_pa = 1e6\n".to_owned();
+    for top in [held, free] {
+        let text = format!(
+            "title = \"wedge\"\nmodel = \"solid\"\nmaterial = {{ young_pa = 1e10, poisson = 0.2 }}\n\
+             mesh = {{ box = {{ min_m = [-5, -7.7364751376774175, -5], max_m = [5, 7.7364751376774175, 5], cells = [13, 11, 8] }} }}\n\
+             [[crack]]\nplane = {{ point_m = [-1.153846153900141, -3.5, 2.4999999987987813], normal = [-1, 0, -0.6153846153846154] }}\nfriction = 0.5\n\
+             [[crack]]\ndisc = {{ centre_m = [-2.6923076923076925, -3.956676563133556, 0], normal = [1, 0, 0], radius_m = 5.526368282426468 }}\nfriction = 0.5\n\
+             {top}{}{}",
+            support("\"bottom\"", "[0, 0, 0]"),
+            support("\"left\"", "[0, \"free\", \"free\"]"),
+        );
+        let body = body(&text);
+        ContactSystem::new(body.elastic.clone(), friction(&parse(&text), &body)).unwrap();
+    }
+}

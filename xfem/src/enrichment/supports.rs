@@ -18,9 +18,13 @@ use crate::geometry::polygon::{self, border_distance, space_area};
 use crate::geometry::{Point, norm, root, sub, unite};
 use crate::mesh::neighbours::Neighbours;
 use crate::mesh::{Lengths, Mesh};
+use crate::quadrature::measure;
 
 use super::basis::Region;
 use super::cell_facets::clipped;
+
+/// A node's own piece smaller than this part of a cell is no longer its own: the largest is.
+const SLIVER: f64 = 1e-9;
 
 /// A region of a cell.
 pub type Place = (usize, Region);
@@ -250,7 +254,24 @@ impl Joiner<'_> {
             unite(&mut parent, number(&one), number(&two));
         }
         let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
-        let own = roots[self.own(node, &places)];
+        let mut own = roots[self.own(node, &places)];
+        // The node's own function is what those of the other pieces leave of N_i: of a sliver nothing but rounding.
+        let size = |piece: usize| -> f64 {
+            let of_it = places
+                .iter()
+                .zip(&roots)
+                .filter(|(_, root)| **root == piece);
+            of_it.map(|(place, _)| self.measure(place)).sum()
+        };
+        let cell = self
+            .mesh
+            .map(places[0].0)
+            .diagonal()
+            .powi(self.mesh.dim() as i32);
+        if size(own) < SLIVER * cell {
+            let larger = |one: &usize, two: &usize| size(*one).total_cmp(&size(*two));
+            own = roots.iter().copied().max_by(larger).unwrap_or(own);
+        }
         let mut pieces: BTreeMap<usize, Vec<Place>> = BTreeMap::new();
         for (place, root) in places.into_iter().zip(roots) {
             if root != own {
@@ -258,6 +279,14 @@ impl Joiner<'_> {
             }
         }
         pieces.into_values().collect()
+    }
+
+    /// Area or volume of a region.
+    fn measure(&self, &(cell, region): &Place) -> f64 {
+        match self.partitions.get(&cell) {
+            None => measure(&self.mesh.map(cell)),
+            Some(partition) => partition.parts[region].measure(),
+        }
     }
 
     /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of the first that runs there, or

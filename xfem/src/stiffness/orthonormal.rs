@@ -105,7 +105,7 @@ impl SolverBasis {
     ) -> Self {
         let dim = mesh.dim();
         let mut basis = SolverBasis {
-            alike: alike(dim, enrichment, users, &matrix),
+            alike: alike(dim, enrichment, users, &matrix, &held),
             ..SolverBasis::default()
         };
         let surplus = surplus(dim, enrichment, &held);

@@ -26,6 +26,13 @@ const ALIKE: f64 = 1e-10;
 /// Piece functions that live on less than this part of their cells' edges are rounding.
 const VOID: f64 = 1e-11;
 
+/// Piece functions with less than this part may live on a prism of a solid, thinner than 3e-9 of a cell, which turns about its own
+/// axis for the square of that …
+const PRISM: f64 = 1e-17;
+
+/// … and those around a node are dropped if the square of what is one's own is smaller than this part of it.
+const TURNING: f64 = 1e-13;
+
 /// (λ + (d + 1) μ) ∫ ∇φ_f · ∇φ_g, the trace over components of the stiffness block of f and g.
 pub(super) fn gram<'a>(
     enrichment: &Enrichment,
@@ -34,24 +41,38 @@ pub(super) fn gram<'a>(
     users: &[Vec<u32>],
     matrix: &impl Fn(usize) -> CellView<'a>,
 ) -> Vec<f64> {
-    let count = own.len();
-    let mut gram = vec![0.0; count * count];
+    assembled(enrichment, own, 1, users, |cell| {
+        let k = matrix(cell);
+        move |p, q| (0..dim).map(|a| k[(p * dim + a, q * dim + a)]).sum::<f64>()
+    })
+}
+
+/// A matrix over some functions with `width` unknowns each; `entries`: of a cell, by places in it.
+fn assembled<E: Fn(usize, usize) -> f64>(
+    enrichment: &Enrichment,
+    own: &[usize],
+    width: usize,
+    users: &[Vec<u32>],
+    entries: impl Fn(usize) -> E,
+) -> Vec<f64> {
+    let count = own.len() * width;
+    let mut sum = vec![0.0; count * count];
     let cells: BTreeSet<u32> = own.iter().flat_map(|&f| users[f].iter().copied()).collect();
     let number: BTreeMap<usize, usize> = own.iter().copied().zip(0..).collect();
     for cell in cells.into_iter().map(|c| c as usize) {
         let functions = enrichment.cell(cell).iter().enumerate();
         let places: Vec<(usize, usize)> = functions
             .filter_map(|(p, &f)| Some((*number.get(&(f as usize))?, p)))
+            .flat_map(|(i, p)| (0..width).map(move |a| (i * width + a, p * width + a)))
             .collect();
-        let k = matrix(cell);
+        let entry = entries(cell);
         for &(i, p) in &places {
             for &(j, q) in &places {
-                let diagonal = (0..dim).map(|a| k[(p * dim + a, q * dim + a)]);
-                gram[i * count + j] += diagonal.sum::<f64>();
+                sum[i * count + j] += entry(p, q);
             }
         }
     }
-    gram
+    sum
 }
 
 /// Functions that are in the span of those before them but for a part of their square; the Gram matrix is eliminated in place.
@@ -106,16 +127,18 @@ pub(super) fn dependent(gram: &[f64], may_go: impl Fn(usize) -> bool) -> Vec<usi
     }
 }
 
-/// Piece functions on slivers that are alike in some cell.
+/// Piece functions on slivers that are alike in some cell, or turn with a prism of them.
 pub(super) fn alike<'a>(
     dim: usize,
     enrichment: &Enrichment,
     users: &[Vec<u32>],
     matrix: &impl Fn(usize) -> CellView<'a>,
+    held: impl Fn(usize, usize) -> bool,
 ) -> BTreeSet<usize> {
     let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
     let mut slivers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     let mut found = BTreeSet::new();
+    let mut thin = BTreeSet::new();
     for node in 0..enrichment.nodes() {
         let own = enrichment.enriched_of(node);
         let pieces: Vec<usize> = own
@@ -130,6 +153,9 @@ pub(super) fn alike<'a>(
             if part <= VOID.powi(dim as i32) {
                 found.insert(f);
             }
+            if dim == 3 && part <= PRISM {
+                thin.insert(f);
+            }
             if part > SLIVER {
                 continue;
             }
@@ -138,9 +164,29 @@ pub(super) fn alike<'a>(
                 .for_each(|&cell| slivers.entry(cell).or_default().push(f));
         }
     }
-    for own in slivers.into_values().filter(|own| own.len() > 1) {
-        let mut gram = gram(enrichment, dim, &own, users, matrix);
+    for own in slivers.values().filter(|own| own.len() > 1) {
+        let mut gram = gram(enrichment, dim, own, users, matrix);
         found.extend(tied(&mut gram, ALIKE).into_iter().map(|k| own[k]));
+    }
+    for &f in &thin {
+        let around = users[f].iter().flat_map(|cell| &slivers[cell]);
+        let around = around.filter(|g| thin.contains(g) && !found.contains(g));
+        let own: BTreeSet<usize> = around.copied().collect();
+        let own: Vec<usize> = own.into_iter().collect();
+        let n = own.len() * dim;
+        let mut block = assembled(enrichment, &own, dim, users, |cell| {
+            let k = matrix(cell);
+            move |p, q| k[(p, q)]
+        });
+        for i in (0..n).filter(|&i| held(own[i / dim], i % dim)) {
+            for j in 0..n {
+                (block[i * n + j], block[j * n + i]) = (0.0, 0.0);
+            }
+            block[i * n + i] = 1.0;
+        }
+        if !tied(&mut block, TURNING).is_empty() {
+            found.extend(own);
+        }
     }
     found
 }
