@@ -1,10 +1,8 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
-use std::collections::BTreeSet;
-
 use stickslip_methods::MethodError;
 use stickslip_xfem::contact::pairs::CrackSurface;
-use stickslip_xfem::cut::crack::{Crack, Geometry};
+use stickslip_xfem::cut::crack::Crack;
 use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
@@ -137,23 +135,10 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
 pub fn cell_error(case: &Case, cracks: &[Crack], error: CellError) -> BodyError {
     let away = |crack: &&Crack| crack.distance(&error.at).abs();
     let nearest = cracks.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-    // A front in the cell is no farther from its centre than this.
-    let size = case.mesh.grid.cell_size();
-    let in_cell = |crack: &&Crack| match &crack.geometry {
-        Geometry::Ellipse(e) => e.nearest(&error.at).psi.hypot(away(crack)) <= size,
-        _ => false,
-    };
-    let fronts: BTreeSet<usize> = (cracks.iter().filter(in_cell)).map(|c| c.number).collect();
     let error = in_file(case, error);
     match nearest {
         Some(crack) => {
-            let allowed = match fronts.len() {
-                0 | 1 => "another number of cells, or a crack moved by a hundredth of a cell",
-                _ => {
-                    "tip = \"none\" for all but one of the cracks whose fronts share a cell: \
-                     branch functions of two fronts in one cell are not integrated"
-                }
-            };
+            let allowed = "another number of cells, or a crack moved by a hundredth of a cell";
             let span = &case.cracks[crack.number].geometry_span;
             case.refuse(span, allowed, error).into()
         }
