@@ -23,7 +23,7 @@ use crate::quadrature::measure;
 use super::basis::Region;
 use super::cell_facets::clipped;
 
-/// A node's own piece smaller than this part of a cell is no longer its own: the largest is.
+/// A node's own piece no region of which is larger than this part of a cell is no longer its own: the largest piece is.
 const SLIVER: f64 = 1e-9;
 
 /// A region of a cell.
@@ -255,21 +255,17 @@ impl Joiner<'_> {
         }
         let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
         let mut own = roots[self.own(node, &places)];
-        // The node's own function is what those of the other pieces leave of N_i: of a sliver nothing but rounding.
-        let size = |piece: usize| -> f64 {
-            let of_it = places
-                .iter()
-                .zip(&roots)
-                .filter(|(_, root)| **root == piece);
-            of_it.map(|(place, _)| self.measure(place)).sum()
+        let of = |piece: usize| {
+            let both = places.iter().zip(&roots);
+            both.filter(move |(_, root)| **root == piece)
+                .map(|own| self.measure(own.0))
         };
-        let cell = self
-            .mesh
-            .map(places[0].0)
-            .diagonal()
-            .powi(self.mesh.dim() as i32);
-        if size(own) < SLIVER * cell {
-            let larger = |one: &usize, two: &usize| size(*one).total_cmp(&size(*two));
+        let size = self.mesh.map(places[0].0).diagonal();
+        let least = SLIVER * size.powi(self.mesh.dim() as i32);
+        // The node's own function is what those of the other pieces leave of N_i: of a sliver nothing but rounding.
+        if of(own).all(|measure| measure < least) {
+            let sum = |piece: &usize| of(*piece).sum::<f64>();
+            let larger = |one: &usize, two: &usize| sum(one).total_cmp(&sum(two));
             own = roots.iter().copied().max_by(larger).unwrap_or(own);
         }
         let mut pieces: BTreeMap<usize, Vec<Place>> = BTreeMap::new();
