@@ -17,6 +17,7 @@ const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
     fields: Fields::None,
+    starts: 1,
 };
 
 /// What a user gets: the case as shipped.

@@ -11,5 +11,5 @@ pub mod provenance;
 pub mod record;
 pub mod registry;
 pub mod run_case;
-
+pub mod several;
 pub mod verdict;

@@ -7,4 +7,4 @@ pub(crate) mod mprgp;
 pub mod socp;
 pub mod tresca;
 
-pub use balance::unbalanced;
+pub use balance::no_equilibrium;

@@ -2,6 +2,7 @@
 
 pub(crate) mod barrier_law;
 pub(crate) mod elastic;
+pub(crate) mod free_jump;
 pub(crate) mod judge;
 pub mod law;
 pub(crate) mod operator;

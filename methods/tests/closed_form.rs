@@ -102,7 +102,7 @@ fn free_floating_block_sticks_below_the_friction_limit_and_is_a_mechanism_above(
 /// Whether no force within the cones balances a load, proved.
 fn balanced_by_nothing(s: &ContactSystem, load: &Load) -> bool {
     let (start, rest) = (ContactState::zero(s), force(s, &[0.0; 6]));
-    conic::unbalanced(&increment(s, load, &rest, &start, 1e-9)).unwrap()
+    conic::no_equilibrium(&increment(s, load, &rest, &start, 1e-9)).unwrap()
 }
 
 /// The same block: friction balances F <= μ N and no more, and no force what pulls it off.

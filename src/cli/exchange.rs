@@ -118,6 +118,7 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
         tier: Some(args.tier),
         jobs: 1,
         fields: Fields::None,
+        starts: 1,
     };
     let mut results = Results::default();
     let mut solutions = Bundle::new();

@@ -42,6 +42,7 @@ pub fn run(Arguments { out, jobs, full }: Arguments) -> Result<bool, CliError> {
         tier: None,
         jobs: usize::from(jobs),
         fields: Fields::First,
+        starts: 1,
     };
     let bar = Bar::new();
     let (table1, table2) = paper::first_tables(settings, &bar)?;

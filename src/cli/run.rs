@@ -33,6 +33,9 @@ pub struct Arguments {
     /// Folder for the results
     #[arg(long, default_value = "results")]
     out: PathBuf,
+    /// Starts from which methods look for further answers: `solved (several)` where two hold; 1 for that of the increment alone
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
     /// Runs at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
@@ -59,6 +62,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
             FieldsOf::First => Fields::First,
             FieldsOf::All => Fields::All,
         },
+        starts: usize::from(arguments.starts),
     };
     let cases = arguments
         .cases

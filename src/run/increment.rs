@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, PointStatus, Residuals,
-    Silent, Status, conic::unbalanced, consistency, point_status, residuals_of,
+    Silent, Status, Tier, conic::no_equilibrium, consistency, point_status, residuals_of,
 };
 
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
-use crate::run::record::{HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
+use crate::run::record::{Answer, HistoryRow, RunKey, RunRow, SCHEMA, recorded_iterations};
 use crate::run::verdict::{Accuracy, Verdict};
 
 /// Seconds after which no further solution begins.
@@ -24,6 +24,9 @@ pub struct JudgedIncrement {
     pub work: Option<Work>,
     /// What was judged; `None` if the method never started or failed with an error.
     pub judged: Option<Judged>,
+    /// `[[u]]` by contact row [m] of an answer that is solved at tier high: what lower tiers leave open is as large as what tells
+    /// two answers apart.
+    pub jump: Option<Vec<f64>>,
 }
 
 /// Work that led to an answer. The first three are shared by all runs on a body.
@@ -140,7 +143,7 @@ impl<'a> Solver<'a> {
         }
         let judged = solved.and_then(|mut outcome| {
             // What nothing can balance is no fault of the method.
-            if outcome.status != Status::Converged && unbalanced(increment)? {
+            if outcome.status != Status::Converged && no_equilibrium(increment)? {
                 outcome.status = Status::NoEquilibrium;
             }
             Ok(Judged {
@@ -154,6 +157,10 @@ impl<'a> Solver<'a> {
             Ok(own) => (Verdict::of(&own.outcome, &own.found, accepted), Some(own)),
             Err(error) => (error.into(), None),
         };
+        let answer = judged
+            .as_ref()
+            .filter(|_| verdict.is_solved() && accepted <= Tier::High.tolerance());
+        let jump = answer.map(|own| increment.jump(&own.outcome.state.u));
         let elastic = self.system.elastic();
         let shared = elastic.timings();
         let traction = self.method.needs().traction;
@@ -169,6 +176,7 @@ impl<'a> Solver<'a> {
                 traction,
             }),
             judged,
+            jump,
         }
     }
 }
@@ -180,6 +188,7 @@ impl JudgedIncrement {
             verdict,
             work: None,
             judged: None,
+            jump: None,
         }
     }
 
@@ -244,6 +253,13 @@ impl JudgedIncrement {
             row.forget_times();
         }
         row
+    }
+
+    /// The answer, to be told from others.
+    pub fn answer(&self, key: &RunKey) -> Option<Answer> {
+        let jump = self.jump.clone()?;
+        let key = key.clone();
+        Some(Answer { key, jump })
     }
 
     /// Rows of `history.csv`, a long history thinned.

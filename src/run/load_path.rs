@@ -1,6 +1,6 @@
 //! The load path of one run: increment after increment, each from the state in which the one before ended.
 
-use stickslip_methods::{ContactState, ContactSystem, Increment};
+use stickslip_methods::{ContactState, ContactSystem, Increment, guesses};
 
 use crate::case::Case;
 use crate::model::body::{Body, BodyError};
@@ -49,7 +49,7 @@ impl<'a> Posed<'a> {
             friction: self.friction,
             choice,
             accuracy,
-            cold: false,
+            guess: Guess::Before,
         }
     }
 }
@@ -69,8 +69,19 @@ pub struct LoadPathRun<'a> {
     pub choice: &'a Choice,
     /// Accuracy asked for.
     pub accuracy: Accuracy,
-    /// Whether methods begin every increment from no contact forces in place of those in which the one before ended.
-    pub cold: bool,
+    /// Contact forces that methods begin every increment from.
+    pub guess: Guess,
+}
+
+/// Contact forces to begin an increment from: a guess, which is no part of the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Guess {
+    /// Those in which the increment before ended.
+    Before,
+    /// None.
+    Cold,
+    /// One of the [`guesses`] that look for further solutions, from 0.
+    Further(usize),
 }
 
 /// Is shown an increment, with the mechanics at its end where the verdict is honest.
@@ -155,15 +166,23 @@ impl LoadPathRun<'_> {
                 before = now;
             }
             let load = loading.at(increment);
-            let problem = Increment {
+            let mut problem = Increment {
                 system,
                 load: &load,
                 start_load: &start_load,
                 start: &state,
-                guess: self.cold.then_some(&rest.p[..]),
+                guess: None,
                 index: increment - loading.first(),
                 tolerance: accuracy.asked,
             };
+            let guess = match self.guess {
+                Guess::Before => None,
+                Guess::Cold => Some(rest.p.clone()),
+                Guess::Further(k) => guesses(&problem, k + 1)
+                    .ok()
+                    .and_then(|all| all.into_iter().nth(k)),
+            };
+            problem.guess = guess.as_deref();
             let mut solved = solver.judge(&problem, accuracy.accepted);
             end.now = solved.honest().map(|judged| {
                 Snapshot::new(

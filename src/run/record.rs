@@ -32,6 +32,19 @@ pub struct RunKey {
 }
 
 impl RunKey {
+    /// What all methods solve: everything but the method.
+    pub fn problem(&self) -> String {
+        let RunKey {
+            case,
+            mesh,
+            space,
+            friction,
+            increment,
+            ..
+        } = self;
+        format!("{case} {mesh} {space} {friction:e} {increment}")
+    }
+
     /// Order of runs: case, mesh, space, method (as text), friction, increment (as numbers).
     pub fn order(&self, other: &Self) -> Ordering {
         (&self.case, &self.mesh, &self.space, &self.method)
@@ -39,6 +52,15 @@ impl RunKey {
             .then(self.friction.total_cmp(&other.friction))
             .then(self.increment.cmp(&other.increment))
     }
+}
+
+/// Of an increment that was solved at tier high: what tells it from another answer. Not written.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// Which run.
+    pub key: RunKey,
+    /// `[[u]]` by contact row [m].
+    pub jump: Vec<f64>,
 }
 
 /// One row of `runs.csv`: one increment of one run.
@@ -269,6 +291,8 @@ pub struct Results {
     pub expectations: Vec<ExpectRow>,
     /// Fields of selected runs.
     pub fields: Vec<RunFields>,
+    /// Answers, to be told apart.
+    pub answers: Vec<Answer>,
 }
 
 impl Results {
@@ -295,6 +319,7 @@ impl Results {
         self.exact.extend(other.exact);
         self.expectations.extend(other.expectations);
         self.fields.extend(other.fields);
+        self.answers.extend(other.answers);
     }
 
     /// The part of these results that is about some cases.
@@ -311,6 +336,7 @@ impl Results {
             exact: part(&self.exact, |row| wanted(&row.case)),
             expectations: part(&self.expectations, |row| wanted(&row.key.case)),
             fields: part(&self.fields, |run| wanted(&run.key.case)),
+            answers: Vec::new(),
         }
     }
 

@@ -12,9 +12,10 @@ use crate::model::quantities::{point_states, quantities};
 use crate::run::choice::{Choice, choices};
 use crate::run::exact_curve::exact_rows;
 use crate::run::expect::{self, expectation_rows};
-use crate::run::load_path::{LoadPathRun, Posed};
+use crate::run::load_path::{Guess, LoadPathRun, Posed};
 use crate::run::record::{Results, RunFields, RunRow};
 use crate::run::registry::methods;
+use crate::run::several::mark_several;
 use crate::run::verdict::Accuracy;
 
 /// How to run cases.
@@ -26,6 +27,8 @@ pub struct Settings {
     pub jobs: usize,
     /// Whose fields are kept for pictures.
     pub fields: Fields,
+    /// Starts from which every exact method looks for answers; 1: that of the increment alone, whose runs are kept.
+    pub starts: usize,
 }
 
 /// Methods whose fields are kept: pictures cost more than solving, and exact methods agree to many digits.
@@ -108,7 +111,14 @@ pub fn run_case(
                 Fields::First => number == first,
                 Fields::All => true,
             };
-            let results = run_path(&posed.run(choice, accuracy), refine, fields);
+            let mut results = run_path(&posed.run(choice, accuracy), refine, fields);
+            for further in (0..settings.starts.saturating_sub(1)).filter(|_| choice.exact()) {
+                let path = LoadPathRun {
+                    guess: Guess::Further(further),
+                    ..posed.run(choice, accuracy)
+                };
+                path.follow(&mut |key, now, _| results.answers.extend(now.answer(key)));
+            }
             let Posed { friction, .. } = posed;
             progress.done(&format!(
                 "{} {} mu={friction} {}",
@@ -129,6 +139,7 @@ pub fn run_case(
             results.append(part);
         }
     }
+    mark_several(&mut results);
     if settings.jobs > 1 {
         results.runs.iter_mut().for_each(RunRow::forget_times);
     }
@@ -185,6 +196,7 @@ fn run_path(path: &LoadPathRun<'_>, refine: usize, fields: bool) -> Results {
     let end = path.follow(&mut |key, increment, now| {
         results.runs.push(path.row(key, increment, now));
         results.history.extend(increment.history_rows(key));
+        results.answers.extend(increment.answer(key));
         let Some(now) = now else { return };
         results.add_found(key, quantities(case, body, now), point_states(body, now));
         if fields {

@@ -15,6 +15,9 @@ use crate::case::Case;
 /// Largest backward error of equilibrium after a direct solve; above it a violation does not measure contact alone.
 pub const EQUILIBRIUM: f64 = 1e-12;
 
+/// Violations up to this multiple of the rounding of W P may be nothing else.
+const DROWNED: f64 = 10.0;
+
 /// Accuracy of a run, as bounds on [`Residuals::violation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
@@ -64,6 +67,8 @@ impl fmt::Display for Accuracy {
 pub enum Verdict {
     /// Claimed the contact laws and the judge agrees.
     Solved,
+    /// The same, and another answer to the same problem holds as well: see [`mark_several`](super::several::mark_several).
+    Several,
     /// Solved its own laws, as the judge agrees; it found the contact laws held to this tier, or to none.
     Approximate(Option<Tier>),
     /// Claimed the contact laws and the judge disagrees.
@@ -155,7 +160,10 @@ impl Verdict {
             let tolerance = tier.tolerance();
             found.equilibrium <= tolerance && found.violation <= tolerance
         };
+        // No tier where rounding may hide as much, nor a false claim where it may be all there is.
+        let drowned = found.rounding > accepted && found.violation <= DROWNED * found.rounding;
         match (outcome.status, outcome.claim) {
+            (Status::Converged, Claim::Exact) if drowned => Verdict::GaveUp(Status::Rounding),
             (Status::Converged, _) if as_claimed && solved => Verdict::Solved,
             (Status::Converged, Claim::Exact) => Verdict::FalseClaim,
             (Status::Converged, _) if as_claimed => {
@@ -174,7 +182,7 @@ impl Verdict {
     /// Without details.
     pub fn kind(&self) -> VerdictKind {
         match self {
-            Verdict::Solved => VerdictKind::Solved,
+            Verdict::Solved | Verdict::Several => VerdictKind::Solved,
             Verdict::Approximate(_) => VerdictKind::Approximate,
             Verdict::FalseClaim => VerdictKind::FalseClaim,
             Verdict::GaveUp(_) => VerdictKind::GaveUp,
@@ -189,7 +197,7 @@ impl Verdict {
     /// Place from best to worst; verdicts that differ in words alone share one.
     pub fn rank(&self) -> (usize, Reverse<Option<Tier>>) {
         let (place, held) = match self {
-            Verdict::Solved => (0, None),
+            Verdict::Solved | Verdict::Several => (0, None),
             Verdict::Approximate(tier) => (1, *tier),
             Verdict::Refused(_) => (2, None),
             Verdict::GaveUp(_) => (3, None),
@@ -201,6 +209,11 @@ impl Verdict {
             Verdict::FalseClaim => (8, None),
         };
         (place, Reverse(held))
+    }
+
+    /// True if the contact laws hold as claimed.
+    pub fn is_solved(&self) -> bool {
+        self.kind() == VerdictKind::Solved
     }
 
     /// True if the run did what it said: its times may be published.

@@ -179,6 +179,7 @@ pub fn run(case: &Case, methods: &[&str]) -> Results {
         tier: None,
         jobs: 1,
         fields: Fields::None,
+        starts: 1,
     };
     run_case(case, &choices(methods), settings, &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }

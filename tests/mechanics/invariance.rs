@@ -265,6 +265,7 @@ fn jobs_change_nothing_but_the_times() {
             tier: None,
             jobs,
             fields: Fields::None,
+            starts: 1,
         };
         run_case(&case, &methods, settings, &Quiet).unwrap()
     });
@@ -309,6 +310,7 @@ fn a_body_far_from_zero_gives_the_same_bits() {
             tier: None,
             jobs: 1,
             fields: Fields::All,
+            starts: 1,
         };
         run_case(&case(by), &choices(&["hybrid"]), settings, &Quiet).unwrap()
     };

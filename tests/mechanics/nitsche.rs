@@ -16,6 +16,7 @@ const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
     fields: Fields::None,
+    starts: 1,
 };
 
 const TRACTION: Needs = Needs {

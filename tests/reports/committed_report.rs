@@ -201,6 +201,7 @@ fn fresh_tables() -> BTreeMap<String, Vec<u8>> {
         tier: None,
         jobs: 1,
         fields: Fields::None,
+        starts: 1,
     };
     let mut results = Results::default();
     for name in QUICK {

@@ -324,6 +324,7 @@ fn an_error_of_memory_is_told_by_its_type_and_fails_the_run() {
         tier: None,
         jobs: 1,
         fields: Fields::None,
+        starts: 1,
     };
     for method in [&AT_ONCE, &LATER] {
         let choice = Choice::new(method, &[]).unwrap();

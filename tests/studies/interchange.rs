@@ -47,6 +47,7 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
         tier: Some(Tier::High),
         jobs: 1,
         fields: Fields::None,
+        starts: 1,
     };
     let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
     let own = (results.points.iter()).filter(|row| row.key.increment == increment);

@@ -14,6 +14,7 @@ const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
     fields: Fields::None,
+    starts: 1,
 };
 
 /// Increments of 100 that every exact method must solve, what is missing gave up and said so. Measured on these bodies:

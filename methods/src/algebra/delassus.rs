@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use crate::MethodError;
-use crate::algebra::dense::{dot, mul_add, refill};
+use crate::algebra::dense::{dot, mul_add, norm, refill};
 use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::square::{DelassusMatrix, SquareMatrix};
 
@@ -44,6 +44,20 @@ pub trait Delassus: Send + Sync {
         for (k, v) in v.iter_mut().enumerate() {
             *v += dot(self.column(k, &mut work), p);
         }
+    }
+
+    /// A bound of ||W||P||: |w_ij| <= √(w_ii w_jj) where W is symmetric and positive semi-definite.
+    fn magnitude(&self, p: &[f64]) -> f64 {
+        if self.symmetric() {
+            let own = p.iter().zip(self.diagonal());
+            return own.map(|(p, w)| p.abs() * w.sqrt()).sum::<f64>() * self.trace().sqrt();
+        }
+        let (mut sum, mut work) = (vec![0.0; self.rows()], Vec::new());
+        for (k, p) in p.iter().enumerate().filter(|own| *own.1 != 0.0) {
+            let parts = sum.iter_mut().zip(self.column(k, &mut work));
+            parts.for_each(|(sum, w)| *sum += (w * p).abs());
+        }
+        norm(&sum)
     }
 
     /// Sum of the diagonal.

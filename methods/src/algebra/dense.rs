@@ -169,9 +169,17 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Euclidean norm.
+/// Euclidean norm, also where squares leave the range of numbers.
 pub(crate) fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+    let square = x.iter().map(|v| v * v).sum::<f64>();
+    if square.is_normal() {
+        return square.sqrt();
+    }
+    let most = x.iter().fold(0.0, |m: f64, v| larger(m, v.abs()));
+    if most == 0.0 || !most.is_finite() {
+        return most;
+    }
+    most * x.iter().map(|v| (v / most).powi(2)).sum::<f64>().sqrt()
 }
 
 /// The larger of two numbers; NaN if one is, which `max` would drop.

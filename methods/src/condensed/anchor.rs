@@ -5,7 +5,7 @@
 //! laws, it becomes the anchor, from which the method goes on: what is computed then are differences, and what rounding
 //! spoils is relative to those.
 
-use crate::algebra::dense::minus;
+use crate::algebra::dense::{minus, norm};
 use crate::condensed::forces::Forces;
 use crate::condensed::problem::{Check, ContactProblem};
 use crate::contract::judge::{imbalance, slip_from};
@@ -229,10 +229,13 @@ impl ContactProblem<'_> {
         Ok(self.displaced(&step)?.map(|u| ContactState { u, p }))
     }
 
-    /// All contact forces of an iterate, balanced.
+    /// All contact forces of an iterate, balanced; none where all they are is the rounding of larger ones.
     fn balanced(&self, p: &[f64]) -> Vec<f64> {
         let mut p = p.to_vec();
         self.rebalance(&mut p);
+        if norm(&p) <= f64::EPSILON * self.reference_force() {
+            p.fill(0.0);
+        }
         self.all_forces(&p)
     }
 

@@ -1,6 +1,6 @@
 //! An increment as interchange formats hold it: condensed to the contact points, all `dim` rows of every point.
 
-use crate::algebra::dense::{dot, minus};
+use crate::algebra::dense::minus;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::SymmetricMatrix;
 use crate::algebra::rows::RowSet;
@@ -90,12 +90,6 @@ impl Increment<'_> {
     fn form_modes(&self) -> ModeJumps {
         let elastic = self.system.elastic();
         ModeJumps::new(elastic.jump(), &elastic.rows().source, elastic.floating())
-    }
-
-    /// −Rᵀ f: what Nᵀ P must be.
-    pub(crate) fn resultant(&self) -> Vec<f64> {
-        let motions = self.system.elastic().floating().iter();
-        motions.map(|r| -dot(r, &self.load.force)).collect()
     }
 }
 

@@ -10,7 +10,8 @@ use crate::algebra::dense::{dot, norm};
 use crate::algebra::rows::RowSet;
 use crate::condensed::anchor::Anchor;
 use crate::condensed::forces::{End, Forces};
-use crate::contract::judge::{Violations, free_jump, reference_force, slip_from};
+use crate::contract::free_jump::FreeJump;
+use crate::contract::judge::{Violations, slip_from};
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use crate::contract::system::Increment;
@@ -51,19 +52,6 @@ impl Limits {
             iterations,
             patience,
         }
-    }
-}
-
-/// r·f; nothing where the parts cancel to rounding, so that what is loose may stay without forces.
-fn resultant(r: &[f64], f: &[f64]) -> f64 {
-    /// Of the sum of |r_i f_i|.
-    const ROUNDING: f64 = 1e-14;
-    let size: f64 = r.iter().zip(f).map(|(r, f)| (r * f).abs()).sum();
-    let sum = dot(r, f);
-    if sum.abs() > ROUNDING * size {
-        sum
-    } else {
-        0.0
     }
 }
 
@@ -111,8 +99,11 @@ pub struct ContactProblem<'a> {
     pub(crate) history: Vec<Iteration>,
     /// `[[u]]` at the start of the increment.
     pub(super) start_jump: Vec<f64>,
-    /// |q| in P_ref.
-    free_jump: f64,
+    free_jump: FreeJump,
+    /// s of the iterate measured last; see [`Residuals`](crate::Residuals).
+    scale: f64,
+    /// Room for rows.
+    moved: Vec<f64>,
     rescues: usize,
     /// Smallest violation so far and its iteration.
     pub(super) best: (f64, usize),
@@ -172,23 +163,20 @@ impl<'a> ContactProblem<'a> {
                 counters,
             }));
         }
-        let (rows, start_jump) = (system.row_set(), increment.start_jump());
-        let force = &increment.load.force;
-        let resultant: Vec<f64> = (elastic.floating().iter())
-            .map(|r| -resultant(r, force))
-            .collect();
-        let balance = operator.modes.balance(&resultant);
+        let free_jump = FreeJump::new(increment, &operator, &u)?;
         Ok(Begin::Contact(Box::new(ContactProblem {
-            free_jump: free_jump(increment, &operator, &rows.restrict(&jump), &balance),
-            q: slip_from(rows, dim, &jump, &start_jump),
-            start_jump,
+            scale: free_jump.size,
+            moved: Vec::with_capacity(free_jump.q.len()),
+            q: free_jump.q.clone(),
+            balance: free_jump.balance.clone(),
+            free_jump,
+            start_jump: increment.start_jump(),
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::with_capacity(EXPECTED),
             increment,
-            rows,
+            rows: system.row_set(),
             rescues: 0,
             best: (f64::INFINITY, 0),
-            balance,
             counters,
             free: u,
             further: Vec::new(),
@@ -338,12 +326,12 @@ impl<'a> ContactProblem<'a> {
     /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
     pub(crate) fn mean_jump(&self) -> f64 {
         let least = norm(&self.balance) / self.operator.rho;
-        self.free_jump.max(least) / (self.rows.points() as f64).sqrt()
+        self.free_jump.size.max(least) / (self.rows.points() as f64).sqrt()
     }
 
-    /// P_ref, the force that violations are relative to.
-    pub fn reference_force(&self, p: &[f64]) -> f64 {
-        reference_force(self.operator.rho, p, self.free_jump)
+    /// P_ref, the force that the violation measured last is relative to; before any that of no contact forces.
+    pub fn reference_force(&self) -> f64 {
+        self.operator.rho * self.scale
     }
 
     /// η, the largest violation of the contact laws, as the judge computes it; see
@@ -351,8 +339,8 @@ impl<'a> ContactProblem<'a> {
     pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        let (rho, p_ref) = (self.operator.sharp, self.reference_force(p));
-        Violations::of(friction, self.rows, rho, p_ref, p, v).largest()
+        self.scale = (self.free_jump).scale(&self.operator, p, v, &mut self.moved);
+        Violations::of(friction, self.rows, &self.operator, self.scale, p, v).largest()
     }
 
     /// That of the iterate noted last.

@@ -102,7 +102,7 @@ pub fn from_all_starts(
         states.push(outcome.state);
     }
     let apart = |a: &ContactState, b: &ContactState| {
-        let size = problem.as_ref().map_or(0.0, |p| p.reference_force(&a.p));
+        let size = problem.as_ref().map_or(0.0, |p| p.reference_force());
         norm(&minus(&a.p, &b.p)) > DIFFERENT * increment.tolerance * size
     };
     let verdict = match (failed, &problem) {
@@ -117,6 +117,40 @@ pub fn from_all_starts(
     Ok((verdict, states))
 }
 
+/// Contact forces to look for further solutions from, all rows: those of [`Start::ALL`] as far as there are any, then forces at
+/// random within the cones of friction, the same at every call. None where nothing closes without contact forces.
+///
+/// # Errors
+/// Those of factorisation and condensation.
+pub fn guesses(increment: &Increment<'_>, count: usize) -> Result<Vec<Vec<f64>>, MethodError> {
+    let begun = ContactProblem::begin(increment, DelassusForm::Formed, |_| Claim::Exact)?;
+    let Begin::Contact(problem) = begun else {
+        return Ok(Vec::new());
+    };
+    let known = Start::ALL
+        .into_iter()
+        .filter_map(|start| forces(start, increment, Some(&problem)));
+    let size = problem.reference_force() / (problem.rows.points() as f64).sqrt();
+    // Evenly spread without a pattern: multiples of the golden section.
+    let mut turns = (1..).map(|k| (0.618_033_988_749_895 * k as f64).fract());
+    let mut random = || {
+        let mut p = vec![0.0; problem.len()];
+        for (i, own) in problem.rows.iter().enumerate() {
+            let [normal, share, angle] = std::array::from_fn(|_| turns.next().unwrap_or_default());
+            let (sin, cos) = (std::f64::consts::TAU * angle).sin_cos();
+            p[own.start] = 2.0 * normal * size;
+            let bound = share * problem.friction(i) * p[own.start];
+            let tangential = own.skip(1).zip([cos, sin]);
+            tangential.for_each(|(k, part)| p[k] = bound * part);
+        }
+        problem.all_forces(&p)
+    };
+    Ok(known
+        .chain(std::iter::repeat_with(&mut random))
+        .take(count)
+        .collect())
+}
+
 /// Contact forces of a start, all rows; `None` if there are no tied forces.
 fn forces(
     start: Start,
@@ -126,7 +160,7 @@ fn forces(
     match (start, problem) {
         (Start::Stick, Some(problem)) => Some(problem.all_forces(&tied_forces(problem)?)),
         (Start::Open, Some(problem)) => {
-            let tension = problem.by_row(-problem.reference_force(&[]), 0.0);
+            let tension = problem.by_row(-problem.reference_force(), 0.0);
             Some(problem.all_forces(&tension))
         }
         (Start::Zero, _) | (_, None) => Some(vec![0.0; increment.start.p.len()]),

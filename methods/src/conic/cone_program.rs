@@ -72,13 +72,13 @@ struct Constraints {
 }
 
 impl ConeProgram {
-    /// The program of an increment; `start` are forces of the size to expect.
+    /// The program of an increment.
     ///
     /// # Errors
     /// Data clarabel refuses.
-    pub fn new(problem: &ContactProblem<'_>, law: Law, start: &[f64]) -> Result<Self, MethodError> {
+    pub fn new(problem: &ContactProblem<'_>, law: Law) -> Result<Self, MethodError> {
         let rho = problem.operator.rho;
-        let force = problem.reference_force(start) / (problem.rows.points() as f64).sqrt();
+        let force = problem.reference_force() / (problem.rows.points() as f64).sqrt();
         let length = force / rho;
         let modes = &problem.operator.modes;
         let mut linear = problem.q.clone();
@@ -256,7 +256,7 @@ fn upper_triangle(problem: &ContactProblem<'_>, rho: f64) -> CscMatrix<f64> {
     CscMatrix::new(n, n, starts, rows, values)
 }
 
-fn settings(tolerance: f64) -> Result<DefaultSettings<f64>, MethodError> {
+pub(crate) fn settings(tolerance: f64) -> Result<DefaultSettings<f64>, MethodError> {
     DefaultSettingsBuilder::default()
         .verbose(false)
         .max_threads(1)
@@ -269,7 +269,7 @@ fn settings(tolerance: f64) -> Result<DefaultSettings<f64>, MethodError> {
         .map_err(refused)
 }
 
-fn refused(error: impl std::fmt::Display) -> MethodError {
+pub(crate) fn refused(error: impl std::fmt::Display) -> MethodError {
     kernel("cone program", error.to_string())
 }
 
@@ -293,7 +293,7 @@ mod tests {
     fn solve(law: Law, k: f64, mu: f64, f: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let load = (f.to_vec(), vec![0.0; f.len()]);
         with_contact(&springs(f.len(), k), vec![mu], load, |_, problem| {
-            let mut program = ConeProgram::new(&problem, law, &vec![0.0; problem.len()]).unwrap();
+            let mut program = ConeProgram::new(&problem, law).unwrap();
             let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().p;
             parameters.iter().map(solve).collect()
         })

@@ -94,10 +94,10 @@ impl FixedPoint {
         }
     }
 
-    fn program(&self, problem: &ContactProblem<'_>, x: &Forces) -> Result<Program, MethodError> {
+    fn program(&self, problem: &ContactProblem<'_>) -> Result<Program, MethodError> {
         Ok(match self.gradients {
             true => Program::Gradients(Box::new(Mprgp::new(problem))),
-            false => Program::Conic(Box::new(ConeProgram::new(problem, self.law, &x.p)?)),
+            false => Program::Conic(Box::new(ConeProgram::new(problem, self.law)?)),
         })
     }
 
@@ -159,7 +159,7 @@ impl Program {
 impl CondensedMethod for FixedPoint {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut x = problem.start();
-        let mut program = self.program(problem, &x)?;
+        let mut program = self.program(problem)?;
         let mut anderson = Anderson::new(self.settings.anderson);
         let mut branches = Branches::default();
         let mut accuracy = Accuracy::new(problem);
@@ -187,7 +187,7 @@ impl CondensedMethod for FixedPoint {
                 Check::GoOn => {}
                 Check::Corrected => {
                     // The program holds q.
-                    program = self.program(problem, &x)?;
+                    program = self.program(problem)?;
                     continue;
                 }
                 Check::End(status) => return Ok(End { status, at: x }),

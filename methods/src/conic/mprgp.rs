@@ -64,7 +64,7 @@ impl Mprgp {
         let mut p: Option<Vec<f64>> = None;
         for _ in 0..MAX_STEPS {
             problem.counters.local_solves += bounds.len();
-            let stop = tolerance * problem.reference_force(&self.x.p);
+            let stop = tolerance * problem.reference_force();
             let imbalance = norm(&problem.missing(&self.x.p));
             let free = free_rows(problem, bounds, &self.x.p);
             let phi = masked(&self.x.v, &free);

@@ -3,6 +3,7 @@
 use crate::algebra::dense::{larger, norm, ratio};
 use crate::algebra::rows::RowSet;
 use crate::contract::barrier_law::BarrierLaw;
+use crate::contract::free_jump::FreeJump;
 use crate::contract::law::{natural_map_squared, return_map, tangential_norm};
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState};
@@ -11,8 +12,13 @@ use crate::error::{MethodError, check_finite, check_len};
 
 /// Residuals of one state, dimensionless but for the reference sizes: they change neither with units nor with the tangent frames.
 ///
-/// Reference sizes: P_ref = max(ρ |q|, |P|) and u_ref = P_ref/ρ̂, with q the jump without contact forces, ρ =
-/// rows / trace(W), ρ̂ = ρ unless slender parts sway ([`ContactOperator::sharp`]), and Euclidean norms over all points.
+/// Reference sizes: P_ref = ρ s and u_ref = P_ref/ρ̂, with the scale
+/// ```text
+/// s = max(|Π (q + W Q c)|, |Π W Π P| − ε ||W||P||),   Π = I − Q Qᵀ
+/// ```
+/// q the jump without contact forces, Q c the least forces that balance the load of floating pieces, ρ = rows / trace(W), ρ̂ = ρ
+/// unless slender parts sway ([`ContactOperator::sharp`]), Euclidean norms over all points. Forces that W does not feel, the
+/// rigid share of forces and rounding buy nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
@@ -26,7 +32,7 @@ pub struct Residuals {
     pub penetration: f64,
     /// max −P_n / P_ref: adhesion.
     pub adhesion: f64,
-    /// max |g P_n| / (u_ref P_ref).
+    /// max |g P_n| / (u_ref max(P_ref, |P_n|)): a large force need not close a gap better than any other.
     pub complementarity: f64,
     /// max (|P_t| − μ P_n) / P_ref.
     pub cone: f64,
@@ -46,6 +52,8 @@ pub struct Residuals {
     pub reference_jump: f64,
     /// [`ContactOperator::sway`]; likewise.
     pub sway: f64,
+    /// ε ||W||P|| / u_ref: what rounding of W P may hide of the violation.
+    pub rounding: f64,
 }
 
 /// Judges a state against the contact laws: [`residuals_of`] with [`Claim::Exact`].
@@ -91,21 +99,19 @@ pub fn residuals_of(
         return Ok(result);
     }
 
-    // W is not formed to judge: one product, which is one solve, and the trace in ρ.
+    // W is not formed to judge: one solve, and the trace in ρ.
     let operator = system.operator(DelassusForm::Products)?;
     let (rho, rows) = (operator.sharp, system.row_set());
     let v = slip_from(rows, dim, &jump, &i.start_jump());
     let p = rows.restrict(&s.p);
-    let mut q = rows.restrict(&jump);
-    let mut wp = vec![0.0; q.len()];
-    operator.w.apply_add(&p, &mut wp);
-    q.iter_mut().zip(&wp).for_each(|(q, wp)| *q -= wp);
-    let free = free_jump(i, &operator, &q, &operator.modes.components(&p));
-    let p_ref = reference_force(operator.rho, &p, free);
-    let u_ref = p_ref / rho;
+    let mut free = i.load.force.clone();
+    system.elastic().solve(&mut free)?;
+    let free = FreeJump::new(i, &operator, &free)?;
+    let scale = free.scale(&operator, &p, &v, &mut Vec::new());
+    let (p_ref, u_ref) = operator.reference(scale);
 
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
-    let found = Violations::of(system.friction(), rows, rho, p_ref, &p, &v);
+    let found = Violations::of(system.friction(), rows, &operator, scale, &p, &v);
     let natural_map = found
         .natural_map
         .hypot(ratio(forbidden.max(0.0).sqrt(), p_ref));
@@ -126,6 +132,7 @@ pub fn residuals_of(
     result.reference_force = p_ref;
     result.reference_jump = u_ref;
     result.sway = operator.sway;
+    result.rounding = ratio(operator.rounding(&p), u_ref);
     for point in 0..rows.points() {
         let (p, v) = (&p[rows.of(point)], &v[rows.of(point)]);
         let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
@@ -145,7 +152,7 @@ pub fn residuals_of(
                     (p[k] - i.start.p[row]) / tangential
                 };
             }
-            Violations::of(system.friction(), rows, rho, p_ref, &p, &stretched).largest()
+            Violations::of(system.friction(), rows, &operator, scale, &p, &stretched).largest()
         }
         Claim::Barrier {
             gap,
@@ -257,37 +264,43 @@ pub(crate) struct Violations {
 }
 
 impl Violations {
-    /// Of P and v = (g, d) by row, with u_ref = P_ref/ρ.
+    /// Of P and v = (g, d) by row, both first divided by their scales: nothing leaves the range of numbers on the way.
     pub(crate) fn of(
         friction: &[f64],
         rows: &RowSet,
-        rho: f64,
-        p_ref: f64,
+        operator: &ContactOperator,
+        scale: f64,
         p: &[f64],
         v: &[f64],
     ) -> Self {
         let (mut square, mut overlap, mut tension, mut product, mut outside) =
             (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (p_ref, u_ref) = operator.reference(scale);
         for (own, &mu) in rows.iter().zip(friction) {
-            let (p, v) = (&p[own.clone()], &v[own]);
-            square += natural_map_squared(mu, rho, p, v);
+            let (mut at_p, mut at_v) = ([0.0; 3], [0.0; 3]);
+            let count = own.len();
+            for (l, k) in own.enumerate() {
+                (at_p[l], at_v[l]) = (ratio(p[k], p_ref), ratio(v[k], u_ref));
+            }
+            let (p, v) = (&at_p[..count], &at_v[..count]);
+            square += natural_map_squared(mu, 1.0, p, v);
             overlap = larger(overlap, -v[0]);
             tension = larger(tension, -p[0]);
-            product = larger(product, (v[0] * p[0]).abs());
+            product = larger(product, (v[0] * p[0] / p[0].abs().max(1.0)).abs());
             outside = larger(outside, excess(mu, p));
         }
-        let u_ref = p_ref / rho;
         Self {
-            natural_map: ratio(square.sqrt(), p_ref),
-            penetration: ratio(overlap, u_ref),
-            adhesion: ratio(tension, p_ref),
-            complementarity: ratio(product, u_ref * p_ref),
-            cone: ratio(outside, p_ref),
+            natural_map: square.sqrt(),
+            penetration: overlap,
+            adhesion: tension,
+            complementarity: product,
+            cone: outside,
         }
     }
 
     /// The same as residuals of a pair that has no displacements, relative to P_ref and u_ref = P_ref/ρ.
-    pub(crate) fn residuals(&self, rho: f64, p_ref: f64) -> Residuals {
+    pub(crate) fn residuals(&self, operator: &ContactOperator, scale: f64) -> Residuals {
+        let (reference_force, reference_jump) = operator.reference(scale);
         Residuals {
             penetration: self.penetration,
             adhesion: self.adhesion,
@@ -295,8 +308,8 @@ impl Violations {
             cone: self.cone,
             natural_map: self.natural_map,
             violation: self.largest(),
-            reference_force: p_ref,
-            reference_jump: p_ref / rho,
+            reference_force,
+            reference_jump,
             ..Residuals::default()
         }
     }
@@ -316,34 +329,4 @@ impl Violations {
 /// |P_t| − μ max(P_n, 0) at one point.
 fn excess(mu: f64, p: &[f64]) -> f64 {
     tangential_norm(p) - mu * p[0].max(0.0)
-}
-
-/// |q| without what rigid motions and pins contribute: |(I − Q Qᵀ)(q + W Q c)|, where Q c are the contact forces of
-/// least norm that balance the load.
-///
-/// Where nothing acts there is no such jump, and residuals would be relative to nothing: the size of what the increment
-/// starts from takes its place, the larger of |P|/ρ and the jump.
-pub(crate) fn free_jump(
-    i: &Increment<'_>,
-    operator: &ContactOperator,
-    q: &[f64],
-    balance: &[f64],
-) -> f64 {
-    if i.unloaded() {
-        return (norm(&i.start.p) / operator.rho).max(norm(&i.start_jump()));
-    }
-    if balance.is_empty() {
-        return norm(q);
-    }
-    let mut least = vec![0.0; q.len()];
-    operator.modes.add(balance, &mut least);
-    let mut free = q.to_vec();
-    operator.w.apply_add(&least, &mut free);
-    operator.modes.project_out(&mut free);
-    norm(&free)
-}
-
-/// P_ref = max(ρ |q|, |P|).
-pub(crate) fn reference_force(rho: f64, p: &[f64], free_jump: f64) -> f64 {
-    (rho * free_jump).max(norm(p))
 }

@@ -11,8 +11,9 @@ use crate::algebra::floating::ModeJumps;
 use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
 
-/// Below this fraction of the local compliance the trace of W is rounding.
-const NO_TRACE: f64 = 1e-10;
+/// Below this fraction of the local compliance the trace of W is rounding, and what moves beside rigid motions of what their load
+/// would.
+pub(crate) const NO_TRACE: f64 = 1e-10;
 
 /// Above this multiple of the compliance on the stiffest unknowns the trace of W is that of a few swaying motions; of a
 /// plate, a beam, an inner crack it is 3 to 20.
@@ -42,6 +43,8 @@ pub struct ContactOperator {
     /// trace(W⊥) / (Σ_i |B_i|² / max_j K_jj): how far contact forces move the body beside what they press into its
     /// stiffest unknowns. Displacements carry the rounding of K times this.
     pub sway: f64,
+    /// Whether every contact row moves rigidly.
+    pub(crate) stiff: bool,
 }
 
 impl ContactOperator {
@@ -75,7 +78,28 @@ impl ContactOperator {
             rho: scale(compliance),
             sharp: scale(compliance.min(SWAYING * stiffest)),
             sway: compliance / stiffest,
+            stiff: trace <= NO_TRACE * local,
         })
+    }
+
+    /// Π W P by row, Π = I − Q Qᵀ: how far contact forces move the points, beside rigid motions.
+    pub(crate) fn moved(&self, p: &[f64]) -> Vec<f64> {
+        let mut moved = vec![0.0; p.len()];
+        if p.iter().any(|&p| p != 0.0) {
+            self.w.apply_add(p, &mut moved);
+            self.modes.project_out(&mut moved);
+        }
+        moved
+    }
+
+    /// (P_ref, u_ref) = (ρ s, P_ref/ρ̂).
+    pub(crate) fn reference(&self, scale: f64) -> (f64, f64) {
+        (self.rho * scale, scale * (self.rho / self.sharp))
+    }
+
+    /// A bound of ε ||W||P||, what rounding leaves of W P.
+    pub(crate) fn rounding(&self, p: &[f64]) -> f64 {
+        f64::EPSILON * self.w.magnitude(p)
     }
 }
 

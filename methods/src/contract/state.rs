@@ -58,13 +58,15 @@ statuses! {
     SingularTangent = "singular-tangent",
     /// A floating piece is not held by the contact: it can move rigidly, or its load cannot be balanced.
     Mechanism = "mechanism",
-    /// No contact force within the cones of friction balances the load on floating pieces; see
-    /// [`unbalanced`](crate::conic::unbalanced). Said by the judge, in place of what a method ended with.
+    /// Proved: no contact force within the cones of friction balances the load on floating pieces, or none opens all gaps; see
+    /// [`no_equilibrium`](crate::conic::no_equilibrium). Said by the judge, in place of what a method ended with.
     NoEquilibrium = "no-equilibrium",
     /// Numbers left the finite range.
     Diverged = "diverged",
     /// The monitor asked to stop.
     Stopped = "stopped",
+    /// The contact forces are so large beside what they move that rounding decides: no tier can be given. Said by the judge.
+    Rounding = "rounding",
     /// The method says that it has no solution, and nothing else.
     Unexplained = "unexplained",
 }

@@ -152,7 +152,7 @@ impl Scheme for Complementarity {
         at.step(&stiff, pieces, step)
     }
 
-    fn prepare(&mut self, problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) -> bool {
+    fn prepare(&mut self, problem: &ContactProblem<'_>, _violation: f64) -> bool {
         self.mapped = match self.return_map {
             0 => false,
             1 => problem.idle() > SLOW,

@@ -155,7 +155,7 @@ impl Iterate {
     /// `start` and its jump, moved inside the cones by `depth` times the reference force per point.
     fn begin(&mut self, problem: &ContactProblem<'_>, start: &Forces, jump: &[f64], depth: f64) {
         let points = problem.rows.points();
-        let force = depth * problem.reference_force(&start.p) / (points as f64).sqrt();
+        let force = depth * problem.reference_force() / (points as f64).sqrt();
         let length = force / problem.operator.rho;
         let Self { P, beta, v, lambda } = self;
         P.clone_from(&start.p);

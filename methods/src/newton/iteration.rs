@@ -75,7 +75,7 @@ pub(crate) trait Scheme: Send {
     fn begin(&mut self) {}
 
     /// Called with every iterate and its violation before the next step, for what changes with them; whether the equations do.
-    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64, _x: &Forces) -> bool {
+    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64) -> bool {
         false
     }
 
@@ -171,7 +171,7 @@ impl<S: Scheme> Newton<S> {
                 }
                 Check::End(status) => return Ok(End { status, at: x }),
             }
-            if self.scheme.prepare(problem, violation, &x) {
+            if self.scheme.prepare(problem, violation) {
                 merit = None;
             }
             before.clone_from(&pieces);

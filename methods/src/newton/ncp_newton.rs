@@ -69,7 +69,7 @@ use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, tangential_norm};
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::iteration::{Newton, Scheme, scheme_options};
-use crate::{ContactProblem, Forces, Method, OptionSpec, options};
+use crate::{ContactProblem, Method, OptionSpec, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -274,9 +274,9 @@ impl Scheme for ConeFunction {
         self.epsilon = f64::INFINITY;
     }
 
-    fn prepare(&mut self, problem: &ContactProblem<'_>, violation: f64, x: &Forces) -> bool {
+    fn prepare(&mut self, problem: &ContactProblem<'_>, violation: f64) -> bool {
         let points = problem.rows.points() as f64;
-        let force = problem.reference_force(&x.p) / points.sqrt();
+        let force = problem.reference_force() / points.sqrt();
         let before = self.epsilon;
         self.epsilon = match self.smoothed {
             true => before.min(SMOOTHING * violation * force),

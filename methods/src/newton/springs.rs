@@ -138,7 +138,7 @@ impl Trial {
         let (p, rho) = (&self.forces.p, problem.operator.rho);
         let missing: f64 = problem.missing(p).iter().map(|c| c * c).sum();
         let square: f64 = self.mismatch.iter().map(|f| (rho * f).powi(2)).sum();
-        ratio((square + missing).sqrt(), problem.reference_force(p))
+        ratio((square + missing).sqrt(), problem.reference_force())
     }
 
     /// Σ r F² plus the missing balance, an energy.

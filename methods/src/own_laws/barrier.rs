@@ -180,7 +180,7 @@ impl CondensedMethod for Barrier {
 
         let (status, P) = loop {
             let mut at = Balance::of(problem, &law, &x);
-            let residual = ratio(at.merit(rho).sqrt(), problem.reference_force(&at.P));
+            let residual = ratio(at.merit(rho).sqrt(), problem.reference_force());
             let changes = changed(&at.branches, &before);
             before.clone_from(&at.branches);
             let solved = width == 1.0 && residual <= CLAIM_FRACTION * problem.stop;

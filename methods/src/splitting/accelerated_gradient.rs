@@ -270,7 +270,9 @@ impl<'g> Program<'g> {
             let size = self.squared(&self.trial.p, &self.y.p);
             let curvature = dot(&self.trial.dp, &self.trial.dv);
             // Forces at rest: any step will do.
-            if curvature * self.t <= size || size == 0.0 {
+            // Nor does one help where numbers left the finite range.
+            let steep = curvature * self.t > size && curvature.is_finite();
+            if !steep || size == 0.0 {
                 break;
             }
             self.t = (SHRINK * self.t).min(size / curvature);

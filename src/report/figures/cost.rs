@@ -5,7 +5,7 @@ use super::runs::distinct;
 use crate::report::number::significant;
 use crate::report::plot::{Cell, HeatMap, plain, rank};
 use crate::report::{Bundle, ReportError};
-use crate::run::verdict::{Verdict, VerdictKind};
+use crate::run::verdict::VerdictKind;
 use crate::studies::paper::comparison::ComparisonRow;
 
 /// What it is.
@@ -33,9 +33,9 @@ pub fn add(bundle: &mut Bundle, rows: &[ComparisonRow]) -> Result<(), ReportErro
     let mut names = distinct(rows.iter().map(|row| row.method.as_str()));
     names.sort_by_key(|name| (rank(name), *name));
     let timed = rows.iter().any(|row| row.solve_s > 0.0);
-    let cost = |row: &ComparisonRow| match (&row.verdict, timed) {
-        (Verdict::Solved, true) => row.solve_s,
-        (Verdict::Solved, false) => row.iterations.max(1) as f64,
+    let cost = |row: &ComparisonRow| match (row.verdict.is_solved(), timed) {
+        (true, true) => row.solve_s,
+        (true, false) => row.iterations.max(1) as f64,
         _ => f64::NAN,
     };
     let mut wins = vec![0; names.len()];

@@ -5,7 +5,6 @@ use super::runs::{Run, by_problem, counted, distinct, problem};
 use crate::report::plot::{Axis, Figure, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
 use crate::run::record::{HistoryRow, Results, RunRow};
-use crate::run::verdict::Verdict;
 use stickslip_methods::Tier;
 
 /// What it is.
@@ -35,7 +34,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 /// The figure of one problem; `found`: what became of its runs.
 fn figure(runs: &[Run<'_, HistoryRow>], found: &[&RunRow]) -> Figure {
     let mut solved = found.to_vec();
-    solved.retain(|row| row.verdict == Verdict::Solved);
+    solved.retain(|row| row.verdict.is_solved());
     solved.sort_by_key(|row| row.iterations);
     let ends = [solved.first(), solved.last()].into_iter().flatten();
     let ends: Vec<(&str, usize)> = ends

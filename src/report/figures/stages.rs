@@ -6,7 +6,6 @@ use crate::report::names::file_name;
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Rgb, Series, Style, plain};
 use crate::report::{Bundle, ReportError};
-use crate::run::verdict::Verdict;
 use crate::studies::sweep::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
@@ -39,7 +38,7 @@ const STAGES: [(&str, Rgb); 8] = [
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
-    let solved = |r: &&Record| r.found.verdict == Verdict::Solved && has_defaults(&r.cell);
+    let solved = |r: &&Record| r.found.verdict.is_solved() && has_defaults(&r.cell);
     let timed = records.iter().filter(solved);
     let mut own: Vec<Timed> = timed
         .filter_map(|r| Some((r, published_times(r)?)))

@@ -98,7 +98,8 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
         let sheet = folder.sheet("table1.csv")?;
         let differences = sheet.texts("relative_difference")?.into_iter();
         let own = differences.zip(sheet.texts("verdict")?);
-        let solved = own.filter(|(_, verdict)| verdict.parse() == Ok(Verdict::Solved));
+        let solved =
+            own.filter(|(_, verdict)| verdict.parse().is_ok_and(|v: Verdict| v.is_solved()));
         let numbers = solved.filter_map(|(difference, _)| difference.parse::<f64>().ok());
         let worst = numbers.map(f64::abs).fold(f64::NAN, f64::max);
         if worst.is_finite() {

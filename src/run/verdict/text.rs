@@ -5,10 +5,14 @@ use std::str::FromStr;
 
 use super::{GIVE_UPS, Verdict, VerdictKind};
 
+/// [`Verdict::Several`].
+const SEVERAL: &str = "solved (several)";
+
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.kind().name();
         match self {
+            Verdict::Several => f.write_str(SEVERAL),
             Verdict::Approximate(Some(tier)) => write!(f, "{name}: {tier}"),
             Verdict::Approximate(None) => write!(f, "{name}: none"),
             Verdict::GaveUp(status) => write!(f, "{name}: {status}"),
@@ -31,6 +35,9 @@ impl FromStr for Verdict {
     type Err = NoVerdict;
 
     fn from_str(text: &str) -> Result<Self, NoVerdict> {
+        if text == SEVERAL {
+            return Ok(Verdict::Several);
+        }
         let (name, details) = match text.split_once(": ") {
             Some((name, details)) => (name, Some(details)),
             None => (text, None),
@@ -92,7 +99,7 @@ mod tests {
         let reasons = reasons.map(str::to_owned);
         let grades = [Some(Tier::High), Some(Tier::Mid), Some(Tier::Low), None];
         match kind {
-            VerdictKind::Solved => vec![Verdict::Solved],
+            VerdictKind::Solved => vec![Verdict::Solved, Verdict::Several],
             VerdictKind::Approximate => grades.map(Verdict::Approximate).into(),
             VerdictKind::FalseClaim => vec![Verdict::FalseClaim],
             VerdictKind::GaveUp => GIVE_UPS
@@ -138,6 +145,7 @@ mod tests {
             "met",
             NOT_RUN,
             "solved: ",
+            "solved (several): 2",
             "Solved",
             "approximate",
             "approximate: middle",

@@ -1,6 +1,6 @@
 //! Which solutions an increment has, as far as exact methods from several starts and enumeration can tell.
 
-use stickslip_methods::conic::unbalanced;
+use stickslip_methods::conic::no_equilibrium;
 use stickslip_methods::{ContactState, Gauge, Increment, MethodError, from_all_starts, residuals};
 
 use super::enumerate::enumerate;
@@ -33,7 +33,7 @@ const DIFFERENT: f64 = 1e-6;
 /// What proves that there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Proof {
-    /// No contact force within the cones of friction balances the load, see [`unbalanced`].
+    /// No contact force within the cones of friction balances the load, see [`no_equilibrium`].
     Certificate,
     /// None of so many combinations of states holds.
     Enumeration(usize),
@@ -93,7 +93,7 @@ impl Answers {
             .fold(0.0, f64::max);
         let none = match &listed {
             _ if !held.is_empty() => None,
-            _ if unbalanced(increment)? => Some(Proof::Certificate),
+            _ if no_equilibrium(increment)? => Some(Proof::Certificate),
             Some(list) if list.proves_none() => Some(Proof::Enumeration(list.pieces)),
             _ => None,
         };

@@ -5,7 +5,6 @@ use stickslip_methods::Increment;
 use crate::run::choice::Choice;
 use crate::run::increment::Solver;
 use crate::run::registry::method;
-use crate::run::verdict::Verdict;
 
 /// Options of the method's own that are changed one by one, in this order, where it has them.
 pub const OWN: [(&str, f64); 7] = [
@@ -56,6 +55,6 @@ fn changed(choice: &Choice, name: &str, value: f64) -> Option<Choice> {
 fn solves(choice: &Choice, increment: &Increment<'_>) -> bool {
     Solver::new(choice, increment.system).is_ok_and(|mut solver| {
         let verdict = solver.judge(increment, increment.tolerance).verdict;
-        verdict == Verdict::Solved || !choice.exact() && verdict.is_honest()
+        verdict.is_solved() || !choice.exact() && verdict.is_honest()
     })
 }

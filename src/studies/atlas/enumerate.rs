@@ -91,7 +91,7 @@ fn largest(x: &[f64]) -> f64 {
 
 /// The solution with these states, empty if they do not hold there; `None` if the matrix is singular.
 fn solve(gauge: &Gauge<'_>, w: &[Vec<f64>], states: &[usize]) -> Option<Vec<f64>> {
-    let (rows, q, rho) = (gauge.rows(), &gauge.q, gauge.rho());
+    let (rows, q, rho) = (gauge.rows(), gauge.q(), gauge.rho());
     let (m, modes) = (q.len(), gauge.rigid());
     let n = m + modes.len();
     let mut matrix = Mat::<f64>::zeros(n, n);
@@ -119,13 +119,13 @@ fn solve(gauge: &Gauge<'_>, w: &[Vec<f64>], states: &[usize]) -> Option<Vec<f64>
             }
         }
     }
-    for (a, (mode, c)) in modes.iter().zip(&gauge.balance).enumerate() {
+    for (a, (mode, c)) in modes.iter().zip(gauge.balance()).enumerate() {
         (0..m).for_each(|j| matrix[(m + a, j)] = mode[j]);
         right[(m + a, 0)] = *c;
     }
     let x = PartialPivLu::new(matrix.as_ref()).solve(&right);
     let p: Vec<f64> = (0..m).map(|k| x[(k, 0)]).collect();
-    let scale = rho * largest(q) + largest(&gauge.balance);
+    let scale = rho * largest(q) + largest(gauge.balance());
     // NaN and infinity are no solution either.
     let bounded = (0..n).all(|k| x[(k, 0)].abs() <= UNBOUNDED * scale.max(f64::MIN_POSITIVE));
     let missed = &matrix * &x - &right;

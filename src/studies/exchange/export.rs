@@ -84,7 +84,7 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
     let mut start = state.clone();
     let mut unsolved = None;
     let end = path.follow_to(wanted, &mut |key, increment, _| match &increment.judged {
-        Some(judged) if increment.verdict == Verdict::Solved => {
+        Some(judged) if increment.verdict.is_solved() => {
             start = std::mem::replace(&mut state, judged.outcome.state.clone());
         }
         _ => {

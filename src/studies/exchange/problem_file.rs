@@ -17,6 +17,7 @@ use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::local_problem::local_velocity;
 use crate::run::record::{Results, RunKey};
 use crate::run::run_case::Progress;
+use crate::run::several::mark_several;
 use crate::run::verdict::Accuracy;
 use crate::studies::exchange::{ROUNDING, System, global_system, local_system};
 
@@ -325,6 +326,7 @@ impl ProblemFile {
             let row = tried.run_row(&key, &self.system, self.setup, accuracy);
             solved.results.runs.push(row);
             solved.results.history.extend(tried.history_rows(&key));
+            solved.results.answers.extend(tried.answer(&key));
             if let Some(judged) = tried.honest() {
                 solved.solutions.push(ProblemSolution {
                     velocity: local_velocity(&increment, &judged.outcome.state),
@@ -333,6 +335,7 @@ impl ProblemFile {
                 });
             }
         }
+        mark_several(&mut solved.results);
         solved
     }
 }

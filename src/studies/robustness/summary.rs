@@ -108,7 +108,7 @@ impl RobustnessRow {
         let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; 6], 0);
         for trial in trials {
             match &trial.verdict {
-                Verdict::Solved => solved += 1,
+                Verdict::Solved | Verdict::Several => solved += 1,
                 Verdict::Approximate(tier) => count(&mut approximate, &GRADES, tier),
                 Verdict::GaveUp(status) => {
                     gave_up += 1;

@@ -96,6 +96,7 @@ pub(super) fn run(case: &Case, choices: &[Choice]) -> Result<Results, RunError> 
         tier: None,
         jobs: 1,
         fields: Fields::First,
+        starts: 1,
     };
     run_case(case, choices, settings, &Quiet)
 }
@@ -155,7 +156,7 @@ fn look(scene: &Scene, effort: Effort) -> Finding {
         ..ended(scene, Cause::Panic, "")
     };
     let mut seen: Vec<(Cause, String)> = Vec::new();
-    let solved = main.verdict == Verdict::Solved;
+    let solved = main.verdict.is_solved();
     if let Verdict::Suspect(reason) = &main.verdict {
         seen.push((Cause::SuspectMesh, reason.clone()));
     } else if let Verdict::Crashed(reason) = &main.verdict {
@@ -331,7 +332,7 @@ fn of_default<T: Clone>(rows: &[T], method: impl Fn(&T) -> &String) -> Vec<T> {
 fn disagreement(trials: &[Trial], base: &[PointState], results: &Results) -> Option<f64> {
     let solved = trials
         .iter()
-        .filter(|t| t.exact && t.verdict == Verdict::Solved && t.method != DEFAULT);
+        .filter(|t| t.exact && t.verdict.is_solved() && t.method != DEFAULT);
     let of = |t: &Trial| difference(base, &points_of(results, &t.method));
     solved.map(of).reduce(f64::max)
 }

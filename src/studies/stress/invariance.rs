@@ -95,7 +95,7 @@ impl<'a> Base<'a> {
         let (mut force, mut energy, mut verdict) = (None, 1.0, None);
         match results {
             Err(error) => verdict = Some(error.to_string()),
-            Ok(results) => match results.runs.iter().find(|r| r.verdict != Verdict::Solved) {
+            Ok(results) => match results.runs.iter().find(|r| !r.verdict.is_solved()) {
                 Some(row) => verdict = Some(row.verdict.to_string()),
                 None => {
                     energy = self.energy(&results, transform.energy(self.scene.dim));
@@ -184,7 +184,7 @@ impl<'a> Base<'a> {
     fn refined(&self) -> Option<f64> {
         let case = case::parse(FILE, finer(&self.scene.text)?).ok()?;
         let results = run(&case, &default_method()).ok()?;
-        let solved = results.runs.iter().all(|r| r.verdict == Verdict::Solved);
+        let solved = results.runs.iter().all(|r| r.verdict.is_solved());
         solved.then(|| self.energy(&results, 1.0))
     }
 }

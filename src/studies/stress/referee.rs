@@ -299,6 +299,7 @@ mod tests {
             tier: None,
             jobs: 1,
             fields: Fields::All,
+            starts: 1,
         };
         let choice = Choice::parse("b-newton").unwrap();
         let results = run_case(&case, &[choice], settings, &Quiet).unwrap();

@@ -21,7 +21,7 @@ pub fn trial(row: &RunRow, results: &Results) -> Trial {
     let exact = methods().iter().find(|m| Some(m.name) == name);
     let exact = exact.is_some_and(|m| m.exact);
     let cause = match &row.verdict {
-        Verdict::Solved | Verdict::Suspect(_) => None,
+        Verdict::Solved | Verdict::Several | Verdict::Suspect(_) => None,
         Verdict::Approximate(_) if !exact => None,
         Verdict::Approximate(_) | Verdict::GaveUp(_) => Some(gave_up(row, &history)),
         Verdict::FalseClaim => Some(Cause::FalseClaim),

@@ -40,7 +40,7 @@ pub fn is_honest(record: &Record) -> bool {
     let mut all = verdicts.chain([&found.verdict]);
     // NaN passes no comparison.
     let agrees = |verdict: &Verdict| match verdict {
-        Verdict::Solved => found.violation() <= record.cell.tolerance,
+        Verdict::Solved | Verdict::Several => found.violation() <= record.cell.tolerance,
         other => other.is_honest() && found.violation().is_finite(),
     };
     !found.increments.is_empty() && all.all(agrees)

@@ -20,7 +20,7 @@ use crate::model::field_mesh::field_step;
 use crate::model::quantities::{Snapshot, point_states, quantities};
 use crate::run::choice::Choice;
 use crate::run::increment::JudgedIncrement;
-use crate::run::load_path::{LoadPathRun, PathEnd};
+use crate::run::load_path::{Guess, LoadPathRun, PathEnd};
 use crate::run::record::RunRow;
 use crate::run::verdict::Accuracy;
 use crate::studies::convergence::{closed_form, followed};
@@ -100,7 +100,11 @@ fn pass(scene: &Scene<'_>, cell: &Cell, choice: &Choice) -> Pass {
         friction: cell.mu(),
         choice,
         accuracy: Accuracy::exactly(cell.tolerance),
-        cold: cell.cold,
+        guess: if cell.cold {
+            Guess::Cold
+        } else {
+            Guess::Before
+        },
     };
     let (mut rows, mut increments) = (Vec::new(), Vec::new());
     let mut snapshots = Vec::new();

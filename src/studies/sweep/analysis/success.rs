@@ -112,7 +112,7 @@ fn row(own: &[&Record], tier: Tier) -> Option<SuccessRow> {
 /// Place in [`FAILURES`] of a verdict that is not right to the tier.
 fn failure(verdict: &Verdict) -> usize {
     let name = match verdict {
-        Verdict::Solved | Verdict::Approximate(_) => "inaccurate",
+        Verdict::Solved | Verdict::Several | Verdict::Approximate(_) => "inaccurate",
         Verdict::GaveUp(status) => status.as_str(),
         other => other.kind().name(),
     };

@@ -19,8 +19,8 @@ use std::collections::BTreeMap;
 use super::scene::Scene;
 use crate::model::quantities::Snapshot;
 use crate::run::choice::Choice;
-use crate::run::load_path::LoadPathRun;
-use crate::run::verdict::{Accuracy, Verdict};
+use crate::run::load_path::{Guess, LoadPathRun};
+use crate::run::verdict::Accuracy;
 use crate::studies::sweep::record::SolverError;
 
 /// Natural map of the converged solution, three decades below the highest tier.
@@ -114,11 +114,11 @@ fn follow(scene: &Scene<'_>, name: &'static str) -> Option<Reference> {
         friction: 0.0,
         choice: &choice,
         accuracy: Accuracy::exactly(TOLERANCE),
-        cold: false,
+        guess: Guess::Before,
     };
     let (mut snapshots, mut natural_map) = (Vec::new(), 0.0_f64);
     path.follow(&mut |_, increment, now| {
-        let solved = (increment.judged.as_ref()).filter(|_| increment.verdict == Verdict::Solved);
+        let solved = (increment.judged.as_ref()).filter(|_| increment.verdict.is_solved());
         if let Some(judged) = solved {
             natural_map = natural_map.max(judged.found.natural_map);
             snapshots.extend(now.cloned());
