@@ -159,3 +159,72 @@ fn claims_with_parameters_that_say_nothing_are_refused() {
         }
     }
 }
+
+/// Two points pressed on each other, W = [1 −1; −1 1] on their normals, and one beside. Only W tells the forces of the first two apart
+/// from none, and it does not feel 1e10 against 1e10.
+fn opposed(last: f64) -> Arc<Elastic> {
+    let mut w = diagonal(&[1.0, 1.0, 1.0, 1.0, last, 1.0]);
+    (w[0][2], w[2][0]) = (-1.0, -1.0);
+    Elastic::from_delassus(2, sparse(&w), vec![]).unwrap()
+}
+
+/// q = −1 at the point beside. Whatever presses the others, its overlap is all of q; the right answer with a self-stress that
+/// rounding of W P can bear holds, a larger one is at least told as rounding.
+#[test]
+fn forces_that_w_does_not_feel_buy_no_overlap() {
+    let s = system(&opposed(1.0), 0.3);
+    let load = free_jump(&[0.0, 0.0, 0.0, 0.0, -1.0, 0.0]);
+    for stress in [0.0, 1.0, 1e5, 1e10, 1e30, 1e150, 1e300] {
+        let mut p = vec![stress, 0.0, stress, 0.0, 0.0, 0.0];
+        let u = vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let wrong = judge(&s, &load, &ContactState { u, p: p.clone() });
+        assert_near(wrong.penetration, 1.0, 1e-15, stress);
+        assert_eq!((wrong.reference_force, wrong.reference_jump), (1.0, 1.0));
+        p[4] = 1.0;
+        let u = vec![0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let right = judge(&s, &load, &ContactState { u, p });
+        assert!(right.violation <= 1e-15, "{stress:e}: {right:?}");
+        assert_eq!(right.rounding > 1e-9, stress > 1e6, "{right:?}");
+    }
+}
+
+/// The point beside does not yield: no force opens it, and no motion of the others either. Nor do two that a gap of 1 pinches by 2.
+#[test]
+fn no_method_solves_and_a_proof_refutes_what_has_no_solution() {
+    for (last, q, none) in [
+        (0.0, [0.0, 0.0, 0.0, 0.0, -1.0, 0.0], true),
+        (1.0, [-2.0, 0.0, 1.0, 0.0, -1.0, 0.0], true),
+        (1.0, [-1.0, 0.0, 1.0, 0.0, -1.0, 0.0], false),
+        // A soft mode proves nothing.
+        (1e-12, [-1.0, 0.0, 1.0, 0.0, -1.0, 0.0], false),
+    ] {
+        let s = system(&opposed(last), 0.3);
+        let (load, rest) = (free_jump(&q), Load::zero(s.elastic()));
+        let start = ContactState::zero(&s);
+        let i = increment(&s, &load, &rest, &start, 1e-9);
+        assert_eq!(conic::no_equilibrium(&i).unwrap(), none, "{q:?}");
+        for m in exact().filter(|_| none) {
+            let outcome = build(&m, &[]).solve(&i, &mut Silent);
+            let claims = outcome.is_ok_and(|outcome| outcome.status == Status::Converged);
+            assert!(!claims, "{} {q:?}", m.name);
+        }
+    }
+}
+
+/// ρ |q| leaves the range of numbers: nothing could be compared with it.
+#[test]
+fn what_numbers_cannot_hold_is_refused_by_name() {
+    let stiff = Elastic::from_delassus(2, sparse(&diagonal(&[1e-301; 2])), vec![]).unwrap();
+    let s = system(&stiff, 0.3);
+    let (load, rest) = (free_jump(&[-1e149, 0.0]), Load::zero(&stiff));
+    let start = ContactState::zero(&s);
+    let i = increment(&s, &load, &rest, &start, 1e-9);
+    for m in exact() {
+        let error = build(&m, &[]).solve(&i, &mut Silent).unwrap_err();
+        assert!(
+            matches!(error, MethodError::Refused { .. }),
+            "{}: {error}",
+            m.name
+        );
+    }
+}

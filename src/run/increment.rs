@@ -257,9 +257,11 @@ impl JudgedIncrement {
 
     /// The answer, to be told from others.
     pub fn answer(&self, key: &RunKey) -> Option<Answer> {
-        let jump = self.jump.clone()?;
-        let key = key.clone();
-        Some(Answer { key, jump })
+        Some(Answer {
+            key: key.clone(),
+            jump: self.jump.clone()?,
+            reference_jump: self.judged.as_ref()?.found.reference_jump,
+        })
     }
 
     /// Rows of `history.csv`, a long history thinned.

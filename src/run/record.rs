@@ -61,6 +61,8 @@ pub struct Answer {
     pub key: RunKey,
     /// `[[u]]` by contact row [m].
     pub jump: Vec<f64>,
+    /// u_ref [m].
+    pub reference_jump: f64,
 }
 
 /// One row of `runs.csv`: one increment of one run.

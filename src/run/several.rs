@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::run::record::{Answer, Results};
 use crate::run::verdict::Verdict;
 
-/// Jumps that differ by more, relative to the largest of both, are those of different answers: a thousand times what tier high
+/// Jumps that differ by more, relative to u_ref and to the largest of both, are those of different answers: a thousand times what tier high
 /// allows the contact laws to be broken.
 const DIFFERENT: f64 = 1e-6;
 
@@ -29,7 +29,10 @@ pub fn mark_several(results: &mut Results) {
 
 impl Answer {
     fn differs_from(&self, other: &Self) -> bool {
-        let size = (self.jump.iter().chain(&other.jump)).fold(0.0, |m: f64, x| m.max(x.abs()));
+        // Where all sticks the jumps are rounding.
+        let reference = self.reference_jump.max(other.reference_jump);
+        let jumps = self.jump.iter().chain(&other.jump);
+        let size = jumps.fold(reference, |m, x| m.max(x.abs()));
         let mut apart = self
             .jump
             .iter()

@@ -13,7 +13,6 @@ use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
 use crate::algebra::dense::{DenseLu, along, dot, refill, solve_dense};
-use crate::algebra::factor::kernel;
 use crate::algebra::spectrum::extremes;
 use crate::condensed::branches::Branches;
 use crate::condensed::pair::Pair;
@@ -67,10 +66,9 @@ impl GlobalStage {
             .flatten();
         let factor = match cholesky {
             Some(factor) => Factor::Cholesky(factor),
-            None => Factor::Lu(
-                DenseLu::new(&a)
-                    .ok_or_else(|| kernel("factorisation of I + k0 W", "it is singular".into()))?,
-            ),
+            None => Factor::Lu(DenseLu::new(&a).ok_or_else(|| MethodError::Refused {
+                reason: "I + k0 W is singular: W is not positive semi-definite".into(),
+            })?),
         };
         let column = |q: &Vec<f64>| {
             let mut column = Vec::new();
