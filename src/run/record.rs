@@ -117,7 +117,7 @@ pub struct RunRow {
     pub penetration: f64,
     /// Largest tension at a contact point, relative to P_ref [-].
     pub adhesion: f64,
-    /// Largest product of gap and pressure, relative to u_ref P_ref [-].
+    /// Largest product of gap and pressure, relative to u_ref max(P_ref, |P_n|) [-].
     pub complementarity: f64,
     /// Largest excess over the friction bound, relative to P_ref [-].
     pub cone: f64,
