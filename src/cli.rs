@@ -55,8 +55,6 @@ enum Verb {
     Study(sweep::Arguments),
     /// Join the records of a sweep that ran in several folders
     Merge(sweep::MergeArguments),
-    /// Show what changed between two runs of a sweep beyond noise
-    Compare(sweep::CompareArguments),
     /// Measure the cells that come in on standard input, as `study` starts it
     #[command(hide = true)]
     Work(sweep::WorkArguments),
@@ -108,7 +106,6 @@ pub fn main(cli: Cli) -> Result<bool, CliError> {
         Verb::Spaces(arguments) => spaces::run(arguments),
         Verb::Study(arguments) => sweep::run(arguments),
         Verb::Merge(arguments) => sweep::run_merge(arguments),
-        Verb::Compare(arguments) => sweep::run_compare(&arguments),
         Verb::Work(arguments) => sweep::run_work(&arguments),
         Verb::Page(arguments) => page::run(arguments),
         Verb::Export(arguments) => exchange::run_export(arguments),

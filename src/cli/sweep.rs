@@ -1,7 +1,7 @@
-//! The verbs `study`, `merge`, `compare` and `work`: sweeps of cells, each a record of its own.
+//! The verbs `study`, `merge` and `work`: sweeps of cells, each a record of its own.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,6 @@ use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Provenance, page, prepare_output, prepare_shared_output, sweep};
 use crate::studies::stress;
-use crate::studies::sweep::compare::compare;
 use crate::studies::sweep::conduct::{self, Conduct, Request, Shard, conduct};
 use crate::studies::sweep::measure::Bench;
 use crate::studies::sweep::merge::merge;
@@ -53,24 +52,9 @@ pub struct Arguments {
     /// Measure cells again whose record was made by another program or machine
     #[arg(long)]
     redo: bool,
-    /// Folder with records of an earlier run to compare with
-    #[arg(long)]
-    baseline: Option<PathBuf>,
     /// Print the ids of the cells, and measure nothing
     #[arg(long)]
     list: bool,
-}
-
-/// Arguments of the verb `compare`.
-#[derive(Debug, clap::Args)]
-pub struct CompareArguments {
-    /// Folder with the records before
-    a: PathBuf,
-    /// Folder with the records after
-    b: PathBuf,
-    /// Folder for compare.csv; by default the comparison is only printed
-    #[arg(long)]
-    out: Option<PathBuf>,
 }
 
 /// Arguments of the verb `merge`.
@@ -122,10 +106,6 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         own.iter().for_each(|task| say(format_args!("{}", task.id)));
         return Ok(true);
     }
-    // What cannot be compared with is found out before hours of work.
-    let baseline = arguments.baseline.as_deref().map(Store::open);
-    let before = baseline.transpose()?.map(|store| store.records());
-    let before = before.transpose()?;
     // Shards measure different cells, so they may fill one folder.
     let _claim = match arguments.shard {
         None => prepare_output(&arguments.out)?,
@@ -160,29 +140,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if arguments.shard.is_some() || !conducted.complete() {
         return Ok(conducted.complete());
     }
-    let records = store.records()?;
-    let expected = report(&store, &records)?;
-    match before {
-        Some(before) => Ok(changes(&before, &records, Some(&arguments.out))? && expected),
-        None => Ok(expected),
-    }
-}
-
-/// Runs the verb `compare`; false if a verdict got worse.
-pub fn run_compare(arguments: &CompareArguments) -> Result<bool, CliError> {
-    let _claim = arguments.out.as_deref().map(prepare_output).transpose()?;
-    let [a, b] = [&arguments.a, &arguments.b].map(|dir| Store::open(dir)?.records());
-    changes(&a?, &b?, arguments.out.as_deref())
-}
-
-fn changes(a: &[Record], b: &[Record], out: Option<&Path>) -> Result<bool, CliError> {
-    let comparison = compare(a, b);
-    if let Some(out) = out {
-        sweep::comparison_bundle(&comparison)?.commit(out)?;
-    }
-    let table = sweep::comparison_table(&comparison);
-    say(format_args!("{}", table.terminal()));
-    Ok(!comparison.worse())
+    report(&store, &store.records()?)
 }
 
 /// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its

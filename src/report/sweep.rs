@@ -7,9 +7,9 @@
 use stickslip_methods::Tier;
 
 use super::names::file_name;
-use super::number::{fixed, significant};
-use super::table::{self, Readable, readable};
-use super::tables::ranks::{AccuracyRow, ChangeRow, PointRow, ProfileRow, RankingRow};
+use super::number::significant;
+use super::table;
+use super::tables::ranks::{AccuracyRow, PointRow, ProfileRow, RankingRow};
 use super::tables::sensitivity::{SensitivityRow, WindowRow};
 use super::tables::sweep::{
     CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow, compare_cells,
@@ -30,7 +30,6 @@ use crate::studies::sweep::analysis::success::success;
 use crate::studies::sweep::analysis::test_set::TestSet;
 use crate::studies::sweep::analysis::{problem_names, problems};
 use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::compare::{Change, Comparison, What};
 use crate::studies::sweep::record::{Record, SCHEMA};
 
 /// Files of a sweep; `total`: cells that the sweep has in all. Paths have no common folder.
@@ -226,41 +225,6 @@ fn curves(records: &[Record]) -> Vec<PointRow<'_>> {
         }
     }
     rows
-}
-
-/// All changes for reading. What differs only in its bits is counted in the title.
-pub fn comparison_table(comparison: &Comparison) -> Readable {
-    let Comparison {
-        changes,
-        common,
-        identical,
-        timed,
-        drift,
-        noise,
-    } = comparison;
-    let mut note = format!(": {common} cells in both, {identical} found the same bit by bit");
-    if *timed > 0 {
-        note += &format!(
-            ", {timed} with comparable times: the machine took {} times as long, noise {} %",
-            significant(drift.exp(), 3),
-            fixed(100.0 * noise.exp_m1(), 1),
-        );
-    }
-    let seen = |change: &&Change| change.what != What::Bits;
-    let rows: Vec<ChangeRow> = changes.iter().filter(seen).map(ChangeRow).collect();
-    readable(&rows, &note)
-}
-
-/// `compare.csv`, and the table as `compare.md`.
-///
-/// # Errors
-/// Those of [`table::add`].
-pub fn comparison_bundle(comparison: &Comparison) -> Result<Bundle, ReportError> {
-    let rows: Vec<ChangeRow> = comparison.changes.iter().map(ChangeRow).collect();
-    let mut bundle = Bundle::new();
-    table::add(&mut bundle, &rows, "")?;
-    bundle.add("compare.md", comparison_table(comparison).markdown())?;
-    Ok(bundle)
 }
 
 #[cfg(test)]

@@ -182,7 +182,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<sweep::IncrementRow<'_>>(),
         Description::of::<sweep::DeviationRow<'_>>(),
         Description::of::<sweep::TimeRow<'_>>(),
-        Description::of::<ranks::ChangeRow<'_>>(),
     ];
     let stress = vec![
         Description::of::<CauseRow>(),

@@ -1,14 +1,13 @@
 //! Sweeps: many cells (case × mesh × space × friction × method × tolerance), each measured by itself and kept as a record.
 //!
 //! ```text
-//! sweep file -> plan -> conduct -> (worker: measure -> record) -> store -> merge -> analysis, compare -> report
+//! sweep file -> plan -> conduct -> (worker: measure -> record) -> store -> merge -> analysis -> report
 //! ```
 
 pub mod analysis;
 mod block;
 pub mod bodies;
 pub mod cell;
-pub mod compare;
 pub mod conduct;
 pub mod files;
 pub mod measure;

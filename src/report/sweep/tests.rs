@@ -304,21 +304,3 @@ fn an_incomplete_sweep_says_so() {
     assert!(text(count + 5).contains(&told));
     assert!(!text(count).contains("incomplete"));
 }
-
-#[test]
-fn a_comparison_lists_what_changed() {
-    let a = records_of_a_sweep();
-    let mut b = a.clone();
-    b[0].found.verdict = "false-claim".parse().unwrap();
-    let comparison = crate::studies::sweep::compare::compare(&a, &b);
-    assert!(comparison.worse());
-    let bundle = comparison_bundle(&comparison).unwrap();
-    let text = |path: &str| String::from_utf8(bundle.get(path).unwrap().to_vec()).unwrap();
-    let row = format!("{},verdict,worse,solved,false-claim,NaN", a[0].id);
-    assert!(
-        text("compare.csv").contains(&row),
-        "{}",
-        text("compare.csv")
-    );
-    assert!(text("compare.md").contains("found the same bit by bit"));
-}

@@ -14,7 +14,6 @@ use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::scaling::Growth;
 use crate::studies::sweep::analysis::series::{Point, Swept};
 use crate::studies::sweep::analysis::success::SuccessRow;
-use crate::studies::sweep::compare::Change;
 use crate::studies::sweep::record::IncrementFound;
 use crate::studies::sweep::statistics::Timing;
 
@@ -53,14 +52,15 @@ impl Row for SuccessRow {
             "stalled" "" .shown() = r.failures[3], "ended without progress";
             "singular_tangent" "" = r.failures[4], "ended at a matrix that cannot be factored";
             "mechanism" "" = r.failures[5], "ended at a body that is held by nothing";
-            "no_equilibrium" "" = r.failures[6], "no contact force within the cones of friction balances the load";
+            "no_equilibrium" "" = r.failures[6], "no contact force within the cones of friction balances the load, or none opens all gaps";
             "diverged" "" = r.failures[7], "ended with numbers that grew without bound";
             "stopped" "" = r.failures[8], "was stopped";
-            "unexplained" "" = r.failures[9], "a program from outside that gave up and did not say why";
-            "refused" "" .shown() = r.failures[10], "declined";
-            "crashed" "" .shown() = r.failures[11], "failed with an error";
-            "timed_out" "" = r.failures[12], "stopped at the time limit";
-            "out_of_memory" "" = r.failures[13], "denied memory, by the limit or by the system";
+            "rounding" "" = r.failures[9], "ended with forces so large beside what they move that rounding decides";
+            "unexplained" "" = r.failures[10], "a program from outside that gave up and did not say why";
+            "refused" "" .shown() = r.failures[11], "declined";
+            "crashed" "" .shown() = r.failures[12], "failed with an error";
+            "timed_out" "" = r.failures[13], "stopped at the time limit";
+            "out_of_memory" "" = r.failures[14], "denied memory, by the limit or by the system";
         }
     }
 }
@@ -309,29 +309,6 @@ impl Row for Recommendation {
             "correct_rate" "–" .significant(4) = r.rate()[0], "correct / problems";
             "correct_low" "–" .significant(4) = r.rate()[1], "lower end of Wilson's 95 % interval";
             "correct_high" "–" .significant(4) = r.rate()[2], "upper end";
-        }
-    }
-}
-
-/// What changed from one set of records to another.
-pub struct ChangeRow<'a>(pub &'a Change);
-
-impl Row for ChangeRow<'_> {
-    const NAME: &'static str = "compare";
-    const TITLE: &'static str = "What changed from A to B";
-    const QUESTION: &'static str = "What is better or worse than before?";
-    const NOTES: &'static str = "A time changed if the intervals of the two medians are disjoint, the drift taken out, and |ln(b/a) − drift| > max(3 noise, ln 1.1); drift is the median of ln(b/a) over all cells, noise 1.4826 times the median absolute deviation from it. Times are compared where machine and build profile agree.";
-    const READABLE: bool = false;
-    const ORDER: Order<Self> = Order::By(|a, b| a.0.id.cmp(&b.0.id));
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "id" "" .named("cell") = r.0.id.clone(), "cell";
-            "what" "" .shown() = r.0.what.name(), "`only in A`, `only in B`, `verdict`, a counter of `cells.csv`, `solver_error` (by more than 1 %), `time`, or `bits`: something else in what was found";
-            "direction" "" .shown() = r.0.direction.name(), "`better`, `worse` or `other`";
-            "a" "" .named("A") = r.0.a.clone(), "in A";
-            "b" "" .named("B") = r.0.b.clone(), "in B";
-            "ratio" "–" .significant(4).digits(3) = r.0.ratio, "B / A; of times with the drift of the machine taken out";
         }
     }
 }

@@ -30,7 +30,7 @@ impl Row for RobustnessRow {
             "stalled" "" = r.gave_up_by[1], "without progress";
             "singular_tangent" "" = r.gave_up_by[2], "at a matrix that cannot be factored";
             "mechanism" "" = r.gave_up_by[3], "at a body that is held by nothing";
-            "no_equilibrium" "" = r.gave_up_by[4], "where no contact force within the cones of friction balances the load";
+            "no_equilibrium" "" = r.gave_up_by[4], "where no contact force within the cones of friction balances the load, or none opens all gaps";
             "diverged" "" = r.gave_up_by[5], "with numbers that grew without bound";
             "false_claims" "" .shown() = r.false_claims, "claims that the judge refuted";
             "crashed" "" .shown() = r.crashed, "failed with an error, `out-of-memory` among them";

@@ -10,7 +10,7 @@ use crate::studies::sweep::record::Record;
 use crate::studies::sweep::statistics::wilson;
 
 /// How a cell missed the tier: in the order of [`FAILURES`].
-pub const FAILURES: [&str; 14] = [
+pub const FAILURES: [&str; 15] = [
     "inaccurate",
     "false_claim",
     "max_iterations",
@@ -20,6 +20,7 @@ pub const FAILURES: [&str; 14] = [
     "no_equilibrium",
     "diverged",
     "stopped",
+    "rounding",
     "unexplained",
     "refused",
     "crashed",
@@ -150,7 +151,7 @@ mod tests {
             panic!("one method at one tier: {rows:?}");
         };
         assert_eq!((row.cells, row.claimed, row.correct), (8, 2, 1));
-        let expected = [0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 1, 1, 1, 1];
+        let expected = [0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1];
         assert_eq!(row.failures, expected);
         assert_eq!(row.failures.iter().sum::<usize>() + row.correct, row.cells);
     }
