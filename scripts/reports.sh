@@ -55,7 +55,7 @@ for part in $parts; do
             cp -r results/stress/cases reports/stress/
             keep robustness robustness atlas stopping failures.csv robustness.svg
             keep sensitivity safe_windows starts sensitivity.svg
-            keep study recommendations ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
+            keep study ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
             keep bench timings.csv timings.md
             "$stickslip" page reports ;;

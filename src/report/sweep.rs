@@ -22,7 +22,6 @@ use crate::studies::sweep::analysis::accuracy::{refinements, sequences};
 use crate::studies::sweep::analysis::costs::Costs;
 use crate::studies::sweep::analysis::profile::performance;
 use crate::studies::sweep::analysis::ranking::ranking;
-use crate::studies::sweep::analysis::recommendation::recommendations;
 use crate::studies::sweep::analysis::scaling::growth;
 use crate::studies::sweep::analysis::sensitivity::{starts, sweeps};
 use crate::studies::sweep::analysis::series::{Series, series};
@@ -65,7 +64,6 @@ pub fn bundle(
         .iter()
         .flat_map(|one| one.errors.iter().map(AccuracyRow));
     table::add(&mut bundle, &errors.collect::<Vec<_>>(), "")?;
-    table::add(&mut bundle, &recommendations(records), &caveat)?;
     figures::fastest::add(&mut bundle, &sets, &caveat)?;
     figures::scaling::add(&mut bundle, records, &caveat)?;
     figures::performance::add(&mut bundle, "", &sets, &caveat)?;

@@ -27,7 +27,6 @@ use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
 use crate::studies::spaces::patch::PatchRow;
 use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
-use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::scaling::Growth;
 use crate::studies::sweep::analysis::sensitivity::Starts;
 use crate::studies::sweep::analysis::success::SuccessRow;
@@ -167,7 +166,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<VariantRow>(),
     ];
     let study = vec![
-        Description::of::<Recommendation>(),
         Description::of::<ranks::RankingRow>(),
         Description::of::<Growth>(),
         Description::of::<SuccessRow>(),

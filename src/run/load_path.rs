@@ -199,8 +199,10 @@ impl LoadPathRun<'_> {
                 solved.verdict = Verdict::Crashed(format!("{what} of the answer are not finite"));
                 end.now = None;
             }
-            // The mechanics stay visible: what is suspect can be looked at.
-            if let Some(judged) = solved.honest()
+            // The mechanics stay visible: what is suspect can be looked at. That a method gave up there is no fault of its own.
+            let gave_up = matches!(solved.verdict, Verdict::GaveUp(_));
+            if let Some(judged) =
+                (solved.judged.as_ref()).filter(|_| gave_up || solved.verdict.is_honest())
                 && let Some(reason) = body.suspect(judged.found.sway)
             {
                 solved.verdict = Verdict::Suspect(reason);

@@ -37,7 +37,6 @@ pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, 
     if blocks.is_empty() {
         return Ok(None);
     }
-    blocks.extend(advice(folder)?);
     let terms = VerdictKind::ALL.iter();
     let terms = terms.map(|kind| (kind.name().to_owned(), meaning(*kind).to_owned()));
     blocks.push(Block::Terms {
@@ -112,35 +111,4 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
         }
     }
     Ok(facts)
-}
-
-/// What the study says of all problems together, tier after tier, then at the finest one of every kind and size.
-fn advice(folder: &Folder) -> Result<Option<Block>, PageError> {
-    let Some(path) = folder.named("recommendations.csv").first().copied() else {
-        return Ok(None);
-    };
-    let sheet = folder.sheet(path)?;
-    let classes = ["dimension", "friction", "loading", "unknowns"].map(|name| sheet.texts(name));
-    let [dimension, friction, loading, unknowns] = classes;
-    let classes = [dimension?, friction?, loading?, unknowns?];
-    let (tiers, evidence) = (sheet.texts("tier")?, sheet.texts("evidence")?);
-    let ends = [sheet.texts("unknowns_from")?, sheet.texts("unknowns_to")?];
-    let confidence = sheet.texts("confidence")?;
-    let line = |k: usize, name: String| {
-        let [from, to] = [0, 1].map(|end| ends[end][k]);
-        let name = format!("tier {}, {name}{from} to {to} unknowns", tiers[k]);
-        (name, format!("{}: {}", confidence[k], evidence[k]))
-    };
-    let all = (0..tiers.len()).filter(|k| classes.iter().all(|class| class[*k] == "any"));
-    let mut terms: Vec<_> = all.map(|k| line(k, String::new())).collect();
-    let [dimension, friction, loading, unknowns] = classes;
-    let finest = tiers.last().copied();
-    for k in (0..tiers.len()).filter(|k| unknowns[*k] != "any" && Some(tiers[*k]) == finest) {
-        let name = format!("{}D, {}, {}, ", dimension[k], friction[k], loading[k]);
-        terms.push(line(k, name));
-    }
-    Ok(Some(Block::Terms {
-        title: "Which method to use, and how sure that is, by the problems of the study",
-        terms,
-    }))
 }

@@ -1,4 +1,4 @@
-//! What a study says of the methods: rates, ranks, profiles, curves, recommendations, changes.
+//! What a study says of the methods: rates, ranks, profiles, curves.
 
 use std::cmp::Ordering;
 
@@ -10,7 +10,6 @@ use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::convergence::orders::ErrorRow;
 use crate::studies::sweep::analysis::compare_methods;
 use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing};
-use crate::studies::sweep::analysis::recommendation::Recommendation;
 use crate::studies::sweep::analysis::scaling::Growth;
 use crate::studies::sweep::analysis::series::{Point, Swept};
 use crate::studies::sweep::analysis::success::SuccessRow;
@@ -267,48 +266,5 @@ impl Row for AccuracyRow<'_> {
         // The records do not know the enrichment of the tips.
         columns.retain(|column| column.about.name != "tip");
         columns
-    }
-}
-
-/// What stands for "anything".
-const ANY: &str = "any";
-
-/// The fastest methods.
-fn fastest(row: &Recommendation) -> String {
-    let names = row.fastest.iter().map(|f| f.method.as_str());
-    names.collect::<Vec<_>>().join("; ")
-}
-
-impl Row for Recommendation {
-    const NAME: &'static str = "recommendations";
-    const TITLE: &'static str =
-        "Fastest methods among those that are right most often, by accuracy and class of problems";
-    const QUESTION: &'static str = "Which method should I use?";
-    const NOTES: &'static str = "From all problems down to classes of one kind; classes that hold the same problems as a coarser one are left out.";
-    // They come from coarse to fine.
-    const ORDER: Order<Self> = Order::Given;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "tier" "" .shown() = r.tier.to_string(), "accuracy asked for";
-            "dimension" "" .named("dim") = r.class.dim.map_or_else(|| ANY.into(), |dim| dim.to_string()), "2, 3 or `any`";
-            "friction" "" .shown() = r.class.friction.map_or_else(|| ANY.into(), |friction| friction.to_string()), "`frictionless`, `slip`, `stick` (nothing slips) or `any`";
-            "loading" "" .shown() = r.class.path.map_or(ANY, |path| if path { "path" } else { "single increment" }), "`single increment`, `path` or `any`";
-            "unknowns" "" .shown() = r.class.size.map_or_else(|| ANY.into(), |size| size.to_string()), "contact unknowns: `up to 100`, `101 to 1000`, `over 1000` or `any`";
-            "unknowns_from" "" .named("measured from") = r.unknowns[0], "fewest contact unknowns of the problems measured";
-            "unknowns_to" "" .named("to") = r.unknowns[1], "most: for larger problems the table says nothing";
-            "problems" "" .shown() = r.problems, "problems of the class";
-            "timed" "" = r.timed, "of these, solved by some method, with times that can be compared";
-            "fastest" "" .shown() = fastest(r), "among the methods that are right most often those that none is faster than beyond the intervals of the means in `ranking.csv`, separated by `; `; first the one that is among the fastest of all methods on most problems; empty without times";
-            "among" "" .named("first among the fastest on") = r.fastest.first().map_or(0, |first| first.among), "problems on which no method is faster than the first beyond the intervals";
-            "alone" "" = r.fastest.first().map_or(0, |first| first.alone), "of these, problems on which it is faster than all others";
-            "evidence" "" = r.evidence(), "the same in words, with the next ones";
-            "confidence" "" .shown() = r.confidence.to_string(), "of the first, with k = among of n = timed: `sure` if Wilson's 95 % interval of k/n lies above ½, `likely` if k/n does and n ≥ 3, `open` otherwise";
-            "reliable" "" = r.reliable.join("; "), "methods that are right most often, separated by `; `";
-            "correct" "" .named("right on") = r.correct, "problems that they solve";
-            "correct_rate" "–" .significant(4) = r.rate()[0], "correct / problems";
-            "correct_low" "–" .significant(4) = r.rate()[1], "lower end of Wilson's 95 % interval";
-            "correct_high" "–" .significant(4) = r.rate()[2], "upper end";
-        }
     }
 }

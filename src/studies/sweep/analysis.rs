@@ -8,7 +8,6 @@ pub mod accuracy;
 pub mod costs;
 pub mod profile;
 pub mod ranking;
-pub mod recommendation;
 pub mod scaling;
 pub mod sensitivity;
 pub mod series;
