@@ -437,7 +437,8 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
                     );
                     assert_eq!(verdict, reason, "{name}");
                 }
-                _ => assert_eq!(verdict, "solved", "{name} {method}"),
+                // Rigid blocks on each other have several answers.
+                _ => assert!(verdict.starts_with("solved"), "{name} {method}: {verdict}"),
             }
         }
     }

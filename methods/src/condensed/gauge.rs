@@ -76,17 +76,13 @@ impl<'a> Gauge<'a> {
     /// How well P and v = (g, d) fulfil the contact laws, as the judge measures it. Equilibrium, and what takes a slip of its
     /// own to know, stay 0.
     pub fn residuals(&self, p: &[f64], v: &[f64]) -> Residuals {
-        let scale = self.scale(p, v);
+        let scale = self.free.scale;
         Violations::of(self.friction(), self.rows(), &self.operator, scale, p, v)
             .residuals(&self.operator, scale)
     }
 
-    fn scale(&self, p: &[f64], v: &[f64]) -> f64 {
-        (self.free).scale(&self.operator, p, v, &mut Vec::new())
-    }
-
     /// What rounding of v = q + W P leaves of the violation at P: ε |(|q| + |W| |P|)| over u_ref, Euclidean norms.
-    pub fn floor(&self, p: &[f64], v: &[f64]) -> f64 {
+    pub fn floor(&self, p: &[f64]) -> f64 {
         let mut size: Vec<f64> = self.free.q.iter().map(|q| q.abs()).collect();
         let mut work = Vec::new();
         for (k, force) in p.iter().enumerate() {
@@ -94,7 +90,7 @@ impl<'a> Gauge<'a> {
             let parts = size.iter_mut().zip(column);
             parts.for_each(|(size, w)| *size += (w * force).abs());
         }
-        let u_ref = self.operator.reference(self.scale(p, v)).1;
+        let u_ref = self.operator.reference(self.free.scale).1;
         ratio(f64::EPSILON * norm(&size), u_ref)
     }
 }

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::algebra::dense::{dot, norm};
+use crate::algebra::dense::{dot, norm, ratio};
 use crate::algebra::rows::RowSet;
 use crate::condensed::anchor::Anchor;
 use crate::condensed::forces::{End, Forces};
@@ -32,6 +32,9 @@ const STAGNATION: usize = 15;
 
 /// Iterations that most methods need at most: the history holds as many without asking for memory again.
 const EXPECTED: usize = 64;
+
+/// Iterations without progress after which a violation below the rounding of W P counts as that.
+const AT_REST: usize = 5;
 
 /// A violation counts as progress below this fraction of the best before.
 const IMPROVEMENT: f64 = 0.99;
@@ -99,11 +102,10 @@ pub struct ContactProblem<'a> {
     pub(crate) history: Vec<Iteration>,
     /// `[[u]]` at the start of the increment.
     pub(super) start_jump: Vec<f64>,
-    free_jump: FreeJump,
-    /// s of the iterate measured last; see [`Residuals`](crate::Residuals).
+    /// s; see [`Residuals`](crate::Residuals).
     scale: f64,
-    /// Room for rows.
-    moved: Vec<f64>,
+    /// What rounding of W P leaves of the violation at that iterate.
+    pub(super) floor: f64,
     rescues: usize,
     /// Smallest violation so far and its iteration.
     pub(super) best: (f64, usize),
@@ -165,11 +167,10 @@ impl<'a> ContactProblem<'a> {
         }
         let free_jump = FreeJump::new(increment, &operator, &u)?;
         Ok(Begin::Contact(Box::new(ContactProblem {
-            scale: free_jump.size,
-            moved: Vec::with_capacity(free_jump.q.len()),
-            q: free_jump.q.clone(),
-            balance: free_jump.balance.clone(),
-            free_jump,
+            scale: free_jump.scale,
+            floor: 0.0,
+            q: free_jump.q,
+            balance: free_jump.balance,
             start_jump: increment.start_jump(),
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::with_capacity(EXPECTED),
@@ -326,10 +327,10 @@ impl<'a> ContactProblem<'a> {
     /// Mean size of the jump without contact forces, or of what balancing the load alone takes; 0 if nothing acts.
     pub(crate) fn mean_jump(&self) -> f64 {
         let least = norm(&self.balance) / self.operator.rho;
-        self.free_jump.size.max(least) / (self.rows.points() as f64).sqrt()
+        self.scale.max(least) / (self.rows.points() as f64).sqrt()
     }
 
-    /// P_ref, the force that the violation measured last is relative to; before any that of no contact forces.
+    /// P_ref, the force that violations are relative to.
     pub fn reference_force(&self) -> f64 {
         self.operator.rho * self.scale
     }
@@ -339,7 +340,8 @@ impl<'a> ContactProblem<'a> {
     pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        self.scale = (self.free_jump).scale(&self.operator, p, v, &mut self.moved);
+        let u_ref = self.operator.reference(self.scale).1;
+        self.floor = ratio(self.operator.rounding(p), u_ref);
         Violations::of(friction, self.rows, &self.operator, self.scale, p, v).largest()
     }
 
@@ -367,7 +369,9 @@ impl<'a> ContactProblem<'a> {
         }
         self.note(violation, changes);
         let iteration = self.counters.iterations;
-        if violation <= self.stop {
+        // Where rounding is all that is left the judge says what that is worth.
+        let at_rest = self.idle() >= AT_REST && violation <= self.floor;
+        if violation <= self.stop || at_rest {
             Some(Status::Converged)
         } else if !violation.is_finite() {
             Some(Status::Diverged)

@@ -1,6 +1,6 @@
 //! What acts on the contact points without contact forces, and the scale that it sets for whatever breaks the contact laws.
 
-use crate::algebra::dense::{dot, larger, norm, refill};
+use crate::algebra::dense::{dot, norm};
 use crate::contract::judge::slip_from;
 use crate::contract::operator::{ContactOperator, NO_TRACE};
 use crate::contract::system::Increment;
@@ -12,15 +12,13 @@ pub(crate) struct FreeJump {
     pub q: Vec<f64>,
     /// c in Qᵀ P = c.
     pub balance: Vec<f64>,
-    /// |Π (q + W Q c)| in m, Π = I − Q Qᵀ, with all of the tangential jump: without what rigid motions and pins contribute. Q c
-    /// are the contact forces of least norm that balance the load.
+    /// s = max(|Π (q + W Q c)|, |Π W Π P⁰|) in m, Π = I − Q Qᵀ, with all of the tangential jump: without what rigid motions and
+    /// pins contribute. Q c are the contact forces of least norm that balance the load, P⁰ those at the start: what is locked in
+    /// when the load has gone.
     ///
-    /// Where nothing acts there is no such jump, and residuals would be relative to nothing: the size of what the increment starts
-    /// from takes its place, its jump or what its forces move. Where every contact row moves rigidly, or nothing deforms, the load
-    /// on the pieces is all there is.
-    pub size: f64,
-    /// Π W Q c by row; empty unless the body floats.
-    rigid: Vec<f64>,
+    /// Where nothing acts the jump at the start counts too. Where every contact row moves rigidly, or nothing deforms, the load on the
+    /// pieces is all there is.
+    pub scale: f64,
 }
 
 impl FreeJump {
@@ -36,32 +34,33 @@ impl FreeJump {
         let (rows, modes) = (i.system.row_set(), &operator.modes);
         let (jump, start_jump) = (i.jump(u), i.start_jump());
         let balance = modes.balance(&i.resultant());
-        let mut rigid = Vec::new();
+        let beside = |x: &[f64]| {
+            let mut x = rows.restrict(x);
+            modes.project_out(&mut x);
+            x
+        };
+        let mut free = beside(&jump);
         if !balance.is_empty() {
             let mut least = vec![0.0; rows.len()];
             modes.add(&balance, &mut least);
-            rigid = operator.moved(&least);
+            operator.moved_add(&least, &mut free);
         }
-        let beside = |jump: &[f64]| {
-            let mut jump = rows.restrict(jump);
-            modes.project_out(&mut jump);
-            jump
-        };
-        let size = if i.unloaded() {
-            let mut start = rows.restrict(&i.start.p);
-            modes.project_out(&mut start);
-            larger(norm(&beside(&start_jump)), norm(&operator.moved(&start)))
-        } else {
-            let mut free = beside(&jump);
-            (free.iter_mut().zip(&rigid)).for_each(|(free, rigid)| *free += rigid);
-            let (free, load) = (norm(&free), norm(&balance) / operator.rho);
-            let all = load > 0.0 && (operator.stiff || free <= NO_TRACE * load);
-            if all { load } else { free }
-        };
-        let (p_ref, u_ref) = operator.reference(size);
-        if size != 0.0 && !(p_ref.is_normal() && u_ref.is_normal()) {
+        let (load, start) = (norm(&balance) / operator.rho, beside(&i.start.p));
+        let mut locked = vec![0.0; rows.len()];
+        if start.iter().any(|&p| p != 0.0) {
+            operator.moved_add(&start, &mut locked);
+        }
+        let mut scale = norm(&free).max(norm(&locked) - operator.rounding(&start));
+        if i.unloaded() {
+            scale = scale.max(norm(&beside(&start_jump)));
+        }
+        if load > 0.0 && (operator.stiff || scale <= NO_TRACE * load) {
+            scale = load;
+        }
+        let (p_ref, u_ref) = operator.reference(scale);
+        if scale != 0.0 && !(p_ref.is_normal() && u_ref.is_normal()) {
             let reason = format!(
-                "without contact forces the faces move by {size:.1e} m, which takes contact forces of {p_ref:.1e} N (2D: N/m) to \
+                "without contact forces the faces move by {scale:.1e} m, which takes contact forces of {p_ref:.1e} N (2D: N/m) to \
                  undo: beyond the range of numbers; choose other units"
             );
             return Err(MethodError::Refused { reason });
@@ -69,27 +68,8 @@ impl FreeJump {
         Ok(Self {
             q: slip_from(rows, i.system.dim(), &jump, &start_jump),
             balance,
-            size,
-            rigid,
+            scale,
         })
-    }
-
-    /// s = max(|Π (q + W Q c)|, |Π W Π P| − ε ||W||P||) of contact forces and their rows (g, d): forces that W does not feel, the
-    /// rigid share of forces, and the rounding of forces that cancel buy nothing. NaN, which no judge accepts, beyond the range
-    /// of numbers. `moved` is room for rows.
-    pub fn scale(
-        &self,
-        operator: &ContactOperator,
-        p: &[f64],
-        v: &[f64],
-        moved: &mut Vec<f64>,
-    ) -> f64 {
-        // Π W Π P = Π (v − q) − Π W Q c, without a product.
-        refill(moved, v.iter().zip(&self.q).map(|(v, q)| v - q));
-        operator.modes.project_out(moved);
-        (moved.iter_mut().zip(&self.rigid)).for_each(|(moved, rigid)| *moved -= rigid);
-        let scale = larger(self.size, norm(moved) - operator.rounding(p));
-        if scale.is_finite() { scale } else { f64::NAN }
     }
 }
 

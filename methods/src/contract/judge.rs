@@ -14,11 +14,11 @@ use crate::error::{MethodError, check_finite, check_len};
 ///
 /// Reference sizes: P_ref = ρ s and u_ref = P_ref/ρ̂, with the scale
 /// ```text
-/// s = max(|Π (q + W Q c)|, |Π W Π P| − ε ||W||P||),   Π = I − Q Qᵀ
+/// s = max(|Π (q + W Q c)|, |Π W Π P⁰|),   Π = I − Q Qᵀ
 /// ```
-/// q the jump without contact forces, Q c the least forces that balance the load of floating pieces, ρ = rows / trace(W), ρ̂ = ρ
-/// unless slender parts sway ([`ContactOperator::sharp`]), Euclidean norms over all points. Forces that W does not feel, the
-/// rigid share of forces and rounding buy nothing.
+/// q the jump without contact forces, Q c the least forces that balance the load of floating pieces, P⁰ the forces at the start, ρ =
+/// rows / trace(W), ρ̂ = ρ unless slender parts sway ([`ContactOperator::sharp`]), Euclidean norms over all points. All of it
+/// is data: no answer buys a larger scale.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
@@ -36,12 +36,13 @@ pub struct Residuals {
     pub complementarity: f64,
     /// max (|P_t| − μ P_n) / P_ref.
     pub cone: f64,
-    /// max (μ P_n |d| + P_t · d) / (u_ref P_ref), in magnitude: zero if and only if slip is opposed by μ P_n.
+    /// max (μ P_n |d| + P_t · d) / (u_ref max(P_ref, μ P_n)), in magnitude: zero if and only if slip is opposed by μ P_n. A force
+    /// beside which the slip is rounding hides it from the natural map, not from this.
     pub slip_direction: f64,
     /// |e| / P_ref with e = P − proj(P − ρ̂ ṽ) the natural map with De Saxcé's correction: zero if and only if all
     /// contact laws hold. For μ > 1 at every point the smaller of this and the same in (μ P_n, P_t) and (g/μ, d).
     pub natural_map: f64,
-    /// η: the largest of natural map, penetration, adhesion, complementarity and cone. Tiers and verdicts refer to it.
+    /// η: the largest of natural map, penetration, adhesion, complementarity, cone and slip direction. Tiers and verdicts refer to it.
     ///
     /// The natural map alone divides penetration and cone by √(1 + μ²): −ρ̂ g ≤ |e_n| + μ |e_t|, and as much for
     /// |P_t| − μ P_n. On scales of their own no μ hides them.
@@ -52,7 +53,8 @@ pub struct Residuals {
     pub reference_jump: f64,
     /// [`ContactOperator::sway`]; likewise.
     pub sway: f64,
-    /// ε ||W||P|| / u_ref: what rounding of W P may hide of the violation.
+    /// ε ||W||P|| / u_ref: what rounding of W P may hide of the violation; with the backward error of equilibrium for ε where that is
+    /// larger and only W is known.
     pub rounding: f64,
 }
 
@@ -106,8 +108,7 @@ pub fn residuals_of(
     let p = rows.restrict(&s.p);
     let mut free = i.load.force.clone();
     system.elastic().solve(&mut free)?;
-    let free = FreeJump::new(i, &operator, &free)?;
-    let scale = free.scale(&operator, &p, &v, &mut Vec::new());
+    let scale = FreeJump::new(i, &operator, &free)?.scale;
     let (p_ref, u_ref) = operator.reference(scale);
 
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
@@ -128,18 +129,17 @@ pub fn residuals_of(
     result.adhesion = found.adhesion;
     result.complementarity = found.complementarity;
     result.cone = found.cone;
+    result.slip_direction = found.slip;
     result.violation = found.largest();
     result.reference_force = p_ref;
     result.reference_jump = u_ref;
     result.sway = operator.sway;
-    result.rounding = ratio(operator.rounding(&p), u_ref);
-    for point in 0..rows.points() {
-        let (p, v) = (&p[rows.of(point)], &v[rows.of(point)]);
-        let power: f64 = p[1..].iter().zip(&v[1..]).map(|(p, d)| p * d).sum();
-        let lost = system.friction()[point] * p[0] * tangential_norm(v);
-        let direction = ratio((lost + power).abs(), u_ref * p_ref);
-        result.slip_direction = larger(result.slip_direction, direction);
-    }
+    // Where only W is known, jumps may miss W P by as much as equilibrium is off.
+    let error = match system.elastic().stiffness() {
+        None => result.equilibrium.max(f64::EPSILON),
+        Some(_) => f64::EPSILON,
+    };
+    result.rounding = ratio(error * operator.w.magnitude(&p), u_ref);
     result.claimed = match claim {
         Claim::Exact => result.violation,
         Claim::Penalised { normal, tangential } => {
@@ -261,6 +261,7 @@ pub(crate) struct Violations {
     adhesion: f64,
     complementarity: f64,
     cone: f64,
+    slip: f64,
 }
 
 impl Violations {
@@ -273,8 +274,8 @@ impl Violations {
         p: &[f64],
         v: &[f64],
     ) -> Self {
-        let (mut square, mut overlap, mut tension, mut product, mut outside) =
-            (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut square, mut overlap, mut tension, mut product, mut outside, mut slip) =
+            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let (p_ref, u_ref) = operator.reference(scale);
         for (own, &mu) in rows.iter().zip(friction) {
             let (mut at_p, mut at_v) = ([0.0; 3], [0.0; 3]);
@@ -288,6 +289,16 @@ impl Violations {
             tension = larger(tension, -p[0]);
             product = larger(product, (v[0] * p[0] / p[0].abs().max(1.0)).abs());
             outside = larger(outside, excess(mu, p));
+            // In this order no bound leaves the range of numbers.
+            let (d, bound) = (tangential_norm(v), mu * p[0].max(0.0));
+            let power = |scale: f64| -> f64 {
+                p[1..].iter().zip(&v[1..]).map(|(p, d)| p / scale * d).sum()
+            };
+            let unopposed = match bound > 1.0 {
+                true => d + power(bound),
+                false => bound * d + power(1.0),
+            };
+            slip = larger(slip, unopposed.abs());
         }
         Self {
             natural_map: square.sqrt(),
@@ -295,6 +306,7 @@ impl Violations {
             adhesion: tension,
             complementarity: product,
             cone: outside,
+            slip,
         }
     }
 
@@ -321,6 +333,7 @@ impl Violations {
             self.adhesion,
             self.complementarity,
             self.cone,
+            self.slip,
         ];
         own_scales.into_iter().fold(self.natural_map, larger)
     }

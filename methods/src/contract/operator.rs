@@ -82,14 +82,10 @@ impl ContactOperator {
         })
     }
 
-    /// Π W P by row, Π = I − Q Qᵀ: how far contact forces move the points, beside rigid motions.
-    pub(crate) fn moved(&self, p: &[f64]) -> Vec<f64> {
-        let mut moved = vec![0.0; p.len()];
-        if p.iter().any(|&p| p != 0.0) {
-            self.w.apply_add(p, &mut moved);
-            self.modes.project_out(&mut moved);
-        }
-        moved
+    /// v := Π (v + W P), Π = I − Q Qᵀ.
+    pub(crate) fn moved_add(&self, p: &[f64], v: &mut [f64]) {
+        self.w.apply_add(p, v);
+        self.modes.project_out(v);
     }
 
     /// (P_ref, u_ref) = (ρ s, P_ref/ρ̂).

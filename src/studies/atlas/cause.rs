@@ -161,8 +161,8 @@ impl Diagnosis {
             };
         }
         let last = e.watch.states().back().zip(e.watch.last());
-        if let (true, Some((_, (p, v)))) = (e.exact, last) {
-            let above = none.measure / e.watch.gauge.floor(p, v);
+        if let (true, Some((_, (p, _)))) = (e.exact, last) {
+            let above = none.measure / e.watch.gauge.floor(p);
             if above <= FLOOR {
                 return Diagnosis {
                     cause: Cause::Floor,

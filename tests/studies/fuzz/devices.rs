@@ -149,7 +149,7 @@ fn a_pipe_among_records_is_refused() {
         .arg(dir.path().join("sweep.json"))
         .status();
     assert!(made.unwrap().success());
-    let (code, _, message) = stickslip(&["compare", ".", "."], dir.path());
+    let (code, _, message) = stickslip(&["merge", ".", "--out", "merged"], dir.path());
     assert_eq!(code, 2);
     assert!(
         message.contains("sweep.json") && message.contains("a pipe"),

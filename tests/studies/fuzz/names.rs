@@ -186,14 +186,14 @@ fn texts_made_up_in_records_are_refused() {
         let text = fs::read_to_string(file).unwrap();
         assert!(text.contains(from), "{from} in {text}");
         fs::write(file, sealed(&text.replace(from, to))).unwrap();
-        let compare = ["compare", "out", "out"];
-        let (shown, complaints) = ends_with(2, &compare, dir.path());
+        let merge = ["merge", "out", "--out", "merged"];
+        let (shown, complaints) = ends_with(2, &merge, dir.path());
         assert!(complaints.contains(what), "{complaints}");
         assert!(complaints.chars().count() < 500, "{complaints}");
         assert_harmless(&dir.path().join("none"), &(shown + &complaints));
         fs::write(file, text).unwrap();
     }
-    ends_with(0, &["compare", "out", "out"], dir.path());
+    ends_with(0, &["merge", "out", "--out", "merged"], dir.path());
 }
 
 /// Goal: who names files at length learns so before hours of computing, not when the results are to be written.
