@@ -164,7 +164,7 @@ impl Verdict {
         let drowned = found.rounding > accepted && found.violation <= DROWNED * found.rounding;
         match (outcome.status, outcome.claim) {
             (Status::Converged, Claim::Exact) if drowned => Verdict::GaveUp(Status::Rounding),
-            (Status::Converged, _) if as_claimed && solved => Verdict::Solved,
+            (Status::Converged | Status::Rounding, _) if as_claimed && solved => Verdict::Solved,
             (Status::Converged, Claim::Exact) => Verdict::FalseClaim,
             (Status::Converged, _) if as_claimed => {
                 Verdict::Approximate(Tier::ALL.into_iter().rev().find(holds))

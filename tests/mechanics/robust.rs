@@ -1,6 +1,7 @@
 //! Bodies and supports that once went wrong: slender bodies, floating blocks on a slope, supports that overlap.
 
 use crate::common::*;
+use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip::run::verdict::Verdict;
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
@@ -80,4 +81,56 @@ fn overlapping_supports_balance_the_load_once() {
             rows().map(|q| q.quantity.at.as_str()).collect();
         assert_eq!(places.len(), rows().count(), "one row per place");
     }
+}
+
+/// Three cracks with μ about 3.5, of which two solutions are known: dissipation 7.84 and 0.59 J/m. Goal: who looks from
+/// several starts is told that there are several; with little friction there is one.
+#[test]
+fn who_finds_different_answers_is_told_so() {
+    let places = [
+        [
+            [0.7202793371410585, -0.7884440400482011],
+            [-0.5374913459088968, 0.7286018586705387],
+        ],
+        [
+            [0.32392600918648823, 0.2553051358035423],
+            [0.42355700305704497, 1.217523253503631],
+        ],
+        [
+            [1.3229537322258984, 0.15191983720880686],
+            [-0.6263509877101769, 0.409202772627397],
+        ],
+    ];
+    let body = |mu: [f64; 3]| {
+        let cracks = places
+            .iter()
+            .zip(mu)
+            .map(|(points, mu)| format!("[[crack]]\npoints_m = {points:?}\nfriction = {mu:?}\n"));
+        let held = support("\"bottom\"", "[0.0, 0.0]")
+            + &support("\"top\"", "[0.001103203483182878, -6.87398768484061e-05]");
+        let rest = cracks.collect::<String>() + &held;
+        plane([-2.0, -2.0], [2.0, 2.0], [27, 27], &rest)
+            .replace("young_pa = 1,", "young_pa = 1e10,")
+    };
+    let verdicts = |mu, methods: &[&str], starts| -> Vec<Verdict> {
+        let settings = Settings {
+            tier: None,
+            jobs: 1,
+            fields: Fields::None,
+            starts,
+        };
+        let results = run_case(&parse(&body(mu)), &choices(methods), settings, &Quiet).unwrap();
+        results.runs.into_iter().map(|row| row.verdict).collect()
+    };
+    let steep = [3.760629542764099, 3.36346893277615, 3.3810203294188796];
+    let two = ["hybrid", "b-newton"];
+    assert_eq!(
+        verdicts(steep, &two, 8),
+        [Verdict::Several, Verdict::Several]
+    );
+    assert_eq!(verdicts(steep, &two[1..], 8), [Verdict::Several]);
+    assert_eq!(
+        verdicts([0.2; 3], &two, 8),
+        [Verdict::Solved, Verdict::Solved]
+    );
 }

@@ -200,7 +200,7 @@ fn redundant(problem: &mut ContactProblem<'_>) -> bool {
 
 /// Whether a method that was tried ends the whole; iterations that have run out the sweeps see themselves.
 fn is_final(end: &End) -> bool {
-    [Status::Converged, Status::Stopped].contains(&end.status)
+    [Status::Converged, Status::Rounding, Status::Stopped].contains(&end.status)
 }
 
 /// Runs of Newton's method, each stopped soon after it makes no progress.

@@ -92,7 +92,7 @@ impl ContactProblem<'_> {
         }
         let found = self.slip_of(&state.u);
         let violation = self.violation(&self.rows.restrict(&state.p), &found);
-        if violation <= self.increment.tolerance.max(self.floor) {
+        if violation <= self.increment.tolerance {
             self.confirmed = Some(state);
             return Ok(Check::End(status));
         }

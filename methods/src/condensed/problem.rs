@@ -371,8 +371,10 @@ impl<'a> ContactProblem<'a> {
         let iteration = self.counters.iterations;
         // Where rounding is all that is left the judge says what that is worth.
         let at_rest = self.idle() >= AT_REST && violation <= self.floor;
-        if violation <= self.stop || at_rest {
+        if violation <= self.stop {
             Some(Status::Converged)
+        } else if at_rest {
+            Some(Status::Rounding)
         } else if !violation.is_finite() {
             Some(Status::Diverged)
         } else if !monitor.step(iteration, violation) {

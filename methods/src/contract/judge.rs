@@ -53,8 +53,8 @@ pub struct Residuals {
     pub reference_jump: f64,
     /// [`ContactOperator::sway`]; likewise.
     pub sway: f64,
-    /// ε ||W||P|| / u_ref: what rounding of W P may hide of the violation; with the backward error of equilibrium for ε where that is
-    /// larger and only W is known.
+    /// ε ||W||P|| / u_ref, where only W is known: what rounding of W P may hide of the violation, with the backward error of
+    /// equilibrium for ε where that is larger.
     pub rounding: f64,
 }
 
@@ -134,12 +134,11 @@ pub fn residuals_of(
     result.reference_force = p_ref;
     result.reference_jump = u_ref;
     result.sway = operator.sway;
-    // Where only W is known, jumps may miss W P by as much as equilibrium is off.
-    let error = match system.elastic().stiffness() {
-        None => result.equilibrium.max(f64::EPSILON),
-        Some(_) => f64::EPSILON,
-    };
-    result.rounding = ratio(error * operator.w.magnitude(&p), u_ref);
+    // Of a body equilibrium says how right its jumps are; where only W is known they may miss W P by as much as that is off.
+    if system.elastic().stiffness().is_none() {
+        let error = result.equilibrium.max(f64::EPSILON);
+        result.rounding = ratio(error * operator.w.magnitude(&p), u_ref);
+    }
     result.claimed = match claim {
         Claim::Exact => result.violation,
         Claim::Penalised { normal, tangential } => {

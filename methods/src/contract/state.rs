@@ -65,7 +65,8 @@ statuses! {
     Diverged = "diverged",
     /// The monitor asked to stop.
     Stopped = "stopped",
-    /// The contact forces are so large beside what they move that rounding decides: no tier can be given. Said by the judge.
+    /// The violation no longer falls, and the rounding of W P is as large: no claim, but what is reached may be what was accepted, as the
+    /// judge says. Said by the judge too where contact forces are so large beside what they move that rounding decides.
     Rounding = "rounding",
     /// The method says that it has no solution, and nothing else.
     Unexplained = "unexplained",

@@ -72,7 +72,7 @@ impl Row for RunRow {
             "sway" "–" .significant(2) = r.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e7 the mesh is suspect";
             "uniform_stress" "–" .residual() = r.uniform_stress, "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
             "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
-            "reference_force" "N or N/m" = r.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or by the contact forces if that is more; 0 where no point closes";
+            "reference_force" "N or N/m" = r.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or as those at the start of the increment if that is more; 0 where no point closes";
             "reference_jump_m" "m" = r.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
             "tangent_factorisations" "–" .named("dense factorisations") = r.tangent_factorisations, TANGENTS;
             "global_factorisations" "–" = r.global_factorisations, GLOBALS;
