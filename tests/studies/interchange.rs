@@ -426,6 +426,7 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
         }
     }
     let solvable = expected.iter().filter(|row| row.5.is_empty());
+    let several = ["blocks.column-3d", "spheres.packing-3d"];
     for (name, .., asymmetry, _) in solvable {
         for method in methods {
             let verdict = verdict(dir.path(), name, method);
@@ -437,8 +438,11 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
                     );
                     assert_eq!(verdict, reason, "{name}");
                 }
-                // Rigid blocks on each other have several answers.
-                _ => assert!(verdict.starts_with("solved"), "{name} {method}: {verdict}"),
+                // Rigid bodies on each other, with more contact rows than W has rank.
+                _ if several.iter().any(|own| name.starts_with(own)) => {
+                    assert_eq!(verdict, "solved (several)", "{name} {method}");
+                }
+                _ => assert_eq!(verdict, "solved", "{name} {method}"),
             }
         }
     }
