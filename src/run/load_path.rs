@@ -1,6 +1,6 @@
 //! The load path of one run: increment after increment, each from the state in which the one before ended.
 
-use stickslip_methods::{ContactState, ContactSystem, Increment, guesses};
+use stickslip_methods::{ContactState, ContactSystem, Increment, guess};
 
 use crate::case::Case;
 use crate::model::body::{Body, BodyError};
@@ -80,7 +80,7 @@ pub enum Guess {
     Before,
     /// None.
     Cold,
-    /// One of the [`guesses`] that look for further solutions, from 0.
+    /// That of this number among the [`guess`]es that look for further solutions.
     Further(usize),
 }
 
@@ -175,14 +175,12 @@ impl LoadPathRun<'_> {
                 index: increment - loading.first(),
                 tolerance: accuracy.asked,
             };
-            let guess = match self.guess {
+            let start = match self.guess {
                 Guess::Before => None,
                 Guess::Cold => Some(rest.p.clone()),
-                Guess::Further(k) => guesses(&problem, k + 1)
-                    .ok()
-                    .and_then(|all| all.into_iter().nth(k)),
+                Guess::Further(number) => guess(&problem, number).ok().flatten(),
             };
-            problem.guess = guess.as_deref();
+            problem.guess = start.as_deref();
             let mut solved = solver.judge(&problem, accuracy.accepted);
             end.now = solved.honest().map(|judged| {
                 Snapshot::new(

@@ -52,12 +52,14 @@ pub trait Delassus: Send + Sync {
             let own = p.iter().zip(self.diagonal());
             return own.map(|(p, w)| p.abs() * w.sqrt()).sum::<f64>() * self.trace().sqrt();
         }
-        let (mut sum, mut work) = (vec![0.0; self.rows()], Vec::new());
-        for (k, p) in p.iter().enumerate().filter(|own| *own.1 != 0.0) {
-            let parts = sum.iter_mut().zip(self.column(k, &mut work));
-            parts.for_each(|(sum, w)| *sum += (w * p).abs());
-        }
+        let mut sum = vec![0.0; self.rows()];
+        self.apply_abs_add(p, &mut sum);
         norm(&sum)
+    }
+
+    /// v += |W| |p|, entry by entry.
+    fn apply_abs_add(&self, p: &[f64], v: &mut [f64]) {
+        columns_abs_add(self, p, v);
     }
 
     /// Sum of the diagonal.
@@ -86,6 +88,15 @@ pub trait Delassus: Send + Sync {
             matrix.col_as_slice_mut(j).copy_from_slice(column);
         }
         matrix
+    }
+}
+
+/// v += |W| |p| by the columns of W.
+pub(crate) fn columns_abs_add<W: Delassus + ?Sized>(w: &W, p: &[f64], v: &mut [f64]) {
+    let mut work = Vec::new();
+    for (k, p) in p.iter().enumerate() {
+        let parts = v.iter_mut().zip(w.column(k, &mut work));
+        parts.for_each(|(v, w)| *v += (w * p).abs());
     }
 }
 

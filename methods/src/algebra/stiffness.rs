@@ -52,6 +52,11 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Backward error of equilibrium between displacements and the sum of some forces.
     fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64;
 
+    /// |W| |f|, entry by entry, where W was given.
+    fn product_abs(&self, _f: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// max |w_ij − w_ji| / max |w_ij|: 0 where W comes from a stiffness.
     fn asymmetry(&self) -> f64 {
         0.0
@@ -289,6 +294,12 @@ impl Stiffness for DelassusOnly {
         let deformation = ratio(norm(&residual), norm(u) + norm(&work));
         let size: f64 = forces.iter().map(|f| norm(f)).sum();
         deformation.max(ratio(norm(&self.modes.components(&total)), size))
+    }
+
+    fn product_abs(&self, f: &[f64]) -> Option<Vec<f64>> {
+        let mut product = vec![0.0; f.len()];
+        self.w.mul_abs(f, &mut product);
+        Some(product)
     }
 
     fn asymmetry(&self) -> f64 {

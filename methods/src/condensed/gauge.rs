@@ -30,7 +30,7 @@ impl<'a> Gauge<'a> {
         elastic.on_body(|| elastic.solve(&mut u))??;
         let operator = increment.system.operator(DelassusForm::Formed)?;
         Ok(Self {
-            free: FreeJump::new(increment, &operator, &u)?,
+            free: FreeJump::new(increment, &operator, &increment.jump(&u))?,
             operator,
             increment,
         })
@@ -73,8 +73,7 @@ impl<'a> Gauge<'a> {
         (0..self.free.q.len()).map(column).collect()
     }
 
-    /// How well P and v = (g, d) fulfil the contact laws, as the judge measures it. Equilibrium, and what takes a slip of its
-    /// own to know, stay 0.
+    /// How well P and v = (g, d) fulfil the contact laws, as the judge measures it. Equilibrium, sway and rounding stay 0.
     pub fn residuals(&self, p: &[f64], v: &[f64]) -> Residuals {
         let scale = self.free.scale;
         Violations::of(self.friction(), self.rows(), &self.operator, scale, p, v)
@@ -84,12 +83,7 @@ impl<'a> Gauge<'a> {
     /// What rounding of v = q + W P leaves of the violation at P: ε |(|q| + |W| |P|)| over u_ref, Euclidean norms.
     pub fn floor(&self, p: &[f64]) -> f64 {
         let mut size: Vec<f64> = self.free.q.iter().map(|q| q.abs()).collect();
-        let mut work = Vec::new();
-        for (k, force) in p.iter().enumerate() {
-            let column = self.operator.w.column(k, &mut work);
-            let parts = size.iter_mut().zip(column);
-            parts.for_each(|(size, w)| *size += (w * force).abs());
-        }
+        self.operator.w.apply_abs_add(p, &mut size);
         let u_ref = self.operator.reference(self.free.scale).1;
         ratio(f64::EPSILON * norm(&size), u_ref)
     }

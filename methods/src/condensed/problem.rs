@@ -104,8 +104,8 @@ pub struct ContactProblem<'a> {
     pub(super) start_jump: Vec<f64>,
     /// s; see [`Residuals`](crate::Residuals).
     scale: f64,
-    /// What rounding of W P leaves of the violation at that iterate.
-    pub(super) floor: f64,
+    /// What rounding of W P leaves of the violation measured last; 0 as long as that falls.
+    floor: f64,
     rescues: usize,
     /// Smallest violation so far and its iteration.
     pub(super) best: (f64, usize),
@@ -165,13 +165,13 @@ impl<'a> ContactProblem<'a> {
                 counters,
             }));
         }
-        let free_jump = FreeJump::new(increment, &operator, &u)?;
+        let free_jump = FreeJump::new(increment, &operator, &jump)?;
         Ok(Begin::Contact(Box::new(ContactProblem {
             scale: free_jump.scale,
             floor: 0.0,
             q: free_jump.q,
             balance: free_jump.balance,
-            start_jump: increment.start_jump(),
+            start_jump: free_jump.start_jump,
             stop: STOP_FRACTION * increment.tolerance,
             history: Vec::with_capacity(EXPECTED),
             increment,
@@ -335,13 +335,20 @@ impl<'a> ContactProblem<'a> {
         self.operator.rho * self.scale
     }
 
+    /// u_ref, the jump that overlap is relative to.
+    pub(crate) fn reference_jump(&self) -> f64 {
+        self.operator.reference(self.scale).1
+    }
+
     /// η, the largest violation of the contact laws, as the judge computes it; see
     /// [`Residuals::violation`](crate::Residuals::violation).
     pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        let u_ref = self.operator.reference(self.scale).1;
-        self.floor = ratio(self.operator.rounding(p), u_ref);
+        self.floor = match self.idle() >= AT_REST {
+            true => ratio(self.operator.rounding(p), self.reference_jump()),
+            false => 0.0,
+        };
         Violations::of(friction, self.rows, &self.operator, self.scale, p, v).largest()
     }
 

@@ -117,15 +117,15 @@ pub fn from_all_starts(
     Ok((verdict, states))
 }
 
-/// Contact forces to look for further solutions from, all rows: those of [`Start::ALL`] as far as there are any, then forces at
-/// random within the cones of friction, the same at every call. None where nothing closes without contact forces.
+/// Contact forces to look for further solutions from, all rows, by number from 0: those of [`Start::ALL`] as far as there are any, then
+/// forces at random within the cones of friction, the same at every call. None where nothing closes without contact forces.
 ///
 /// # Errors
 /// Those of factorisation and condensation.
-pub fn guesses(increment: &Increment<'_>, count: usize) -> Result<Vec<Vec<f64>>, MethodError> {
+pub fn guess(increment: &Increment<'_>, number: usize) -> Result<Option<Vec<f64>>, MethodError> {
     let begun = ContactProblem::begin(increment, DelassusForm::Formed, |_| Claim::Exact)?;
     let Begin::Contact(problem) = begun else {
-        return Ok(Vec::new());
+        return Ok(None);
     };
     let known = Start::ALL
         .into_iter()
@@ -145,10 +145,7 @@ pub fn guesses(increment: &Increment<'_>, count: usize) -> Result<Vec<Vec<f64>>,
         }
         problem.all_forces(&p)
     };
-    Ok(known
-        .chain(std::iter::repeat_with(&mut random))
-        .take(count)
-        .collect())
+    Ok(known.chain(std::iter::repeat_with(&mut random)).nth(number))
 }
 
 /// Contact forces of a start, all rows; `None` if there are no tied forces.

@@ -365,6 +365,14 @@ impl Elastic {
         v.iter_mut().zip(moved).for_each(|(v, jump)| *v += jump);
     }
 
+    /// |W| |p|, entry by entry, on some rows, where W was given: one product.
+    pub(crate) fn product_abs(&self, rows: &RowSet, p: &[f64]) -> Option<Vec<f64>> {
+        let all = self
+            .stiffness
+            .product_abs(&rows.extend(p, self.jump.rows()))?;
+        Some(rows.restrict(&all))
+    }
+
     /// W on [`rows`](Self::rows), formed unless it exists.
     pub(crate) fn formed(&self) -> Result<Arc<Dense>, MethodError> {
         let build = || {

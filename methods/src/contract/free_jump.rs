@@ -10,6 +10,8 @@ use crate::error::MethodError;
 pub(crate) struct FreeJump {
     /// Rows (g, d) for P = 0, β = 0, in m.
     pub q: Vec<f64>,
+    /// `[[u]]` at the start of the increment.
+    pub start_jump: Vec<f64>,
     /// c in Qᵀ P = c.
     pub balance: Vec<f64>,
     /// s = max(|Π (q + W Q c)|, |Π W Π P⁰|) in m, Π = I − Q Qᵀ, with all of the tangential jump: without what rigid motions and
@@ -22,24 +24,24 @@ pub(crate) struct FreeJump {
 }
 
 impl FreeJump {
-    /// From the displacements without contact forces.
+    /// From `[[u]]` without contact forces.
     ///
     /// # Errors
     /// [`MethodError::Refused`] where P_ref or u_ref would leave the range of numbers.
     pub fn new(
         i: &Increment<'_>,
         operator: &ContactOperator,
-        u: &[f64],
+        jump: &[f64],
     ) -> Result<Self, MethodError> {
         let (rows, modes) = (i.system.row_set(), &operator.modes);
-        let (jump, start_jump) = (i.jump(u), i.start_jump());
+        let start_jump = i.start_jump();
         let balance = modes.balance(&i.resultant());
         let beside = |x: &[f64]| {
             let mut x = rows.restrict(x);
             modes.project_out(&mut x);
             x
         };
-        let mut free = beside(&jump);
+        let mut free = beside(jump);
         if !balance.is_empty() {
             let mut least = vec![0.0; rows.len()];
             modes.add(&balance, &mut least);
@@ -66,7 +68,8 @@ impl FreeJump {
             return Err(MethodError::Refused { reason });
         }
         Ok(Self {
-            q: slip_from(rows, i.system.dim(), &jump, &start_jump),
+            q: slip_from(rows, i.system.dim(), jump, &start_jump),
+            start_jump,
             balance,
             scale,
         })

@@ -88,7 +88,7 @@ pub fn residuals_of(
     check_finite("contact forces", &s.p)?;
 
     let (system, dim) = (i.system, i.system.dim());
-    let mut result = Residuals {
+    let result = Residuals {
         equilibrium: equilibrium(i, s, Claim::Exact)?,
         claimed_equilibrium: equilibrium(i, s, claim)?,
         ..Default::default()
@@ -104,11 +104,13 @@ pub fn residuals_of(
     // W is not formed to judge: one solve, and the trace in ρ.
     let operator = system.operator(DelassusForm::Products)?;
     let (rho, rows) = (operator.sharp, system.row_set());
-    let v = slip_from(rows, dim, &jump, &i.start_jump());
-    let p = rows.restrict(&s.p);
     let mut free = i.load.force.clone();
     system.elastic().solve(&mut free)?;
-    let scale = FreeJump::new(i, &operator, &free)?.scale;
+    let FreeJump {
+        start_jump, scale, ..
+    } = FreeJump::new(i, &operator, &i.jump(&free))?;
+    let v = slip_from(rows, dim, &jump, &start_jump);
+    let p = rows.restrict(&s.p);
     let (p_ref, u_ref) = operator.reference(scale);
 
     let forbidden = norm(&s.p).powi(2) - norm(&p).powi(2);
@@ -124,16 +126,12 @@ pub fn residuals_of(
         cone,
         ..found
     };
-    result.natural_map = found.natural_map;
-    result.penetration = found.penetration;
-    result.adhesion = found.adhesion;
-    result.complementarity = found.complementarity;
-    result.cone = found.cone;
-    result.slip_direction = found.slip;
-    result.violation = found.largest();
-    result.reference_force = p_ref;
-    result.reference_jump = u_ref;
-    result.sway = operator.sway;
+    let mut result = Residuals {
+        equilibrium: result.equilibrium,
+        claimed_equilibrium: result.claimed_equilibrium,
+        sway: operator.sway,
+        ..found.residuals(&operator, scale)
+    };
     // Of a body equilibrium says how right its jumps are; where only W is known they may miss W P by as much as that is off.
     if system.elastic().stiffness().is_none() {
         let error = result.equilibrium.max(f64::EPSILON);
@@ -317,6 +315,7 @@ impl Violations {
             adhesion: self.adhesion,
             complementarity: self.complementarity,
             cone: self.cone,
+            slip_direction: self.slip,
             natural_map: self.natural_map,
             violation: self.largest(),
             reference_force,

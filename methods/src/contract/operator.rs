@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::MethodError;
-use crate::algebra::delassus::Delassus;
+use crate::algebra::delassus::{Delassus, columns_abs_add};
 use crate::algebra::dense::{dot, zero};
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::rows::RowSet;
@@ -135,6 +135,13 @@ impl Delassus for Products {
         zero(work, self.rows.len());
         self.apply_add(&unit, work);
         work
+    }
+
+    fn apply_abs_add(&self, p: &[f64], v: &mut [f64]) {
+        match self.elastic.product_abs(&self.rows, p) {
+            Some(product) => v.iter_mut().zip(product).for_each(|(v, w)| *v += w),
+            None => columns_abs_add(self, p, v),
+        }
     }
 
     fn formed(&self) -> bool {

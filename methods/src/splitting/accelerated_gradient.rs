@@ -269,8 +269,7 @@ impl<'g> Program<'g> {
             self.trial.multiply(gradient, &self.y.p);
             let size = self.squared(&self.trial.p, &self.y.p);
             let curvature = dot(&self.trial.dp, &self.trial.dv);
-            // Forces at rest: any step will do.
-            // Nor does one help where numbers left the finite range.
+            // Forces at rest: any step will do; where numbers left the finite range none helps.
             let steep = curvature * self.t > size && curvature.is_finite();
             if !steep || size == 0.0 {
                 break;
