@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::error::CliError;
 use crate::case::{self, Case, shipped};
+use crate::report::names::file_name;
 use crate::run::choice::{Choice, ChoiceError};
 use crate::run::outside::SECONDS;
 use crate::run::provenance::Provenance;
@@ -67,14 +68,14 @@ pub fn methods_or_all(named: &[String], limit: &ProgramLimit) -> Result<Vec<Choi
     Ok(chosen)
 }
 
-/// Two runs of one name would write the same files.
+/// Two runs of one name would write the same files, also where they differ in what file names leave out.
 pub fn refuse_twins<'a>(
     what: &'static str,
     names: impl Iterator<Item = &'a str>,
 ) -> Result<(), CliError> {
     let mut seen = BTreeSet::new();
     for name in names {
-        if !seen.insert(name) {
+        if !seen.insert(file_name(&[name])) {
             return Err(CliError::Twice {
                 what,
                 name: name.into(),

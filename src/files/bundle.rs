@@ -54,6 +54,13 @@ impl FolderError {
     }
 }
 
+/// Parts joined by dots; other characters than letters, digits, `.`, `-`, `_` and `=` become `-`.
+pub fn file_name(parts: &[&str]) -> String {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
+    let clean = |c: char| if allowed(c) { c } else { '-' };
+    parts.join(".").chars().map(clean).collect()
+}
+
 /// Files of one command, by path relative to the output folder.
 #[derive(Debug, Default)]
 pub struct Bundle {

@@ -1,6 +1,7 @@
 //! Names of files.
 
 use super::number::value;
+pub use crate::files::bundle::file_name;
 use crate::run::record::RunKey;
 
 /// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
@@ -14,13 +15,6 @@ pub fn stem(key: &RunKey) -> String {
         &key.method,
         &format!("mu-{friction}"),
     ])
-}
-
-/// Parts joined by dots; other characters than letters, digits, `.`, `-`, `_` and `=` become `-`.
-pub fn file_name(parts: &[&str]) -> String {
-    let allowed = |c: char| c.is_ascii_alphanumeric() || "._-=".contains(c);
-    let clean = |c: char| if allowed(c) { c } else { '-' };
-    parts.join(".").chars().map(clean).collect()
 }
 
 /// File name part for the problem of a run, without its method: `case.mesh.space.mu-0.1`.

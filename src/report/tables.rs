@@ -19,7 +19,7 @@ use crate::studies::convergence::orders::{ErrorRow, OrderRow};
 use crate::studies::exchange::collection::{FamilyRow, ProblemRow};
 use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
-use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
 use crate::studies::robustness::atlas::{AtlasRow, StoppingRow};
@@ -157,8 +157,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<Table2Row>(),
         Description::of::<ConvergedRow>(),
         Description::of::<SequenceRow>(),
-        Description::of::<LimitRow>(),
-        Description::of::<RefinementRow>(),
         Description::of::<PenaltyRow>(),
     ];
     let methods = vec![

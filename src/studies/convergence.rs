@@ -2,14 +2,16 @@
 //!
 //! Every combination is the case with another contact space and tip enrichment, run over its whole load path. Only honest
 //! verdicts are measured, at the end of the path: against the closed form where the case names one, otherwise by their
-//! quantities of interest, for which [`orders`] finds a reference.
+//! quantities of interest on the finest mesh, whose error bars come from the meshes before it.
 
-mod limit;
+pub mod error_bar;
 pub mod orders;
+mod power_law;
 mod sample;
 mod tips;
 
-pub use limit::{Limit, limit, linear_limit, slope};
+pub use error_bar::NoBar;
+pub use power_law::slope;
 pub use sample::{Measured, Sample, Seconds, Value, Variant};
 pub use tips::{Regularity, regularity};
 
@@ -19,7 +21,7 @@ use crate::case::{Case, ContactSpace, Tip};
 use crate::model::body::{Body, BodyError};
 use crate::model::errors::{Deviation, errors};
 use crate::model::loading::Loading;
-use crate::model::quantities::{Snapshot, quantities};
+use crate::model::quantities::{Quantity, Snapshot, quantities};
 use crate::run::choice::Choice;
 use crate::run::load_path::Posed;
 use crate::run::run_case::{Progress, RunError, friction_values, needs, warm_up};
@@ -29,10 +31,12 @@ use crate::run::verdict::Accuracy;
 const REFINE: [usize; 4] = [1, 2, 4, 8];
 
 /// Quantities of interest that are followed under refinement where there is no closed form.
-const FOLLOWED: [&str; 5] = [
+const FOLLOWED: [&str; 7] = [
     "reaction",
+    "contact_force",
     "strain_energy",
     "dissipation",
+    "mean_slip",
     "max_slip",
     "max_gap",
 ];
@@ -214,22 +218,24 @@ pub(crate) fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     let displacement = largest(&mut now.u.iter().copied());
-    let reactions = || rows.iter().filter(|row| row.name == "reaction");
-    let force = largest(&mut reactions().map(|row| row.value));
+    let is_force = |row: &&Quantity| ["reaction", "contact_force"].contains(&row.name.as_str());
+    let force = largest(&mut rows.iter().filter(is_force).map(|row| row.value));
+    // With one crack what is its own is that of all.
+    let total = |name: &str| rows.iter().any(|row| row.name == name && row.at.is_empty());
     let followed = rows
         .iter()
         .filter(|row| FOLLOWED.contains(&row.name.as_str()))
-        // With one crack its own maximum is the maximum of all.
-        .filter(|row| case.cracks.len() > 1 || !row.at.starts_with("crack-"));
+        .filter(|row| case.cracks.len() > 1 || row.at.is_empty() || !total(&row.name));
     followed
         .map(|row| {
-            let (norm, scale) = match row.name.as_str() {
-                "reaction" => {
-                    let own = reactions().filter(|other| other.at == row.at);
-                    (own.map(|r| r.value.powi(2)).sum::<f64>().sqrt(), force)
-                }
-                "max_slip" | "max_gap" => (row.value.abs(), displacement),
-                _ => (row.value.abs(), now.strain_energy),
+            let vector = rows
+                .iter()
+                .filter(|other| (&other.name, &other.at) == (&row.name, &row.at));
+            let norm = vector.map(|r| r.value.powi(2)).sum::<f64>().sqrt();
+            let scale = match row.name.as_str() {
+                "reaction" | "contact_force" => force,
+                "mean_slip" | "max_slip" | "max_gap" => displacement,
+                _ => now.strain_energy,
             };
             Value {
                 at: format!("{} {}", row.at, row.component).trim().to_owned(),

@@ -6,11 +6,11 @@
 pub mod comparison;
 pub mod converged_reactions;
 mod lookup;
-pub mod plate_series;
+pub mod penalty;
 pub mod printed_tables;
 pub mod variants;
 
-pub use lookup::PaperError;
+pub use lookup::{PaperError, as_printed};
 
 use crate::case::shipped;
 use crate::run::record::Results;
@@ -18,9 +18,7 @@ use crate::run::run_case::{Fields, Progress, Settings, run_case};
 
 use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
 use lookup::{case, choice};
-use plate_series::{
-    LimitRow, PenaltyRow, RefinementRow, limit_rows, penalty_rows, refinement_rows,
-};
+use penalty::{PenaltyRow, penalty_rows};
 use printed_tables::{PAPER_METHODS, Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
 use variants::{VariantRow, variant_rows};
 
@@ -47,25 +45,14 @@ pub struct Paper {
     pub table2: Vec<Table2Row>,
     /// Error of the penalty method against its parameter.
     pub penalty: Vec<PenaltyRow>,
-    /// Reactions of both plate meshes under refinement.
-    pub refinement: Vec<RefinementRow>,
-    /// Their limits.
-    pub limits: Vec<LimitRow>,
+    /// Reactions of the plate under refinement: by edge pairs, and by star multipliers if they were asked for.
+    pub refinement: Vec<SequenceRow>,
+    /// The finest ones beside the printed numbers.
+    pub converged: Vec<ConvergedRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
-    /// What takes minutes, if it was asked for.
-    pub long: Option<Long>,
-}
-
-/// What takes minutes.
-#[derive(Debug)]
-pub struct Long {
-    /// Reactions of the plate by star multipliers with a fixed tip radius, on three meshes under refinement.
-    pub converged_meshes: Vec<SequenceRow>,
-    /// Their limits beside the printed numbers.
-    pub converged: Vec<ConvergedRow>,
-    /// Plate and beam by every method and variant.
-    pub variants: Vec<VariantRow>,
+    /// Plate and beam by every method and variant, if they were asked for.
+    pub variants: Option<Vec<VariantRow>>,
 }
 
 /// How much is run.
@@ -124,15 +111,10 @@ pub fn run(
     paper.table2 = beam_rows(&paper.results)?;
     paper.beam_models_mm = beam_difference(&paper.results);
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
-    paper.refinement = refinement_rows(numbers_only, progress)?;
-    paper.limits = limit_rows(&paper.refinement);
-    if extent == Extent::Full {
-        let (converged_meshes, converged) = converged_reactions(&paper.table1, progress)?;
-        paper.long = Some(Long {
-            converged_meshes,
-            converged,
-            variants: variant_rows(&paper.results, numbers_only, progress)?,
-        });
+    let full = extent == Extent::Full;
+    (paper.refinement, paper.converged) = converged_reactions(full, &paper.table1, progress)?;
+    if full {
+        paper.variants = Some(variant_rows(&paper.results, numbers_only, progress)?);
     }
     Ok(paper)
 }

@@ -319,3 +319,66 @@ fn the_same_command_twice_writes_the_same_files_but_for_times() {
         }
     }
 }
+
+/// Three cracks, one of them ends on another: results by crack, by tip and of all together.
+fn three_cracks() -> String {
+    let rest = crack([0.0, 0.41], [0.8, 0.52], 0.2, "auto")
+        + &crack([0.4, 0.465], [0.63, 0.9], 0.3, "auto")
+        + &crack([0.15, 0.15], [0.75, 0.25], 0.1, "auto")
+        + &support("\"bottom\"", "[0, 0]")
+        + &support("\"top\"", "[5e-4, -5e-4]");
+    in_space(&plane([0.0, 0.0], [1.0, 1.0], [7, 7], &rest), "star")
+}
+
+/// Goal: every verb that takes a case, or what another verb made of one, copes with several cracks (the largest gaps of two
+/// had figures of one name).
+#[test]
+fn three_cracks_pass_through_every_verb() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("three.toml"), three_cracks()).unwrap();
+    let sweep = "title = \"three\"\n[[cells]]\ncases = [\"three.toml\"]\nrefine = [1, 2]\n\
+                 methods = [\"hybrid\"]\ntolerances = [1e-6, 1e-9]\n";
+    std::fs::write(dir.path().join("sweep.toml"), sweep).unwrap();
+    for arguments in [
+        "check three.toml",
+        "show three.toml",
+        "run three.toml",
+        "converge three.toml --refine 1,2,3 --spaces star,edge-pairs --out converged",
+        "study sweep.toml --untimed --out study",
+        "study sweep.toml --untimed --out again",
+        "merge study again --out merged",
+        "page converged",
+        "export three.toml",
+        "solve problems --method hybrid --out solved",
+        "export three.toml --refine 2 --out finer",
+    ] {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        ends_with(0, &words, dir.path());
+    }
+    let drawn = files(&dir.path().join("converged"));
+    for figure in ["max_slip", "mean_slip", "dissipation"] {
+        let name = format!("figures/three.hybrid.mu-0.2.{figure}.error.svg");
+        assert!(drawn.contains_key(&name), "{name}");
+    }
+}
+
+/// Goal: names that files do not tell apart are refused before anything is run, or told apart.
+#[test]
+fn names_that_files_do_not_tell_apart_do_not_meet() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["a b.toml", "a-b.toml"] {
+        std::fs::write(dir.path().join(name), small(0.0)).unwrap();
+    }
+    let both = ["a b.toml", "a-b.toml"];
+    for verb in ["run", "converge"] {
+        let (_, complaint) = ends_with(2, &[&[verb][..], &both].concat(), dir.path());
+        assert!(
+            complaint.contains("case `a-b` is given twice"),
+            "{complaint}"
+        );
+    }
+    let sweep = "title = \"two\"\n[[cells]]\ncases = [\"a b.toml\", \"a-b.toml\"]\nrefine = [1, 2]\n\
+                 methods = [\"hybrid\"]\ntolerances = [1e-9]\n";
+    std::fs::write(dir.path().join("sweep.toml"), sweep).unwrap();
+    ends_with(0, &["study", "sweep.toml", "--out", "study"], dir.path());
+}

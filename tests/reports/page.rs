@@ -279,11 +279,14 @@ fn tables_that_are_broken_are_named_with_file_and_line() {
     );
     assert_eq!(refusal(&[("runs.csv", "")]), "runs.csv:1: no header");
     let dir = folder(&[]);
-    fs::write(dir.path().join("limits.csv"), b"a\n\xff\xfe\n").expect("a file");
+    fs::write(dir.path().join("penalty.csv"), b"a\n\xff\xfe\n").expect("a file");
     let error = page::of_folder(dir.path())
         .expect_err("no text")
         .to_string();
-    assert!(error.ends_with("limits.csv:2: is no UTF-8 text"), "{error}");
+    assert!(
+        error.ends_with("penalty.csv:2: is no UTF-8 text"),
+        "{error}"
+    );
     let error = refusal(&[("table1.csv", TABLE1), ("provenance.toml", "version = \n")]);
     assert!(error.starts_with("provenance.toml: "), "{error}");
 }
@@ -358,10 +361,10 @@ fn the_verb_writes_the_page_or_names_what_is_wrong() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("out/index.html: "));
     check(&fs::read_to_string(dir.path().join("out/index.html")).expect("the page"));
-    fs::write(dir.path().join("out/limits.csv"), "friction\n0.1,2\n").expect("a file");
+    fs::write(dir.path().join("out/penalty.csv"), "friction\n0.1,2\n").expect("a file");
     let output = run(&["page", "out"]);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(message.contains("out/limits.csv:2: 2 cells"), "{message}");
+    assert!(message.contains("out/penalty.csv:2: 2 cells"), "{message}");
     assert_eq!(run(&["page", "nowhere"]).status.code(), Some(2));
 }

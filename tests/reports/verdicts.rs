@@ -16,7 +16,7 @@ use stickslip::studies::convergence::orders::{self, ErrorRow};
 use stickslip::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
 use stickslip::studies::paper::comparison::comparison;
 use stickslip::studies::paper::converged_reactions::SequenceRow;
-use stickslip::studies::paper::plate_series::{PenaltyRow, RefinementRow};
+use stickslip::studies::paper::penalty::PenaltyRow;
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::robustness::summary::FailureRow;
@@ -104,26 +104,6 @@ fn every_kind_stands_in_every_table() {
             natural_map: f64::NAN,
             verdict,
         };
-        let refinement = || RefinementRow {
-            family: "I".into(),
-            mesh: key.mesh.clone(),
-            h_m: 0.5,
-            friction: 0.1,
-            dofs: 2,
-            reaction_mn_per_m: f64::NAN,
-            verdict: verdict.clone(),
-        };
-        let sequence = || SequenceRow {
-            mesh: "I".into(),
-            cells: key.mesh.clone(),
-            h_m: 0.5,
-            friction: 0.1,
-            dofs: 2,
-            points: 1,
-            reaction_mn_per_m: f64::NAN,
-            order: f64::NAN,
-            verdict: verdict.clone(),
-        };
         let timing = || TimingRow {
             name: BenchmarkName::new("g", "solve", "latin"),
             verdict: Some(verdict.clone()),
@@ -176,6 +156,10 @@ fn every_kind_stands_in_every_table() {
             };
             orders::rows(&[sample]).0.swap_remove(0)
         };
+        let sequence = || SequenceRow {
+            mesh: "I",
+            found: error(),
+        };
         let compared = || comparison(std::slice::from_ref(&run)).swap_remove(0);
         let known = || Some(verdict.clone());
         for found in [
@@ -185,7 +169,6 @@ fn every_kind_stands_in_every_table() {
             read_back(table1_row(known()), "verdict"),
             read_back(table2_row(known()), "verdict"),
             read_back(penalty(known()), "verdict"),
-            read_back(refinement(), "verdict"),
             read_back(sequence(), "verdict"),
             read_back(error(), "verdict"),
             read_back(timing(), "verdict"),

@@ -84,13 +84,14 @@ fn closed_forms_give_observed_beside_theoretical_orders() {
     let (errors, orders) = orders::rows(&samples);
     assert_eq!((errors.len(), orders.len()), (2 * 3 * 2, 2 * 2));
     for row in &orders {
-        let (order, theory) = match row.quantity.as_str() {
+        let (order, theory) = match row.finest.quantity.as_str() {
             "energy" => (0.5, Some(0.5)),
             _ => (1.5, None),
         };
-        assert!((row.order - order).abs() < 1e-9, "{row:?}");
-        assert_eq!((row.theory, row.kind, row.meshes), (theory, Kind::Exact, 3));
-        assert!(["none", "branch"].contains(&row.variant.tip.as_str()));
+        assert!((row.finest.order - order).abs() < 1e-9, "{row:?}");
+        assert_eq!((row.theory, row.meshes), (theory, 3));
+        assert_eq!(row.finest.kind, Some(Kind::Exact));
+        assert!(["none", "branch"].contains(&row.finest.variant.tip.as_str()));
     }
     let total = |row: &ErrorRow| row.seconds.total();
     assert!(errors.iter().all(|r| total(r) > 0.0 && total(r) < 60.0));
@@ -176,10 +177,10 @@ fn meshes_spaces_and_tips_come_from_the_case_unless_asked_for() {
     assert_eq!(convergence::regularity(&case), Regularity::FixedRadius);
 }
 
-/// Source: for h → 0 Mesh I tends to −1121.3 MN/m at μ = 0.8, by extrapolation from finer meshes. Goal: the verb writes
-/// what it says, the limit holds the truth within its error bar, and the same again apart from times.
+/// Source: for h → 0 Mesh I tends to −1121.3 MN/m at μ = 0.8, by finer meshes of other kinds. Goal: the verb writes what it
+/// says, the truth lies within the error bar of the finest value, and the same again apart from times.
 #[test]
-fn the_verb_extrapolates_the_reaction_of_the_plate() {
+fn the_verb_bounds_the_reaction_of_the_plate() {
     let dir = tempfile::tempdir().unwrap();
     let [one, two] = ["one", "two"].map(|out| {
         let plate = ["converge", "plate_mesh1", "--refine", "4,1,2"];
@@ -187,10 +188,7 @@ fn the_verb_extrapolates_the_reaction_of_the_plate() {
         let (shown, complaints) = ends_with(0, &arguments, dir.path());
         assert!(complaints.is_empty());
         assert!(shown.contains("9 runs: 9 solved, 0 not"), "{shown}");
-        assert!(
-            shown.contains("whose errors are correlated with it"),
-            "{shown}"
-        );
+        assert!(shown.contains("with its error bar"), "{shown}");
         files(&dir.path().join(out))
     });
     let figure = "figures/plate_mesh1.hybrid.mu-0.8.reaction-top-y.error.svg";
@@ -212,15 +210,17 @@ fn the_verb_extrapolates_the_reaction_of_the_plate() {
         .iter()
         .find(|row| row["quantity"] == "reaction")
         .unwrap();
-    assert_eq!((&*order["kind"], &*order["tip"]), ("richardson", "branch"));
+    assert_eq!((&*order["kind"], &*order["tip"]), ("finest", "branch"));
     let off = (number(order, "reference") + 1121.3e6).abs();
-    assert!(off < number(order, "error_bar"), "{order:?}");
+    let bar = number(order, "error_bar");
+    assert!(off < bar && bar < 5.0 * off, "{order:?}");
+    assert_eq!(order["no_bar"], "");
     let rows = table("convergence.csv");
     let meshes: Vec<&str> = rows.iter().map(|row| &*row["refine"]).collect();
     assert_eq!(meshes, ["1", "2", "4"]);
     assert_eq!(rows[2]["order"], order["order"]);
     let falls = |pair: &[Row]| number(&pair[0], "error") > number(&pair[1], "error");
-    assert!(rows.windows(2).all(falls));
+    assert!(falls(&rows[..2]) && rows[2]["error"] == "NaN");
     for row in rows {
         #[rustfmt::skip]
         let parts = ["setup_s", "assembly_s", "factorisation_s", "condensation_s", "prepare_s", "solve_s"];
@@ -289,6 +289,31 @@ fn round_off_is_no_error() {
     assert_eq!(slip.collect::<Vec<_>>(), [["finest", "0", "NaN"]; 2]);
     let figure = "figures/sliding_block_conforming.hybrid.mu-0.1.max_slip.error.svg";
     assert!(!results.join(figure).exists());
+}
+
+/// Source: conforming quadratic triangles along the crack, 53 000 unknowns: dissipation 7.889e-10 J/m. Goal: the truth lies
+/// within the bar of a crack on a grid line whose tips have no functions (one from the order observed on these meshes, 3.1,
+/// was 9 times too small), and what has no bar says why.
+#[test]
+fn a_crack_on_a_grid_line_has_the_truth_within_its_bar() {
+    let rest = crack([0.31, 0.5], [0.69, 0.5], 0.2, "none")
+        + &support("\"bottom\"", "[0, 0]")
+        + &support("\"top\"", "[5e-4, -5e-4]");
+    let case = parse(&plane([0.0, 0.0], [1.0, 1.0], [30, 30], &rest));
+    let mut study = study("hybrid", None);
+    study.refine = Some(vec![1, 2, 4]);
+    study.spaces = Some(vec![ContactSpace::Star]);
+    let samples = convergence::run(&case, &study, &convergence::closed_form, &Quiet).unwrap();
+    let (_, orders) = orders::rows(&samples);
+    let mut found = orders.iter().map(|row| &row.finest);
+    assert!(
+        found
+            .clone()
+            .all(|row| row.error_bar.is_nan() == row.no_bar.is_some())
+    );
+    let row = found.find(|row| row.quantity == "dissipation").unwrap();
+    let off = (row.reference - 7.889e-10).abs();
+    assert!(off < row.error_bar && row.error_bar < 5.0 * off, "{row:?}");
 }
 
 /// Goal: rows come in the order of their table, whatever the order of the runs.

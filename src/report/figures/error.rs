@@ -19,7 +19,7 @@ pub static KIND: Kind = Kind {
     shows: "Error of a quantity against the number of unknowns, a curve per contact space with its observed order \
             in h over the last two halvings, a panel per place and enrichment of the tips; dots and triangle have \
             the order of theory, or order 1 where it is silent. Errors are those against a closed form, or relative \
-            to the extrapolated limit or the finest mesh.",
+            to the finest mesh.",
 };
 
 /// Panels of one figure; with more of them each place has a figure of its own.
@@ -39,20 +39,20 @@ pub fn add(
 ) -> Result<(), ReportError> {
     let mut figures: BTreeMap<String, Vec<&OrderRow>> = BTreeMap::new();
     for row in orders {
-        // Cracks, tips and points of a front are compared with each other, components of a reaction are not.
-        let together = row.at.starts_with("crack-");
-        let at = if together { "crack-" } else { &row.at };
+        // The body, cracks, tips and points of a front are compared with each other, components of a reaction are not.
+        let together = row.finest.at.starts_with("crack-");
+        let at = if together { "" } else { &row.finest.at };
         figures.entry(name(row, at)).or_default().push(row);
     }
     for mut rows in figures.into_values() {
         rows.sort_by_key(|row| {
             let (at, tip) = panel_key(row);
-            (at, tip_rank(tip), tip, look(&row.variant.space))
+            (at, tip_rank(tip), tip, look(&row.finest.variant.space))
         });
         let panels = rows.chunk_by(|a, b| panel_key(a) == panel_key(b)).count();
-        for own in rows.chunk_by(|a, b| a.at == b.at || panels <= PANELS) {
-            let one = own.iter().all(|row| row.at == own[0].at);
-            let name = name(own[0], if one { &own[0].at } else { "" });
+        for own in rows.chunk_by(|a, b| a.finest.at == b.finest.at || panels <= PANELS) {
+            let one = own.iter().all(|row| row.finest.at == own[0].finest.at);
+            let name = name(own[0], if one { &own[0].finest.at } else { "" });
             KIND.add(bundle, &name, figure(own, errors).svg()?)?;
         }
     }
@@ -61,31 +61,36 @@ pub fn add(
 
 /// What tells the figure of a quantity at a place apart.
 fn name(row: &OrderRow, at: &str) -> String {
-    let variant = &row.variant;
+    let variant = &row.finest.variant;
     let mu = format!("mu-{}", value(variant.friction));
-    let what = format!("{} {at}", row.quantity);
+    let what = format!("{} {at}", row.finest.quantity);
     file_name(&[&variant.case, &variant.method, &mu, what.trim()])
 }
 
 /// Place and enrichment.
 fn panel_key(row: &OrderRow) -> (&str, &str) {
-    (&row.at, &row.variant.tip)
+    (&row.finest.at, &row.finest.variant.tip)
 }
 
 /// Rows of one case, method, friction coefficient and quantity, by panel.
 fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     let first = rows[0];
-    let one_place = rows.iter().all(|row| row.at == first.at);
-    let exact = rows.iter().all(|row| row.kind == orders::Kind::Exact);
-    let what = quantity_name::name(&first.quantity, if one_place { &first.at } else { "" });
+    let one_place = rows.iter().all(|row| row.finest.at == first.finest.at);
+    let exact = rows
+        .iter()
+        .all(|row| row.finest.kind == Some(orders::Kind::Exact));
+    let what = quantity_name::name(
+        &first.finest.quantity,
+        if one_place { &first.finest.at } else { "" },
+    );
     let power = if first.dim == 2 { "h⁻²" } else { "h⁻³" };
     let x = Axis::log(&format!("unknowns {} ∝ {power}", italic("N")));
     let error = if exact { "error" } else { "relative error" };
     let y = Axis::log(&format!("{error}: {what}"));
     let panel = |own: &[&OrderRow]| {
         let mut panel = Panel::new(x.clone(), y.clone(), 48.0);
-        let place = (!one_place).then(|| quantity_name::place(&own[0].at));
-        let parts = [place, tip_name(&own[0].variant.tip)];
+        let place = (!one_place).then(|| quantity_name::place(&own[0].finest.at));
+        let parts = [place, tip_name(&own[0].finest.variant.tip)];
         panel.heading = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
         panel.series = own.iter().map(|row| curve(row, errors)).collect();
         let mut theory = distinct(own.iter().map(|row| row.theory));
@@ -101,15 +106,21 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     let by_panel = rows.chunk_by(|a, b| panel_key(a) == panel_key(b));
     let panels: Vec<Panel> = by_panel.map(panel).collect();
     let mut known = rows.to_vec();
-    known.retain(|row| row.order.is_finite() && !is_exact(&measured(row, errors)));
-    known.sort_by(|a, b| a.order.total_cmp(&b.order));
-    let told = |row: &OrderRow| format!("{} ({})", number(row.order), row.variant.space);
+    known.retain(|row| row.finest.order.is_finite() && !is_exact(&measured(row, errors)));
+    known.sort_by(|a, b| a.finest.order.total_cmp(&b.finest.order));
+    let told = |row: &OrderRow| {
+        format!(
+            "{} ({})",
+            number(row.finest.order),
+            row.finest.variant.space
+        )
+    };
     let title = match known[..] {
         [] => format!("{what} under refinement"),
         [one] => format!("{what}: order {}", told(one)),
         [least, .., best] => format!("{what}: orders from {} to {}", told(least), told(best)),
     };
-    let variant = &first.variant;
+    let variant = &first.finest.variant;
     let mut caption = format!(
         "{}, {}, {}; observed orders in h over the last two halvings",
         variant.case,
@@ -119,7 +130,7 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     if rows.iter().any(|row| is_exact(&measured(row, errors))) {
         caption += &format!("; exact: error below {}", value(TOLERANCE));
     }
-    let tips = distinct(rows.iter().map(|row| &row.variant.tip)).len();
+    let tips = distinct(rows.iter().map(|row| &row.finest.variant.tip)).len();
     let columns = if tips > 1 { tips } else { panels.len() }.min(3);
     // One legend is enough where all panels say the same.
     let labels = |panel: &Panel| {
@@ -147,14 +158,14 @@ fn number(order: f64) -> String {
 fn curve(order: &OrderRow, errors: &[ErrorRow]) -> Series {
     let own = measured(order, errors);
     let exact = is_exact(&own);
-    let found = match order.kind {
+    let found = match order.finest.kind {
         _ if exact => "exact".to_owned(),
-        _ if order.order.is_finite() => number(order.order),
-        orders::Kind::Finest => "no power law".to_owned(),
+        _ if order.finest.order.is_finite() => number(order.finest.order),
+        Some(orders::Kind::Finest) => "no power law".to_owned(),
         _ if order.error < ROUND_OFF => "exact on the finest mesh".to_owned(),
         _ => "–".to_owned(),
     };
-    let space = &order.variant.space;
+    let space = &order.finest.variant.space;
     let shown = own.iter().filter(|row| !exact && row.error >= ROUND_OFF);
     let points = shown.map(|row| [row.dofs as f64, row.error]).collect();
     Series::new(
@@ -167,7 +178,8 @@ fn curve(order: &OrderRow, errors: &[ErrorRow]) -> Series {
 /// The meshes of a sequence that have an error.
 fn measured<'a>(order: &OrderRow, errors: &'a [ErrorRow]) -> Vec<&'a ErrorRow> {
     let of = |row: &&ErrorRow| {
-        row.variant == order.variant && (&row.quantity, &row.at) == (&order.quantity, &order.at)
+        row.variant == order.finest.variant
+            && (&row.quantity, &row.at) == (&order.finest.quantity, &order.finest.at)
     };
     let mut own: Vec<&ErrorRow> = errors
         .iter()

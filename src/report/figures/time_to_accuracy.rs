@@ -2,7 +2,6 @@
 
 use super::quantity_name;
 use super::runs::{distinct, friction, least};
-use crate::report::names::file_name;
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
@@ -29,20 +28,21 @@ const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
     let all = refinements(records);
-    let coarsest: Vec<Problem> = all.iter().map(|one| one.coarsest.clone()).collect();
-    for (one, name) in all.iter().zip(problem_names(&coarsest)) {
-        // The name tells everything but the mesh.
-        let name = name.replacen(&format!(".r{}.", one.coarsest.refine), ".", 1);
-        KIND.add(bundle, &file_name(&[&name]), figure(one, caveat).svg()?)?;
+    // The name tells everything but the mesh.
+    let meshless: Vec<Problem> = all.iter().map(|one| one.coarsest.without_mesh()).collect();
+    for (one, name) in all.iter().zip(problem_names(&meshless)) {
+        KIND.add(
+            bundle,
+            &name.replacen(".r0.", ".", 1),
+            figure(one, caveat).svg()?,
+        )?;
     }
     Ok(())
 }
 
 fn figure(one: &Refinement, caveat: &str) -> Figure {
-    // Against its own finest mesh a sequence says nothing.
-    let mut orders = one.orders.iter();
-    let first = orders.find(|row| row.kind != Kind::Finest);
-    let known = |row: &&ErrorRow| row.error >= ROUND_OFF && row.kind != Some(Kind::Finest);
+    let first = one.orders.first().map(|row| &row.finest);
+    let known = |row: &&ErrorRow| row.error >= ROUND_OFF;
     let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
     let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
@@ -71,9 +71,9 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
         let method = plain(&row.variant.method);
         format!("{method} is first at an error of {error}, in {seconds} s")
     });
-    let against = match first.map(|row| row.kind) {
+    let against = match first.and_then(|row| row.kind) {
         Some(Kind::Exact) => "closed form",
-        _ => "extrapolated limit",
+        _ => "finest mesh",
     };
     let triangle = nearest.map_or(String::new(), |order| {
         let order = value(order);

@@ -2,7 +2,6 @@
 
 use super::kind::Kind;
 use super::runs::{friction, least, made_with};
-use crate::report::names::file_name;
 use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
 use crate::report::{Bundle, ReportError};
@@ -35,11 +34,7 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
     for (problem, name) in all.iter().zip(problem_names(&all)) {
         let found = series(records, problem);
         if found.iter().any(|own| own.points.len() >= CURVE) {
-            KIND.add(
-                bundle,
-                &file_name(&[&name]),
-                figure(problem, &found, caveat).svg()?,
-            )?;
+            KIND.add(bundle, &name, figure(problem, &found, caveat).svg()?)?;
         }
     }
     Ok(())

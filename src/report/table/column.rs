@@ -277,9 +277,9 @@ impl<R> Column<R> {
 /// The columns of a row type, one line each: name, unit, how it is shown (methods of [`About`]), contents, meaning.
 ///
 /// ```text
-/// columns! { row: LimitRow,
+/// columns! { row: PenaltyRow,
 ///     "friction" "–" .key() = row.friction, "friction coefficient";
-///     "mesh_1_mn_per_m" "MN/m" .named("Mesh I").fixed(2) = row.mesh_1_mn_per_m, "limit of Mesh I";
+///     "reaction_mn_per_m" "MN/m" .fixed(4) = row.reaction_mn_per_m, "reaction at the top";
 /// }
 /// ```
 macro_rules! columns {

@@ -4,13 +4,11 @@ use std::cmp::Ordering;
 
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::convergence::Variant;
 use crate::studies::convergence::orders::{ErrorRow, Kind, OrderRow, ROUND_OFF};
+use crate::studies::convergence::{NoBar, Variant};
 
-/// A row about a sequence of meshes.
-trait OfVariant {
-    fn variant(&self) -> &Variant;
-}
+/// Column of both tables.
+const NO_BAR: &str = "why the finest value has no error bar: `one mesh`; `vanishes` on the two finest meshes; `largest gap`, whose place moves from mesh to mesh; empty where there is one";
 
 /// A row about one quantity on one mesh of a sequence.
 pub trait OfError {
@@ -24,26 +22,20 @@ impl OfError for ErrorRow {
     }
 }
 
-impl<R: OfError> OfVariant for R {
-    fn variant(&self) -> &Variant {
-        &self.error().variant
-    }
-}
-
-impl OfVariant for OrderRow {
-    fn variant(&self) -> &Variant {
-        &self.variant
+impl OfError for OrderRow {
+    fn error(&self) -> &ErrorRow {
+        &self.finest
     }
 }
 
 /// The columns of a sequence, then those of the row.
-fn of_variant<R: OfVariant>(own: Vec<Column<R>>) -> Vec<Column<R>> {
+fn of_variant<R: OfError>(own: Vec<Column<R>>) -> Vec<Column<R>> {
     let mut columns = columns! { r: R,
-        "case" "" .shown() = r.variant().case.clone(), CASE;
-        "space" "" .shown() = r.variant().space.clone(), SPACE;
-        "tip" "" .shown() = r.variant().tip.clone(), "enrichment of the tips: `none`, `branch`, or the radius in m; `no-tips` where no crack ends inside the body";
-        "method" "" = r.variant().method.clone(), METHOD;
-        "friction" "–" .named("μ") = r.variant().friction, FRICTION;
+        "case" "" .shown() = r.error().variant.case.clone(), CASE;
+        "space" "" .shown() = r.error().variant.space.clone(), SPACE;
+        "tip" "" .shown() = r.error().variant.tip.clone(), "enrichment of the tips: `none`, `branch`, or the radius in m; `no-tips` where no crack ends inside the body";
+        "method" "" = r.error().variant.method.clone(), METHOD;
+        "friction" "–" .named("μ") = r.error().variant.friction, FRICTION;
     };
     columns.extend(own);
     columns
@@ -73,17 +65,18 @@ pub fn of_error<R: OfError>() -> Vec<Column<R>> {
         "at" "" .shown() = r.error().at.clone(), "place and component, e.g. `top y`; empty: the whole body";
         "found" "SI" = r.error().found, "value of the run";
         "reference" "SI" = r.error().reference, "what it is measured against";
-        "error_bar" "SI" .significant(4) = r.error().error_bar, "uncertainty of the reference: 0 of a closed form, 1.25 times the distance of the finest value from the one extrapolated with the observed order, or with 2 if that is higher; `NaN` where unknown";
-        "error" "" .significant(4).power(3) = above_round_off(r.error().error), "against a closed form as the quantity defines it; otherwise the distance from the reference, relative to the length of the reaction vector at its place or to the size of the quantity, on the finest mesh; `0` below 1e-12, which is round-off; `NaN` on the mesh that is itself the reference";
-        "kind" "" .shown() = r.error().kind.map_or("", Kind::name), "reference: `exact` (closed form), `richardson` (limit extrapolated from the three finest meshes, whose errors are correlated with it), `finest` (the finest mesh: the values follow no power law, or fewer than three meshes were solved)";
-        "order" "–" .significant(4).fixed(2) = r.error().order, "observed order in h over the last two halvings: least squares over this mesh and the two before; `NaN` where one of them has no error or one below 1e-12, and against `finest`";
+        "error_bar" "SI" .significant(4) = r.error().error_bar, "uncertainty of the reference: 0 of a closed form; of the finest value 1.5 times the largest of its change from the mesh before, a third of the change before that, and the median change of the quantities of its kind; twice as much with tips without branch functions in a fixed radius, and where the program does not know the tips (docs/accuracy.md); `NaN` where unknown";
+        "no_bar" "" = r.error().no_bar.map_or("", NoBar::name), NO_BAR;
+        "error" "" .significant(4).power(3) = above_round_off(r.error().error), "against a closed form as the quantity defines it; otherwise the distance from the reference, relative to the length of the reaction vector at its place or to the size of the quantity, on the finest mesh; `0` below 1e-12, which is round-off; `NaN` on the finest mesh, which is the reference";
+        "kind" "" .shown() = r.error().kind.map_or("", Kind::name), "reference: `exact` (closed form) or `finest` (the value on the finest mesh)";
+        "order" "–" .significant(4).fixed(2) = r.error().order, "observed order in h over the last two halvings, on this mesh and the two before: against a closed form the slope of the errors by least squares, otherwise that of the steps between the values; no error bar relies on it; `NaN` where errors are below 1e-12, or values differ by less than the tolerance of the runs or approach no limit";
         "total_s" "s" .time().digits(2) = r.error().seconds.total(), "sum of the six that follow: what this run alone would have taken; one run each, after one that is not counted";
-        "setup_s" "s" .time() = r.error().seconds.split()[0], SETUP_S;
-        "assembly_s" "s" .time() = r.error().seconds.split()[1], ASSEMBLY_S;
-        "factorisation_s" "s" .time() = r.error().seconds.split()[2], FACTORISATION_S;
-        "condensation_s" "s" .time() = r.error().seconds.split()[3], CONDENSATION_S;
-        "prepare_s" "s" .time() = r.error().seconds.split()[4], PREPARE_S;
-        "solve_s" "s" .time() = r.error().seconds.split()[5], "solution of all increments";
+        "setup_s" "s" .time() = r.error().seconds.0[0], SETUP_S;
+        "assembly_s" "s" .time() = r.error().seconds.0[1], ASSEMBLY_S;
+        "factorisation_s" "s" .time() = r.error().seconds.0[2], FACTORISATION_S;
+        "condensation_s" "s" .time() = r.error().seconds.0[3], CONDENSATION_S;
+        "prepare_s" "s" .time() = r.error().seconds.0[4], PREPARE_S;
+        "solve_s" "s" .time() = r.error().seconds.0[5], "solution of all increments";
     })
 }
 
@@ -92,7 +85,7 @@ impl Row for ErrorRow {
     const TITLE: &'static str = "Errors on sequences of meshes";
     const QUESTION: &'static str =
         "How large is the error of a mesh, and what does it cost to have it smaller?";
-    const NOTES: &'static str = "One row per case, contact space, tip enrichment, friction coefficient, mesh and quantity, at the end of the load path. Only runs with an honest verdict are measured: a mesh without one has a single row without quantity. Quantities are those of the closed form where the case names one. Otherwise they are `reaction`, `strain_energy`, `dissipation`, `max_slip` and `max_gap` of `quantities.csv`, those left out that vanish on every mesh, and the reference is found on the meshes themselves. Against closed forms in solids `slip_direction` is the angle [rad] of the mean slip of the crack (weighted with its area) from the local axis a towards b, and its error the angle between the mean slip of the run and the exact one, also in rad; no row where nothing slips.";
+    const NOTES: &'static str = "One row per case, contact space, tip enrichment, friction coefficient, mesh and quantity, at the end of the load path. Only runs with an honest verdict are measured: a mesh without one has a single row without quantity. Quantities are those of the closed form where the case names one. Otherwise they are `reaction`, `contact_force`, `strain_energy`, `dissipation`, `mean_slip`, `max_slip` and `max_gap` of `quantities.csv`, those left out that vanish on every mesh, and the reference is the value on the finest mesh. Against closed forms in solids `slip_direction` is the angle [rad] of the mean slip of the crack (weighted with its area) from the local axis a towards b, and its error the angle between the mean slip of the run and the exact one, also in rad; no row where nothing slips.";
     const READABLE: bool = false;
     const ORDER: Order<Self> = Order::By(|a, b| {
         compare_variants(&a.variant, &b.variant)
@@ -111,24 +104,26 @@ impl Row for ErrorRow {
 
 impl Row for OrderRow {
     const NAME: &'static str = "orders";
-    const TITLE: &'static str = "Observed beside theoretical orders of convergence over the last two halvings (reference exact: closed form; richardson: limit extrapolated from the three finest meshes, whose errors are correlated with it; finest: no power law, distance from the finest mesh)";
+    const TITLE: &'static str = "Observed beside theoretical orders of convergence over the last two halvings (reference exact: closed form; finest: value on the finest mesh, with its error bar)";
     const QUESTION: &'static str = "Do the errors fall as fast as theory promises?";
     const ORDER: Order<Self> = Order::By(|a, b| {
+        let (a, b) = (&a.finest, &b.finest);
         compare_variants(&a.variant, &b.variant)
             .then_with(|| (&a.quantity, &a.at).cmp(&(&b.quantity, &b.at)))
     });
 
     fn columns() -> Vec<Column<Self>> {
         of_variant(columns! { r: Self,
-            "quantity" "" .shown() = r.quantity.clone(), "as in `convergence.csv`, like the two that follow";
-            "at" "" .shown() = r.at.clone(), "place and component";
-            "kind" "" .shown() = r.kind.name(), "kind of reference";
+            "quantity" "" .shown() = r.finest.quantity.clone(), "as in `convergence.csv`, like the two that follow";
+            "at" "" .shown() = r.finest.at.clone(), "place and component";
+            "kind" "" .shown() = r.finest.kind.map_or("", Kind::name), "kind of reference";
             "meshes" "" = r.meshes, "meshes with an honest verdict";
-            "finest_h_m" "m" = r.finest_h, "cell size of the finest of them";
-            "reference" "SI" .digits(7) = r.reference, "its reference";
-            "error_bar" "SI" .significant(4).digits(2) = r.error_bar, "as in `convergence.csv`";
+            "finest_h_m" "m" = r.finest.h, "cell size of the finest of them";
+            "reference" "SI" .digits(7) = r.finest.reference, "its reference";
+            "error_bar" "SI" .significant(4).digits(2) = r.finest.error_bar, "as in `convergence.csv`";
+            "no_bar" "" .named("no bar") = r.finest.no_bar.map_or("", NoBar::name), NO_BAR;
             "error" "" .significant(4).named("finest error").power(3) = above_round_off(r.error), "error on the finest mesh that has one";
-            "order" "–" .significant(4).fixed(2) = r.order, "observed order over the last two halvings; `NaN` where there is none";
+            "order" "–" .significant(4).fixed(2) = r.finest.order, "observed order over the last two halvings; `NaN` where there is none";
             "theoretical_order" "–" .named("theory").digits(2) = r.theory.unwrap_or(f64::NAN), "order that theory promises, of tractions a lower bound; `NaN` where it is silent. Without tips: energy norm 1, displacement in L² 2, traction 1. With tips the energy norm has 1/2, or 1 where they are enriched within a fixed radius (Laborde, Pommier, Renard & Salaün 2005)";
         })
     }

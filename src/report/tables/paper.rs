@@ -5,9 +5,10 @@ use std::cmp::Ordering;
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::run::verdict::Verdict;
+use crate::studies::paper::as_printed;
 use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
-use crate::studies::paper::plate_series::{LimitRow, PenaltyRow, RefinementRow};
+use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
 
@@ -94,91 +95,50 @@ impl Row for PenaltyRow {
     }
 }
 
-impl Row for RefinementRow {
-    const NAME: &'static str = "refinement";
-    const TITLE: &'static str = "Plate under refinement: vertical reaction at the top";
-    const QUESTION: &'static str = "How far are the paper's meshes from convergence?";
-    const ORDER: Order<Self> = Order::By(|a, b| {
-        a.family
-            .cmp(&b.family)
-            .then(a.friction.total_cmp(&b.friction))
-            .then(b.h_m.total_cmp(&a.h_m))
-    });
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "family" "" .named("mesh") = r.family.clone(), "`I` or `II`";
-            "mesh" "" .named("cells") = r.mesh.clone(), MESH;
-            "h_m" "m" .fixed(4) = r.h_m, "cell width";
-            "friction" "–" .shown() = r.friction, FRICTION;
-            "dofs" "" .named("unknowns") = r.dofs, DOFS;
-            "reaction_mn_per_m" "MN/m" .fixed(3) = r.reaction_mn_per_m, "reaction at the top";
-            "verdict" "" .shown() = &r.verdict, VERDICT;
-        }
-    }
-}
-
-impl Row for LimitRow {
-    const NAME: &'static str = "limits";
-    const TITLE: &'static str = "Plate: limits for h → 0, extrapolated from the two finest meshes";
-    const QUESTION: &'static str = "Do both meshes of the paper lead to the same reaction?";
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "friction" "–" .key() = r.friction, FRICTION;
-            "mesh_1_mn_per_m" "MN/m" .named("Mesh I").fixed(2) = r.mesh_1_mn_per_m, "limit of Mesh I";
-            "mesh_2_mn_per_m" "MN/m" .named("Mesh II").fixed(2) = r.mesh_2_mn_per_m, "limit of Mesh II";
-            "relative_gap" "–" .significant(3).power(2) = r.relative_gap, "difference of the two over their mean";
-        }
-    }
-}
-
-/// Meshes in the order in which they are refined.
-const MESHES_LAST: fn(&SequenceRow, &SequenceRow) -> Ordering = |a, b| {
-    a.friction
-        .total_cmp(&b.friction)
-        .then_with(|| a.mesh.cmp(&b.mesh))
-        .then(b.h_m.total_cmp(&a.h_m))
-};
-
 impl Row for ConvergedRow {
     const NAME: &'static str = "converged";
     const TITLE: &'static str = "Converged reactions of the plate with error bars, beside Table 1";
     const QUESTION: &'static str = "What is the reaction of the plate, whatever the mesh, and how far off is the printed number?";
-    const NOTES: &'static str =
-        "Star multipliers, branch functions within 1.5 m of the tips, three meshes.";
+    const NOTES: &'static str = "`edge-pairs` with enriched tip cells are the paper's own discretisation. With `--full` also `star` multipliers with branch functions within 1.5 m of the tips, on three meshes, which the corners of the plate alone keep from converging.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "friction" "–" .key() = r.friction, FRICTION;
-            "mesh" "" .key() = r.mesh.clone(), "`I`, `II`, or `I turned`: Mesh I turned by 20 degrees at its centre beneath the same crack";
-            "finest_h_m" "m" .named("finest h").fixed(4) = r.finest_h_m, "largest distance of neighbouring grid lines on the finest mesh";
-            "order" "–" .significant(3).fixed(2) = r.order, "observed order in h over the last two halvings";
-            "limit_mn_per_m" "MN/m" .decimals(3).fixed(3) = r.limit_mn_per_m, "limit of the reaction at the top for vanishing cell width, extrapolated from the three finest meshes; `NaN` where they follow no power law";
-            "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m, "its uncertainty, as `error_bar` in `convergence.csv`";
+            "friction" "–" .key() = r.finest.variant.friction, FRICTION;
+            "space" "" .key() = r.finest.variant.space.clone(), SPACE;
+            "mesh" "" .key() = r.mesh, "`I`, `II`, or `I turned`: Mesh I turned by 20 degrees at its centre beneath the same crack";
+            "finest_h_m" "m" .named("finest h").fixed(4) = r.finest.h, "largest distance of neighbouring grid lines on the finest mesh";
+            "order" "–" .significant(3).fixed(2) = r.finest.order, "observed order in h over the last two halvings";
+            "reaction_mn_per_m" "MN/m" .decimals(3).fixed(3) = r.reaction_mn_per_m(), "reaction at the top on the finest mesh";
+            "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m(), "its uncertainty, as `error_bar` in `convergence.csv`";
             "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "reaction that Table 1 prints for this mesh; empty where it has none";
-            "printed_difference" "–" .significant(3).named("printed − limit").percent(2) = r.printed_difference(), "(printed − limit) / limit";
+            "printed_difference" "–" .significant(3).named("printed − reaction").percent(2) = r.printed_difference(), "printed / reaction − 1";
         }
     }
 }
 
 impl Row for SequenceRow {
-    const NAME: &'static str = "converged_meshes";
-    const TITLE: &'static str = "Plate under refinement, star multipliers, tips enriched within a fixed radius: vertical reaction at the top";
-    const QUESTION: &'static str = "Which reactions do the converged ones come from?";
-    const ORDER: Order<Self> = Order::By(MESHES_LAST);
+    const NAME: &'static str = "refinement";
+    const TITLE: &'static str = "Plate under refinement: vertical reaction at the top";
+    const QUESTION: &'static str = "How far are the paper's meshes from convergence?";
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        let [one, other] = [&a.found, &b.found];
+        (one.variant.friction.total_cmp(&other.variant.friction))
+            .then_with(|| (&one.variant.space, a.mesh).cmp(&(&other.variant.space, b.mesh)))
+            .then(other.h.total_cmp(&one.h))
+    });
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "mesh" "" .shown() = r.mesh.clone(), "as in `converged.csv`";
-            "cells" "" .shown() = r.cells.clone(), MESH;
-            "h_m" "m" .fixed(4) = r.h_m, CELL_WIDTH;
-            "friction" "–" .shown() = r.friction, FRICTION;
-            "dofs" "" .named("unknowns") = r.dofs, DOFS;
-            "points" "" .shown() = r.points, POINTS;
-            "reaction_mn_per_m" "MN/m" .fixed(3) = r.reaction_mn_per_m, "reaction at the top; `NaN` where the run is not solved";
-            "order" "–" .significant(3).fixed(2) = r.order, "observed order in h over this mesh and the two before; `NaN` where there are none";
-            "verdict" "" .shown() = &r.verdict, VERDICT;
+            "space" "" .shown() = r.found.variant.space.clone(), SPACE;
+            "mesh" "" .shown() = r.mesh, "as in `converged.csv`";
+            "cells" "" .shown() = r.found.mesh.clone(), MESH;
+            "h_m" "m" .fixed(4) = r.found.h, CELL_WIDTH;
+            "friction" "–" .shown() = r.found.variant.friction, FRICTION;
+            "dofs" "" .named("unknowns") = r.found.dofs, DOFS;
+            "points" "" .shown() = r.found.points, POINTS;
+            "reaction_mn_per_m" "MN/m" .fixed(3) = as_printed(r.found.found), "reaction at the top; `NaN` where the run is not solved";
+            "order" "–" .significant(3).fixed(2) = r.found.order, "observed order in h over this mesh and the two before; `NaN` where there are none";
+            "verdict" "" .shown() = &r.found.verdict, VERDICT;
         }
     }
 }

@@ -254,7 +254,7 @@ impl Row for AccuracyRow<'_> {
     const NAME: &'static str = "time_to_accuracy";
     const TITLE: &'static str = "Discretisation error beside the time to the answer, mesh by mesh";
     const QUESTION: &'static str = "What does an accurate answer take, mesh and method together?";
-    const NOTES: &'static str = "Exact methods with default options, at the finest tolerance that was asked for on every mesh of the sequence. The energy norm of the error where there is a closed form, otherwise the strain energy or the first followed quantity against its limit. Times are medians where there are repetitions; those of the body are the least of all cells on the mesh, which build the same one.";
+    const NOTES: &'static str = "Exact methods with default options, at the finest tolerance that was asked for on every mesh of the sequence. The energy norm of the error where there is a closed form, otherwise the strain energy against that of the finest mesh. Times are medians where there are repetitions; those of the body are the least of all cells on the mesh, which build the same one.";
     const READABLE: bool = false;
     const ORDER: Order<Self> = Order::By(|a, b| match ErrorRow::ORDER {
         Order::By(compare) => compare(a.0, b.0),

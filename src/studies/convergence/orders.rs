@@ -1,13 +1,15 @@
 //! References, errors and observed orders of mesh sequences.
 //!
 //! e(h) ≈ C h^p: p by least squares of ln e over ln h on a mesh and the two before it, the order over the last two halvings.
-//! Theoretical orders of bilinear elements with and without enriched tips: Laborde, Pommier, Renard, Salaün, Int. J. Numer.
+//! Without a closed form the finest value is the reference, see [`error_bar`](super::error_bar) for how far it may be off, and
+//! p is that of the steps between three meshes. Theoretical orders of bilinear elements with and without enriched tips: Laborde, Pommier, Renard, Salaün, Int. J. Numer.
 //! Meth. Engng 64 (2005) 354.
 
 use std::collections::BTreeMap;
 
-use super::limit::{limit, slope};
-use super::{Measured, Regularity, Sample, Seconds, Variant};
+use super::error_bar::{Course, NoBar, error_bars};
+use super::power_law::{order_of_steps, slope};
+use super::{Measured, Regularity, Sample, Seconds, Value, Variant};
 use crate::case::named;
 use crate::run::verdict::Verdict;
 
@@ -22,9 +24,7 @@ named! {
     pub enum Kind {
         /// A closed form.
         Exact = "exact",
-        /// The limit extrapolated from the three finest meshes, which are thus correlated with it.
-        Richardson = "richardson",
-        /// The finest mesh: the sequence has no power law, or fewer than three meshes were solved.
+        /// The value on the finest mesh.
         Finest = "finest",
     }
 }
@@ -56,12 +56,15 @@ pub struct ErrorRow {
     pub reference: f64,
     /// Uncertainty of the reference; 0 of a closed form, NaN where unknown.
     pub error_bar: f64,
+    /// Why it is unknown.
+    pub no_bar: Option<NoBar>,
     /// Error, without closed form relative to [`Value::norm`](super::Value::norm) on the finest mesh; NaN on the mesh that
     /// is itself the reference.
     pub error: f64,
     /// What the reference is; none where there is no error.
     pub kind: Option<Kind>,
-    /// Order over this mesh and the two before; NaN where one of the three has no error, or none above [`ROUND_OFF`].
+    /// Order over this mesh and the two before; NaN where one of the three has no error above [`ROUND_OFF`], or without a
+    /// closed form where they do not differ by more than the tolerance of the runs.
     pub order: f64,
     /// Times.
     pub seconds: Seconds,
@@ -70,26 +73,12 @@ pub struct ErrorRow {
 /// One quantity of one sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrderRow {
-    /// Which sequence.
-    pub variant: Variant,
-    /// Quantity.
-    pub quantity: String,
-    /// Place and component; empty: the whole body.
-    pub at: String,
-    /// What the errors are measured against.
-    pub kind: Kind,
+    /// The finest mesh with an honest verdict: the reference, its error bar, and the order over the last two halvings.
+    pub finest: ErrorRow,
     /// Meshes with an honest verdict.
     pub meshes: usize,
-    /// Cell size of the finest of them [m].
-    pub finest_h: f64,
-    /// Its reference.
-    pub reference: f64,
-    /// Uncertainty of the reference; 0 of a closed form, NaN where unknown.
-    pub error_bar: f64,
     /// Error on the finest mesh that has one.
     pub error: f64,
-    /// Order over the last two halvings; NaN where there is none.
-    pub order: f64,
     /// Order that theory promises; none where it is silent.
     pub theory: Option<f64>,
     /// Dimension of the body: the unknowns grow like h^−dim.
@@ -111,16 +100,23 @@ pub fn theoretical_order(quantity: &str, regularity: Regularity) -> Option<f64> 
     }
 }
 
-/// One quantity of one honest run, before it has a reference.
+/// One quantity of one honest run; without closed form it has no reference yet.
 struct Point<'a> {
     sample: &'a Sample,
-    found: f64,
-    /// Closed form and error.
-    exact: Option<(f64, f64)>,
-    /// What errors without closed form are relative to.
-    norm: f64,
+    row: ErrorRow,
+    /// Without closed form.
+    value: Option<&'a Value>,
+}
+
+impl Point<'_> {
     /// Whether it is more than rounding.
-    counts: bool,
+    fn counts(&self) -> bool {
+        (self.value).is_none_or(|v| v.value.abs() > RESOLVED * v.scale)
+    }
+
+    fn place(&self) -> [f64; 2] {
+        [self.row.h, self.row.found]
+    }
 }
 
 /// Rows by mesh and by sequence, in the order of the samples.
@@ -138,8 +134,11 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
         own.sort_by(|a, b| b.h.total_cmp(&a.h));
         let unmeasured = own.iter().filter(|s| s.measured == Measured::Nothing);
         errors.extend(unmeasured.map(|sample| unmeasured_row(sample)));
-        for ((quantity, at), points) in sequences(&own) {
-            let (found, order) = sequence(&quantity, &at, &points);
+        let sequences = sequences(&own);
+        let courses: Vec<Course<'_>> = sequences.iter().map(|points| course(points)).collect();
+        let bars = error_bars(&courses, own[0].regularity);
+        for (points, bar) in sequences.into_iter().zip(bars) {
+            let (found, order) = sequence(points, bar);
             errors.extend(found);
             orders.extend(order);
         }
@@ -148,119 +147,106 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
 }
 
 /// Honest points by quantity and place, from coarse to fine. Quantities that vanish on every mesh are left out.
-fn sequences<'a>(own: &[&'a Sample]) -> BTreeMap<(String, String), Vec<Point<'a>>> {
-    let mut all: BTreeMap<(String, String), Vec<Point<'a>>> = BTreeMap::new();
+fn sequences<'a>(own: &[&'a Sample]) -> Vec<Vec<Point<'a>>> {
+    let mut all: BTreeMap<[&str; 2], Vec<Point<'_>>> = BTreeMap::new();
     for &sample in own {
-        let mut add = |quantity: &str, at: &str, point| {
-            let key = (quantity.to_owned(), at.to_owned());
-            all.entry(key).or_default().push(point);
+        let mut add = |row: ErrorRow, key: [&'a str; 2], value| {
+            let row = ErrorRow {
+                quantity: key[0].to_owned(),
+                at: key[1].to_owned(),
+                ..row
+            };
+            all.entry(key)
+                .or_default()
+                .push(Point { sample, row, value });
         };
+        let row = unmeasured_row(sample);
         match &sample.measured {
             Measured::Nothing => {}
             Measured::Exact(deviations) => deviations.iter().for_each(|d| {
-                let point = Point {
-                    sample,
+                let row = ErrorRow {
                     found: d.found,
-                    exact: Some((d.exact, d.error)),
-                    norm: f64::NAN,
-                    counts: true,
+                    reference: d.exact,
+                    error_bar: 0.0,
+                    error: d.error,
+                    kind: Some(Kind::Exact),
+                    ..row.clone()
                 };
-                add(&d.quantity, &d.at, point);
+                add(row, [&d.quantity, &d.at], None);
             }),
             Measured::Values(values) => values.iter().for_each(|v| {
-                let point = Point {
-                    sample,
+                let row = ErrorRow {
                     found: v.value,
-                    exact: None,
-                    norm: v.norm,
-                    counts: v.value.abs() > RESOLVED * v.scale,
+                    kind: Some(Kind::Finest),
+                    ..row.clone()
                 };
-                add(&v.quantity, &v.at, point);
+                add(row, [&v.quantity, &v.at], Some(v));
             }),
         }
     }
-    all.retain(|_, points| points.iter().any(|point| point.counts));
-    all
+    all.retain(|_, points| points.iter().any(Point::counts));
+    all.into_values().collect()
+}
+
+/// What error bars are made of.
+fn course<'a>(points: &'a [Point<'_>]) -> Course<'a> {
+    let finest = points.last();
+    Course {
+        quantity: finest.map_or("", |point| &point.row.quantity),
+        points: points.iter().map(Point::place).collect(),
+        counts: points.iter().rev().take(2).any(Point::counts),
+        scale: finest.and_then(|p| p.value).map_or(f64::NAN, |v| v.scale),
+    }
 }
 
 /// Rows of one quantity: every mesh, and the sequence.
-fn sequence(quantity: &str, at: &str, points: &[Point<'_>]) -> (Vec<ErrorRow>, Option<OrderRow>) {
-    let place = |p: &Point<'_>| [p.sample.h, p.found];
-    let Some(finest) = points.last() else {
+fn sequence(
+    mut points: Vec<Point<'_>>,
+    bar: Result<f64, NoBar>,
+) -> (Vec<ErrorRow>, Option<OrderRow>) {
+    let Some(Point { sample, row, value }) = points.last() else {
         return (Vec::new(), None);
     };
-    let extrapolated = match points {
-        // What the runs do not resolve has no limit.
-        [.., a, b, c]
-            if [(a, b), (b, c)]
-                .iter()
-                .all(|(x, y)| resolved(x, y, finest.norm)) =>
-        {
-            limit(&[place(a), place(b), place(c)])
-        }
-        _ => None,
-    };
-    let relative = |found: f64, reference: f64| (found - reference).abs() / finest.norm;
-    let mut rows: Vec<ErrorRow> = points
-        .iter()
-        .map(|point| {
-            let (kind, reference, error_bar, error) = match (point.exact, &extrapolated) {
-                (Some((exact, error)), _) => (Kind::Exact, exact, 0.0, error),
-                (None, Some(limit)) => {
-                    let error = relative(point.found, limit.value);
-                    (Kind::Richardson, limit.value, limit.error_bar, error)
-                }
-                (None, None) => {
-                    let itself = std::ptr::eq(point, finest);
-                    let error = relative(point.found, finest.found);
-                    let error = if itself { f64::NAN } else { error };
-                    (Kind::Finest, finest.found, f64::NAN, error)
-                }
-            };
-            ErrorRow {
-                quantity: quantity.to_owned(),
-                at: at.to_owned(),
-                found: point.found,
-                reference,
-                error_bar,
-                error,
-                kind: Some(kind),
-                ..unmeasured_row(point.sample)
+    let (sample, value, reference) = (*sample, *value, row.found);
+    let finest = points.len() - 1;
+    for (index, Point { row, .. }) in points.iter_mut().enumerate() {
+        if let Some(value) = value {
+            row.reference = reference;
+            (row.error_bar, row.no_bar) = (bar.unwrap_or(f64::NAN), bar.err());
+            if index < finest {
+                row.error = (row.found - reference).abs() / value.norm;
             }
-        })
-        .collect();
-    for last in 2..rows.len() {
-        let three = &rows[last - 2..=last];
-        // Against its own finest mesh a sequence always seems to converge.
-        let measured = rows[last].kind != Some(Kind::Finest);
-        if measured && three.iter().all(|row| row.error >= ROUND_OFF) {
-            let points: Vec<[f64; 2]> = three.iter().map(|row| [row.h, row.error]).collect();
-            rows[last].order = slope(&points);
         }
     }
-    let order = rows.last().and_then(|last| {
+    let places: Vec<[f64; 2]> = points.iter().map(Point::place).collect();
+    let mut rows: Vec<ErrorRow> = points.into_iter().map(|point| point.row).collect();
+    for (first, three) in places.windows(3).enumerate() {
+        let own = &rows[first..first + 3];
+        let order = match (value, three) {
+            // What the runs do not resolve has no order.
+            (Some(value), &[a, b, c]) => {
+                let resolved =
+                    |[_, v]: [f64; 2], [_, w]: [f64; 2]| (v - w).abs() > RESOLVED * value.norm;
+                (resolved(a, b) && resolved(b, c)).then(|| order_of_steps([a, b, c]))
+            }
+            _ => own.iter().all(|row| row.error >= ROUND_OFF).then(|| {
+                let errors: Vec<[f64; 2]> = own.iter().map(|row| [row.h, row.error]).collect();
+                slope(&errors)
+            }),
+        };
+        rows[first + 2].order = order.unwrap_or(f64::NAN);
+    }
+    let order = rows.last().map(|last| {
         let with_error = rows.iter().rev().find(|row| row.error.is_finite());
-        Some(OrderRow {
-            variant: last.variant.clone(),
-            quantity: quantity.to_owned(),
-            at: at.to_owned(),
-            kind: last.kind?,
+        OrderRow {
+            finest: last.clone(),
             meshes: rows.len(),
-            finest_h: last.h,
-            reference: last.reference,
-            error_bar: last.error_bar,
             error: with_error.map_or(f64::NAN, |row| row.error),
-            order: last.order,
-            theory: theoretical_order(quantity, finest.sample.regularity),
-            dim: finest.sample.dim,
-        })
+            theory: theoretical_order(&last.quantity, sample.regularity),
+            dim: sample.dim,
+        }
     });
     (rows, order)
-}
-
-/// Whether two values differ by more than the tolerance of the runs.
-fn resolved(a: &Point<'_>, b: &Point<'_>, norm: f64) -> bool {
-    (a.found - b.found).abs() > RESOLVED * norm
 }
 
 /// A row without quantity.
@@ -278,6 +264,7 @@ fn unmeasured_row(sample: &Sample) -> ErrorRow {
         found: f64::NAN,
         reference: f64::NAN,
         error_bar: f64::NAN,
+        no_bar: None,
         error: f64::NAN,
         kind: None,
         order: f64::NAN,
@@ -287,7 +274,7 @@ fn unmeasured_row(sample: &Sample) -> ErrorRow {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Deviation, Value};
+    use super::super::Deviation;
     use super::*;
     use stickslip_methods::Status;
 
@@ -334,9 +321,10 @@ mod tests {
         meshes.iter().map(sample).collect()
     }
 
-    /// Goal: the reference is the limit, its error bar holds the truth, and a failed mesh is a row without error.
+    /// Goal: the reference is the finest value, its error bar holds the truth, the order is that of the steps, and a failed
+    /// mesh is a row without error.
     #[test]
-    fn values_are_measured_against_their_limit() {
+    fn values_are_measured_against_the_finest() {
         let mut samples = values(&[8, 1, 4, 2], |h| {
             vec![
                 value("reaction", -2.0 + h.powf(0.75)),
@@ -355,12 +343,18 @@ mod tests {
             solved.iter().map(|r| r.refine).collect::<Vec<_>>(),
             [1, 2, 4, 8]
         );
-        let norm = 2.0 - 0.125f64.powf(0.75);
+        let left = 0.125f64.powf(0.75);
         for row in &solved {
-            assert_eq!(row.kind, Some(Kind::Richardson));
-            assert!((row.reference + 2.0).abs() < 1e-6 * row.error_bar);
+            assert_eq!((row.kind, row.no_bar), (Some(Kind::Finest), None));
+            assert_eq!(row.reference, left - 2.0);
             assert!(
-                (row.error * norm - row.h.powf(0.75)).abs() < 1e-7,
+                left < row.error_bar && row.error_bar < 5.0 * left,
+                "{row:?}"
+            );
+            let error = (row.h.powf(0.75) - left) / (2.0 - left);
+            assert_eq!(row.error.is_nan(), row.refine == 8);
+            assert!(
+                row.refine == 8 || (row.error - error).abs() < 1e-12,
                 "{row:?}"
             );
         }
@@ -371,36 +365,27 @@ mod tests {
                 .all(|row| (row.order - 0.75).abs() < 1e-6)
         );
         let order = &orders[0];
-        assert_eq!(
-            (order.meshes, order.finest_h, order.theory),
-            (4, 0.125, None)
-        );
-        assert!((order.order - 0.75).abs() < 1e-6 && order.error == solved[3].error);
+        assert_eq!((order.meshes, order.theory), (4, None));
+        assert!(order.finest.refine == 8 && order.error == solved[2].error);
     }
 
-    /// Goal: too few meshes or no power law show as such, and claim no order.
+    /// Goal: one mesh shows no bar and says why; values that go to and fro, or have settled, show no order.
     #[test]
-    fn without_a_limit_the_finest_mesh_is_the_reference() {
+    fn what_the_meshes_do_not_show_is_not_claimed() {
         let to_and_fro = |h: f64| vec![value("dissipation", 1.0 + (3.0 / h).cos())];
         let settled = |_: f64| vec![value("dissipation", 1.0)];
-        let two = values(&[1, 2], |h| vec![value("dissipation", 1.0 + h)]);
-        for samples in [
-            two,
-            values(&[1, 2, 4, 8], to_and_fro),
-            values(&[1, 2, 4], settled),
-        ] {
-            let (errors, orders) = rows(&samples);
-            assert!(
-                errors
-                    .iter()
-                    .all(|r| r.kind == Some(Kind::Finest) && r.order.is_nan())
-            );
-            let (last, before) = errors.split_last().expect("rows");
-            assert!(last.error.is_nan() && before.iter().all(|r| r.error.is_finite()));
-            assert_eq!(last.reference, last.found);
-            assert!(orders[0].order.is_nan() && orders[0].error_bar.is_nan());
-            assert_eq!(orders[0].error, before[before.len() - 1].error);
-        }
+        let orders_of = |samples: &[Sample]| {
+            let (errors, orders) = rows(samples);
+            assert!(errors.iter().all(|row| row.order.is_nan()));
+            orders
+        };
+        let one = orders_of(&values(&[1], settled));
+        assert_eq!(one[0].finest.no_bar, Some(NoBar::OneMesh));
+        assert!(one[0].finest.error_bar.is_nan() && one[0].error.is_nan());
+        let moving = orders_of(&values(&[1, 2, 4, 8], to_and_fro));
+        assert!(moving[0].finest.error_bar > 0.0);
+        let still = orders_of(&values(&[1, 2, 4], settled));
+        assert_eq!((still[0].finest.error_bar, still[0].error), (0.0, 0.0));
     }
 
     /// Goal: a patch test has no order, nor has a sequence that sinks into round-off.
@@ -420,7 +405,7 @@ mod tests {
             };
             let samples: Vec<Sample> = errors.into_iter().enumerate().map(sample).collect();
             let (found, orders) = rows(&samples);
-            assert_eq!(found[3].order.to_bits(), orders[0].order.to_bits());
+            assert_eq!(found[3].order.to_bits(), orders[0].finest.order.to_bits());
             found[2..].iter().map(|row| row.order).collect()
         };
         let patch = orders_of([1e-15, 4e-15, 1.6e-14, 6.4e-14]);

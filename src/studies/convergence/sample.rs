@@ -7,50 +7,19 @@ use crate::model::errors::Deviation;
 use crate::run::record::RunRow;
 use crate::run::verdict::Verdict;
 
-/// Times of a run [s]; the first four are shared by all friction coefficients on a mesh.
+/// Times of a run [s]: mesh with cracks, sparsity pattern and elimination order; assembly of K; its factorisation;
+/// condensation to the contact points; preparation of the method; all increments together. The first four are shared by
+/// all friction coefficients on a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seconds {
-    /// Mesh, cracks, sparsity pattern and elimination order.
-    pub setup: f64,
-    /// Assembly of K.
-    pub assembly: f64,
-    /// Factorisation of K.
-    pub factorisation: f64,
-    /// Condensation to the contact points.
-    pub condensation: f64,
-    /// Preparation of the method.
-    pub prepare: f64,
-    /// All increments together.
-    pub solve: f64,
-}
+pub struct Seconds(pub [f64; 6]);
 
 impl Seconds {
     /// No times.
-    pub const NONE: Self = Self {
-        setup: f64::NAN,
-        assembly: f64::NAN,
-        factorisation: f64::NAN,
-        condensation: f64::NAN,
-        prepare: f64::NAN,
-        solve: f64::NAN,
-    };
+    pub const NONE: Self = Self([f64::NAN; 6]);
 
     /// What the run alone would have taken.
     pub fn total(&self) -> f64 {
-        self.split().iter().sum()
-    }
-
-    /// All parts, in the order of the fields.
-    pub fn split(&self) -> [f64; 6] {
-        let Self {
-            setup,
-            assembly,
-            factorisation,
-            condensation,
-            prepare,
-            solve,
-        } = *self;
-        [setup, assembly, factorisation, condensation, prepare, solve]
+        self.0.iter().sum()
     }
 
     /// Times of the rows of one run, increment by increment.
@@ -59,14 +28,15 @@ impl Seconds {
             return Self::NONE;
         };
         let sum = |time: fn(&RunRow) -> f64| rows.iter().map(time).sum();
-        Self {
-            setup: last.setup_s,
-            assembly: last.assembly_s,
-            factorisation: last.factorisation_s,
-            condensation: last.condensation_s,
-            prepare: sum(|row| row.prepare_s),
-            solve: sum(|row| row.solve_s),
-        }
+        let once = [
+            last.setup_s,
+            last.assembly_s,
+            last.factorisation_s,
+            last.condensation_s,
+        ];
+        let [setup, assembly, factorisation, condensation] = once;
+        let (prepare, solve) = (sum(|row| row.prepare_s), sum(|row| row.solve_s));
+        Self([setup, assembly, factorisation, condensation, prepare, solve])
     }
 }
 

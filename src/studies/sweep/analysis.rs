@@ -18,6 +18,7 @@ pub mod test_set;
 
 use std::cmp::Ordering;
 
+use crate::files::bundle::file_name;
 use crate::run::choice::is_outside;
 use crate::run::registry::methods;
 use stickslip_methods::Tier;
@@ -140,13 +141,14 @@ pub fn problems(records: &[Record]) -> Vec<Problem> {
 }
 
 /// A problem in words that are also a file name: `case.r2.star.mu-0.3`. Where two problems of the list share them, the
-/// digest of the case and all coefficients of friction follow.
+/// digest of the case and all coefficients of friction follow, and a number where one case has two names that files do not
+/// tell apart.
 pub fn problem_names(problems: &[Problem]) -> Vec<String> {
     let short = |p: &Problem| {
         let space = p.space.as_deref().unwrap_or("own");
         let mu = p.friction.first().copied().unwrap_or(0.0);
         let path = p.path_name();
-        format!("{}.r{}.{space}.mu-{mu}{path}", p.case, p.refine)
+        file_name(&[&format!("{}.r{}.{space}.mu-{mu}{path}", p.case, p.refine)])
     };
     let name = |problem: &Problem| {
         let name = short(problem);
@@ -154,16 +156,20 @@ pub fn problem_names(problems: &[Problem]) -> Vec<String> {
         if alike == 1 {
             return name;
         }
-        let rest: Vec<String> = problem
-            .friction
-            .iter()
-            .skip(1)
-            .map(f64::to_string)
-            .collect();
-        let end = [vec![name], rest, vec![problem.digest.clone()]].concat();
-        end.join("-")
+        let rest = problem.friction.iter().skip(1).map(f64::to_string);
+        let rest: Vec<String> = rest.chain([problem.digest.clone()]).collect();
+        format!("{name}-{}", rest.join("-"))
     };
-    problems.iter().map(name).collect()
+    let all: Vec<String> = problems.iter().map(name).collect();
+    let numbered = |(index, name): (usize, &String)| match all[..index]
+        .iter()
+        .filter(|other| *other == name)
+        .count()
+    {
+        0 => name.clone(),
+        before => format!("{name}-{}", before + 1),
+    };
+    all.iter().enumerate().map(numbered).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 //!
-//! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy,
-//! or the first quantity that is followed, against its limit, see [`orders`]. Methods that
+//! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy
+//! against that of the finest mesh, see [`orders`]. Methods that
 //! solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
 //! modelling error of the others would hide that of the mesh.
 
@@ -18,7 +18,7 @@ use crate::studies::sweep::record::Record;
 
 /// Quantity of the closed form that is followed.
 const NORM: &str = "energy";
-/// Quantity that is followed without one, where there is a choice.
+/// Quantity that is shown without one; the others that are followed have a say in its error bar.
 const FUNCTIONAL: &str = "strain_energy";
 
 /// One case, contact space and friction on several meshes.
@@ -71,7 +71,10 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
     });
     let samples = finest.iter().filter_map(|record| sample(record, records));
     let samples: Vec<Sample> = samples.collect();
-    let (errors, orders) = orders::rows(&samples);
+    let (mut errors, mut orders) = orders::rows(&samples);
+    let shown = |quantity: &str| [NORM, FUNCTIONAL].contains(&quantity);
+    errors.retain(|row| shown(&row.quantity));
+    orders.retain(|row| shown(&row.finest.quantity));
     Some(Refinement {
         coarsest: meshes.first()?.clone(),
         dim: samples.first()?.dim,
@@ -91,7 +94,7 @@ fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
             method: found.method.clone(),
             friction: record.cell.mu(),
         },
-        // Only theory asks for it, and records do not know it.
+        // Records do not know it: the wider error bars.
         regularity: Regularity::Tip,
         mesh: size.mesh,
         refine: record.cell.refine,
@@ -111,9 +114,7 @@ fn measured(record: &Record) -> Option<Measured> {
     if let Some(deviation) = found.deviations.iter().find(norm) {
         return Some(Measured::Exact(vec![deviation.clone()]));
     }
-    let chosen = found.values.iter().find(|v| v.quantity == FUNCTIONAL);
-    let value = chosen.or_else(|| found.values.first())?;
-    Some(Measured::Values(vec![value.clone()]))
+    (!found.values.is_empty()).then(|| Measured::Values(found.values.clone()))
 }
 
 /// Times of a cell, NaN where they may not be shown; those of the body as [`body_times`] has them.
@@ -121,13 +122,16 @@ pub(super) fn seconds(record: &Record, records: &[Record]) -> Seconds {
     let times = body_times(record, records).zip(published_times(record));
     times.map_or(
         Seconds::NONE,
-        |([setup, assembly, factorisation], spent)| Seconds {
-            setup,
-            assembly,
-            factorisation,
-            condensation: spent.condensation_s,
-            prepare: spent.prepare.median_s,
-            solve: spent.solve.median_s,
+        |([setup, assembly, factorisation], spent)| {
+            let [prepare, solve] = [spent.prepare, spent.solve].map(|times| times.median_s);
+            Seconds([
+                setup,
+                assembly,
+                factorisation,
+                spent.condensation_s,
+                prepare,
+                solve,
+            ])
         },
     )
 }
@@ -173,7 +177,7 @@ mod tests {
             assert!((row.seconds.total() - 1.23).abs() < 1e-12);
             assert_eq!(row.kind, Some(Kind::Exact));
         }
-        assert!((one.orders[0].order - 1.0).abs() < 1e-12);
+        assert!((one.orders[0].finest.order - 1.0).abs() < 1e-12);
     }
 
     #[test]
