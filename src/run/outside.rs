@@ -11,6 +11,7 @@
 //! written and read outside that.
 
 mod answer;
+mod guard;
 pub mod process;
 
 use std::path::{Path, PathBuf};
@@ -23,14 +24,14 @@ use stickslip_methods::{
 };
 
 use crate::case::label::is_label;
-use crate::files::bundle::unique;
 use crate::files::digest::sha256;
 use crate::files::interchange::{Info, LocalProblem, Problem, Solution};
 use crate::files::regular;
 use crate::files::visible::excerpt;
 use crate::run::local_problem::{local_velocity, unsolved};
 use answer::{Said, reactions, said};
-use process::{Ended, denied};
+use guard::Guarded;
+use process::{Ended, Running, denied};
 
 /// What the argument of a method from outside begins with.
 pub const OUTSIDE: &str = "exec:";
@@ -127,10 +128,10 @@ fn executable(file: &Path) -> Result<(), String> {
     }
 }
 
-/// Elsewhere the system says so when it starts.
+/// Elsewhere no shell can guard it.
 #[cfg(not(unix))]
 fn executable(_: &Path) -> Result<(), String> {
-    Ok(())
+    Err("methods from outside need a POSIX system".into())
 }
 
 /// The method that asks a program.
@@ -170,17 +171,24 @@ impl Enforcement for Outside {
         if form.q.is_empty() {
             return outcome(increment, Status::Converged, 0, Some((&[], &[])));
         }
-        let folder = elastic
+        let mut folder = elastic
             .on_body(|| Folder::new(increment, &form))?
             .map_err(failed)?;
+        let until = self.until();
+        if Instant::now() >= until {
+            return Err(MethodError::TimeLimit);
+        }
+        let (reaction, most) = (folder.reaction(), folder.most(&form));
         let mut command = Command::new(&self.program.file);
         command
-            .args([folder.problem(), folder.reaction()])
+            .args([&folder.problem(), &reaction])
             .arg(format!("{:e}", ASKED * increment.tolerance))
             .arg(self.program.seconds.to_string());
-        let ended = process::run(&mut command, &folder.path, self.until());
+        let running = Running::start(&mut command, &mut folder.guarded);
         let cannot = |e| failed(format!("cannot start {}: {e}", self.program.name));
-        let ended = ended.map_err(cannot)?.ok_or(MethodError::TimeLimit)?;
+        let ended = running.map_err(cannot)?.wait(until, &reaction, most);
+        let ended = ended.map_err(|e| failed(e.to_string()))?;
+        let ended = ended.ok_or(MethodError::TimeLimit)?;
         let Answer {
             status,
             said,
@@ -241,7 +249,7 @@ struct Answer {
 
 /// A folder of its own for every call, gone when the call is over.
 struct Folder {
-    path: PathBuf,
+    guarded: Guarded,
     /// Components per point.
     dim: usize,
 }
@@ -249,10 +257,8 @@ struct Folder {
 impl Folder {
     /// With the problem in it.
     fn new(increment: &Increment<'_>, form: &LocalForm) -> Result<Self, String> {
-        let path = std::env::temp_dir().join(format!("stickslip-{}", unique()));
-        private(&path).map_err(|e| format!("cannot create `{}`: {e}", path.display()))?;
-        let dim = increment.system.dim();
-        let folder = Self { path, dim };
+        let (guarded, dim) = (Guarded::folder()?, increment.system.dim());
+        let folder = Self { guarded, dim };
         let bytes = Problem::Local(problem(increment, form)).to_bytes();
         let bytes = bytes.map_err(|e| e.to_string())?;
         let written = std::fs::write(folder.problem(), bytes);
@@ -261,11 +267,16 @@ impl Folder {
     }
 
     fn problem(&self) -> PathBuf {
-        self.path.join("problem.hdf5")
+        self.guarded.path().join("problem.hdf5")
     }
 
     fn reaction(&self) -> PathBuf {
-        self.path.join("reaction.txt")
+        self.guarded.path().join("reaction.txt")
+    }
+
+    /// Largest file of reactions [bytes].
+    fn most(&self, form: &LocalForm) -> u64 {
+        answer::most(form.q.len() + form.modes.len())
     }
 
     /// How the program ended, and what it wrote.
@@ -294,7 +305,7 @@ impl Folder {
     /// The numbers the program wrote.
     fn read(&self, form: &LocalForm) -> Result<Vec<f64>, String> {
         let (rows, motions) = (form.q.len(), form.modes.len());
-        let text = regular::read_text(&self.reaction(), answer::most(rows + motions));
+        let text = regular::read_text(&self.reaction(), self.most(form));
         let text = text.map_err(|e| format!("no reactions: {e}"))?;
         reactions(&text, rows, motions, self.dim)
     }
@@ -302,7 +313,7 @@ impl Folder {
     /// Why the program ended as it did, without the name of this folder, which no two calls share.
     fn complaint(&self, ended: &Ended) -> MethodError {
         let last = ended.complaint.as_deref().unwrap_or_default();
-        let last = last.replace(&*self.path.to_string_lossy(), ".");
+        let last = last.replace(&*self.guarded.path().to_string_lossy(), ".");
         let last = excerpt(&last, SHOWN);
         let separator = if last.is_empty() { "" } else { ": " };
         match ended.status.code() {
@@ -316,20 +327,6 @@ impl Folder {
             _ => failed(format!("{}{separator}{last}", ended.status)),
         }
     }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _gone_already = std::fs::remove_dir_all(&self.path);
-    }
-}
-
-/// Creates a folder that nobody else looks into, and that was not there.
-fn private(path: &Path) -> std::io::Result<()> {
-    let mut builder = std::fs::DirBuilder::new();
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(path)
 }
 
 /// The problem with what methods here start from, as a guess: contact forces, and the jumps at the start of the increment.

@@ -103,6 +103,14 @@ fn whatever_a_program_does_is_a_verdict() {
             "crashed: no reactions: a directory, not a regular file",
         ),
         ("lots", "crashed: it printed `iterations = lots`"),
+        ("endless", "crashed: it printed `iterations = 1000000001`"),
+        (
+            "chatty",
+            "crashed: standard output has more than 67108864 bytes",
+        ),
+        ("lavish", "crashed: REACTION has more than 1048704 bytes"),
+        ("pipes", "gave-up: unexplained"),
+        ("vanishes", "gave-up: unexplained"),
         ("gives-up", "gave-up: unexplained"),
         ("stalls", "gave-up: stalled"),
         ("declines", "refused: ./problem.hdf5 is not for me"),
@@ -124,7 +132,24 @@ fn whatever_a_program_does_is_a_verdict() {
     }
 }
 
-/// Goal: a program that never ends is ended in time, with what it started.
+/// Waits until something holds.
+fn awaited(what: &str, holds: impl Fn() -> bool) {
+    let clock = Instant::now();
+    while !holds() {
+        assert!(clock.elapsed() < Duration::from_secs(30), "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Waits for the end of the child that a program of the tests started.
+fn awaits_child_of(program: &Path) {
+    let child = fs::read_to_string(program.with_extension("pid")).unwrap();
+    let stat = format!("/proc/{}/stat", child.trim());
+    let gone = || fs::read_to_string(&stat).map_or(true, |text| text.contains(") Z "));
+    awaited(&stat, || !cfg!(target_os = "linux") || gone());
+}
+
+/// Goal: a program that never ends is ended in time, and what it started at its end, whichever that is.
 #[test]
 fn silence_is_timed_out() {
     let dir = tempfile::tempdir().unwrap();
@@ -133,19 +158,34 @@ fn silence_is_timed_out() {
     let clock = Instant::now();
     assert_eq!(judged(&choice).verdict.to_string(), "timed-out");
     assert!((0.2..10.0).contains(&clock.elapsed().as_secs_f64()));
+    awaits_child_of(&path);
     let past = Some(Instant::now());
     let late = Choice::parse(&exec(&path)).unwrap().limited(300.0, past);
     assert_eq!(judged(&late).verdict.to_string(), "timed-out");
 
-    let child = fs::read_to_string(dir.path().join("forever.pid")).unwrap();
-    let stat = format!("/proc/{}/stat", child.trim());
-    let gone = || fs::read_to_string(&stat).map_or(true, |text| text.contains(") Z "));
-    if cfg!(target_os = "linux") {
-        while !gone() {
-            assert!(clock.elapsed() < Duration::from_secs(30), "{stat}");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
+    let path = called(dir.path(), "leaves");
+    let verdict = judged(&Choice::parse(&exec(&path)).unwrap()).verdict;
+    assert_eq!(verdict.to_string(), "gave-up: unexplained");
+    awaits_child_of(&path);
+}
+
+/// Goal: neither a program nor its folder outlives a harness that is killed, which can do nothing more about it.
+#[test]
+fn nothing_is_left_of_a_call_whose_harness_was_killed() {
+    let dir = folder();
+    let (path, temporary) = (called(dir.path(), "forever"), dir.path().join("tmp"));
+    let mut harness = Command::new(PROGRAM);
+    let arguments = ["solve", "one.hdf5", "-m", "exec:forever"];
+    harness.args(arguments).current_dir(dir.path());
+    let mut harness = harness.env("TMPDIR", &temporary).spawn().unwrap();
+    let begun =
+        || fs::read_to_string(path.with_extension("pid")).is_ok_and(|pid| pid.ends_with('\n'));
+    awaited("the program", begun);
+    assert_eq!(fs::read_dir(&temporary).unwrap().count(), 1);
+    harness.kill().unwrap();
+    harness.wait().unwrap();
+    awaits_child_of(&path);
+    awaited("folder", || fs::read_dir(&temporary).unwrap().count() == 0);
 }
 
 fn stickslip(dir: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
@@ -177,11 +217,11 @@ fn folder() -> TempDir {
 #[test]
 fn it_is_tabulated_like_the_methods_here() {
     let dir = folder();
-    for name in ["honest", "liar"] {
+    for name in ["honest", "liar", "deep"] {
         called(dir.path(), name);
     }
-    let methods = ["-m", "b-newton", "-m", "exec:honest", "-m", "exec:./liar"];
-    let arguments = [&["solve", "one.hdf5"], &methods[..]].concat();
+    let methods = "solve one.hdf5 -m b-newton -m exec:honest -m exec:./liar -m exec:deep";
+    let arguments: Vec<&str> = methods.split(' ').collect();
     let (code, shown, complaints) = stickslip(dir.path(), &arguments);
     assert_eq!(code, Some(1), "{complaints}");
     assert!(

@@ -13,6 +13,9 @@ pub fn most(numbers: usize) -> u64 {
     BESIDE + NUMBER * numbers as u64
 }
 
+/// Most iterations that are believed: of any number of increments their sum is a number.
+const MOST_ITERATIONS: usize = 1_000_000_000;
+
 /// Ways to give up that a program may name. Without equilibrium is what the judge says, stopped what the harness does.
 const NAMED: [Status; 5] = [
     Status::MaxIterations,
@@ -78,7 +81,11 @@ pub fn said(text: &str) -> Result<Said, String> {
         };
         let (key, value) = (key.trim(), value.trim());
         let known = match key {
-            "iterations" => value.parse().ok().map(|number| said.iterations = number),
+            "iterations" => {
+                let number = value.parse().ok();
+                let number = number.filter(|number| *number <= MOST_ITERATIONS);
+                number.map(|number| said.iterations = number)
+            }
             "seconds" => {
                 let seconds = value.parse::<f64>().ok();
                 let seconds = seconds.filter(|s| s.is_finite() && *s >= 0.0);
@@ -132,6 +139,7 @@ mod tests {
         for line in [
             "iterations = -1",
             "iterations = many",
+            "iterations = 1152921504606846976",
             "seconds = nan",
             "seconds = -1",
             "status = solved",

@@ -1,11 +1,13 @@
-//! A process with a time limit, and what it leaves behind.
+//! A process with limits on time and output, and what it leaves behind.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+use super::guard::Guarded;
 
 /// What a process says that an allocation ended: the runtimes of Rust, C++ and Python, and libraries that panic. Errors are
 /// told by type, but a dead process left words only.
@@ -51,71 +53,132 @@ const LATEST: Duration = Duration::from_millis(5);
 /// Bytes that are read of what a process printed.
 const TAIL: u64 = 1 << 16;
 
-/// Runs a program in a folder, on one thread and with nothing on its standard input. None if it had to be ended, with all
-/// processes that it started.
-///
-/// # Errors
-/// Those of starting it.
-pub fn run(command: &mut Command, folder: &Path, until: Instant) -> io::Result<Option<Ended>> {
-    let (printed, complained) = (folder.join("stdout"), folder.join("stderr"));
-    command
-        .envs(THREADS.map(|name| (name, "1")))
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .stdout(File::create(&printed)?)
-        .stderr(File::create(&complained)?);
-    // A group of its own, so that it can be ended with all that it starts.
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(command, 0);
-    let begin = Instant::now();
-    if begin >= until {
-        return Ok(None);
-    }
-    let mut child = Group(command.spawn()?);
-    let status = loop {
-        if let Some(status) = child.0.try_wait()? {
-            break status;
-        }
-        let now = Instant::now();
-        if now >= until {
-            return Ok(None);
-        }
-        let pause = (now - begin).mul_f64(LOOKS).clamp(SOONEST, LATEST);
-        sleep(pause.min(until - now));
-    };
-    let seconds = begin.elapsed().as_secs_f64();
-    let complaint = tail(&complained)?;
-    let mut lines = complaint.lines().map(str::trim);
-    Ok(Some(Ended {
-        status,
-        seconds,
-        printed: tail(&printed)?,
-        complaint: lines.rfind(|line| !line.is_empty()).map(str::to_owned),
-    }))
+/// Most bytes that it may print, and complain.
+const MOST: u64 = 64 << 20;
+
+/// A process that has begun.
+pub struct Running<'a> {
+    child: Child,
+    folder: &'a mut Guarded,
+    begin: Instant,
+    /// What it prints and complains: the files themselves, for their names may come to stand for a pipe.
+    streams: [File; 2],
 }
 
-/// A process that does not outlive its owner.
-struct Group(Child);
-
-impl Drop for Group {
-    fn drop(&mut self) {
-        // Once it was waited for, its number may be another's.
-        if matches!(self.0.try_wait(), Ok(Some(_))) {
-            return;
+impl<'a> Running<'a> {
+    /// Starts a program in a guarded folder, on one thread and with nothing on its standard input.
+    ///
+    /// # Errors
+    /// Those of starting it.
+    pub fn start(command: &mut Command, folder: &'a mut Guarded) -> io::Result<Self> {
+        let stream = |name| {
+            let mut new = OpenOptions::new();
+            new.read(true).write(true).create_new(true);
+            new.open(folder.path().join(name))
+        };
+        let streams = [stream("stdout")?, stream("stderr")?];
+        command
+            .envs(THREADS.map(|name| (name, "1")))
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(streams[0].try_clone()?)
+            .stderr(streams[1].try_clone()?);
+        // A group of its own, so that it can be ended with all that it starts.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        let begin = Instant::now();
+        let mut running = Self {
+            child: command.spawn()?,
+            folder,
+            begin,
+            streams,
+        };
+        match running.folder.watch(running.child.id()) {
+            Ok(()) => Ok(running),
+            Err(error) => running.kill().and(Err(error)),
         }
+    }
+
+    /// Waits for its end, which is that of its whole group; none if time ended it.
+    ///
+    /// # Errors
+    /// More output than it may leave: on a stream, or as the file `answer` of at most `most` bytes. Those of waiting.
+    pub fn wait(mut self, until: Instant, answer: &Path, most: u64) -> io::Result<Option<Ended>> {
+        let seconds = self.watch(until, answer, most);
+        let status = self.kill()?;
+        let Some(seconds) = seconds? else {
+            return Ok(None);
+        };
+        let [printed, complaint] = self.streams.map(tail);
+        let complaint = complaint?;
+        let mut lines = complaint.lines().map(str::trim);
+        Ok(Some(Ended {
+            status,
+            seconds,
+            printed: printed?,
+            complaint: lines.rfind(|line| !line.is_empty()).map(str::to_owned),
+        }))
+    }
+
+    fn watch(&mut self, until: Instant, answer: &Path, most: u64) -> io::Result<Option<f64>> {
+        loop {
+            let ended = has_ended(&mut self.child)?;
+            let now = Instant::now();
+            let taken = now - self.begin;
+            for (what, size, most) in [
+                ("standard output", self.streams[0].metadata()?.len(), MOST),
+                ("standard error", self.streams[1].metadata()?.len(), MOST),
+                (
+                    "REACTION",
+                    answer.symlink_metadata().map_or(0, |a| a.len()),
+                    most,
+                ),
+            ] {
+                if size > most {
+                    let what = format!("{what} has more than {most} bytes");
+                    return Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
+                }
+            }
+            if ended {
+                return Ok(Some(taken.as_secs_f64()));
+            }
+            if now >= until {
+                return Ok(None);
+            }
+            let pause = taken.mul_f64(LOOKS).clamp(SOONEST, LATEST);
+            sleep(pause.min(until - now));
+        }
+    }
+
+    /// Ends the group, whose number is its own until its first process is waited for.
+    fn kill(&mut self) -> io::Result<ExitStatus> {
         #[cfg(unix)]
         {
             use rustix::process::{Pid, Signal, kill_process_group};
-            let _gone = kill_process_group(Pid::from_child(&self.0), Signal::KILL);
+            let _gone = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
         }
-        let _ended_before = self.0.kill();
-        let _status = self.0.wait();
+        let _ended_before = self.child.kill();
+        self.folder.release();
+        self.child.wait()
     }
 }
 
+/// Whether a process has ended, which is left to be waited for.
+#[cfg(unix)]
+fn has_ended(child: &mut Child) -> io::Result<bool> {
+    use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
+    let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    Ok(waitid(WaitId::Pid(Pid::from_child(child)), look)?.is_some())
+}
+
+/// Whether a process has ended.
+#[cfg(not(unix))]
+fn has_ended(child: &mut Child) -> io::Result<bool> {
+    Ok(child.try_wait()?.is_some())
+}
+
 /// The end of a file, with � for what is no text.
-fn tail(path: &Path) -> io::Result<String> {
-    let mut file = File::open(path)?;
+fn tail(mut file: File) -> io::Result<String> {
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL)))?;
     let mut bytes = Vec::new();
