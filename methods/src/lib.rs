@@ -89,7 +89,7 @@ pub mod splitting;
 pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
 pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
 pub use algebra::rows::RowSet;
-pub use algebra::square::{Asymmetry, DelassusMatrix, SquareMatrix};
+pub use algebra::square::{DelassusMatrix, SquareMatrix};
 pub use condensed::*;
 pub use contract::*;
 pub use error::MethodError;

@@ -6,9 +6,11 @@ pub mod problem_file;
 
 use std::sync::Arc;
 
+use faer::MatMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::amd;
-use faer::sparse::{FaerError, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMat, SymbolicSparseColMatRef, Triplet};
 use nalgebra::{DMatrix, DVector};
 use stickslip_methods::{
     ContactState, DelassusMatrix, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError,
@@ -95,7 +97,7 @@ pub const ROUNDING: f64 = 1e-12;
 pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     let rows = problem.q.len();
     let square = problem.w.as_square()?;
-    let w = match square.asymmetry().relative {
+    let w = match square.asymmetry() {
         ..=ROUNDING => DelassusMatrix::from(problem.w.symmetric_part()?),
         _ => square.into(),
     };
@@ -135,12 +137,15 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     })
 }
 
-/// The body and load of a global problem. Tributary areas are not in the file and taken as 1.
+/// The body and load of a global problem. Tributary areas are not in the file and taken as 1. An M that is not symmetric up
+/// to [`ROUNDING`] is no stiffness: it is condensed, and the body known at its contact points only.
 ///
 /// # Errors
-/// What [`Elastic::new`] refuses; equality constraints, and an M that is not symmetric up to [`ROUNDING`], are the caller's
-/// to refuse.
+/// What [`Elastic::new`] and [`local_system`] refuse, a singular M; equality constraints are the caller's to refuse.
 pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
+    if problem.m.as_square()?.asymmetry() > ROUNDING {
+        return local_system(&condensed(problem)?);
+    }
     let stiffness = problem.m.symmetric_part()?;
     let elastic = Elastic::new(ElasticParts {
         dim: problem.dim,
@@ -164,6 +169,50 @@ pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
     })
 }
 
+/// Largest |M x − b|/|b| of a solve that counts: a singular matrix leaves more.
+const SOLVED: f64 = 1e-9;
+
+/// W = Hᵀ M⁻¹ H and q = Hᵀ M⁻¹ f + w by a sparse LU factor of M, with a step of iterative refinement.
+fn condensed(problem: &GlobalProblem) -> Result<LocalProblem, MethodError> {
+    let (n, rows, what) = (problem.f.len(), problem.w.len(), "LU factorisation of M");
+    let failed = |reason: String| MethodError::Kernel { what, reason };
+    let triplets: Vec<_> = (problem.m.entries())
+        .map(|(i, j, v)| Triplet::new(i, j, v))
+        .collect();
+    let m = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &triplets);
+    let lu = m.map_err(|e| failed(format!("{e:?}")))?.sp_lu();
+    let lu = lu.map_err(|e| failed(format!("{e:?}")))?;
+    let (m, jump) = (problem.m.as_square()?, problem.h.transposed().as_rows()?);
+    let solve = |b: Vec<f64>| {
+        let (mut x, mut rest, mut product) = (vec![0.0; n], b.clone(), vec![0.0; n]);
+        for _ in 0..2 {
+            lu.solve_in_place(MatMut::from_column_major_slice_mut(&mut rest, n, 1));
+            x.iter_mut().zip(&rest).for_each(|(x, d)| *x += d);
+            m.mul(&x, &mut product);
+            rest = b.iter().zip(&product).map(|(b, p)| b - p).collect();
+        }
+        let [left, all] = [rest, b].map(|v| v.iter().fold(0.0, |sum, v| v.mul_add(*v, sum)).sqrt());
+        if left.is_nan() || left > SOLVED * all {
+            return Err(failed("it is singular".into()));
+        }
+        let mut moved = vec![0.0; rows];
+        jump.mul(&x, &mut moved);
+        Ok(moved)
+    };
+    let columns: Result<Vec<_>, _> = (0..rows).map(|j| solve(problem.h.column(j))).collect();
+    let free = solve(problem.f.clone())?;
+    Ok(LocalProblem {
+        dim: problem.dim,
+        w: SparseMatrix::from_dense_columns(rows, &columns?),
+        q: free.iter().zip(&problem.w).map(|(u, w)| u + w).collect(),
+        mu: problem.mu.clone(),
+        equality: None,
+        info: problem.info.clone(),
+        solution: None,
+        guesses: Vec::new(),
+    })
+}
+
 /// Approximate minimum degree order: a file has no mesh to dissect (Amestoy, Davis, Duff 1996).
 fn minimum_degree(k: &SymmetricMatrix) -> Result<Vec<usize>, MethodError> {
     let n = k.size();
@@ -183,4 +232,42 @@ fn minimum_degree(k: &SymmetricMatrix) -> Result<Vec<usize>, MethodError> {
         },
     )?;
     Ok(order)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Source: hand calculation. M⁻¹ = [[3, −1], [−2, 4]]/10, H = 1.
+    #[test]
+    fn an_unsymmetric_m_is_condensed_as_it_stands() {
+        let square = |entries: [[f64; 2]; 2]| SparseMatrix::from_dense(2, 2, |i, j| entries[i][j]);
+        let mut problem = GlobalProblem {
+            dim: 2,
+            m: square([[4.0, 1.0], [2.0, 3.0]]),
+            h: square([[1.0, 0.0], [0.0, 1.0]]),
+            f: vec![1.0, 2.0],
+            w: vec![0.5, 0.0],
+            mu: vec![0.3],
+            equality: None,
+            info: Info::default(),
+            solution: None,
+            guesses: Vec::new(),
+        };
+        let LocalProblem { w, q, .. } = condensed(&problem).unwrap();
+        let found = [
+            w.get(0, 0),
+            w.get(0, 1),
+            w.get(1, 0),
+            w.get(1, 1),
+            q[0],
+            q[1],
+        ];
+        for (found, expected) in found.into_iter().zip([0.3, -0.1, -0.2, 0.4, 0.6, 0.6]) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+        assert_ne!(global_system(&problem).unwrap().elastic.asymmetry(), 0.0);
+        problem.m = square([[1.0, 1.0], [2.0, 2.0]]);
+        assert!(global_system(&problem).is_err());
+    }
 }

@@ -60,13 +60,13 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     .collect()
 }
 
-fn vector(path: &Path) -> Vec<f64> {
+pub fn vector(path: &Path) -> Vec<f64> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     matrix_market::parse(path, &text).unwrap().column(0)
 }
 
 /// The verdict of one row of `runs.csv`.
-fn verdict(dir: &Path, case: &str, method: &str) -> String {
+pub fn verdict(dir: &Path, case: &str, method: &str) -> String {
     let runs = std::fs::read_to_string(dir.join("results/runs.csv")).unwrap();
     let mut rows = csv_rows(&runs).into_iter();
     let row = rows.find(|row| row["case"] == case && row["method"] == method);
@@ -299,7 +299,7 @@ fn reactions_of_other_programs_are_judged() {
     );
 }
 
-fn shipped_file(name: &str) -> PathBuf {
+pub fn shipped_file(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     root.join("tests/data/fclib").join(name)
 }
@@ -307,11 +307,12 @@ fn shipped_file(name: &str) -> PathBuf {
 #[test]
 fn files_of_other_writers_are_solved() {
     let dir = tempfile::tempdir().unwrap();
-    let files = ["local_csr.hdf5", "local_gzip.hdf5"].map(shipped_file);
+    let names = ["local_csr", "local_gzip", "unwritten", "no_contact"];
+    let files = names.map(|name| shipped_file(&format!("{name}.hdf5")));
     let mut arguments = vec!["solve", "-m", METHOD];
     arguments.extend(files.iter().map(|file| file.to_str().unwrap()));
     ends_with(0, &arguments, dir.path());
-    for name in ["local_csr", "local_gzip"] {
+    for name in names {
         assert_eq!(verdict(dir.path(), name, METHOD), "solved");
     }
 }
@@ -326,7 +327,7 @@ fn bad_files_give_exit_code_2_and_leave_nothing() {
     write("empty.hdf5", b"");
     write("text.hdf5", b"%%MatrixMarket matrix array real general\n");
     let constraints = shipped_file("global.hdf5");
-    let unsymmetric = shipped_file("collection/rotating/table-2d-global.hdf5");
+    let half = shipped_file("half.hdf5");
     let rolling = shipped_file("collection/rolling/local-3d.hdf5");
     for (arguments, part) in [
         (vec!["short.hdf5"], "short.hdf5"),
@@ -337,10 +338,7 @@ fn bad_files_give_exit_code_2_and_leave_nothing() {
         (vec!["good.hdf5", "good.hdf5"], "`good` is given twice"),
         (vec!["good.hdf5", "-m", "none"], "unknown method `none`"),
         (vec![constraints.to_str().unwrap()], "G is present"),
-        (
-            vec![unsymmetric.to_str().unwrap()],
-            "condense it to a local file",
-        ),
+        (vec![half.to_str().unwrap()], "W holds one triangle"),
         (vec![rolling.to_str().unwrap()], "rolling-friction problem"),
     ] {
         let (_, error) = ends_with(2, &[&["solve"], &arguments[..]].concat(), dir.path());
@@ -367,199 +365,4 @@ fn questions_without_an_answer_are_not_exported() {
         assert!(error.contains(part), "{arguments:?}: {error}");
         assert!(!dir.path().join("problems").exists(), "{arguments:?}");
     }
-}
-
-/// Families of `tests/data/fclib/collection`, in another folder: only the files named are copied.
-fn collection(dir: &Path, files: &[&str]) {
-    for file in files {
-        let to = dir.join("collection").join(file);
-        std::fs::create_dir_all(to.parent().unwrap()).unwrap();
-        std::fs::copy(shipped_file("collection").join(file), to).unwrap();
-    }
-}
-
-fn rows(path: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
-    csv_rows(&std::fs::read_to_string(path).unwrap())
-}
-
-/// Source: `make_collection.py` says which file is what; rank and asymmetry were found by numpy.
-#[test]
-fn a_collection_is_solved_or_refused_with_the_reason() {
-    let dir = tempfile::tempdir().unwrap();
-    let all = shipped_file("collection");
-    let methods = ["newton-ac", "nsgs", "interior-point", "socp"];
-    let mut arguments = vec!["solve", all.to_str().unwrap()];
-    arguments.extend(methods.iter().flat_map(|method| ["-m", method]));
-    ends_with(0, &arguments, dir.path());
-
-    let problems = rows(&dir.path().join("results/problems.csv"));
-    #[rustfmt::skip]
-    let expected = [
-        ("blocks.column-2d", "36", "18", "420", "", ""),
-        ("blocks.column-3d", "36", "18", "880", "", ""),
-        ("blocks.column-3d-libfclib", "36", "18", "880", "", ""),
-        ("disks.full-2d", "16", "12", "256", "", ""),
-        ("disks.packing-2d", "32", "24", "326", "", ""),
-        ("rolling.global-2d", "NaN", "NaN", "NaN", "NaN", "rolling-friction problem: group /fclib_global_rolling"),
-        ("rolling.local-2d", "NaN", "NaN", "NaN", "NaN", "rolling-friction problem: fclib_local/vectors/mu_r"),
-        ("rolling.local-3d", "NaN", "NaN", "NaN", "NaN", "rolling-friction problem: fclib_local/vectors/mu_r"),
-        ("rotating.column-3d", "24", "12", "512", "0.0033", ""),
-        ("rotating.table-2d", "36", "24", "432", "0.0067", ""),
-        ("rotating.table-2d-global", "NaN", "NaN", "NaN", "NaN", "M is unsymmetric by 2.0e-2 relative"),
-        ("rotating.table-3d", "48", "30", "586", "0.0057", ""),
-        ("rotating.table-3d-libfclib", "48", "30", "586", "0.0057", ""),
-        ("spheres.packing-3d", "42", "30", "424", "", ""),
-        ("spheres.packing-3d-global", "42", "30", "30", "", ""),
-    ];
-    assert_eq!(problems.len(), expected.len());
-    for (found, (name, size, rank, entries, asymmetry, refused)) in problems.iter().zip(expected) {
-        assert_eq!(found["problem"], name);
-        let sizes = [&found["rows"], &found["rank"], &found["stored_entries"]];
-        assert_eq!(sizes, [size, rank, entries], "{name}");
-        let reason = found["refused"].starts_with(refused)
-            && found["refused"].is_empty() == refused.is_empty();
-        assert!(reason, "{name}: {}", found["refused"]);
-        match asymmetry {
-            // Rounding of the writer.
-            "" => assert!(found["asymmetry"].parse::<f64>().unwrap() < 1e-14, "{name}"),
-            stated => assert_eq!(found["asymmetry"], stated, "{name}"),
-        }
-    }
-    let solvable = expected.iter().filter(|row| row.5.is_empty());
-    let several = ["blocks.column-3d", "spheres.packing-3d"];
-    for (name, .., asymmetry, _) in solvable {
-        for method in methods {
-            let verdict = verdict(dir.path(), name, method);
-            match (method, *asymmetry) {
-                ("socp", stated) if !stated.is_empty() => {
-                    let relative: f64 = stated.parse().unwrap();
-                    let reason = format!(
-                        "refused: W is unsymmetric by {relative:.1e} relative, the method needs a symmetric W"
-                    );
-                    assert_eq!(verdict, reason, "{name}");
-                }
-                // Rigid bodies on each other, with more contact rows than W has rank.
-                _ if several.iter().any(|own| name.starts_with(own)) => {
-                    assert_eq!(verdict, "solved (several)", "{name} {method}");
-                }
-                _ => assert_eq!(verdict, "solved", "{name} {method}"),
-            }
-        }
-    }
-    // What libfclib has copied is the same problem.
-    let solution = |name: &str| {
-        let file = format!("results/solutions/rotating.{name}.local.fclib.newton-ac.mu-");
-        let path = dir.path().join(file);
-        let parent = path.parent().unwrap();
-        let start = path.file_name().unwrap().to_str().unwrap().to_owned();
-        let found = std::fs::read_dir(parent)
-            .unwrap()
-            .map(|item| item.unwrap().path());
-        let own = |path: &PathBuf| {
-            let name = path.file_name().unwrap().to_str().unwrap();
-            name.starts_with(&start) && name.ends_with(".r.mtx")
-        };
-        vector(&found.into_iter().find(own).unwrap())
-    };
-    assert_eq!(solution("table-3d"), solution("table-3d-libfclib"));
-    let families = rows(&dir.path().join("results/families.csv"));
-    let own = |row: &&std::collections::BTreeMap<String, String>| {
-        row["family"] == "rotating" && row["method"] == "socp"
-    };
-    let socp = families.iter().find(own).unwrap();
-    assert_eq!(
-        [&socp["problems"], &socp["refused"], &socp["honest"]],
-        ["4", "4", "0"]
-    );
-}
-
-/// A study of problem files goes on where it ended, and a file that changed meanwhile is another problem.
-#[test]
-fn a_study_of_files_is_resumed_and_told_by_family() {
-    let dir = tempfile::tempdir().unwrap();
-    collection(
-        dir.path(),
-        &[
-            "disks/full-2d.hdf5",
-            "rotating/table-2d.hdf5",
-            "rolling/local-2d.hdf5",
-        ],
-    );
-    let sweep = "title = \"Files\"\n\n[[cells]]\nfiles = [\"collection\"]\nmethods = [\"newton-ac\", \"socp\"]\ntolerances = [1e-9]\n";
-    std::fs::write(dir.path().join("files.toml"), sweep).unwrap();
-    let study = ["study", "files.toml", "--untimed"];
-    let (shown, _) = ends_with(0, &study, dir.path());
-    assert!(
-        shown.contains("6 cells: 0 measured before, 6 now, 0 left"),
-        "{shown}"
-    );
-    let (shown, _) = ends_with(0, &study, dir.path());
-    assert!(
-        shown.contains("6 cells: 6 measured before, 0 now, 0 left"),
-        "{shown}"
-    );
-    let results = dir.path().join("results");
-    let problems = rows(&results.join("problems.csv"));
-    let found: Vec<[&str; 3]> = (problems.iter())
-        .map(|row| [&*row["problem"], &*row["family"], &*row["rank"]])
-        .collect();
-    let expected = [
-        ["disks.full-2d", "disks", "12"],
-        ["rolling.local-2d", "rolling", "NaN"],
-        ["rotating.table-2d", "rotating", "24"],
-    ];
-    assert_eq!(found, expected);
-    assert!(problems[1]["refused"].contains("rolling-friction problem"));
-    let families = rows(&results.join("families.csv"));
-    let found: Vec<[&str; 4]> = (families.iter())
-        .map(|row| {
-            [
-                &*row["family"],
-                &*row["method"],
-                &*row["honest"],
-                &*row["refused"],
-            ]
-        })
-        .collect();
-    let expected = [
-        ["disks", "newton-ac", "1", "0"],
-        ["disks", "socp", "1", "0"],
-        ["rolling", "newton-ac", "0", "1"],
-        ["rolling", "socp", "0", "1"],
-        ["rotating", "newton-ac", "1", "0"],
-        ["rotating", "socp", "0", "1"],
-    ];
-    assert_eq!(found, expected);
-
-    let other = shipped_file("collection/disks/packing-2d.hdf5");
-    std::fs::copy(other, dir.path().join("collection/disks/full-2d.hdf5")).unwrap();
-    let (_, error) = ends_with(2, &study, dir.path());
-    assert!(error.contains("holds another sweep"), "{error}");
-    // A folder alone is a study of all methods.
-    let (shown, _) = ends_with(0, &["study", "collection", "--list"], dir.path());
-    assert_eq!(shown.lines().count(), 3 * 3 * methods().len());
-    std::fs::create_dir(dir.path().join("none")).unwrap();
-    let (_, error) = ends_with(2, &["study", "none"], dir.path());
-    assert!(error.contains("no file.hdf5"), "{error}");
-}
-
-/// Goal: a packing whose points are redundant takes tens of iterations, not the hundreds of sweeps (767 iterations in all) after
-/// which `hybrid` once came to the method that solves it.
-#[test]
-fn hybrid_comes_to_the_interior_point_method_early_where_points_are_redundant() {
-    let dir = tempfile::tempdir().unwrap();
-    let file = shipped_file("packing.hdf5");
-    ends_with(
-        0,
-        &["solve", file.to_str().unwrap(), "-m", "hybrid"],
-        dir.path(),
-    );
-    let runs = rows(&dir.path().join("results/runs.csv"));
-    let iterations: usize = runs[0]["iterations"].parse().unwrap();
-    assert!(
-        runs[0]["verdict"] == "solved" && iterations < 120,
-        "{iterations}"
-    );
-    let problem = &rows(&dir.path().join("results/problems.csv"))[0];
-    assert_eq!([&problem["rows"], &problem["rank"]], ["171", "108"]);
 }

@@ -4,6 +4,7 @@
 mod common;
 
 mod atlas;
+mod collections;
 mod converge;
 mod fclib;
 mod fuzz;

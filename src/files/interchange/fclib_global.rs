@@ -8,7 +8,7 @@
 use super::error::InterchangeError;
 use super::fclib_matrix::read_matrix;
 use super::fclib_parts::{
-    Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
+    Info, Layout, Lengths, Solution, read_dim, read_friction, read_info, read_solutions, rows,
 };
 use super::hdf5::Tree;
 use super::sparse::SparseMatrix;
@@ -63,29 +63,28 @@ impl GlobalProblem {
         }
     }
 
-    /// Sizes come from the vectors, which the file must really hold; the matrices must agree with them.
+    /// Sizes come from the shapes of the vectors; the matrices must agree with them before anything is read.
     pub(super) fn read(tree: &Tree) -> Result<Self, InterchangeError> {
         let dim = read_dim(tree, GROUP)?;
-        let f = tree.all_reals(&format!("{GROUP}/vectors/f"))?;
-        let w_name = format!("{GROUP}/vectors/w");
-        let w = tree.all_reals(&w_name)?;
-        let mu = read_friction(tree, GROUP, points(tree, &w_name, w.len(), dim)?)?;
-        let g_name = format!("{GROUP}/G");
-        let equality = match tree.has_group(&g_name)? {
+        let [f_name, w_name, b_name] = ["f", "w", "b"].map(|v| format!("{GROUP}/vectors/{v}"));
+        let (unknowns, rows) = (tree.extent(&f_name)? as usize, rows(tree, &w_name, dim)?);
+        let matrix = |name, cols| read_matrix(tree, &format!("{GROUP}/{name}"), unknowns, cols);
+        let equality = match tree.has_group(&format!("{GROUP}/G"))? {
             false => None,
             true => {
-                let b = tree.all_reals(&format!("{GROUP}/vectors/b"))?;
-                let g = read_matrix(tree, &g_name, f.len(), b.len())?;
+                let constraints = tree.extent(&b_name)? as usize;
+                let g = matrix("G", constraints)?;
+                let b = tree.reals(&b_name, constraints)?;
                 Some(GlobalEquality { g, b })
             }
         };
         let mut problem = Self {
             dim,
-            m: read_matrix(tree, &format!("{GROUP}/M"), f.len(), f.len())?,
-            h: read_matrix(tree, &format!("{GROUP}/H"), f.len(), w.len())?,
-            f,
-            w,
-            mu,
+            m: matrix("M", unknowns)?,
+            h: matrix("H", rows)?,
+            f: tree.reals(&f_name, unknowns)?,
+            w: tree.reals(&w_name, rows)?,
+            mu: read_friction(tree, GROUP, rows / dim)?,
             equality,
             info: read_info(tree, GROUP)?,
             solution: None,

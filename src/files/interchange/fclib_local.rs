@@ -8,7 +8,7 @@
 use super::error::InterchangeError;
 use super::fclib_matrix::read_matrix;
 use super::fclib_parts::{
-    Info, Layout, Lengths, Solution, points, read_dim, read_friction, read_info, read_solutions,
+    Info, Layout, Lengths, Solution, read_dim, read_friction, read_info, read_solutions, rows,
 };
 use super::hdf5::Tree;
 use super::sparse::SparseMatrix;
@@ -61,23 +61,23 @@ impl LocalProblem {
         }
     }
 
-    /// Sizes come from the vectors, which the file must really hold; the matrices must agree with them.
+    /// Sizes come from the shapes of the vectors; the matrices must agree with them before anything is read.
     pub(super) fn read(tree: &Tree) -> Result<Self, InterchangeError> {
         let dim = read_dim(tree, GROUP)?;
         let q_name = format!("{GROUP}/vectors/q");
-        let q = tree.all_reals(&q_name)?;
-        let rows = q.len();
-        let mu = read_friction(tree, GROUP, points(tree, &q_name, rows, dim)?)?;
+        let rows = rows(tree, &q_name, dim)?;
         let w = read_matrix(tree, &format!("{GROUP}/W"), rows, rows)?;
+        let mu = read_friction(tree, GROUP, rows / dim)?;
         let (v_name, r_name) = (format!("{GROUP}/V"), format!("{GROUP}/R"));
         let equality = match (tree.has_group(&v_name)?, tree.has_group(&r_name)?) {
             (false, false) => None,
             (true, true) => {
-                let s = tree.all_reals(&format!("{GROUP}/vectors/s"))?;
+                let s_name = format!("{GROUP}/vectors/s");
+                let motions = tree.extent(&s_name)? as usize;
                 Some(LocalEquality {
-                    v: read_matrix(tree, &v_name, rows, s.len())?,
-                    r: read_matrix(tree, &r_name, s.len(), s.len())?,
-                    s,
+                    v: read_matrix(tree, &v_name, rows, motions)?,
+                    r: read_matrix(tree, &r_name, motions, motions)?,
+                    s: tree.reals(&s_name, motions)?,
                 })
             }
             (true, false) => return Err(tree.missing(&r_name)),
@@ -86,7 +86,7 @@ impl LocalProblem {
         let mut problem = Self {
             dim,
             w,
-            q,
+            q: tree.reals(&q_name, rows)?,
             mu,
             equality,
             info: read_info(tree, GROUP)?,

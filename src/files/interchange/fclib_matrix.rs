@@ -3,7 +3,8 @@
 //! A matrix is stored as compressed columns (nz = −1), compressed rows (nz = −2) or nz >= 0 triplets. Of a triplet, `i`
 //! holds the row and `p` the column in what Siconos and every other user of CSparse writes; FCLIB's header says the
 //! opposite. Files of either kind are read: rows are in `i` if that fits the matrix, otherwise in `p`. Square matrices fit
-//! both ways: of an unsymmetric W the rows are those of Siconos, which writes such files and reads them so.
+//! both ways: of an unsymmetric W the rows are those of Siconos, which writes such files and reads them so. A group with the
+//! attribute `symmetric_packed` (or a number of that name) holds one triangle of a symmetric matrix.
 //!
 //! Written are triplets with rows in `i`: Siconos writes them itself, refuses compressed rows of M and H, and copies
 //! `nz` = −1 indices of compressed columns (its `fclib_interface.c` of 2024).
@@ -13,6 +14,9 @@ use hdf5_pure::GroupBuilder;
 use super::error::{InterchangeError, check_size, unwritable};
 use super::hdf5::{Tree, put_integers, put_reals, subgroup};
 use super::sparse::SparseMatrix;
+
+/// Says that a matrix holds one triangle of a symmetric one.
+const PACKED: &str = "symmetric_packed";
 
 /// Reads a matrix of known size.
 pub(super) fn read_matrix(
@@ -31,9 +35,28 @@ pub(super) fn read_matrix(
     }
     let nz_name = format!("{name}/nz");
     let nz = tree.integer(&nz_name)?;
-    let p = tree.integers(&format!("{name}/p"))?;
-    let i = tree.integers(&format!("{name}/i"))?;
-    let x = tree.all_reals(&format!("{name}/x"))?;
+    let arrays = ["p", "i", "x"].map(|array| format!("{name}/{array}"));
+    let [p, i, x] = arrays.each_ref().map(|array| tree.extent(array));
+    let found = [p?, i?, x?];
+    // Some writers pad arrays to nzmax.
+    let longest = found.into_iter().max().unwrap_or(0);
+    let (pointers, most) = match nz {
+        -1 => (Some(cols as u64 + 1), found[2]),
+        -2 => (Some(rows as u64 + 1), found[2]),
+        0.. => (None, longest.max(nz as u64)),
+        _ => {
+            let allowed = "-1 (compressed columns), -2 (compressed rows), 0 and above (triplets)";
+            return Err(tree.value(&nz_name, 0, nz, allowed));
+        }
+    };
+    let expected = [pointers.unwrap_or(most), most, most];
+    for ((array, found), expected) in arrays.iter().zip(found).zip(expected) {
+        if found != expected && found != nz as u64 {
+            return Err(tree.length(array, found, expected.to_string()));
+        }
+    }
+    let [p, i] = [0, 1].map(|k| tree.integers(&arrays[k], found[k] as usize));
+    let (p, i, x) = (p?, i?, tree.reals(&arrays[2], found[2] as usize)?);
     let stored = Stored {
         tree,
         name,
@@ -41,18 +64,23 @@ pub(super) fn read_matrix(
         i: &i,
         x: &x,
     };
-    let triplets = match nz {
+    let mut triplets: Vec<_> = match nz {
         -1 => stored
             .compressed(cols, rows)?
             .map(|(j, i, v)| (i, j, v))
             .collect(),
         -2 => stored.compressed(rows, cols)?.collect(),
-        0.. => stored.triplets(nz, rows, cols)?,
-        _ => {
-            let allowed = "-1 (compressed columns), -2 (compressed rows), 0 and above (triplets)";
-            return Err(tree.value(&nz_name, 0, nz, allowed));
-        }
+        _ => stored.triplets(nz as usize, rows, cols)?,
     };
+    if rows == cols && is_packed(tree, name)? {
+        let both = [usize::lt, usize::gt].map(|side| triplets.iter().any(|t| side(&t.0, &t.1)));
+        if both == [true; 2] {
+            let what = "is `symmetric_packed` and has entries on both sides of its diagonal";
+            return Err(tree.refused(name, what));
+        }
+        let beside = triplets.clone().into_iter().filter(|t| t.0 != t.1);
+        triplets.extend(beside.map(|(i, j, value)| (j, i, value)));
+    }
     let matrix = SparseMatrix::from_triplets(rows, cols, triplets);
     let matrix = matrix.ok_or_else(|| stored.outside("i", 0, 0, rows))?;
     let overflow = matrix.entries().find(|e| !e.2.is_finite());
@@ -61,6 +89,17 @@ pub(super) fn read_matrix(
         return Err(tree.value(&format!("{name}/x"), 0, value, allowed));
     }
     Ok(matrix)
+}
+
+/// Whether a square matrix is marked, itself or with all others of the problem or the file, by an attribute or a number.
+fn is_packed(tree: &Tree, name: &str) -> Result<bool, InterchangeError> {
+    let number = format!("{name}/{PACKED}");
+    if tree.has(&number)? {
+        return Ok(tree.integer(&number)? != 0);
+    }
+    let problem = name.split('/').next().unwrap_or_default();
+    let marks = ["", problem, name];
+    Ok(marks.into_iter().any(|group| tree.flagged(group, PACKED)))
 }
 
 /// The arrays of a matrix as they lie in the file.
@@ -80,8 +119,7 @@ impl Stored<'_> {
         inner: usize,
     ) -> Result<impl Iterator<Item = (usize, usize, f64)> + '_, InterchangeError> {
         let (tree, name) = (self.tree, self.name);
-        self.check_len("p", self.p.len(), outer + 1, outer + 1)?;
-        let room = self.i.len().min(self.x.len()) as i64;
+        let room = self.x.len() as i64;
         let mut before = 0;
         for (index, &pointer) in self.p.iter().enumerate() {
             let fits = if index == 0 {
@@ -110,20 +148,10 @@ impl Stored<'_> {
     /// (row, column, value) of `nz` triplets.
     fn triplets(
         &self,
-        nz: i64,
+        nz: usize,
         rows: usize,
         cols: usize,
     ) -> Result<Vec<(usize, usize, f64)>, InterchangeError> {
-        let longest = self.i.len().max(self.p.len()).max(self.x.len());
-        let nz = usize::try_from(nz).unwrap_or(usize::MAX);
-        for (array, len) in [
-            ("p", self.p.len()),
-            ("i", self.i.len()),
-            ("x", self.x.len()),
-        ] {
-            // Some writers pad the arrays to nzmax.
-            self.check_len(array, len, nz, longest.max(nz))?;
-        }
         let (p, i, x) = (&self.p[..nz], &self.i[..nz], &self.x[..nz]);
         let stray = |indices: &[i64], size: usize| {
             indices.iter().position(|&k| !(0..size as i64).contains(&k))
@@ -136,24 +164,6 @@ impl Stored<'_> {
         };
         let triplet = |k: usize| (row[k] as usize, col[k] as usize, x[k]);
         Ok((0..nz).map(triplet).collect())
-    }
-
-    fn check_len(
-        &self,
-        array: &str,
-        found: usize,
-        least: usize,
-        most: usize,
-    ) -> Result<(), InterchangeError> {
-        if (least..=most).contains(&found) {
-            return Ok(());
-        }
-        let allowed = match least == most {
-            true => least.to_string(),
-            false => format!("at least {least}"),
-        };
-        let dataset = format!("{}/{array}", self.name);
-        Err(self.tree.length(&dataset, found as u64, allowed))
     }
 
     fn outside(&self, array: &str, index: usize, value: i64, size: usize) -> InterchangeError {

@@ -63,18 +63,13 @@ pub(super) fn read_friction(
     }
 }
 
-/// Number of contact points behind a vector with `dim` entries for each.
-pub(super) fn points(
-    tree: &Tree,
-    name: &str,
-    rows: usize,
-    dim: usize,
-) -> Result<usize, InterchangeError> {
-    if rows > 0 && rows.is_multiple_of(dim) {
-        return Ok(rows / dim);
+/// Entries of a vector with `dim` for each contact point.
+pub(super) fn rows(tree: &Tree, name: &str, dim: usize) -> Result<usize, InterchangeError> {
+    let rows = tree.extent(name)?;
+    if rows.is_multiple_of(dim as u64) {
+        return Ok(rows as usize);
     }
-    let allowed = format!("a positive multiple of spacedim = {dim}");
-    Err(tree.length(name, rows as u64, allowed))
+    Err(tree.length(name, rows, format!("a multiple of spacedim = {dim}")))
 }
 
 /// Info of a problem group, empty where there is none.
@@ -90,37 +85,41 @@ pub(super) fn read_info(tree: &Tree, group: &str) -> Result<Info, InterchangeErr
     })
 }
 
-fn read_solution(tree: &Tree, group: &str, len: Lengths) -> Result<Solution, InterchangeError> {
-    let part = |name: &str, len: usize| match len {
-        0 => Ok(Vec::new()),
-        _ => tree.reals(&format!("{group}/{name}"), len),
-    };
-    Ok(Solution {
-        v: part("v", len.v)?,
-        u: part("u", len.r)?,
-        r: part("r", len.r)?,
-        l: part("l", len.l)?,
-    })
+/// A solution, unless a part of it is missing.
+fn read_solution(
+    tree: &Tree,
+    group: &str,
+    len: Lengths,
+) -> Result<Option<Solution>, InterchangeError> {
+    let mut parts = Vec::new();
+    for (part, len) in [("v", len.v), ("u", len.r), ("r", len.r), ("l", len.l)] {
+        let name = format!("{group}/{part}");
+        match len {
+            0 => parts.push(Vec::new()),
+            _ if tree.has(&name)? => parts.push(tree.reals(&name, len)?),
+            _ => return Ok(None),
+        }
+    }
+    let [v, u, r, l] = parts.try_into().unwrap_or_default();
+    Ok(Some(Solution { v, u, r, l }))
 }
 
-/// Solution and guesses of a file.
+/// Solution and guesses of a file, which need not be there.
 pub(super) fn read_solutions(
     tree: &Tree,
     len: Lengths,
 ) -> Result<(Option<Solution>, Vec<Solution>), InterchangeError> {
-    let solution = match tree.has_group("solution")? {
-        true => Some(read_solution(tree, "solution", len)?),
-        false => None,
-    };
+    let solution = read_solution(tree, "solution", len)?;
     let mut guesses = Vec::new();
-    if tree.has_group("guesses")? {
-        let name = "guesses/number_of_guesses";
-        let count = tree.integer(name)?;
-        if count < 0 {
-            return Err(tree.value(name, 0, count, "0 and above"));
-        }
-        for number in 1..=count {
-            guesses.push(read_solution(tree, &format!("guesses/{number}"), len)?);
+    let name = "guesses/number_of_guesses";
+    let count = match tree.has(name)? {
+        true => tree.integer(name)?,
+        false => 0,
+    };
+    for number in 1..=count {
+        match read_solution(tree, &format!("guesses/{number}"), len)? {
+            Some(guess) => guesses.push(guess),
+            None => break,
         }
     }
     Ok((solution, guesses))
@@ -151,8 +150,7 @@ pub(super) struct Layout<'a> {
 impl Layout<'_> {
     fn check(&self) -> Result<(), InterchangeError> {
         let (dim, points) = (self.dim, self.points);
-        let empty = self.matrices.first().is_none_or(|matrix| matrix.2[0] == 0);
-        if !(dim == 2 || dim == 3) || points == 0 || empty {
+        if !(dim == 2 || dim == 3) {
             return Err(unwritable(format!("{points} points of {dim} components")));
         }
         for (name, values, len) in &self.vectors {

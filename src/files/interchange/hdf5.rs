@@ -1,7 +1,8 @@
 //! The HDF5 tree of a problem file: named datasets of integers, reals and text.
 //!
-//! Nothing is allocated for a dataset before its extent was compared with the size of the file, so a few wrong bytes
-//! cannot ask for all memory. Many names of one dataset cannot either: what all together ask for is bounded alike.
+//! Nothing is allocated for a dataset before its extent was compared with what the problem asks for, and with what files of
+//! its size may unpack to: a few wrong bytes, or many zeros in few, cannot ask for all memory. Many names of one dataset
+//! cannot either: what all together ask for is bounded.
 
 use std::cell::Cell;
 use std::fs::File as Disk;
@@ -19,8 +20,13 @@ use crate::files::visible::excerpt;
 /// Longest text shown of what the file says of itself: types of HDF5 nest by the thousand, and their parts have names.
 const SHOWN: usize = 200;
 
-/// Bytes that one byte of a deflate stream can stand for, rounded up.
-const DEFLATE_RATIO: u64 = 1100;
+/// Bytes that a file may unpack to: so many beside its size, and so many times its size. Datasets that were never written
+/// take no room and read as zeros, and zeros take a thousandth of theirs.
+const UNPACKED: u64 = 512 << 20;
+const RATIO: u64 = 32;
+
+/// Largest whole number up to which reals hold all.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// How an HDF5 file begins, at byte 0, 512, 1024, … behind a block of the user.
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -47,21 +53,19 @@ pub(super) fn is_signed(file: &mut Disk, len: u64) -> IoResult<bool> {
 pub(super) struct Tree {
     file: File,
     path: PathBuf,
-    size: u64,
-    /// Bytes of the file that the datasets read so far must take.
-    taken: Cell<u64>,
+    /// Bytes that the datasets not read so far may unpack to.
+    room: Cell<u64>,
 }
 
 impl Tree {
     /// Opens the bytes of a file; `path` is only for messages.
     pub fn open(path: &Path, bytes: Vec<u8>) -> Result<Self, InterchangeError> {
-        let size = bytes.len() as u64;
+        let room = Cell::new(UNPACKED + RATIO * bytes.len() as u64);
         let file = File::from_bytes(bytes).map_err(|e| unreadable(path, "", &e))?;
         Ok(Self {
             file,
             path: path.into(),
-            size,
-            taken: Cell::new(0),
+            room,
         })
     }
 
@@ -95,9 +99,14 @@ impl Tree {
         }
     }
 
+    /// Error about a part.
+    pub fn refused(&self, name: &str, what: &str) -> InterchangeError {
+        InterchangeError::refused(&self.path, format!("{name} {what}"))
+    }
+
     /// Error about a part that is not there.
     pub fn missing(&self, name: &str) -> InterchangeError {
-        InterchangeError::refused(&self.path, format!("{name} is missing"))
+        self.refused(name, "is missing, or a link, which is not followed")
     }
 
     /// Error about the length of a dataset.
@@ -122,97 +131,116 @@ impl Tree {
         }
     }
 
-    /// Number of elements, refused if the file is too small to hold them.
-    fn extent(&self, name: &str, dataset: &Dataset) -> Result<u64, InterchangeError> {
-        let unreadable = |e: Error| unreadable(&self.path, name, &e);
-        let shape = dataset.shape().map_err(unreadable)?;
-        let element = dataset.element_size().map_err(unreadable)?.max(1);
-        let ratio = if dataset.is_chunked() {
-            DEFLATE_RATIO
-        } else {
-            1
-        };
-        let largest = self.size.saturating_mul(ratio) / element;
-        let extent = (shape.iter()).try_fold(1u64, |n, &extent| n.checked_mul(extent));
-        let Some(extent) = extent.filter(|&extent| extent <= largest) else {
-            let allowed = format!("at most {largest}, which is what the file can hold");
-            return Err(self.length(name, extent.unwrap_or(u64::MAX), allowed));
-        };
-        self.taken.set(self.taken.get() + extent * element / ratio);
-        if self.taken.get() > self.size {
-            let what = format!("{name}: the datasets up to this one need more than the file holds");
-            return Err(InterchangeError::refused(&self.path, what));
-        }
-        Ok(extent)
+    /// Number of elements of a dataset. Nothing is read for it.
+    pub fn extent(&self, name: &str) -> Result<u64, InterchangeError> {
+        let dataset = self.dataset(name)?.ok_or_else(|| self.missing(name))?;
+        let shape = (dataset.shape()).map_err(|e| unreadable(&self.path, name, &e))?;
+        Ok(shape.into_iter().fold(1, u64::saturating_mul))
+    }
+
+    /// Whether a dataset is there.
+    pub fn has(&self, name: &str) -> Result<bool, InterchangeError> {
+        Ok(self.dataset(name)?.is_some())
     }
 
     /// One integer.
     pub fn integer(&self, name: &str) -> Result<i64, InterchangeError> {
-        let values = self.integers(name)?;
-        match values[..] {
-            [value] => Ok(value),
-            _ => Err(self.length(name, values.len() as u64, "1")),
+        Ok(self.integers(name, 1)?[0])
+    }
+
+    /// `len` integers of any width, or whole numbers among reals: MATLAB has no others.
+    pub fn integers(&self, name: &str, len: usize) -> Result<Vec<i64>, InterchangeError> {
+        let (dataset, found) = self.numbers(name, len)?;
+        if !matches!(found, DType::F32 | DType::F64) {
+            return self.all(name, len, dataset.read_i64(), |_| true, "integers");
         }
+        let whole = |v: &f64| v.fract() == 0.0 && v.abs() <= LARGEST_WHOLE;
+        let values = self.all(name, len, dataset.read_f64(), whole, "whole numbers")?;
+        Ok(values.into_iter().map(|v| v as i64).collect())
     }
 
-    /// Integers of any width.
-    pub fn integers(&self, name: &str) -> Result<Vec<i64>, InterchangeError> {
-        use DType::{I8, I16, I32, I64, U8, U16, U32, U64};
-        let (dataset, _) = self.typed(name, "integers", |t| {
-            matches!(t, I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64)
-        })?;
-        (dataset.read_i64()).map_err(|e| unreadable(&self.path, name, &e))
-    }
-
-    /// `len` finite reals.
+    /// `len` finite reals, or integers.
     pub fn reals(&self, name: &str, len: usize) -> Result<Vec<f64>, InterchangeError> {
-        let values = self.all_reals(name)?;
+        let read = self.numbers(name, len)?.0.read_f64();
+        self.all(name, len, read, |v| v.is_finite(), "finite numbers")
+    }
+
+    /// What was read, if it is as much as the shape says (of a spoilt layout there may be less), and all of it fits.
+    fn all<T: Copy + ToString>(
+        &self,
+        name: &str,
+        len: usize,
+        read: Result<Vec<T>, Error>,
+        fits: impl Fn(&T) -> bool,
+        allowed: &str,
+    ) -> Result<Vec<T>, InterchangeError> {
+        let values = read.map_err(|e| unreadable(&self.path, name, &e))?;
         if values.len() != len {
             return Err(self.length(name, values.len() as u64, len.to_string()));
         }
-        Ok(values)
-    }
-
-    /// Finite reals, as many as there are.
-    pub fn all_reals(&self, name: &str) -> Result<Vec<f64>, InterchangeError> {
-        let (dataset, _) = self.typed(name, "reals", |t| matches!(t, DType::F32 | DType::F64))?;
-        let values = (dataset.read_f64()).map_err(|e| unreadable(&self.path, name, &e))?;
-        match values.iter().position(|v| !v.is_finite()) {
+        match values.iter().position(|v| !fits(v)) {
             None => Ok(values),
-            Some(index) => Err(self.value(name, index, values[index], "finite numbers")),
+            Some(index) => Err(self.value(name, index, values[index], allowed)),
         }
     }
 
-    fn typed(
-        &self,
-        name: &str,
-        allowed: &'static str,
-        fits: impl Fn(&DType) -> bool,
-    ) -> Result<(Dataset, u64), InterchangeError> {
+    /// A dataset of `len` numbers, not read.
+    fn numbers(&self, name: &str, len: usize) -> Result<(Dataset, DType), InterchangeError> {
+        use DType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+        let extent = self.extent(name)?;
+        if extent != len as u64 {
+            return Err(self.length(name, extent, len.to_string()));
+        }
         let dataset = self.dataset(name)?.ok_or_else(|| self.missing(name))?;
-        let extent = self.extent(name, &dataset)?;
-        let found = (dataset.dtype()).map_err(|e| unreadable(&self.path, name, &e))?;
-        if fits(&found) {
-            return Ok((dataset, extent));
+        let unreadable = |e: Error| unreadable(&self.path, name, &e);
+        let found = dataset.dtype().map_err(unreadable)?;
+        if !matches!(
+            found,
+            F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64
+        ) {
+            let found = format!("{name} holds {}", excerpt(&found.to_string(), SHOWN));
+            return Err(InterchangeError::unexpected(&self.path, found, "numbers"));
         }
-        let found = format!("{name} holds {}", excerpt(&found.to_string(), SHOWN));
-        Err(InterchangeError::unexpected(&self.path, found, allowed))
+        self.charge(name, &dataset, extent)?;
+        Ok((dataset, found))
     }
 
-    /// Text, if it is there.
+    /// Takes what a dataset unpacks to off what all may.
+    fn charge(&self, name: &str, dataset: &Dataset, extent: u64) -> Result<(), InterchangeError> {
+        let element = (dataset.element_size()).map_err(|e| unreadable(&self.path, name, &e))?;
+        let left = self.room.get().checked_sub(extent.saturating_mul(element));
+        let what = "and the datasets before it unpack to more than";
+        let more = || format!("{what} {UNPACKED} bytes and {RATIO} times the file");
+        let left = left.ok_or_else(|| self.refused(name, &more()))?;
+        self.room.set(left);
+        Ok(())
+    }
+
+    /// Whether a group, the file itself for `""`, has an attribute that is 1; not where its attributes cannot be read.
+    pub fn flagged(&self, group: &str, attribute: &str) -> bool {
+        let group = match group {
+            "" => Ok(self.file.root()),
+            name => self.file.group(name),
+        };
+        let mut found = group.and_then(|group| group.attrs()).unwrap_or_default();
+        let value = found.remove(attribute).map(|value| value.to_string());
+        value.is_some_and(|value| value.trim_matches(['[', ']']) == "1")
+    }
+
+    /// One text, if it is there: what a file says of itself decides nothing.
     pub fn text(&self, name: &str) -> Result<Option<String>, InterchangeError> {
-        if self.dataset(name)?.is_none() {
+        let Some(dataset) = self.dataset(name)? else {
+            return Ok(None);
+        };
+        let unreadable = |e: Error| unreadable(&self.path, name, &e);
+        let found = dataset.dtype().map_err(unreadable)?;
+        // Texts of variable length may all be the same bytes of the file, which the extent does not bound.
+        let one = self.extent(name)? == 1;
+        if !one || !matches!(found, DType::String | DType::VariableLengthString) {
             return Ok(None);
         }
-        let (dataset, extent) = self.typed(name, "text", |t| {
-            matches!(t, DType::String | DType::VariableLengthString)
-        })?;
-        // Texts of variable length may all be the same bytes of the file, which the extent does not bound.
-        if extent > 1 {
-            return Err(self.length(name, extent, "1"));
-        }
-        let texts = (dataset.read_string()).map_err(|e| unreadable(&self.path, name, &e))?;
-        Ok(texts.into_iter().next())
+        self.charge(name, &dataset, 1)?;
+        Ok(dataset.read_string().map_err(unreadable)?.pop())
     }
 }
 
@@ -305,16 +333,17 @@ pub(super) fn put_text(group: &mut GroupBuilder, name: &str, text: &str) {
 mod tests {
     use super::*;
 
-    /// Goal: memory is bounded by the size of the file also where many names stand for the same bytes of it.
+    /// Goal: memory is bounded also where many names stand for the same bytes of the file.
     #[test]
-    fn one_dataset_under_many_names_is_read_once() {
+    fn one_dataset_under_many_names_is_not_read_without_end() {
         let mut file = Writer::new();
         file.group("g", |group| put_reals(group, "x", &[0.5; 10_000]));
         let tree = Tree::open(Path::new("a.hdf5"), file.finish().unwrap()).unwrap();
-        assert_eq!(tree.all_reals("g/x").unwrap().len(), 10_000);
-        let error = tree.all_reals("g/x").unwrap_err().to_string();
+        tree.room.set(100_000);
+        assert_eq!(tree.reals("g/x", 10_000).unwrap().len(), 10_000);
+        let error = tree.reals("g/x", 10_000).unwrap_err().to_string();
         assert!(
-            error.contains("g/x") && error.contains("more than the file holds"),
+            error.contains("g/x") && error.contains("unpack to more than"),
             "{error}"
         );
     }

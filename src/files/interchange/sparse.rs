@@ -93,6 +93,16 @@ impl SparseMatrix {
         Self::from_dense(rows, columns.len(), |i, j| columns[j][i])
     }
 
+    /// Whether it has entries on one side of its diagonal, and none on the other: what is left of a symmetric matrix whose
+    /// writer stored a half.
+    pub fn is_half(&self) -> bool {
+        let beside = |sign: fn(&usize, &usize) -> bool| {
+            self.entries()
+                .any(|(i, j, value)| value != 0.0 && sign(&i, &j))
+        };
+        beside(usize::lt) != beside(usize::gt)
+    }
+
     /// The transpose.
     pub fn transposed(&self) -> Self {
         let mirrored = self.entries().map(|(i, j, value)| (j, i, value));

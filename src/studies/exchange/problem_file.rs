@@ -5,8 +5,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 use stickslip_methods::{
-    Asymmetry, ContactState, ContactSystem, Increment, Load, MethodError, Residuals, SquareMatrix,
-    Tier, residuals,
+    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
 };
 
 use crate::case::label::visible;
@@ -19,7 +18,7 @@ use crate::run::record::{Results, RunKey};
 use crate::run::run_case::Progress;
 use crate::run::several::mark_several;
 use crate::run::verdict::Accuracy;
-use crate::studies::exchange::{ROUNDING, System, global_system, local_system};
+use crate::studies::exchange::{System, global_system, local_system};
 
 /// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
 /// bound an empty V would take memory that grows with the square of the file.
@@ -184,7 +183,7 @@ impl ProblemFile {
             Problem::Global(problem) => &problem.m,
         };
         let asymmetry = operator.as_square().map_err(failed)?.asymmetry();
-        let stored = (operator.len(), asymmetry.relative);
+        let stored = (operator.len(), asymmetry);
         let (kind, system) = match &problem {
             Problem::Local(problem) => ("local", local_system(problem)),
             Problem::Global(problem) => ("global", global_system(problem)),
@@ -353,7 +352,16 @@ pub fn file_name(path: &Path) -> String {
 }
 
 fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeError> {
-    let unsupported = |what: &str| InterchangeError::refused(path, what);
+    let unsupported = |what: &str| Err(InterchangeError::refused(path, what));
+    let (name, operator) = match problem {
+        Problem::Local(problem) => ("W", &problem.w),
+        Problem::Global(problem) => ("M", &problem.m),
+    };
+    if operator.is_half() {
+        return unsupported(&format!(
+            "{name} holds one triangle: store it in full, or say `symmetric_packed = 1`"
+        ));
+    }
     match problem {
         Problem::Local(problem) => {
             let Some(equality) = &problem.equality else {
@@ -361,41 +369,23 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
             };
             let (motions, rows) = (equality.v.cols(), problem.q.len());
             if motions > MOST_MOTIONS.min(rows) {
-                return Err(unsupported(&format!(
+                return unsupported(&format!(
                     "V has {motions} columns: with {rows} rows at most {} rigid motions are solved",
                     MOST_MOTIONS.min(rows)
-                )));
+                ));
             }
             if equality.r.entries().any(|e| e.2 != 0.0) {
-                return Err(unsupported(
+                return unsupported(
                     "R is not zero: only rigid motions (Vᵀ r + s = 0) are solved, not other unknowns",
-                ));
+                );
             }
             Ok(())
         }
-        Problem::Global(problem) if problem.equality.is_some() => Err(unsupported(
-            "G is present: eliminate the equality constraints Gᵀ v + b = 0 first",
-        )),
-        Problem::Global(problem) => match problem.m.as_square() {
-            Ok(m) if m.asymmetry().relative > ROUNDING => Err(unsupported(&unsymmetric(&m))),
-            _ => Ok(()),
-        },
+        Problem::Global(problem) if problem.equality.is_some() => {
+            unsupported("G is present: eliminate the equality constraints Gᵀ v + b = 0 first")
+        }
+        Problem::Global(_) => Ok(()),
     }
-}
-
-/// That M is not symmetric, by how much and where, and what to do about it.
-fn unsymmetric(m: &SquareMatrix) -> String {
-    let Asymmetry {
-        relative,
-        at: (i, j),
-    } = m.asymmetry();
-    format!(
-        "M is unsymmetric by {relative:.1e} relative to its largest entry (row {i}, column {j}: {:e}, mirror image {:e}); \
-         global files are solved by a Cholesky factor of M: condense it to a local file, W = Hᵀ M⁻¹ H and q = Hᵀ M⁻¹ f + w, \
-         whose W may be unsymmetric",
-        m.get(i, j),
-        m.get(j, i)
-    )
 }
 
 #[cfg(test)]

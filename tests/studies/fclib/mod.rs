@@ -134,46 +134,35 @@ fn the_newest_format_is_read_or_refused_with_the_way_out() {
 
 #[test]
 fn all_storages_give_the_same_matrix() {
-    for raw in [Raw::triplets(), Raw::columns()] {
+    let doubles = |name, values: &[i32]| {
+        let values: Vec<f64> = values.iter().map(|&v| v.into()).collect();
+        Raw::columns().without(name).reals(name, &values)
+    };
+    let lower = Raw::new(
+        -1,
+        &[0, 3, 4, 6, 7],
+        &[0, 1, 2, 1, 2, 3, 3],
+        &[4.0, 1.0, 0.5, 3.0, 5.0, -1.0, 2.0],
+    );
+    for raw in [
+        Raw::triplets(),
+        Raw::columns(),
+        doubles("W/p", &[0, 3, 5, 8, 10]),
+        doubles("spacedim", &[2]),
+        lower.integers("W/symmetric_packed", &[1]),
+    ] {
         assert_eq!(local(raw.read().unwrap()), two_points());
     }
     // Rows in p, as FCLIB's header has it: V is 4 × 2, so (row 3, column 1) fits only one way.
     let v = |p: &[i32], i: &[i32]| {
-        let raw = Raw::triplets().integers("spacedim", &[2]);
-        let mut file = FileBuilder::new();
-        let mut root = file.create_group("fclib_local");
-        let matrix = |name: &str, m: i32, n: i32, p: &[i32], i: &[i32], x: &[f64]| {
-            let mut group = FileBuilder::new().create_group(name);
-            for (name, value) in [("m", m), ("n", n), ("nz", x.len() as i32), ("nzmax", 0)] {
-                group.create_dataset(name).with_i32_data(&[value]);
-            }
-            group.create_dataset("p").with_i32_data(p);
-            group.create_dataset("i").with_i32_data(i);
-            group.create_dataset("x").with_f64_data(x);
-            group.finish()
-        };
-        let stored = |name: &str| &raw.integers.iter().find(|e| e.0 == name).unwrap().1;
-        root.add_group(matrix(
-            "W",
-            4,
-            4,
-            stored("W/p"),
-            stored("W/i"),
-            &raw.reals[0].1,
-        ));
-        root.add_group(matrix("V", 4, 2, p, i, &[1.0, -2.0]));
-        root.add_group(matrix("R", 2, 2, &[0], &[0], &[0.0]));
-        root.create_dataset("spacedim").with_i32_data(&[2]);
-        let mut vectors = root.create_group("vectors");
-        vectors.create_dataset("q").with_f64_data(&[0.0; 4]);
-        vectors.create_dataset("mu").with_f64_data(&[0.0; 2]);
-        vectors.create_dataset("s").with_f64_data(&[0.0; 2]);
-        root.add_group(vectors.finish());
-        file.add_group(root.finish());
-        local(read_bytes(file.finish().unwrap()).unwrap())
-            .equality
-            .unwrap()
-            .v
+        let raw = Raw::triplets().integers("V/p", p).integers("V/i", i);
+        let raw = raw.reals("V/x", &[1.0, -2.0]).reals("R/x", &[0.0]);
+        let sizes = [("V/m", 4), ("V/n", 2), ("V/nz", 2), ("R/m", 2), ("R/n", 2)];
+        let zero = [("R/nz", 1), ("R/p", 0), ("R/i", 0)];
+        let all = sizes.iter().chain(&zero);
+        let raw = all.fold(raw, |raw, (name, value)| raw.integers(name, &[*value]));
+        let read = raw.reals("vectors/s", &[0.0; 2]).read();
+        local(read.unwrap()).equality.unwrap().v
     };
     let expected = SparseMatrix::from_triplets(4, 2, [(3, 1, 1.0), (0, 1, -2.0)]);
     assert_eq!(Some(v(&[1, 1], &[3, 0])), expected);
@@ -196,8 +185,8 @@ fn every_defect_is_named() {
         (triplets().reals("vectors/q", &[0.0, nan, 0.0, 0.0]), ["vectors/q[1] = NaN", "finite"]),
         (triplets().reals("vectors/q", &[0.0, f64::INFINITY, 0.0, 0.0]), ["vectors/q[1] = inf", "finite"]),
         (triplets().without("vectors/q"), ["fclib_local/vectors/q is missing", ""]),
-        (triplets() .without("vectors/q") .integers("vectors/q", &[0; 4]), ["vectors/q holds i32", "expected reals"]),
-        (triplets().without("W/p").reals("W/p", &[0.0; 10]), ["W/p holds f64", "expected integers"]),
+        (triplets().without("W/p").reals("W/p", &[0.5; 10]), ["W/p[0] = 0.5", "whole numbers"]),
+        (triplets().integers("W/symmetric_packed", &[1]), ["fclib_local/W is `symmetric_packed`", "both sides"]),
         (triplets().integers("W/m", &[6]), ["W/m[0] = 6", "4, as the vectors say"]),
         (triplets().integers("W/n", &[-4]), ["W/n[0] = -4", "4"]),
         (triplets().integers("W/nz", &[-3]), ["W/nz[0] = -3", "compressed rows"]),

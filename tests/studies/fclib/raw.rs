@@ -66,15 +66,19 @@ impl Raw {
     pub fn read(&self) -> Result<Problem, String> {
         let mut file = FileBuilder::new();
         let mut root = file.create_group("fclib_local");
-        for group in ["W", "vectors"] {
+        for group in ["W", "V", "R", "vectors"] {
+            let own = |name: &'static str| name.strip_prefix(group)?.strip_prefix('/');
+            if !self.reals.iter().any(|e| own(e.0).is_some()) {
+                continue;
+            }
             let mut builder = root.create_group(group);
             for (name, values) in &self.integers {
-                if let Some((_, name)) = name.split_once('/').filter(|n| n.0 == group) {
+                if let Some(name) = own(name) {
                     builder.create_dataset(name).with_i32_data(values);
                 }
             }
             for (name, values) in &self.reals {
-                if let Some((_, name)) = name.split_once('/').filter(|n| n.0 == group) {
+                if let Some(name) = own(name) {
                     builder.create_dataset(name).with_f64_data(values);
                 }
             }
