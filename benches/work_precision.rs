@@ -23,7 +23,7 @@ use common::{
 use stickslip::report::page;
 use stickslip::report::sweep;
 use stickslip::report::timings::{self, BenchmarkName, Expected, Ignored, harvest, last_built};
-use stickslip::report::{Bundle, Provenance, add_provenance, prepare_output};
+use stickslip::report::{Bundle, Claim, Provenance, add_provenance, plan};
 use stickslip::run::choice::Choice;
 use stickslip::run::run_case::Progress;
 use stickslip::run::verdict::Verdict;
@@ -48,13 +48,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let out = scratch.path().join("results/bench");
         (&PROBLEMS[4..], scratch.path().join("criterion"), out)
     };
-    let _claim = prepare_output(&out)?;
+    let claim = Claim::new(&out, plan("bench"), false)?;
 
     let mut bundle = Bundle::new();
     add_timings(&mut bundle, &home, problems)?;
     let provenance = Provenance::collect(1).with_option("arguments", arguments.join(" "));
     add_provenance(&mut bundle, &provenance)?;
-    bundle.commit(&out)?;
+    claim.commit(&bundle)?;
     for path in bundle.paths() {
         println!("wrote {}", out.join(path).display());
     }
@@ -127,8 +127,9 @@ fn filtered(arguments: &[String]) -> bool {
 
 /// Measures a sweep and writes its report.
 fn study(sweep: &str, records: &Path, out: &Path) -> Result<(), Box<dyn Error>> {
+    let claim = Claim::new(out, plan("study"), false)?;
     let plan = Plan::parse(Path::new("benches/study.toml"), sweep)?;
-    let store = Store::create(records, plan.contents())?;
+    let store = Store::create(records, plan.contents(), false)?;
     let how = Conduct {
         program: Path::new(env!("CARGO_BIN_EXE_stickslip")),
         jobs: 1,
@@ -151,7 +152,7 @@ fn study(sweep: &str, records: &Path, out: &Path) -> Result<(), Box<dyn Error>> 
     println!("study: measured in {:.0} s", clock.elapsed().as_secs_f64());
     let kept = store.records()?;
     let provenance = Provenance::collect(1).with_option("sweep", plan.title.clone());
-    sweep::bundle(&kept, plan.tasks.len(), &provenance)?.commit_all(out, "figures")?;
+    claim.commit(&sweep::bundle(&kept, plan.tasks.len(), &provenance)?)?;
     println!("wrote {}", out.display());
     Ok(())
 }

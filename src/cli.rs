@@ -19,12 +19,14 @@ mod stress;
 mod sweep;
 
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use stickslip_methods::Registry;
 
 pub use self::error::CliError;
 pub use self::output::warn;
+use crate::report::Plan;
 use crate::run::registry::install;
 
 /// Compares methods of enforcing frictional contact on crack faces, on one XFEM discretisation.
@@ -36,7 +38,7 @@ use crate::run::registry::install;
 )]
 pub struct Cli {
     #[command(subcommand)]
-    verb: Option<Verb>,
+    verb: Verb,
 }
 
 #[derive(Debug, Subcommand)]
@@ -86,7 +88,21 @@ pub fn program(methods: Registry) -> ExitCode {
         ));
         return ExitCode::from(2);
     }
-    match main(Cli::parse()) {
+    let mut command = Cli::command();
+    command.build();
+    let arguments = std::env::args_os();
+    let main_job = (arguments.len() <= 1).then(|| "paper".into());
+    let matches = command.clone().get_matches_from(arguments.chain(main_job));
+    let plan = arguments::plan(&command, &matches);
+    let ended = match Cli::from_arg_matches(&matches) {
+        Ok(cli) => main(cli, plan),
+        Err(error) => error.exit(),
+    };
+    if ended.is_ok() && output::LOST.load(Ordering::SeqCst) {
+        warn(format_args!("error: standard output cannot be written"));
+        return ExitCode::from(2);
+    }
+    match ended {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
@@ -97,19 +113,19 @@ pub fn program(methods: Registry) -> ExitCode {
 }
 
 /// Runs the command; true if everything was as expected (exit code 0), false otherwise (exit code 1).
-pub fn main(cli: Cli) -> Result<bool, CliError> {
-    match cli.verb.unwrap_or(Verb::Paper(paper::Arguments::default())) {
-        Verb::Paper(arguments) => paper::run(arguments),
-        Verb::Run(arguments) => run::run(arguments),
-        Verb::Stress(arguments) => stress::run(arguments),
-        Verb::Converge(arguments) => converge::run(arguments),
-        Verb::Spaces(arguments) => spaces::run(arguments),
+pub fn main(cli: Cli, plan: Plan) -> Result<bool, CliError> {
+    match cli.verb {
+        Verb::Paper(arguments) => paper::run(arguments, plan),
+        Verb::Run(arguments) => run::run(arguments, plan),
+        Verb::Stress(arguments) => stress::run(arguments, plan),
+        Verb::Converge(arguments) => converge::run(arguments, plan),
+        Verb::Spaces(arguments) => spaces::run(arguments, plan),
         Verb::Study(arguments) => sweep::run(arguments),
         Verb::Merge(arguments) => sweep::run_merge(arguments),
         Verb::Work(arguments) => sweep::run_work(&arguments),
         Verb::Page(arguments) => page::run(arguments),
         Verb::Export(arguments) => exchange::run_export(arguments),
-        Verb::Solve(arguments) => exchange::run_solve(arguments),
+        Verb::Solve(arguments) => exchange::run_solve(arguments, plan),
         Verb::Judge(arguments) => exchange::run_judge(arguments),
         Verb::Conform(arguments) => conform::run(&arguments),
         Verb::List => show::run_list(),

@@ -1,7 +1,9 @@
 //! Files: contact problems that other programs read and write, and folders written as a whole.
 
 pub mod bundle;
+pub mod claim;
 pub mod digest;
 pub mod interchange;
 pub(crate) mod regular;
 pub(crate) mod visible;
+pub mod written;

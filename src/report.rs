@@ -23,7 +23,9 @@ pub mod tables;
 pub mod timings;
 pub mod vtu;
 
-pub use crate::files::bundle::{Bundle, Claim, prepare_output, prepare_shared_output};
+pub use crate::files::bundle::Bundle;
+pub use crate::files::claim::Claim;
+pub use crate::files::written::{Plan, plan};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
 

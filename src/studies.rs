@@ -4,7 +4,7 @@ pub mod atlas;
 pub mod conformance;
 pub mod convergence;
 pub mod exchange;
-mod memory;
+pub mod memory;
 pub mod paper;
 pub mod robustness;
 pub mod spaces;

@@ -1,16 +1,24 @@
 //! What several verbs ask of their arguments: cases and methods by name, no two of one name.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use super::error::CliError;
+use crate::case::label::visible;
 use crate::case::{self, Case, shipped};
+use crate::files::regular;
+use crate::files::written::COMMAND;
 use crate::report::names::file_name;
+use crate::report::table::Description;
+use crate::report::tables::catalogue;
+use crate::report::{Claim, Plan, page};
 use crate::run::choice::{Choice, ChoiceError};
 use crate::run::outside::SECONDS;
 use crate::run::provenance::Provenance;
 use crate::run::registry::methods;
 use crate::run::run_case::Settings;
+use crate::studies::sweep::cell::digest_of_bytes;
 
 /// A case by file, or by the name of a shipped one.
 pub fn find_case(name: &str) -> Result<Case, CliError> {
@@ -31,6 +39,88 @@ pub fn find_case(name: &str) -> Result<Case, CliError> {
         }
     }
     Ok(case::read(name)?)
+}
+
+/// Cases as [`find_case`] finds them, no two of one name.
+pub fn find_cases(names: &[String]) -> Result<Vec<Case>, CliError> {
+    let cases = names.iter().map(|name| find_case(name));
+    let cases = cases.collect::<Result<Vec<_>, _>>()?;
+    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
+    Ok(cases)
+}
+
+/// Where a command writes.
+#[derive(Debug, clap::Args)]
+pub struct Output {
+    /// Folder for the results; by default results/NAME, of the one case or sweep, else of the verb
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Replace results of another plan, and those that were changed since; files that this program did not write stay
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Sub-folders of results, and a name in each.
+const BELOW: [&str; 5] = ["figures/a", "fields/a", "cases/a", "cells/a", "solutions/a"];
+
+impl Output {
+    /// The folder.
+    pub fn folder(&self, name: &str) -> PathBuf {
+        let usual = || Path::new("results").join(name);
+        self.out.clone().unwrap_or_else(usual)
+    }
+
+    /// The right to write there. Whatever has the name of a table or page and is not this program's is in the way, so that
+    /// nobody takes it for one of the results.
+    pub fn claim(&self, name: &str, plan: Plan) -> Result<Claim, CliError> {
+        let claim = Claim::new(&self.folder(name), plan, self.force)?;
+        let ends = ["csv", "md", "tex"];
+        let forms = |(_, table): (_, Description)| ends.map(|end| format!("{}.{end}", table.name));
+        let tables: Vec<String> = catalogue().into_iter().flat_map(forms).collect();
+        let others = ["provenance.toml", page::FILE].into_iter().chain(BELOW);
+        claim.expect(tables.iter().map(String::as_str).chain(others))?;
+        Ok(claim)
+    }
+}
+
+/// The name of the only one, else that of the verb.
+pub fn only<'a>(mut names: impl Iterator<Item = &'a str>, verb: &'a str) -> &'a str {
+    match (names.next(), names.next()) {
+        (Some(name), None) => name,
+        _ => verb,
+    }
+}
+
+/// Options that say where and how something is done, not what.
+const HOW: [&str; 4] = ["out", "force", "jobs", "repeats"];
+
+/// Largest file whose contents stand in a plan [bytes]: of larger ones there is the name alone.
+const DIGESTED: u64 = 64 << 20;
+
+/// What a command line asks for, by the names of its options, those by default too; files with digests of their contents.
+pub fn plan(command: &clap::Command, matches: &clap::ArgMatches) -> Plan {
+    let below = matches.subcommand();
+    if let Some((own, matches)) = below.and_then(|(n, m)| Some((command.find_subcommand(n)?, m))) {
+        let mut plan = plan(own, matches);
+        let verb = plan.entry(COMMAND.into()).or_default();
+        *verb = format!("{} {verb}", own.get_name()).trim_end().to_owned();
+        return plan;
+    }
+    let told = |value: &OsStr| match regular::read(value.as_ref(), DIGESTED) {
+        Ok(bytes) => {
+            let name = Path::new(value).file_name().unwrap_or_default();
+            format!("{} {}", name.display(), digest_of_bytes(&bytes))
+        }
+        Err(_) => value.display().to_string(),
+    };
+    let ids = command.get_arguments().map(|own| own.get_id().as_str());
+    let known = ids.filter(|id| !HOW.contains(id));
+    let given = known.filter_map(|id| Some((id, matches.try_get_raw(id).ok()??)));
+    let told = given.map(|(id, values)| {
+        let values: Vec<String> = values.map(told).collect();
+        (id.to_owned(), visible(&values.join(", ")))
+    });
+    told.collect()
 }
 
 /// A limit on programs from outside.

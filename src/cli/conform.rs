@@ -4,8 +4,8 @@ use stickslip_methods::{MethodError, Tier};
 
 use super::arguments::{ProgramLimit, methods_or_all};
 use super::error::CliError;
-use super::output::say;
-use crate::report::table::{Column, Order, Row, columns, readable};
+use super::output::{say, show};
+use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::conformance::{Attempt, Mark, attempt, exercises};
 
 /// Arguments of `conform`.
@@ -31,7 +31,7 @@ pub fn run(arguments: &Arguments) -> Result<bool, CliError> {
             .map(|exercise| attempt(exercise, choice, arguments.tier.tolerance()))
             .collect::<Result<Vec<_>, MethodError>>()?;
         let note = format!(" of {}", choice.label);
-        say(format_args!("{}", readable(&attempts, &note).terminal()));
+        show(&attempts, &note);
         let count = |mark| attempts.iter().filter(|own| own.mark == mark).count();
         let [passed, declined, failed] = [Mark::Passed, Mark::Declined, Mark::Failed].map(count);
         say(format_args!(

@@ -1,14 +1,11 @@
 //! The verb `converge`: errors and observed orders on sequences of meshes.
 
-use std::path::PathBuf;
-
-use super::arguments::{find_case, refuse_twins};
+use super::arguments::{Output, find_cases, only};
 use super::error::CliError;
-use super::output::{say, warn};
+use super::output::{say, show, warn};
 use super::progress::Bar;
 use crate::case::{ContactSpace, Tip};
-use crate::report::table::readable;
-use crate::report::{Provenance, prepare_output};
+use crate::report::{Plan, Provenance};
 use crate::run::choice::Choice;
 use crate::studies::convergence::{self, ConvergencePlan, orders};
 
@@ -30,9 +27,8 @@ pub struct Arguments {
     /// Exact method with options, NAME or NAME:key=value,key=value
     #[arg(long, short, default_value = "hybrid")]
     method: String,
-    /// Folder for the results
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
 }
 
 fn space(text: &str) -> Result<ContactSpace, String> {
@@ -56,13 +52,8 @@ fn given<T>(values: Vec<T>) -> Option<Vec<T>> {
 }
 
 /// Runs the study; false if a mesh was not solved.
-pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let cases = arguments
-        .cases
-        .iter()
-        .map(|name| find_case(name))
-        .collect::<Result<Vec<_>, _>>()?;
-    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
+pub fn run(arguments: Arguments, whole: Plan) -> Result<bool, CliError> {
+    let cases = find_cases(&arguments.cases)?;
     let choice = Choice::parse(&arguments.method)?;
     if !choice.exact() {
         return Err(CliError::Inexact {
@@ -78,7 +69,8 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         tips: given(arguments.tips),
         choice,
     };
-    let _claim = prepare_output(&arguments.out)?;
+    let name = only(cases.iter().map(|case| case.name.as_str()), "converge");
+    let claim = arguments.output.claim(name, whole)?;
     let bar = Bar::new();
     let mut samples = Vec::new();
     for case in &cases {
@@ -95,15 +87,15 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("method", plan.choice.label.clone());
     let bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
-    bundle.commit(&arguments.out)?;
-    say(format_args!("{}", readable(&orders, "").terminal()));
+    claim.commit(&bundle)?;
+    show(&orders, "");
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());
     say(format_args!(
         "{} runs: {} solved, {} not\nResults: {}",
         samples.len(),
         samples.len() - failed().count(),
         failed().count(),
-        arguments.out.display()
+        claim.dir().display()
     ));
     for sample in failed() {
         warn(format_args!(

@@ -5,15 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 use stickslip_methods::{Residuals, Tier};
 
-use super::arguments::{ProgramLimit, find_case, methods_or_all, provenance_with, refuse_twins};
+use super::arguments::{
+    Output, ProgramLimit, find_case, methods_or_all, only, provenance_with, refuse_twins,
+};
 use super::error::CliError;
-use super::output::say;
+use super::output::{say, show};
 use super::progress::Bar;
 use crate::files::interchange::matrix_market;
 use crate::report::names::{self, problem_name};
 use crate::report::standard;
-use crate::report::table::{self, Column, Order, Row, columns, readable};
-use crate::report::{Bundle, prepare_output};
+use crate::report::table::{self, Column, Order, Row, columns};
+use crate::report::{Bundle, Claim, Plan};
 use crate::run::choice::Choice;
 use crate::run::record::Results;
 use crate::run::run_case::{Fields, Progress, Settings};
@@ -59,9 +61,8 @@ pub struct SolveArgs {
     /// Solutions per method and problem, fewer where they take more than 5 s; times are those of the fastest
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     repeats: u16,
-    /// Folder for the results
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     #[command(flatten)]
     limit: ProgramLimit,
 }
@@ -87,7 +88,8 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
         refine: args.refine.map(usize::from),
         choice: Choice::parse(&args.method)?,
     };
-    let _claim = prepare_output(&args.out)?;
+    // Names tell the increments of cases apart: files of several stand beside each other.
+    let claim = Claim::new(&args.out, Plan::new(), false)?;
     let exported = export(&case, &request)?;
     let (problem, increment) = (problem_name(&exported.key), exported.key.increment);
     let name = format!("{problem}.increment-{increment}");
@@ -95,7 +97,7 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
     for (end, contents) in exported.files {
         bundle.add(format!("{name}.{end}"), contents)?;
     }
-    bundle.commit(&args.out)?;
+    claim.commit(&bundle)?;
     say(format_args!("{}", args.out.join(name).display()));
     for path in bundle.paths() {
         say(format_args!("  {path}"));
@@ -103,7 +105,7 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
     Ok(true)
 }
 
-pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
+pub fn run_solve(args: SolveArgs, plan: Plan) -> Result<bool, CliError> {
     let chosen = methods_or_all(&args.method, &args.limit)?;
     let entries = entries(&args.files)?;
     refuse_twins("problem", entries.iter().map(|entry| entry.name.as_str()))?;
@@ -111,7 +113,8 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     for entry in entries.iter().filter(|entry| !entry.found) {
         ProblemFile::read(&entry.path)?;
     }
-    let _claim = prepare_output(&args.out)?;
+    let name = only(entries.iter().map(|entry| entry.name.as_str()), "solve");
+    let claim = args.output.claim(name, plan)?;
     let bar = Bar::new();
     bar.plan(entries.len() * chosen.len());
     let settings = Settings {
@@ -164,20 +167,16 @@ pub fn run_solve(args: SolveArgs) -> Result<bool, CliError> {
     table::add(&mut bundle, &problems, "")?;
     table::add(&mut bundle, &families, "")?;
     bundle.append(solutions)?;
-    bundle.commit(&args.out)?;
-    say(format_args!("{}", readable(&problems, "").terminal()));
-    say(format_args!(
-        "{}",
-        readable(
-            &standard::last_runs(&results.runs),
-            ": the last increment of each"
-        )
-        .terminal()
-    ));
+    claim.commit(&bundle)?;
+    show(&problems, "");
+    show(
+        &standard::last_runs(&results.runs),
+        ": the last increment of each",
+    );
     say(format_args!(
         "{}\nResults: {}",
         standard::summary(&results),
-        args.out.display()
+        claim.dir().display()
     ));
     Ok(results.as_expected())
 }
@@ -193,7 +192,7 @@ pub fn run_judge(args: JudgeArgs) -> Result<bool, CliError> {
         rows.push(JudgedRow { name, found });
     }
     let note = format!(" of {}", problem.name);
-    say(format_args!("{}", readable(&rows, &note).terminal()));
+    show(&rows, &note);
     Ok(all_hold)
 }
 

@@ -1,14 +1,27 @@
 //! Output that may close early: `stickslip list | head` is no error.
 
 use std::fmt::Arguments;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::case::label::visible;
+use crate::report::table::{Row, readable};
 
-/// Prints a line. A reader that has left has seen what it wanted; results are in files, not here.
+/// Whether some line could not be printed.
+pub static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Prints a line. A reader that has left has seen what it wanted; a disk that is full has not.
 pub fn say(text: Arguments<'_>) {
     let mut out = std::io::stdout().lock();
-    let _gone = writeln!(out, "{}", lines(text)).and_then(|()| out.flush());
+    let said = writeln!(out, "{}", lines(text)).and_then(|()| out.flush());
+    if said.is_err_and(|e| e.kind() != ErrorKind::BrokenPipe) {
+        LOST.store(true, Ordering::SeqCst);
+    }
+}
+
+/// Prints a table.
+pub fn show<R: Row>(rows: &[R], note: &str) {
+    say(format_args!("{}", readable(rows, note).terminal()));
 }
 
 /// Prints a line on standard error. Where nobody reads it the exit code still tells.

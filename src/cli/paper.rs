@@ -1,12 +1,10 @@
 //! `stickslip paper`: the main job.
 
-use std::path::PathBuf;
-
-use super::arguments::provenance;
+use super::arguments::{Output, provenance};
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::{page, paper as report, prepare_output};
+use crate::report::{Plan, page, paper as report};
 use crate::run::record::Results;
 use crate::run::run_case::{Fields, Settings};
 use crate::studies::paper::{self, Extent};
@@ -14,9 +12,8 @@ use crate::studies::paper::{self, Extent};
 /// Arguments of `stickslip paper`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Folder for the report
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     /// Runs at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
@@ -25,19 +22,10 @@ pub struct Arguments {
     full: bool,
 }
 
-impl Default for Arguments {
-    fn default() -> Self {
-        Self {
-            out: "results".into(),
-            jobs: 1,
-            full: false,
-        }
-    }
-}
-
 /// Prints the paper's tables, runs everything, writes the report and prints what it found.
-pub fn run(Arguments { out, jobs, full }: Arguments) -> Result<bool, CliError> {
-    let _claim = prepare_output(&out)?;
+pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
+    let Arguments { output, jobs, full } = arguments;
+    let claim = output.claim("paper", plan)?;
     let settings = Settings {
         tier: None,
         jobs: usize::from(jobs),
@@ -55,10 +43,14 @@ pub fn run(Arguments { out, jobs, full }: Arguments) -> Result<bool, CliError> {
     let bar = Bar::new();
     let paper = paper::run(extent, settings, &bar)?;
     bar.finish();
-    report::bundle(&paper, &provenance(settings))?.commit(&out)?;
-    page::write(&out)?;
+    let mut bundle = report::bundle(&paper, &provenance(settings))?;
+    page::add(&mut bundle)?;
+    claim.commit(&bundle)?;
     say(format_args!("{}", report::text(&paper)));
-    say(format_args!("Report: {}", out.join(page::FILE).display()));
+    say(format_args!(
+        "Report: {}",
+        claim.dir().join(page::FILE).display()
+    ));
     if !full {
         say(format_args!(
             "Left for --full: converged reactions of the plate on meshes up to 352x352, the cases elliptic_crack and \

@@ -1,15 +1,12 @@
 //! `stress methods`: the random robustness study.
 
-use std::path::PathBuf;
-
 use stickslip_methods::Tier;
 
-use super::arguments::{ProgramLimit, methods_or_all};
+use super::arguments::{Output, ProgramLimit, methods_or_all};
 use super::error::CliError;
-use super::output::{say, warn};
+use super::output::{say, show, warn};
 use super::progress::Bar;
-use crate::report::table::readable;
-use crate::report::{Provenance, prepare_output, robustness as report};
+use crate::report::{Plan, Provenance, robustness as report};
 use crate::studies::robustness;
 use crate::studies::robustness::RobustnessPlan;
 use crate::studies::robustness::atlas::atlas;
@@ -39,9 +36,8 @@ pub struct Arguments {
     /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
-    /// Folder for the results
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     /// Bodies worked on at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
@@ -57,7 +53,7 @@ fn friction(text: &str) -> Result<f64, String> {
 }
 
 /// Runs the study; false if a method claimed what does not hold, or failed with an error. Giving up is a result here.
-pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+pub fn run(arguments: Arguments, whole: Plan) -> Result<bool, CliError> {
     let choices = methods_or_all(&arguments.method, &arguments.limit)?;
     let sorted = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -76,7 +72,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         tier: arguments.tier,
         jobs: usize::from(arguments.jobs),
     };
-    let _claim = prepare_output(&arguments.out)?;
+    let claim = arguments.output.claim("stress-methods", whole)?;
     let bar = Bar::new();
     let trials = robustness::run(&plan, &choices, &bar)?;
     bar.finish();
@@ -94,16 +90,16 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
             bundle.add(name, robustness::case_of(&plan, &choices, dim, problem)?)?;
         }
     }
-    bundle.commit(&arguments.out)?;
-    say(format_args!("{}", readable(&rows, "").terminal()));
+    claim.commit(&bundle)?;
+    show(&rows, "");
     let causes = atlas(&trials);
     if !causes.is_empty() {
-        say(format_args!("{}", readable(&causes, "").terminal()));
+        show(&causes, "");
     }
     say(format_args!(
         "{}\nResults: {}",
         summary(&rows),
-        arguments.out.display()
+        claim.dir().display()
     ));
     for trial in trials.iter().filter(|t| t.is_wrong()) {
         warn(format_args!(

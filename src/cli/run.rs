@@ -1,15 +1,12 @@
 //! `stickslip run`: cases.
 
-use std::path::PathBuf;
-
 use stickslip_methods::Tier;
 
-use super::arguments::{ProgramLimit, find_case, provenance_with, refuse_twins};
+use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
-use super::output::say;
+use super::output::{say, show};
 use super::progress::Bar;
-use crate::report::table::readable;
-use crate::report::{page, prepare_output, standard};
+use crate::report::{Plan, page, standard};
 use crate::run::choice::choices;
 use crate::run::expect;
 use crate::run::record::Results;
@@ -30,9 +27,8 @@ pub struct Arguments {
     /// Methods whose fields are written for pictures: none, first (the first exact method) or all
     #[arg(long, value_enum, default_value = "first")]
     fields: FieldsOf,
-    /// Folder for the results
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     /// Starts from which methods look for further answers: `solved (several)` where two hold; 1 for that of the increment alone
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
@@ -52,8 +48,7 @@ enum FieldsOf {
 }
 
 /// Runs cases, writes their report and prints what became of them.
-pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let out = &arguments.out;
+pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let settings = Settings {
         tier: arguments.tier,
         jobs: usize::from(arguments.jobs),
@@ -64,49 +59,39 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         },
         starts: usize::from(arguments.starts),
     };
-    let cases = arguments
-        .cases
-        .iter()
-        .map(|name| find_case(name))
-        .collect::<Result<Vec<_>, _>>()?;
+    let cases = find_cases(&arguments.cases)?;
     let given = arguments
         .method
         .iter()
         .map(|m| arguments.limit.parse(m))
         .collect::<Result<Vec<_>, _>>()?;
-    refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     for case in &cases {
         let chosen = choices(case, &given)?;
         refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
         expect::check(case)?;
     }
-    let _claim = prepare_output(out)?;
+    let name = only(cases.iter().map(|case| case.name.as_str()), "run");
+    let claim = arguments.output.claim(name, plan)?;
     let bar = Bar::new();
     let mut results = Results::default();
     for case in &cases {
         results.append(run_case(case, &given, settings, &bar)?);
     }
     bar.finish();
-    standard::write(out, &results, &provenance_with(settings, &given))?;
-    page::write(out)?;
-    say(format_args!(
-        "{}",
-        readable(
-            &standard::last_runs(&results.runs),
-            ": the last increment of each"
-        )
-        .terminal()
-    ));
+    let mut bundle = standard::bundle(&results, &provenance_with(settings, &given))?;
+    page::add(&mut bundle)?;
+    claim.commit(&bundle)?;
+    show(
+        &standard::last_runs(&results.runs),
+        ": the last increment of each",
+    );
     if !results.expectations.is_empty() {
-        say(format_args!(
-            "{}",
-            readable(&results.expectations, "").terminal()
-        ));
+        show(&results.expectations, "");
     }
     say(format_args!(
         "{}\nResults: {}",
         standard::summary(&results),
-        out.display()
+        claim.dir().display()
     ));
     Ok(results.as_expected())
 }

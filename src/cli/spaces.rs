@@ -1,14 +1,12 @@
 //! The verb `spaces`: what the contact spaces are worth, whatever method works on them.
 
-use std::path::PathBuf;
-
+use super::arguments::Output;
 use super::error::CliError;
-use super::output::{say, warn};
+use super::output::{say, show, warn};
 use super::progress::Bar;
 use crate::case::ContactSpace;
-use crate::report::table::readable;
 use crate::report::tables::spaces::{InfSupSummary, PatchSummary};
-use crate::report::{Provenance, prepare_output, spaces as report};
+use crate::report::{Plan, Provenance, spaces as report};
 use crate::run::choice::Choice;
 use crate::studies::spaces::infsup::{self, SCENES, Scene};
 use crate::studies::spaces::patch::{self, PatchRow};
@@ -22,9 +20,8 @@ pub struct Arguments {
     /// Distances of the crack from a node in the patch tests, of 27 from 0.3 cells down to 0
     #[arg(long, default_value_t = patch::DISTANCES.len() as u8, value_parser = clap::value_parser!(u8).range(1..=patch::DISTANCES.len() as i64))]
     distances: u8,
-    /// Folder for the results
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// Meshes of the longest sequence.
@@ -33,8 +30,8 @@ fn most_meshes() -> usize {
 }
 
 /// Runs the study; false if `star`, which is stable by construction, is not found to be.
-pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let _claim = prepare_output(&arguments.out)?;
+pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
+    let claim = arguments.output.claim("spaces", plan)?;
     let bar = Bar::new();
     let meshes = usize::from(arguments.meshes);
     let cells = |scene: &Scene| scene.cells.iter().copied().take(meshes).collect();
@@ -51,11 +48,11 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("meshes", meshes.to_string())
         .with_option("distances", distances.to_string());
-    report::bundle(&sequences, &rows, &provenance)?.commit(&arguments.out)?;
+    claim.commit(&report::bundle(&sequences, &rows, &provenance)?)?;
     let stability: Vec<InfSupSummary> = sequences.iter().map(InfSupSummary).collect();
-    say(format_args!("{}", readable(&stability, "").terminal()));
+    show(&stability, "");
     let passed = PatchSummary::of(&rows);
-    say(format_args!("{}", readable(&passed, "").terminal()));
+    show(&passed, "");
     let failed = || {
         let star = |s: &&infsup::Sequence| s.space == ContactSpace::Star && !s.is_stable();
         sequences.iter().filter(star)
@@ -65,7 +62,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         "{} sequences: {stable} stable, {} not\nResults: {}",
         sequences.len(),
         sequences.len() - stable,
-        arguments.out.display()
+        claim.dir().display()
     ));
     for s in failed() {
         warn(format_args!(

@@ -1,14 +1,12 @@
 //! The verb `stress`: the suite of random scenes, and the study of all methods on random problems.
 
-use std::path::PathBuf;
-
+use super::arguments::Output;
 use super::error::CliError;
-use super::output::{say, warn};
+use super::output::{say, show, warn};
 use super::progress::Bar;
 use super::robustness;
 use super::sweep::{STOP, shard, watch_for_interruption};
-use crate::report::table::readable;
-use crate::report::{Provenance, page, prepare_output, stress as report};
+use crate::report::{Bundle, Claim, Plan, Provenance, page, stress as report};
 use crate::studies::stress::conduct::{Conduct, Suite, conduct};
 use crate::studies::stress::examine::{Effort, examine};
 use crate::studies::stress::{Family, ladder, rungs, scene, summary};
@@ -44,9 +42,8 @@ pub struct Arguments {
     /// Only this scene of a family, in this process: its case file is written to the folder of the results
     #[arg(long, value_name = "NUMBER", requires = "family")]
     only: Option<u64>,
-    /// Folder for the findings and the report; scenes that have a finding there are not examined again
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     /// Scenes at the same time; by default as many as there are cores
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -68,11 +65,10 @@ fn family(text: &str) -> Result<Family, String> {
 }
 
 /// Runs the suite; false if the program was wrong, or the default method missed a scene with one answer.
-pub fn run(arguments: Arguments) -> Result<bool, CliError> {
+pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     if let Some(Part::Methods(methods)) = arguments.part {
-        return robustness::run(methods);
+        return robustness::run(methods, plan);
     }
-    let _claim = prepare_output(&arguments.out)?;
     if let (Some(number), Some(&family)) = (arguments.only, arguments.family.first()) {
         return one(&arguments, family, number);
     }
@@ -105,28 +101,27 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         shard: (shard.number as u64, shard.of as u64),
         stop: &STOP,
     };
+    // Not how many scenes: findings are kept, more may follow.
+    plan.retain(|name, _| ["command", "seed"].contains(&name.as_str()));
+    let claim = arguments.output.claim("stress", plan)?;
+    claim.mark()?;
     let bar = Bar::with_lines();
-    let findings = conduct(&suite, &arguments.out, how, &bar)?;
+    let findings = conduct(&suite, claim.dir(), arguments.output.force, how, &bar)?;
     bar.finish();
     let provenance = Provenance::collect(how.jobs).with_option("seed", suite.seed.to_string());
-    let bundle = report::bundle(&suite, &findings, &provenance)?;
-    bundle.commit_all(&arguments.out, "cases")?;
-    page::write(&arguments.out)?;
-    let causes = summary::causes(&findings);
-    say(format_args!("{}", readable(&causes, "").terminal()));
-    let invariances = summary::invariances(&findings);
-    say(format_args!("{}", readable(&invariances, "").terminal()));
-    let methods = summary::methods(&findings);
-    say(format_args!("{}", readable(&methods, "").terminal()));
-    let ladders = rungs::of_scenes(&findings);
-    say(format_args!("{}", readable(&ladders, "").terminal()));
-    let options = rungs::of_options(&findings);
-    say(format_args!("{}", readable(&options, "").terminal()));
+    let mut bundle = report::bundle(&suite, &findings, &provenance)?;
+    page::add(&mut bundle)?;
+    claim.commit(&bundle)?;
+    show(&summary::causes(&findings), "");
+    show(&summary::invariances(&findings), "");
+    show(&summary::methods(&findings), "");
+    show(&rungs::of_scenes(&findings), "");
+    show(&rungs::of_options(&findings), "");
     let total: u64 = suite.scenes.values().sum();
     say(format_args!(
         "{} of {total} scenes. Results: {}",
         findings.len(),
-        arguments.out.display()
+        claim.dir().display()
     ));
     for finding in findings
         .iter()
@@ -142,10 +137,11 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
 /// One scene: its case file, and what is found.
 fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliError> {
     let scene = scene(family, arguments.seed, number);
-    let mut bundle = crate::report::Bundle::new();
+    let claim = Claim::new(&arguments.output.folder("stress"), Plan::new(), false)?;
+    let mut bundle = Bundle::new();
     let file = format!("{}-{number}.toml", family.name());
     bundle.add(file.clone(), scene.text.clone())?;
-    bundle.commit(&arguments.out)?;
+    claim.commit(&bundle)?;
     let finding = examine(&scene, Effort::All);
     for trial in &finding.trials {
         let cause = trial.cause.map_or("", |c| c.name());
@@ -162,7 +158,7 @@ fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliEr
     say(format_args!(
         "{cause} {}\nCase: {}",
         finding.reason,
-        arguments.out.join(file).display()
+        claim.dir().join(file).display()
     ));
     Ok(summary::as_expected(&[finding]))
 }

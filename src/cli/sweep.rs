@@ -1,15 +1,16 @@
 //! The verbs `study`, `merge` and `work`: sweeps of cells, each a record of its own.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::arguments::positive;
+use super::arguments::{Output, positive};
 use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
-use crate::report::{Provenance, page, prepare_output, prepare_shared_output, sweep};
+use crate::report::{Claim, Provenance, page, plan, sweep};
+use crate::studies::memory::allowed;
 use crate::studies::stress;
 use crate::studies::sweep::conduct::{self, Conduct, Request, Shard, conduct};
 use crate::studies::sweep::measure::Bench;
@@ -31,9 +32,8 @@ const STANDARD: (&str, &str) = (
 pub struct Arguments {
     /// Sweep file, or a folder of FCLIB files; by default the sweep of the project's own study
     sweep: Option<PathBuf>,
-    /// Folder for the records and the report; cells that have a record there are not measured again
-    #[arg(long, default_value = "results")]
-    out: PathBuf,
+    #[command(flatten)]
+    output: Output,
     /// Cells at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
@@ -66,7 +66,8 @@ pub struct MergeArguments {
     /// Folder for all records and the report
     #[arg(long)]
     out: PathBuf,
-    /// Merge records of different commits or machines, and take the first of contradicting ones
+    /// Merge records of different commits or machines, take the first of contradicting ones, and replace results of another
+    /// plan in OUT
     #[arg(long)]
     force: bool,
 }
@@ -95,39 +96,51 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Runs the verb `study`; false if cells are left, or in a whole sweep one claimed what does not hold or crashed.
 pub fn run(arguments: Arguments) -> Result<bool, CliError> {
-    let plan = match &arguments.sweep {
+    let sweep = match &arguments.sweep {
         Some(folder) if folder.is_dir() => Plan::of_folder(folder)?,
         Some(file) => Plan::read(file)?,
         None => Plan::parse(STANDARD.0.as_ref(), STANDARD.1)?,
     };
     let shard = arguments.shard.unwrap_or(Shard::ALL);
     if arguments.list {
-        let own = shard.cells(&plan.tasks);
+        let own = shard.cells(&sweep.tasks);
         own.iter().for_each(|task| say(format_args!("{}", task.id)));
         return Ok(true);
     }
+    let name = arguments.sweep.as_deref().and_then(Path::file_stem);
+    let name = name.map_or("study".into(), |name| name.to_string_lossy());
     // Shards measure different cells, so they may fill one folder.
-    let _claim = match arguments.shard {
-        None => prepare_output(&arguments.out)?,
-        Some(_) => prepare_shared_output(&arguments.out)?,
+    let claim = match arguments.shard {
+        None => arguments.output.claim(&name, plan("study"))?,
+        Some(_) => {
+            let Output { force, .. } = arguments.output;
+            Claim::shared(&arguments.output.folder(&name), plan("study"), force)?
+        }
     };
-    let store = Store::create(&arguments.out, plan.contents())?;
+    let store = Store::create(claim.dir(), sweep.contents(), arguments.output.force)?;
+    claim.mark()?;
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
+    let memory_mb = allowed(arguments.memory_limit);
+    if let Some(megabytes) = memory_mb.filter(|_| memory_mb != arguments.memory_limit) {
+        warn(format_args!(
+            "{megabytes} MB of memory per cell: this process may have no more itself (ulimit -v)"
+        ));
+    }
     let how = Conduct {
         program: &program,
         jobs: usize::from(arguments.jobs),
         timed: !arguments.untimed,
         limits: Limits {
             seconds: arguments.time_limit,
-            memory_mb: arguments.memory_limit,
+            memory_mb,
         },
         shard,
         redo: arguments.redo,
         stop: &STOP,
     };
     let bar = Bar::with_lines();
-    let conducted = conduct(&plan.tasks, plan.repeats, &store, how, &bar)?;
+    let conducted = conduct(&sweep.tasks, sweep.repeats, &store, how, &bar)?;
     bar.finish();
     say(format_args!(
         "{} cells: {} measured before, {} now, {} left",
@@ -140,7 +153,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if arguments.shard.is_some() || !conducted.complete() {
         return Ok(conducted.complete());
     }
-    report(&store, &store.records()?)
+    report(&claim, &store, &store.records()?)
 }
 
 /// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
@@ -163,14 +176,19 @@ pub fn watch_for_interruption() -> Result<(), CliError> {
 
 /// Runs the verb `merge`; false if cells are missing. What the cells say is in the report.
 pub fn run_merge(arguments: MergeArguments) -> Result<bool, CliError> {
-    let _claim = prepare_output(&arguments.out)?;
+    let output = Output {
+        out: Some(arguments.out.clone()),
+        force: arguments.force,
+    };
+    let claim = output.claim("", plan("study"))?;
     let merged = merge(&arguments.folders, &arguments.out, arguments.force)?;
     let total = merged.store.contents().cells.len();
     say(format_args!("{} of {total} cells", merged.records.len()));
     for id in &merged.missing {
         warn(format_args!("missing: {id}"));
     }
-    report(&merged.store, &merged.records)?;
+    claim.mark()?;
+    report(&claim, &merged.store, &merged.records)?;
     Ok(merged.missing.is_empty())
 }
 
@@ -204,16 +222,16 @@ fn end_with_parent() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Writes the report beside the records.
-fn report(store: &Store, records: &[Record]) -> Result<bool, CliError> {
+/// Writes the report beside the records, and prints it; false if a method was wrong.
+fn report(claim: &Claim, store: &Store, records: &[Record]) -> Result<bool, CliError> {
     let wrong = |r: &&Record| r.found.verdict.is_wrong();
     for record in records.iter().filter(wrong) {
         warn(format_args!("{}: {}", record.found.verdict, record.id));
     }
     let total = store.contents().cells.len();
-    let bundle = sweep::bundle(records, total, &provenance(store, records))?;
-    bundle.commit_all(store.dir(), "figures")?;
-    page::write(store.dir())?;
+    let mut bundle = sweep::bundle(records, total, &provenance(store, records))?;
+    page::add(&mut bundle)?;
+    claim.commit(&bundle)?;
     for sentence in sweep::sensitivity_sentences(records) {
         say(format_args!("{sentence}"));
     }

@@ -20,10 +20,10 @@ pub use error::PageError;
 pub use folder::{Budget, Folder};
 pub use sheet::Sheet;
 
-use super::Bundle;
 use super::figures;
 use super::table::Description;
 use super::tables::{Chapter, catalogue};
+use super::{Bundle, Claim, Plan};
 use html::{Block, Grid, Link, Section};
 
 /// Name of the page in its folder.
@@ -40,23 +40,28 @@ const ROWS: usize = 250;
 /// # Errors
 /// [`PageError`] naming file and line where something cannot be read; [`PageError::Empty`] where there is nothing to show.
 pub fn of_folder(dir: &Path) -> Result<String, PageError> {
-    let folder = Folder::open(dir)?;
+    let page = page(&Folder::open(dir)?)?;
+    page.ok_or_else(|| PageError::Empty {
+        folder: dir.to_path_buf(),
+    })
+}
+
+/// None where there is nothing to show.
+fn page(folder: &Folder<'_>) -> Result<Option<String>, PageError> {
     let mut budget = Budget::new(FIGURE_BYTES);
-    let mut sections: Vec<Section> = overview::section(&folder, &mut budget)?
+    let mut sections: Vec<Section> = overview::section(folder, &mut budget)?
         .into_iter()
         .collect();
     let tables = catalogue();
     for chapter in Chapter::ALL {
         let own = tables.iter().filter(|(of, _)| *of == chapter);
         let own = own.map(|(_, table)| table);
-        sections.extend(section(chapter, own, &folder, &mut budget)?);
+        sections.extend(section(chapter, own, folder, &mut budget)?);
     }
     if sections.is_empty() {
-        return Err(PageError::Empty {
-            folder: dir.to_path_buf(),
-        });
+        return Ok(None);
     }
-    Ok(html::compose(&sections, &folder.origins()?))
+    Ok(Some(html::compose(&sections, &folder.origins()?)))
 }
 
 /// Figures, then tables; nothing without any.
@@ -97,15 +102,27 @@ fn section<'a>(
     }))
 }
 
+/// Adds to a bundle the page that shows it.
+///
+/// # Errors
+/// [`PageError`] naming the file that cannot be shown.
+pub fn add(bundle: &mut Bundle) -> Result<(), PageError> {
+    if let Some(page) = page(&Folder::of(bundle))? {
+        bundle.add(FILE, page)?;
+    }
+    Ok(())
+}
+
 /// Writes `index.html` into the folder it shows; size in bytes.
 ///
 /// # Errors
-/// Those of [`of_folder`] and [`Bundle::commit`].
+/// Those of [`of_folder`] and [`Claim::commit`].
 pub fn write(dir: &Path) -> Result<usize, PageError> {
+    let claim = Claim::new(dir, Plan::new(), false)?;
     let page = of_folder(dir)?;
     let size = page.len();
     let mut bundle = Bundle::new();
     bundle.add(FILE, page)?;
-    bundle.commit(dir)?;
+    claim.commit(&bundle)?;
     Ok(size)
 }

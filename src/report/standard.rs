@@ -10,7 +10,6 @@ use super::{Bundle, Provenance, ReportError, figures, table, vtu};
 use crate::run::record::{Results, RunFields, RunKey, RunRow};
 use crate::run::verdict::VerdictKind;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Everything that one command writes, apart from the tables of the paper.
 ///
@@ -51,14 +50,6 @@ pub fn add_tables(bundle: &mut Bundle, results: &Results) -> Result<(), ReportEr
     table::add(bundle, &results.exact, "")?;
     table::add(bundle, &results.expectations, "")?;
     table::add(bundle, &ExpectSummary::of(&results.expectations), "")
-}
-
-/// Writes [`bundle`] into `dir`, all files or none.
-///
-/// # Errors
-/// Those of [`bundle`] and [`Bundle::commit`].
-pub fn write(dir: &Path, results: &Results, provenance: &Provenance) -> Result<(), ReportError> {
-    Ok(bundle(results, provenance)?.commit(dir)?)
 }
 
 /// The last increment of every run.

@@ -15,6 +15,23 @@ pub fn reset_peak() {
     let _not_allowed = std::fs::write("/proc/self/clear_refs", "5");
 }
 
+/// The bound on a process of this one that asks for some [MB]: no more than this one may have itself. A process that asks for
+/// none inherits that.
+#[cfg(unix)]
+pub fn allowed(megabytes: Option<u64>) -> Option<u64> {
+    use rustix::process::{Resource, getrlimit};
+    let own = getrlimit(Resource::As);
+    let most = megabytes.map_or(own.current, |_| own.maximum);
+    let most = most.map(|bytes| bytes / 1_000_000);
+    megabytes.into_iter().chain(most).min()
+}
+
+/// As asked for: this system has no such bound.
+#[cfg(not(unix))]
+pub fn allowed(megabytes: Option<u64>) -> Option<u64> {
+    megabytes
+}
+
 /// Bounds the address space of this process [MB]; an allocation beyond it ends the process.
 ///
 /// # Errors

@@ -5,8 +5,8 @@
 //! Either way the next one gets a new worker.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -20,15 +20,21 @@ use super::sweep::record::Limits;
 use crate::run::outside::process::denied;
 use crate::run::verdict::Verdict;
 
-/// A worker that does not start.
+/// Why there is no answer, for a reason that says nothing on what was asked.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot start `{}`: {source}", program.display())]
+#[error("{what}: {why}; nothing is kept of it, the same command goes on from here")]
 pub struct WorkerError {
-    /// The program.
-    program: PathBuf,
+    /// What happened to a process that measures.
+    pub what: String,
     /// Why.
-    source: std::io::Error,
+    pub why: String,
 }
+
+/// First line of a worker, once it has begun under its limits: what ends it later may be what it was asked.
+const READY: &str = "ready";
+
+/// Time for that [s].
+const START: f64 = 60.0;
 
 /// The worker's side: answers what it is asked until its input ends.
 ///
@@ -52,6 +58,8 @@ pub fn serve<Q: DeserializeOwned, A: Serialize>(
         let text: Vec<&str> = payload.lines().collect();
         let _nobody_listens = writeln!(std::io::stderr(), "panic: {}", text.join(" "));
     }));
+    writeln!(output, "{READY}")?;
+    output.flush()?;
     for line in input.lines() {
         let mut json = serde_json::to_vec(&answer(serde_json::from_str(&line?)?))?;
         json.push(b'\n');
@@ -158,15 +166,15 @@ impl<'a> Worker<'a> {
                 running.kill();
                 Verdict::TimedOut
             }
-            Err(RecvTimeoutError::Disconnected) => running.post_mortem(),
+            Err(RecvTimeoutError::Disconnected) => running.post_mortem()?,
         };
         Ok(Err(verdict))
     }
 
     fn start(&self) -> Result<Running, WorkerError> {
-        let failed = |source| WorkerError {
-            program: self.program.to_path_buf(),
-            source,
+        let failed = |source: std::io::Error| WorkerError {
+            what: format!("cannot start `{}`", self.program.display()),
+            why: source.to_string(),
         };
         let mut command = Command::new(self.program);
         command.args(self.arguments);
@@ -198,12 +206,23 @@ impl<'a> Worker<'a> {
             let _unreadable = errors.read_to_end(&mut text);
             String::from_utf8_lossy(&text).into_owned()
         });
-        Ok(Running {
+        let mut running = Running {
             child,
             input,
             lines,
             complaints,
-        })
+        };
+        match running.lines.recv_timeout(Duration::from_secs_f64(START)) {
+            Ok(line) if line == READY => Ok(running),
+            _ => {
+                let _ended_before = running.child.kill();
+                let (status, complaint) = running.ended();
+                Err(WorkerError {
+                    what: "a process that measures did not start".into(),
+                    why: format!("{}: {complaint}", told(&status)),
+                })
+            }
+        }
     }
 }
 
@@ -221,17 +240,51 @@ impl Running {
         let _status = self.child.wait();
     }
 
-    /// Why the worker died.
-    fn post_mortem(mut self) -> Verdict {
+    /// How it ended, and the first line of its complaints.
+    fn ended(mut self) -> (std::io::Result<ExitStatus>, String) {
         drop(self.input);
         let status = self.child.wait();
         let complaints = self.complaints.join().unwrap_or_default();
-        let status = status.map_or_else(|e| e.to_string(), |status| status.to_string());
         let first = complaints.lines().find(|line| !line.is_empty());
-        match first {
-            Some(line) if denied(line) => Verdict::OutOfMemory,
-            Some(line) => Verdict::Crashed(format!("{status}: {line}")),
-            None => Verdict::Crashed(status),
+        (status, first.unwrap_or_default().to_owned())
+    }
+
+    /// Why the worker died of its request.
+    fn post_mortem(self) -> Result<Verdict, WorkerError> {
+        let (status, complaint) = self.ended();
+        let ended = told(&status);
+        match complaint.as_str() {
+            _ if status.is_ok_and(from_outside) => Err(WorkerError {
+                what: "a process that measures was ended by the system for want of memory (see --memory-limit), a limit \
+                       of the shell, or by hand"
+                    .into(),
+                why: ended,
+            }),
+            line if denied(line) => Ok(Verdict::OutOfMemory),
+            "" => Ok(Verdict::Crashed(ended)),
+            line => Ok(Verdict::Crashed(format!("{ended}: {line}"))),
         }
     }
+}
+
+fn told(status: &std::io::Result<ExitStatus>) -> String {
+    let told = status.as_ref().map(ExitStatus::to_string);
+    told.unwrap_or_else(|e| e.to_string())
+}
+
+/// Whether a process was ended by a signal that it does not bring upon itself; this one kills what is past its time, and
+/// does not ask how that ended.
+fn from_outside(status: ExitStatus) -> bool {
+    #[cfg(unix)]
+    {
+        use rustix::process::Signal;
+        use std::os::unix::process::ExitStatusExt;
+        let signal = status.signal().and_then(Signal::from_named_raw);
+        matches!(
+            signal,
+            Some(Signal::HUP | Signal::INT | Signal::KILL | Signal::TERM | Signal::XCPU)
+        )
+    }
+    #[cfg(not(unix))]
+    false
 }

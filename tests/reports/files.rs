@@ -4,13 +4,29 @@ use crate::report_data::results;
 use std::fs;
 use std::path::Path;
 use stickslip::files::bundle::FolderError;
-use stickslip::report::{Bundle, Provenance, ReportError, prepare_output, standard};
+use stickslip::report::{Bundle, Claim, Provenance, plan, standard};
 
 /// Writes the tables, all or none.
-fn write_tables(dir: &Path) -> Result<(), ReportError> {
+fn write_tables(dir: &Path) -> Result<(), FolderError> {
     let mut bundle = Bundle::new();
-    standard::add_tables(&mut bundle, &results())?;
-    Ok(bundle.commit(dir)?)
+    standard::add_tables(&mut bundle, &results()).expect("tables");
+    Claim::new(dir, plan("run"), false)?.commit(&bundle)
+}
+
+/// Writes files whose contents are their names, for a plan.
+fn write(dir: &Path, own: &str, names: &[&str], force: bool) -> Result<(), FolderError> {
+    let mut bundle = Bundle::new();
+    for name in names {
+        bundle.add(*name, *name)?;
+    }
+    Claim::new(dir, plan(own), force)?.commit(&bundle)
+}
+
+/// That something is refused, with the words for it.
+fn refused(found: Result<(), FolderError>, words: &[&str]) {
+    let error = found.expect_err("refused").to_string();
+    let all = words.iter().all(|word| error.contains(word));
+    assert!(all, "{words:?}: {error}");
 }
 
 fn temporary() -> tempfile::TempDir {
@@ -21,7 +37,9 @@ fn temporary() -> tempfile::TempDir {
 fn one_command_writes_all_kinds_and_twice_the_same() {
     let (first, second) = (temporary(), temporary());
     for dir in [&first, &second] {
-        standard::write(dir.path(), &results(), &Provenance::collect(2)).expect("written");
+        let bundle = standard::bundle(&results(), &Provenance::collect(2)).expect("a bundle");
+        let claim = Claim::new(dir.path(), plan("run"), false).expect("a folder");
+        claim.commit(&bundle).expect("written");
     }
     let files = files_below(first.path());
     assert_eq!(files, files_below(second.path()));
@@ -52,20 +70,11 @@ fn folders_that_cannot_be_written_are_named_before_anything_is_computed() {
     let file = dir.path().join("file");
     fs::write(&file, "in the way").expect("a file");
     for target in [file.clone(), file.join("below")] {
-        let error = prepare_output(&target).expect_err("a file is no folder");
-        assert!(
-            error.to_string().contains(&target.display().to_string()),
-            "{error}"
-        );
-        let error = write_tables(&target).expect_err("a file is no folder");
-        assert!(
-            matches!(error, ReportError::Folder(FolderError::Io { .. })),
-            "{error}"
-        );
+        refused(write_tables(&target), &[&target.display().to_string()]);
     }
     assert_eq!(fs::read_to_string(&file).expect("the file"), "in the way");
     let fresh = dir.path().join("a/b");
-    drop(prepare_output(&fresh).expect("a new folder"));
+    drop(Claim::new(&fresh, plan("run"), false).expect("a new folder"));
     let names: Vec<_> = fs::read_dir(dir.path())
         .expect("a folder")
         .flatten()
@@ -78,51 +87,113 @@ fn folders_that_cannot_be_written_are_named_before_anything_is_computed() {
     );
 }
 
+/// Goal: only what the own list says was written, and is as it was, is replaced or removed.
 #[test]
-fn a_failure_leaves_the_folder_as_it_was() {
+fn files_of_others_are_neither_replaced_nor_removed() {
     let dir = temporary();
-    fs::write(dir.path().join("history.csv"), "old").expect("an old file");
-    // The last of the five names is taken by a folder, the write fails after others were put in place.
-    fs::create_dir_all(dir.path().join("runs.csv/inside")).expect("a folder in the way");
-    let before = files_below(dir.path());
-    let error = write_tables(dir.path()).expect_err("runs.csv is a folder");
-    assert!(error.to_string().contains("runs.csv"), "{error}");
-    assert_eq!(files_below(dir.path()), before);
-    assert_eq!(
-        fs::read_to_string(dir.path().join("history.csv")).expect("the file"),
-        "old"
+    let put = |name: &str| fs::write(dir.path().join(name), "mine").expect("a file");
+    write(dir.path(), "run", &["a.csv", "figures/a.svg"], false).expect("written");
+    put("b.csv");
+    put("figures/mine.pdf");
+    let before = contents(dir.path());
+    let refuse = |names: &[&str], words: &[&str]| {
+        refused(write(dir.path(), "run", names, false), words);
+        assert_eq!(contents(dir.path()), before, "{names:?}");
+    };
+    refuse(&["0.csv", "b.csv"], &["b.csv", "not written by this"]);
+    refuse(&["0.csv", "figures"], &["figures", "a folder stands"]);
+    refuse(&["0.csv", "b.csv/c"], &["b.csv", "a file stands"]);
+    // Of another plan all that is listed goes, and nothing else.
+    let other = ["b.svg"];
+    refused(
+        write(dir.path(), "solve", &other, false),
+        &["`run`", "`solve`", "--out", "--force"],
     );
-    assert!(
-        !dir.path().join("points.csv").exists(),
-        "half the files would be a lie"
-    );
+    assert_eq!(contents(dir.path()), before);
+    write(dir.path(), "solve", &other, true).expect("forced");
+    let left = ["b.csv", "b.svg", "figures/mine.pdf", "written.toml"];
+    assert_eq!(files_below(dir.path()), left);
+    put("b.svg");
+    let changed = write(dir.path(), "solve", &other, false);
+    refused(changed, &["b.svg", "changed after it was written"]);
+    write(dir.path(), "solve", &other, true).expect("forced");
+    fs::write(dir.path().join("written.toml"), "mine").expect("a file");
+    refused(write(dir.path(), "solve", &other, true), &["written.toml"]);
+    fs::write(
+        dir.path().join("written.toml"),
+        "plan = {}\nfiles.\"../up\" = \"\"",
+    )
+    .expect("a file");
+    refused(write(dir.path(), "solve", &other, true), &["written.toml"]);
 }
 
+/// Goal: neither a file nor a folder is reached through a link, not even one that a listed file became.
+#[cfg(unix)]
 #[test]
-fn success_replaces_old_files_and_leaves_no_traces() {
-    let dir = temporary();
-    fs::write(dir.path().join("runs.csv"), "old").expect("an old file");
-    fs::write(dir.path().join("mine.txt"), "mine").expect("another file");
-    write_tables(dir.path()).expect("written");
-    let names = files_below(dir.path());
-    let expected = [
-        "exact.csv",
-        "expectations.csv",
-        "expectations_by_case.csv",
-        "expectations_by_case.md",
-        "expectations_by_case.tex",
-        "history.csv",
-        "mine.txt",
-        "points.csv",
-        "quantities.csv",
-        "runs.csv",
-    ];
-    assert_eq!(names, expected);
-    assert!(
-        fs::read_to_string(dir.path().join("runs.csv"))
-            .expect("a file")
-            .starts_with("case,mesh,")
+fn links_are_not_followed() {
+    use std::os::unix::fs::symlink;
+    let (dir, others) = (temporary(), temporary());
+    write(others.path(), "run", &["a.csv", "b.svg"], false).expect("written");
+    let before = contents(others.path());
+    write(dir.path(), "run", &["a.csv", "figures/b.svg"], false).expect("written");
+    fs::remove_dir_all(dir.path().join("figures")).expect("removed");
+    symlink(others.path(), dir.path().join("figures")).expect("a link");
+    for names in [
+        &["a.csv", "figures/b.svg"][..],
+        &["figures/c.svg"],
+        &["a.csv"],
+    ] {
+        refused(
+            write(dir.path(), "run", names, true),
+            &["figures`", "a link"],
+        );
+    }
+    fs::remove_file(dir.path().join("figures")).expect("removed");
+    fs::remove_file(dir.path().join("a.csv")).expect("removed");
+    symlink(others.path().join("a.csv"), dir.path().join("a.csv")).expect("a link");
+    refused(
+        write(dir.path(), "run", &["a.csv"], true),
+        &["a.csv", "a link"],
     );
+    assert_eq!(contents(others.path()), before);
+}
+
+/// Goal: wherever a run is killed, the next one finds the old files or the new ones, and leaves no trace of it.
+#[test]
+fn what_a_killed_run_had_begun_is_completed_or_forgotten() {
+    let (new, old) = (["a.csv", "c.csv", "figures/d.svg"], ["a.csv", "b.csv"]);
+    // As it lies before the list, with it, and with some files in place.
+    for (listed, moved) in [(false, 0), (true, 0), (true, 1), (true, 3)] {
+        let (dir, done) = (temporary(), temporary());
+        write(dir.path(), "run", &old, false).expect("written");
+        fs::write(dir.path().join("mine"), "mine").expect("a file");
+        write(done.path(), "run", &new, false).expect("written");
+        let staging = dir.path().join(".stickslip-staging-1");
+        fs::create_dir_all(staging.join("new/figures")).expect("a folder");
+        for name in new {
+            fs::rename(done.path().join(name), staging.join("new").join(name)).expect("staged");
+        }
+        if listed {
+            fs::rename(
+                done.path().join("written.toml"),
+                staging.join("written.toml"),
+            )
+            .expect("staged");
+        }
+        for name in &new[..moved] {
+            fs::create_dir_all(dir.path().join("figures")).expect("a folder");
+            fs::rename(staging.join("new").join(name), dir.path().join(name)).expect("moved");
+        }
+        drop(Claim::new(dir.path(), plan("run"), false).expect("the next run"));
+        let names = if listed { &new[..] } else { &old };
+        let mut expected: Vec<&str> = names
+            .iter()
+            .copied()
+            .chain(["mine", "written.toml"])
+            .collect();
+        expected.sort_unstable();
+        assert_eq!(files_below(dir.path()), expected, "{listed} {moved}");
+    }
 }
 
 #[test]
@@ -142,6 +213,12 @@ fn bundles_refuse_names_outside_and_names_taken() {
         bundle.add("a.csv", "y"),
         Err(FolderError::Duplicate { .. })
     ));
+}
+
+/// Files with what is in them.
+fn contents(dir: &Path) -> Vec<(String, Vec<u8>)> {
+    let read = |name: String| (name.clone(), fs::read(dir.join(&name)).expect("a file"));
+    files_below(dir).into_iter().map(read).collect()
 }
 
 fn files_below(dir: &Path) -> Vec<String> {

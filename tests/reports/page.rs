@@ -9,7 +9,7 @@ use crate::report_data::results;
 use assert_cmd::Command;
 use stickslip::report::figures::{cost, error};
 use stickslip::report::page::{self, Budget, Folder};
-use stickslip::report::{Provenance, standard};
+use stickslip::report::{Claim, Provenance, plan, standard};
 
 const TABLE1: &str = "mesh,friction,method,reaction_mn_per_m,printed_mn_per_m,relative_difference,verdict\n\
                       I,0.1,b-newton,973.54321,973.3,0.00025,solved\n\
@@ -179,7 +179,10 @@ fn the_committed_report_makes_one_page() {
 #[test]
 fn the_results_of_a_run_make_a_page() {
     let dir = tempfile::tempdir().expect("a folder");
-    standard::write(dir.path(), &results(), &Provenance::collect(1)).expect("results");
+    let bundle = standard::bundle(&results(), &Provenance::collect(1)).expect("results");
+    let claim = Claim::new(dir.path(), plan("run"), false).expect("a folder");
+    claim.commit(&bundle).expect("written");
+    drop(claim);
     let html = page(dir.path());
     check(&html);
     assert!(html.contains("id=\"runs\"") && !html.contains("id=\"accuracy\""));

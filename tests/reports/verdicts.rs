@@ -7,7 +7,7 @@ use crate::report_data::results;
 use stickslip::case;
 use stickslip::report::table::{self, Row, readable};
 use stickslip::report::timings::{BenchmarkName, TimingRow};
-use stickslip::report::{Bundle, Provenance, page, standard};
+use stickslip::report::{Bundle, Claim, Provenance, page, plan, standard};
 use stickslip::run::choice::Choice;
 use stickslip::run::record::{Results, RunRow};
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
@@ -190,7 +190,8 @@ fn folder_of(runs: &[RunRow]) -> tempfile::TempDir {
     let compared = comparison(runs);
     table::add(&mut bundle, runs, "").unwrap();
     table::add(&mut bundle, &compared, "").unwrap();
-    bundle.commit(dir.path()).unwrap();
+    let claim = Claim::new(dir.path(), plan("run"), false).unwrap();
+    claim.commit(&bundle).unwrap();
     dir
 }
 
@@ -316,7 +317,9 @@ fn an_error_of_memory_is_told_by_its_type_and_fails_the_run() {
         assert_eq!(results.runs[0].verdict, Verdict::OutOfMemory);
         assert!(!results.as_expected());
         let dir = tempfile::tempdir().unwrap();
-        standard::write(dir.path(), &results, &Provenance::collect(1)).unwrap();
+        let bundle = standard::bundle(&results, &Provenance::collect(1)).unwrap();
+        let claim = Claim::new(dir.path(), plan("run"), false).unwrap();
+        claim.commit(&bundle).unwrap();
         says_so(dir.path());
     }
 }
@@ -355,5 +358,5 @@ fn a_program_whose_factorisation_finds_no_memory_exits_with_1_and_says_so() {
         text.contains("0 solved, 0 approximate, 0 refused, 1 failed"),
         "{text}"
     );
-    says_so(&dir.path().join("results"));
+    says_so(&dir.path().join("results/pressed"));
 }

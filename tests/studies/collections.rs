@@ -25,7 +25,7 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
     let dir = tempfile::tempdir().unwrap();
     let all = shipped_file("collection");
     let methods = ["newton-ac", "nsgs", "interior-point", "socp"];
-    let mut arguments = vec!["solve", all.to_str().unwrap()];
+    let mut arguments = vec!["solve", all.to_str().unwrap(), "--out", "results"];
     arguments.extend(methods.iter().flat_map(|method| ["-m", method]));
     ends_with(0, &arguments, dir.path());
 
@@ -138,7 +138,7 @@ fn a_study_of_files_is_resumed_and_told_by_family() {
         shown.contains("6 cells: 6 measured before, 0 now, 0 left"),
         "{shown}"
     );
-    let results = dir.path().join("results");
+    let results = dir.path().join("results/files");
     let problems = rows(&results.join("problems.csv"));
     let found: Vec<[&str; 3]> = (problems.iter())
         .map(|row| [&*row["problem"], &*row["family"], &*row["rank"]])
@@ -189,11 +189,8 @@ fn a_study_of_files_is_resumed_and_told_by_family() {
 fn hybrid_comes_to_the_interior_point_method_early_where_points_are_redundant() {
     let dir = tempfile::tempdir().unwrap();
     let file = shipped_file("packing.hdf5");
-    ends_with(
-        0,
-        &["solve", file.to_str().unwrap(), "-m", "hybrid"],
-        dir.path(),
-    );
+    let solve = ["solve", file.to_str().unwrap(), "-m", "hybrid"];
+    ends_with(0, &[&solve[..], &["--out", "results"]].concat(), dir.path());
     let runs = rows(&dir.path().join("results/runs.csv"));
     let iterations: usize = runs[0]["iterations"].parse().unwrap();
     assert!(

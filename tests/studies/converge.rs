@@ -242,7 +242,8 @@ fn a_run_that_is_not_solved_ends_with_1_and_is_named() {
     let (_, named) = ends_with(1, &[plate, method].concat(), dir.path());
     let line = "gave-up: max-iterations: plate_mesh1 22x22 edge-pairs branch";
     assert_eq!(named.matches(line).count(), 3);
-    let table = std::fs::read_to_string(dir.path().join("results/convergence.csv")).unwrap();
+    let table =
+        std::fs::read_to_string(dir.path().join("results/plate_mesh1/convergence.csv")).unwrap();
     assert_eq!(csv_rows(&table).len(), 3);
 }
 
@@ -280,7 +281,7 @@ fn round_off_is_no_error() {
     let block = ["converge", "sliding_block_conforming", "--refine", "1,2,3"];
     let arguments = [&block[..], &["--spaces", "edge-pairs"]].concat();
     ends_with(0, &arguments, dir.path());
-    let results = dir.path().join("results");
+    let results = dir.path().join("results/sliding_block_conforming");
     let mut rows = csv_rows(&std::fs::read_to_string(results.join("orders.csv")).unwrap());
     rows.retain(|row| row["quantity"] == "max_slip");
     let slip = rows

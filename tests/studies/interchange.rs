@@ -91,7 +91,7 @@ fn files_give_what_the_case_gives(
     let files: Vec<String> = (kinds.iter())
         .map(|kind| format!("problems/{stem}.{kind}.hdf5"))
         .collect();
-    let mut arguments = vec!["solve"];
+    let mut arguments = vec!["solve", "--out", "results"];
     arguments.extend(files.iter().map(String::as_str));
     ends_with(0, &arguments, dir.path());
     assert!(dir.path().join("results/history.csv").exists());
@@ -287,7 +287,15 @@ fn reactions_of_other_programs_are_judged() {
     assert!(shown.contains("equilibrium"));
 
     // What needs the stiffness refuses local files.
-    let monolithic = ["solve", &file, &global, "-m", "newton-ac:monolithic=1"];
+    let monolithic = [
+        "solve",
+        &file,
+        &global,
+        "--out",
+        "results",
+        "-m",
+        "newton-ac:monolithic=1",
+    ];
     ends_with(0, &monolithic, dir.path());
     let [local, global] = ["local", "global"].map(|kind| {
         let case = format!("{stem}.{kind}");
@@ -309,7 +317,7 @@ fn files_of_other_writers_are_solved() {
     let dir = tempfile::tempdir().unwrap();
     let names = ["local_csr", "local_gzip", "unwritten", "no_contact"];
     let files = names.map(|name| shipped_file(&format!("{name}.hdf5")));
-    let mut arguments = vec!["solve", "-m", METHOD];
+    let mut arguments = vec!["solve", "--out", "results", "-m", METHOD];
     arguments.extend(files.iter().map(|file| file.to_str().unwrap()));
     ends_with(0, &arguments, dir.path());
     for name in names {

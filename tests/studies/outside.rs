@@ -220,7 +220,8 @@ fn it_is_tabulated_like_the_methods_here() {
     for name in ["honest", "liar", "deep"] {
         called(dir.path(), name);
     }
-    let methods = "solve one.hdf5 -m b-newton -m exec:honest -m exec:./liar -m exec:deep";
+    let methods =
+        "solve one.hdf5 --out results -m b-newton -m exec:honest -m exec:./liar -m exec:deep";
     let arguments: Vec<&str> = methods.split(' ').collect();
     let (code, shown, complaints) = stickslip(dir.path(), &arguments);
     assert_eq!(code, Some(1), "{complaints}");

@@ -171,7 +171,8 @@ fn a_problem_run_alone_comes_with_its_case_file() {
     ];
     let arguments = [&problem[..], &["--method", "b-newton"]].concat();
     ends_with(0, &arguments, dir.path());
-    let case = std::fs::read_to_string(dir.path().join("results/problem-2d-9.toml")).unwrap();
+    let case = std::fs::read_to_string(dir.path().join("results/stress-methods/problem-2d-9.toml"))
+        .unwrap();
     assert_eq!(parse(&case).sweep.friction, [0.3]);
 }
 

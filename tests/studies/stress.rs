@@ -212,7 +212,7 @@ fn findings_are_kept_sealed_and_gone_on_with() {
             shard: (1, 1),
             stop: &stop,
         };
-        conduct(&suite, &out, how, &Quiet)
+        conduct(&suite, &out, false, how, &Quiet)
     };
     let two = run(3, 2).unwrap();
     let three = run(3, 3).unwrap();
@@ -248,7 +248,7 @@ fn a_failing_scene_is_made_small() {
         (shown, complaints)
     };
     assert!(out.contains("12 of 12 scenes"), "{out}");
-    let results = dir.path().join("results");
+    let results = dir.path().join("results/stress");
     let rows = csv_rows(&std::fs::read_to_string(results.join("stress_scenes.csv")).unwrap());
     let refused = rows.iter().find(|r| r["cause"] == "refused").unwrap();
     let small = std::fs::read_to_string(results.join(&refused["minimal"])).unwrap();

@@ -70,7 +70,7 @@ fn refused(mut command: Command) -> String {
 
 /// What was found, by file; and that nothing else lies in the folder.
 pub fn found(out: &Path) -> BTreeMap<String, Record> {
-    let files = fs::read_dir(out.join("cells")).unwrap();
+    let files = fs::read_dir(out.join("cells")).into_iter().flatten();
     files
         .map(|entry| {
             let path = entry.unwrap().path();
@@ -114,13 +114,13 @@ fn a_killed_sweep_is_taken_up_and_ends_like_one_that_was_not_killed() {
     );
 
     // What a run killed while it wrote leaves behind.
-    let id = expected.values().next_back().unwrap().id.clone();
-    fs::write(killed.join(format!("cells/{id}.json.1.partial")), "{\"sch").unwrap();
+    let partial = killed.join(".stickslip-staging-1");
+    fs::write(&partial, "{\"sch").unwrap();
     let (code_again, text) = printed(study(&file, &killed, &[]));
     assert_eq!(code_again, Some(0));
     assert!(text.starts_with("200 cells: "), "{text}");
     assert!(!text.starts_with("200 cells: 0 measured before"), "{text}");
-    assert_eq!(found(&killed), expected);
+    assert_eq!((found(&killed), partial.exists()), (expected, false));
 
     // A third run measures nothing.
     let (_, text) = printed(study(&file, &killed, &[]));
@@ -341,6 +341,76 @@ fn limits_of_time_and_memory_are_verdicts() {
         assert_eq!(verdict(mesh), [denied.clone(), denied.clone()]);
     }
     assert_eq!(verdict(".r1."), [solved.clone(), solved]);
+}
+
+/// Goal: what somebody else's limit or hand ends is an error of the run; no record says that a method failed of it.
+#[cfg(target_os = "linux")]
+#[test]
+fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = sweep(folder.path(), &METHODS[..1], 40);
+    let limited = |kilobytes: u64, out: &Path, more: &[&str]| {
+        let shell = format!("ulimit -v {kilobytes} && exec \"$0\" \"$@\"");
+        let study = study(
+            &file,
+            out,
+            &[&["--untimed", "--memory-limit", "8000"], more].concat(),
+        );
+        let mut command = Command::new("sh");
+        command.args(["-c", &shell]).arg(PROGRAM);
+        command.args(study.get_args()).stdout(Stdio::null());
+        command
+    };
+    // A hard limit below the one asked for bounds the cells instead of it.
+    let out = folder.path().join("out");
+    let warned = limited(4_000_000, &out, &["--shard", "1/20"])
+        .output()
+        .unwrap();
+    assert_eq!(warned.status.code(), Some(0));
+    assert!(
+        String::from_utf8(warned.stderr)
+            .unwrap()
+            .contains("4096 MB")
+    );
+    assert!(
+        found(&out)
+            .values()
+            .all(|r| r.found.verdict == Verdict::Solved)
+    );
+
+    let out = folder.path().join("killed");
+    let mut run = study(&file, &out, &[])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let tasks = format!("/proc/{}/task", run.id());
+    let children = || {
+        let tasks = fs::read_dir(&tasks).into_iter().flatten().flatten();
+        let own = tasks.map(|task| fs::read_to_string(task.path().join("children")));
+        own.flatten().find(|own| !own.is_empty())
+    };
+    let worker = loop {
+        match children() {
+            Some(own) => break own.trim().to_owned(),
+            None => assert!(run.try_wait().unwrap().is_none(), "ended first"),
+        }
+    };
+    assert!(
+        Command::new("kill")
+            .args(["-9", &worker])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = run.wait_with_output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("signal: 9"), "{error}");
+    assert!(
+        found(&out)
+            .values()
+            .all(|r| r.found.verdict == Verdict::Solved)
+    );
 }
 
 /// Goal: whoever cannot write gets an error that names the path, and nothing half-written.

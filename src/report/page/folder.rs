@@ -10,6 +10,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::html::Link;
 use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
+use crate::report::Bundle;
 use crate::report::figures::{Kind, fastest, robustness, table1, work_precision};
 
 /// Folders inside folders that are looked into: `accuracy/figures`, one more for what users arrange.
@@ -31,8 +32,10 @@ const HEADLINES: [&Kind; 4] = [
 
 /// A report folder.
 #[derive(Debug)]
-pub struct Folder {
+pub struct Folder<'a> {
     root: PathBuf,
+    /// Files that are not on disk yet.
+    bundle: Option<&'a Bundle>,
     /// Paths relative to the root, `/` between folders.
     files: BTreeSet<String>,
 }
@@ -80,7 +83,7 @@ pub struct Origin {
     pub entries: Vec<(String, String)>,
 }
 
-impl Folder {
+impl<'a> Folder<'a> {
     /// Looks into a folder and those below it.
     ///
     /// # Errors
@@ -90,8 +93,19 @@ impl Folder {
         list(root, "", DEPTH, &mut files)?;
         Ok(Self {
             root: root.to_path_buf(),
+            bundle: None,
             files,
         })
+    }
+
+    /// The folder that a bundle becomes.
+    pub fn of(bundle: &'a Bundle) -> Self {
+        let shown = |path: &&str| has_kind(path) && !SKIPPED.iter().any(|f| path.starts_with(f));
+        Self {
+            root: PathBuf::new(),
+            bundle: Some(bundle),
+            files: bundle.paths().filter(shown).map(str::to_owned).collect(),
+        }
     }
 
     /// Whether there is a file of this path.
@@ -118,6 +132,9 @@ impl Folder {
     }
 
     fn bytes(&self, path: &str) -> Result<Vec<u8>, PageError> {
+        if let Some(bytes) = self.bundle.and_then(|bundle| bundle.get(path)) {
+            return Ok(bytes.to_vec());
+        }
         let full = self.root.join(path);
         fs::read(&full).map_err(|e| FolderError::io("read file", &full, e).into())
     }
@@ -255,6 +272,11 @@ pub fn split(path: &str) -> (&str, &str) {
     path.rsplit_once('/').unwrap_or(("", path))
 }
 
+fn has_kind(name: &str) -> bool {
+    let kind = name.rsplit_once('.').map(|(_, kind)| kind);
+    kind.is_some_and(|kind| KINDS.contains(&kind))
+}
+
 fn list(
     dir: &Path,
     below: &str,
@@ -274,11 +296,7 @@ fn list(
             if depth > 0 && !hidden {
                 list(&entry.path(), &format!("{path}/"), depth - 1, files)?;
             }
-        } else if kind.is_file()
-            && name
-                .rsplit_once('.')
-                .is_some_and(|(_, k)| KINDS.contains(&k))
-        {
+        } else if kind.is_file() && has_kind(&name) {
             files.insert(path);
         }
     }

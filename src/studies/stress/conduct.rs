@@ -18,8 +18,11 @@ use super::examine::{Effort, ended, examine};
 use super::finding::{Cause, Finding};
 use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
+use crate::files::bundle::FolderError;
+use crate::files::claim::write_whole;
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
+use crate::studies::memory;
 use crate::studies::sweep::cell::digest;
 use crate::studies::sweep::record::{Limits, Origin};
 use crate::studies::worker::{Worker, WorkerError, share};
@@ -98,11 +101,14 @@ pub enum ConductError {
         line: usize,
     },
     /// Findings of another seed, program or machine.
-    #[error("`{}` holds findings of another seed, program or machine: choose another folder", path.display())]
+    #[error("`{}` holds findings of another seed, program or machine: choose another folder, or --force", path.display())]
     Other {
         /// Which file.
         path: PathBuf,
     },
+    /// The folder.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// The workers.
     #[error(transparent)]
     Worker(#[from] WorkerError),
@@ -115,6 +121,7 @@ pub enum ConductError {
 pub fn conduct(
     suite: &Suite,
     dir: &Path,
+    force: bool,
     how: Conduct<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Finding>, ConductError> {
@@ -127,8 +134,7 @@ pub fn conduct(
         suite: suite.seed,
         origin: Origin::here(),
     };
-    std::fs::create_dir_all(dir).map_err(failed)?;
-    let (mut findings, text) = read(&path, &head)?;
+    let (mut findings, text) = read(&path, &head, force)?;
     let wanted = |f: &Finding| suite.scenes.get(&f.family).is_some_and(|n| f.number < *n);
     findings.retain(wanted);
     let known: BTreeSet<(Family, u64)> = findings.iter().map(|f| (f.family, f.number)).collect();
@@ -139,8 +145,8 @@ pub fn conduct(
         .collect();
     progress.plan(left.len());
     // A line that was being written when the program was ended is written again.
-    let mut file = File::create(&path).map_err(failed)?;
-    file.write_all(text.as_bytes()).map_err(failed)?;
+    write_whole(dir, FILE, text.as_bytes())?;
+    let file = File::options().append(true).open(&path).map_err(failed)?;
     let kept = Mutex::new((file, findings));
     let shrunk: Mutex<BTreeMap<(Family, String, Cause), usize>> = Mutex::default();
     let is_new = |finding: &Finding, cause: Cause| {
@@ -150,7 +156,11 @@ pub fn conduct(
         *count += 1;
         *count <= SHRUNK
     };
-    let worker = || Worker::new(how.program, WORK, LIMITS);
+    let limits = Limits {
+        memory_mb: memory::allowed(LIMITS.memory_mb),
+        ..LIMITS
+    };
+    let worker = || Worker::new(how.program, WORK, limits);
     share(&left, how.jobs, how.stop, worker, |worker, own| {
         let scene = scene(own.0, suite.seed, own.1);
         let mut finding = ask(worker, &scene)?;
@@ -172,7 +182,7 @@ pub fn conduct(
 }
 
 /// Findings in a file, and its whole lines; those of a new one if there is none.
-fn read(path: &Path, head: &Head) -> Result<(Vec<Finding>, String), ConductError> {
+fn read(path: &Path, head: &Head, force: bool) -> Result<(Vec<Finding>, String), ConductError> {
     let mut text = serde_json::to_string(head).unwrap_or_default() + "\n";
     let mut findings = Vec::new();
     let file = match File::open(path) {
@@ -186,11 +196,14 @@ fn read(path: &Path, head: &Head) -> Result<(Vec<Finding>, String), ConductError
     let lines: Vec<String> = BufReader::new(file).lines().map_while(Result::ok).collect();
     for (index, own) in lines.iter().enumerate() {
         if index == 0 {
-            if serde_json::from_str::<Head>(own).ok().as_ref() != Some(head) {
-                let path = path.to_path_buf();
-                return Err(ConductError::Other { path });
+            match serde_json::from_str::<Head>(own) {
+                Ok(found) if found == *head => continue,
+                Ok(_) if force => return Ok((findings, text)),
+                _ => {
+                    let path = path.to_path_buf();
+                    return Err(ConductError::Other { path });
+                }
             }
-            continue;
         }
         let sound = serde_json::from_str::<Line>(own).ok();
         let sound = sound.filter(|l| l.digest == seal(&l.finding));
@@ -224,9 +237,9 @@ fn line(finding: &Finding) -> String {
     serde_json::to_string(&line).unwrap_or_default() + "\n"
 }
 
-/// Examines a scene in a worker.
+/// Examines a scene in a worker. That memory was denied is no finding under a limit that is not [`LIMITS`].
 fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
-    Ok(match worker.ask::<Scene, Finding>(scene, 1)? {
+    let finding = match worker.ask::<Scene, Finding>(scene, 1)? {
         Ok(finding) => finding,
         Err(Verdict::TimedOut) => {
             let limit = format!("no answer in {} s", LIMITS.seconds);
@@ -234,7 +247,16 @@ fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
         }
         Err(Verdict::OutOfMemory) => ended(scene, Cause::Memory, "denied memory"),
         Err(verdict) => ended(scene, Cause::Panic, &verdict.to_string()),
-    })
+    };
+    let denied = |cause: Option<Cause>| cause == Some(Cause::Memory);
+    let any = denied(finding.cause) || finding.trials.iter().any(|t| denied(t.cause));
+    match memory::allowed(LIMITS.memory_mb) {
+        own if any && own != LIMITS.memory_mb => Err(WorkerError {
+            what: format!("{} {}", scene.family.name(), scene.number),
+            why: "denied memory by the shell (ulimit -v), not by a limit of the suite".into(),
+        }),
+        _ => Ok(finding),
+    }
 }
 
 /// The worker's side.

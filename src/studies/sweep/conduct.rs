@@ -199,8 +199,6 @@ pub fn conduct(
             }
         }
     }
-    let ids: Vec<String> = left.iter().map(|task| task.id.clone()).collect();
-    store.clear_partial(&ids)?;
     progress.plan(left.len());
 
     let done = AtomicUsize::new(0);

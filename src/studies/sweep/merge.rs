@@ -75,7 +75,7 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
             return Err(first.other(store));
         }
     }
-    let store = Store::create(into, first.contents().clone())?;
+    let store = Store::create(into, first.contents().clone(), forced)?;
     for (record, _) in chosen.values() {
         store.put(record)?;
     }

@@ -8,8 +8,7 @@
 //! Several processes may fill one folder, as long as they measure different cells.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -19,14 +18,12 @@ use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
 use crate::case::error::clip;
 use crate::case::label::{is_label, is_visible};
-use crate::files::bundle::{FolderError, unique};
+use crate::files::bundle::FolderError;
+use crate::files::claim::write_whole;
 use crate::files::regular;
 
 /// Largest file read [bytes]: a list of a hundred thousand ids has a tenth of it.
 const MAX_BYTES: u64 = 64 << 20;
-
-/// Ending of a file that is being written.
-const PARTIAL: &str = "partial";
 
 /// What a folder of records is to hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +36,17 @@ pub struct Contents {
     pub repeats: Repeats,
     /// Ids of all cells, sorted.
     pub cells: Vec<String>,
+}
+
+/// Name of the list of cells.
+const SWEEP: &str = "sweep.json";
+
+/// Folder of the records.
+pub const CELLS: &str = "cells";
+
+/// Name of a record.
+fn name(id: &str) -> String {
+    format!("{CELLS}/{id}.json")
 }
 
 /// A folder of records.
@@ -101,7 +109,7 @@ pub enum StoreError {
     },
     /// Another sweep has its records there.
     #[error(
-        "`{}` holds another sweep, `{title}`: {missing} of its {total} cells are not in this one, {new} of this one are not in it; choose another folder",
+        "`{}` holds another sweep, `{title}`: {missing} of its {total} cells are not in this one, {new} of this one are not in it; choose another folder, or --force",
         dir.display()
     )]
     OtherSweep {
@@ -157,22 +165,21 @@ pub enum StoreError {
 }
 
 impl Store {
-    /// Opens a folder for a sweep, and makes it if need be.
+    /// Opens a folder for a sweep, and makes it if need be. With `force` the sweep takes the place of another one, whose
+    /// records stay: cells of both are not measured again.
     ///
     /// # Errors
     /// A folder that cannot be written, or that holds another sweep.
-    pub fn create(dir: &Path, contents: Contents) -> Result<Self, StoreError> {
+    pub fn create(dir: &Path, contents: Contents, force: bool) -> Result<Self, StoreError> {
         let store = Self {
             dir: dir.to_path_buf(),
             contents,
         };
-        let cells = store.cells();
-        fs::create_dir_all(&cells).map_err(|e| FolderError::io("create folder", &cells, e))?;
         match Self::open(dir) {
             Ok(found) if found.contents == store.contents => {}
-            Ok(found) => return Err(store.other(&found)),
-            Err(StoreError::NoSweep { .. }) => {
-                write_whole(&dir.join("sweep.json"), &store.contents)?;
+            Ok(found) if !force => return Err(store.other(&found)),
+            Ok(_) | Err(StoreError::NoSweep { .. }) => {
+                store.write(SWEEP, &store.contents)?;
             }
             Err(error) => return Err(error),
         }
@@ -185,7 +192,7 @@ impl Store {
     /// A folder without a sweep, or with one of another schema.
     pub fn open(dir: &Path) -> Result<Self, StoreError> {
         let dir = dir.to_path_buf();
-        let path = dir.join("sweep.json");
+        let path = dir.join(SWEEP);
         let Some(contents) = read::<Contents>(&path)? else {
             return Err(StoreError::NoSweep { dir });
         };
@@ -234,8 +241,7 @@ impl Store {
     /// # Errors
     /// The file system; then no half-written record remains.
     pub fn put(&self, record: &Record) -> Result<(), StoreError> {
-        let path = self.path(&record.id);
-        write_whole(&path, record)
+        self.write(&name(&record.id), record)
     }
 
     /// All records there are, in the order of the sweep.
@@ -270,40 +276,16 @@ impl Store {
         }
     }
 
-    /// Removes what a killed process left of some cells, not what another one is writing.
-    ///
-    /// # Errors
-    /// The file system.
-    pub fn clear_partial(&self, ids: &[String]) -> Result<(), StoreError> {
-        let cells = self.cells();
-        let ids: BTreeSet<&str> = ids.iter().map(String::as_str).collect();
-        let entries = fs::read_dir(&cells).map_err(|e| FolderError::io("list", &cells, e))?;
-        for entry in entries {
-            let path = entry
-                .map_err(|e| FolderError::io("list", &cells, e))?
-                .path();
-            let partial = path.extension().is_some_and(|e| e == PARTIAL);
-            let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
-            // Name of a partial file: <id>.json.<unique>.partial.
-            let id = stem.rsplit_once(".json.").map(|(id, _)| id);
-            if partial && id.is_some_and(|id| ids.contains(id)) && !is_being_written(&path) {
-                match fs::remove_file(&path) {
-                    Err(e) if e.kind() != ErrorKind::NotFound => {
-                        return Err(FolderError::io("remove", &path, e).into());
-                    }
-                    _ => {}
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn cells(&self) -> PathBuf {
-        self.dir.join("cells")
-    }
-
     fn path(&self, id: &str) -> PathBuf {
-        self.cells().join(format!("{id}.json"))
+        self.dir.join(name(id))
+    }
+
+    /// Writes a file of the folder.
+    fn write<T: Serialize>(&self, name: &str, value: &T) -> Result<(), StoreError> {
+        let json = serde_json::to_string_pretty(value);
+        let mut json = json.map_err(|e| broken(&self.dir.join(name), e))?;
+        json.push('\n');
+        Ok(write_whole(&self.dir, name, sealed(&json).as_bytes())?)
     }
 
     /// That another folder, or this one before, holds another sweep.
@@ -407,33 +389,4 @@ fn content(path: PathBuf, found: &str, what: &'static str) -> StoreError {
         found: clip(found),
         what,
     }
-}
-
-/// Whether a process that still runs holds a file that is being written; one that is gone has left its lock.
-fn is_being_written(path: &Path) -> bool {
-    let file = fs::File::open(path);
-    file.is_ok_and(|file| matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)))
-}
-
-/// Writes a file under another name and renames it.
-fn write_whole<T: Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
-    let mut json = serde_json::to_string_pretty(value).map_err(|e| broken(path, e))?;
-    json.push('\n');
-    let json = sealed(&json);
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = path.with_file_name(format!("{name}.{}.{PARTIAL}", unique()));
-    let written = fs::File::create_new(&partial)
-        .and_then(|mut file| {
-            // For others to see that somebody writes; where a file system knows no locks they cannot.
-            let _ = file.try_lock();
-            file.write_all(json.as_bytes())?;
-            // A full disk may tell only now; the rename must not come before the contents.
-            file.sync_all()
-        })
-        .and_then(|()| fs::rename(&partial, path));
-    written.map_err(|e| {
-        // What the user is told is why it could not be written.
-        let _ = fs::remove_file(&partial);
-        FolderError::io("write", path, e).into()
-    })
 }
