@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Makes everything anew in results/ and keeps in reports/ what is committed: the paper's tables, summaries, provenance, a figure of
 # every kind and one page. About half an hour on two cores; the machine should do nothing else. An argument names parts to run
-# instead of all: paper accuracy spaces stress robustness sensitivity bench keep.
+# instead of all: paper accuracy stress robustness sensitivity bench keep.
 set -euo pipefail
 shopt -s nullglob
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-parts=${*:-paper accuracy spaces stress robustness sensitivity bench keep}
+parts=${*:-paper accuracy stress robustness sensitivity bench keep}
 cargo build --locked --release
 stickslip=${CARGO_TARGET_DIR:-target}/release/stickslip
 
@@ -33,7 +33,6 @@ for part in $parts; do
             "$stickslip" converge inclined_crack partial_slip partial_opening closing_crack manufactured_slip \
                 manufactured_slip_rotated circular_interface --refine 1,2,4,8 --spaces star,facet,p0,edge-pairs \
                 --tips none,branch,0.2 --out results/accuracy || [[ $? == 1 ]] ;; # 1: a mesh is not solved, which the tables show
-        spaces) "$stickslip" spaces --out results/spaces ;;
         stress) "$stickslip" stress --out results/stress || [[ $? == 1 ]] ;; # 1: a scene fails, which the tables show
         robustness) "$stickslip" stress methods --problems 200 --out results/robustness ;;
         # 1: some values of some options solve nothing, which the tables show
@@ -49,7 +48,6 @@ for part in $parts; do
                 'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg' \
                 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.von-mises.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
-            keep spaces infsup_by_space patch_by_space.csv infsup.svg
             keep stress stress_causes stress_invariances stress_methods stress_ladders stress_rungs.csv stress_options stress_scenes.csv \
                 stress_options.svg stress_iterations.svg
             cp -r results/stress/cases reports/stress/

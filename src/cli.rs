@@ -14,7 +14,6 @@ mod progress;
 mod robustness;
 mod run;
 mod show;
-mod spaces;
 mod stress;
 mod sweep;
 
@@ -51,8 +50,6 @@ enum Verb {
     Stress(stress::Arguments),
     /// Measure errors and observed orders on sequences of meshes, by contact space and tip enrichment
     Converge(converge::Arguments),
-    /// Test the contact spaces: numerical inf-sup condition on cracks that lie in the grid in many ways
-    Spaces(spaces::Arguments),
     /// Sweep over cases, meshes, methods and tolerances: work against precision, a record per cell
     Study(sweep::Arguments),
     /// Join the records of a sweep that ran in several folders
@@ -119,7 +116,6 @@ pub fn main(cli: Cli, plan: Plan) -> Result<bool, CliError> {
         Verb::Run(arguments) => run::run(arguments, plan),
         Verb::Stress(arguments) => stress::run(arguments, plan),
         Verb::Converge(arguments) => converge::run(arguments, plan),
-        Verb::Spaces(arguments) => spaces::run(arguments, plan),
         Verb::Study(arguments) => sweep::run(arguments),
         Verb::Merge(arguments) => sweep::run_merge(arguments),
         Verb::Work(arguments) => sweep::run_work(&arguments),

@@ -14,7 +14,6 @@ pub mod paper;
 pub mod plot;
 pub mod robustness;
 pub mod schema;
-pub mod spaces;
 pub mod standard;
 pub mod stress;
 pub mod sweep;

@@ -7,7 +7,6 @@ pub mod exchange;
 pub mod memory;
 pub mod paper;
 pub mod robustness;
-pub mod spaces;
 pub mod stress;
 pub mod sweep;
 pub mod worker;

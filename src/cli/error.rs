@@ -13,7 +13,6 @@ use crate::studies::exchange::export::ExportError;
 use crate::studies::exchange::problem_file::ProblemFileError;
 use crate::studies::paper::PaperError;
 use crate::studies::robustness::RobustnessError;
-use crate::studies::spaces::infsup::InfSupError;
 use crate::studies::stress;
 use crate::studies::sweep::conduct::ConductError;
 use crate::studies::sweep::plan::PlanError;
@@ -31,9 +30,6 @@ pub enum CliError {
     /// The stress suite.
     #[error(transparent)]
     Stress(#[from] stress::conduct::ConductError),
-    /// The study of the contact spaces.
-    #[error(transparent)]
-    InfSup(#[from] InfSupError),
     /// The main job.
     #[error(transparent)]
     Paper(#[from] PaperError),

@@ -10,7 +10,6 @@ pub mod error;
 pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
-pub mod infsup;
 mod kind;
 pub mod ladders;
 pub mod performance;
@@ -30,7 +29,7 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 23] = [
+pub static CATALOGUE: [(Chapter, &Kind); 22] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
     (Chapter::Methods, &cost::KIND),
@@ -47,7 +46,6 @@ pub static CATALOGUE: [(Chapter, &Kind); 23] = [
     (Chapter::Stress, &ladders::ITERATIONS),
     (Chapter::Robustness, &robustness::KIND),
     (Chapter::Accuracy, &error::KIND),
-    (Chapter::Spaces, &infsup::KIND),
     (Chapter::Runs, &fields::CONTACT),
     (Chapter::Runs, &fields::DISPLACEMENT),
     (Chapter::Runs, &fields::VON_MISES),

@@ -7,7 +7,6 @@ pub mod ranks;
 pub mod robustness;
 pub mod runs;
 pub mod sensitivity;
-pub mod spaces;
 pub mod stress;
 pub mod sweep;
 pub mod timings;
@@ -24,7 +23,6 @@ use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
 use crate::studies::robustness::atlas::{AtlasRow, StoppingRow};
 use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
-use crate::studies::spaces::patch::PatchRow;
 use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
 use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
 use crate::studies::sweep::analysis::scaling::Growth;
@@ -46,8 +44,6 @@ pub enum Chapter {
     Robustness,
     /// Errors of meshes.
     Accuracy,
-    /// Contact spaces.
-    Spaces,
     /// Benchmarks and other programs.
     Benchmarks,
     /// Expected numbers.
@@ -58,14 +54,13 @@ pub enum Chapter {
 
 impl Chapter {
     /// All, in the order of the page.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Paper,
         Self::Methods,
         Self::Study,
         Self::Stress,
         Self::Robustness,
         Self::Accuracy,
-        Self::Spaces,
         Self::Benchmarks,
         Self::Expected,
         Self::Runs,
@@ -80,7 +75,6 @@ impl Chapter {
             Self::Stress => "stress",
             Self::Robustness => "robustness",
             Self::Accuracy => "accuracy",
-            Self::Spaces => "spaces",
             Self::Benchmarks => "benchmarks",
             Self::Expected => "expected",
             Self::Runs => "runs",
@@ -96,7 +90,6 @@ impl Chapter {
             Self::Stress => "Numerical stability",
             Self::Robustness => "Robustness",
             Self::Accuracy => "Accuracy of the discretisation",
-            Self::Spaces => "Contact spaces",
             Self::Benchmarks => "Benchmarks and other programs",
             Self::Expected => "Expected numbers",
             Self::Runs => "Runs",
@@ -130,10 +123,6 @@ impl Chapter {
             Self::Accuracy => {
                 "Errors and observed orders on sequences of meshes, against closed forms where there are any (`stickslip \
                  converge`)."
-            }
-            Self::Spaces => {
-                "Which spaces of contact forces are stable on a crack that lies in the grid in any way, and which represent \
-                 uniform stress exactly (`stickslip spaces`)."
             }
             Self::Benchmarks => "Times of `cargo bench`, and other programs on the same problems.",
             Self::Expected => {
@@ -195,12 +184,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<StoppingRow>(),
     ];
     let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
-    let spaces = vec![
-        Description::of::<spaces::InfSupSummary<'_>>(),
-        Description::of::<spaces::InfSupRow<'_>>(),
-        Description::of::<spaces::PatchSummary<'_>>(),
-        Description::of::<PatchRow>(),
-    ];
     let benchmarks = vec![
         Description::of::<super::timings::TimingRow>(),
         timings::peers(),
@@ -224,7 +207,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         .chain(of(Chapter::Stress, stress))
         .chain(of(Chapter::Robustness, robustness))
         .chain(of(Chapter::Accuracy, accuracy))
-        .chain(of(Chapter::Spaces, spaces))
         .chain(of(Chapter::Benchmarks, benchmarks))
         .chain(of(Chapter::Expected, expected))
         .chain(of(Chapter::Runs, runs))

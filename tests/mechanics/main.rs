@@ -13,6 +13,7 @@ mod exact_curve;
 mod fronts;
 mod geometries;
 mod incompressible;
+mod inf_sup;
 mod intensity;
 mod invariance;
 mod junctions;

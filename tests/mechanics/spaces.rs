@@ -1,20 +1,16 @@
 //! Contact spaces in uniform stress: the patch tests of all of them, and continuity as the crack comes to a node.
 
-use crate::common::{assert_below, choices, parse, run as run_case, value};
-use stickslip::case::ContactSpace::{self, EdgePairs, Facet, P0, Star};
-use stickslip::run::run_case::Quiet;
-use stickslip::studies::spaces::patch::{
-    DISTANCES, PASSED, Patch, PatchRow, State, flat, run, solid,
-};
+mod catalogue;
+mod patch;
+mod text;
+
+use crate::common::{assert_below, parse, run as run_case, value};
+use catalogue::{DISTANCES, Patch, State, flat, solid};
+use patch::{PASSED, PatchRow, rows};
+use stickslip::case::ContactSpace::{EdgePairs, Facet, P0, Star};
 
 /// Distances of the crack from a node for the meshes that cost most, in cell sizes.
 const FEW: [f64; 9] = [3e-1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-11, -1e-8, -1e-1];
-
-/// Rows of patch tests by a method that takes whatever contact state comes.
-fn rows(patches: &[Patch], spaces: &[ContactSpace]) -> Vec<PatchRow> {
-    assert!(!patches.is_empty());
-    run(patches, spaces, &choices(&["hybrid"])[0], &Quiet).unwrap_or_else(|e| panic!("{e}"))
-}
 
 fn meets(patch: &Patch) -> bool {
     patch.crack == "T" || patch.crack == "X"
@@ -30,7 +26,7 @@ fn assert_passed(rows: &[PatchRow]) {
 /// Tolerance: [`PASSED`].
 #[test]
 fn star_passes_every_patch_test_in_the_plane() {
-    let mut patches = flat(&DISTANCES).unwrap();
+    let mut patches = flat(&DISTANCES);
     patches.retain(|p| p.mesh == "regular" && !meets(p));
     assert_eq!(patches.len(), 52 * DISTANCES.len());
     assert_passed(&rows(&patches, &[Star]));
@@ -39,7 +35,7 @@ fn star_passes_every_patch_test_in_the_plane() {
 /// As above on a mesh whose inner nodes are moved by up to a quarter of a cell.
 #[test]
 fn star_passes_every_patch_test_on_distorted_meshes() {
-    let mut patches = flat(&FEW).unwrap();
+    let mut patches = flat(&FEW);
     patches.retain(|p| p.mesh != "regular" && !meets(p));
     assert_eq!(patches.len(), 52 * FEW.len());
     assert_passed(&rows(&patches, &[Star]));
@@ -48,7 +44,7 @@ fn star_passes_every_patch_test_on_distorted_meshes() {
 /// As above in solids: planes along and across the grid, through nodes and edges.
 #[test]
 fn star_passes_every_patch_test_in_solids() {
-    let patches = solid(&FEW).unwrap();
+    let patches = solid(&FEW);
     assert_passed(&rows(&patches, &[Star]));
 }
 
@@ -57,7 +53,7 @@ fn star_passes_every_patch_test_in_solids() {
 /// length of an arm that is too short to be kept (1e-9 of a cell).
 #[test]
 fn star_passes_where_cracks_meet_unless_the_stiffness_is_refused() {
-    let mut patches = flat(&DISTANCES).unwrap();
+    let mut patches = flat(&DISTANCES);
     patches.retain(meets);
     let found = rows(&patches, &[Star]);
     assert_eq!(found.len(), 4 * DISTANCES.len());
@@ -77,8 +73,8 @@ fn star_passes_where_cracks_meet_unless_the_stiffness_is_refused() {
 /// nodes.
 #[test]
 fn edge_pairs_pass_every_patch_test_along_the_grid() {
-    let mut patches = flat(&DISTANCES).unwrap();
-    patches.extend(solid(&FEW).unwrap());
+    let mut patches = flat(&DISTANCES);
+    patches.extend(solid(&FEW));
     let level = |p: &Patch| p.mesh == "regular" && ["0°", "(0, 0, 1)"].contains(&&*p.crack);
     patches.retain(level);
     assert_eq!(patches.len(), 7 * DISTANCES.len() + 5 * FEW.len());
@@ -89,7 +85,7 @@ fn edge_pairs_pass_every_patch_test_along_the_grid() {
 /// too many are merged. That facet multipliers are too many across the grid is seen in their inf-sup numbers.
 #[test]
 fn what_other_spaces_cannot_do_is_seen() {
-    let mut patches = flat(&[3e-1]).unwrap();
+    let mut patches = flat(&[3e-1]);
     patches.retain(|p| p.mesh == "regular" && !meets(p));
     let found = rows(&patches, &[EdgePairs, Facet, P0]);
     let of = |space: &str, crack: &str, distance: f64| -> Vec<&PatchRow> {

@@ -157,7 +157,6 @@ fn the_committed_report_makes_one_page() {
         "stress",
         "robustness",
         "accuracy",
-        "spaces",
         "benchmarks",
         "expected",
         "provenance",
@@ -217,12 +216,7 @@ fn a_folder_with_one_table_shows_what_it_has() {
     let dir = folder(&[("some/where/table1.csv", TABLE1)]);
     let html = page(dir.path());
     check(&html);
-    for absent in [
-        "id=\"methods\"",
-        "id=\"spaces\"",
-        "id=\"provenance\"",
-        "<img",
-    ] {
+    for absent in ["id=\"methods\"", "id=\"provenance\"", "<img"] {
         assert!(!html.contains(absent), "{absent}");
     }
     assert!(html.contains("href=\"some/where/table1.csv\""));

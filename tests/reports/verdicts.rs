@@ -20,7 +20,6 @@ use stickslip::studies::paper::penalty::PenaltyRow;
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::robustness::summary::FailureRow;
-use stickslip::studies::spaces::patch::{Loaded, PatchRow, State};
 use stickslip::studies::sweep::statistics::Timing;
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Status,
@@ -121,19 +120,6 @@ fn every_kind_stands_in_every_table() {
             points: 1,
             explanation: None,
         };
-        let patch = PatchRow {
-            state: State::Stick,
-            loaded: Loaded::Displacement,
-            dimension: 2,
-            crack: "27°".into(),
-            mesh: "regular".into(),
-            distance: 0.1,
-            space: "star".into(),
-            points: 1,
-            verdict: verdict.clone(),
-            traction: f64::NAN,
-            displacement: f64::NAN,
-        };
         let error = || -> ErrorRow {
             let sample = Sample {
                 variant: Variant {
@@ -173,7 +159,6 @@ fn every_kind_stands_in_every_table() {
             read_back(error(), "verdict"),
             read_back(timing(), "verdict"),
             read_back(failure, "verdict"),
-            read_back(patch, "run"),
         ] {
             assert_eq!(found, verdict);
         }

@@ -8,7 +8,6 @@ mod collections;
 mod converge;
 mod fclib;
 mod fuzz;
-mod infsup;
 mod interchange;
 mod measure;
 mod outside;

@@ -6,53 +6,42 @@
 //! ```
 //!
 //! Taylor, Simo, Zienkiewicz & Chan, Int. J. Numer. Meth. Engng 22 (1986) 39, asked it of elements; of cut cells it asks
-//! more: the answer may not depend on how close the crack comes to a node. [`catalogue`] lists bodies and cracks, [`run`]
-//! runs them through the normal path of a case.
-
-mod catalogue;
-mod text;
-
-pub use catalogue::{DISTANCES, Loaded, Patch, State, catalogue, flat, solid};
+//! more: the answer may not depend on how close the crack comes to a node. [`catalogue`](super::catalogue) lists bodies and
+//! cracks, [`rows`] runs them through the normal path of a case.
 
 use std::collections::BTreeSet;
 
+use crate::common::{choices, parse};
 use rayon::prelude::*;
+use stickslip::case::{Case, ContactSpace};
+use stickslip::model::body::Body;
+use stickslip::model::quantities::Snapshot;
+use stickslip::model::sides::Sides;
+use stickslip::run::load_path::Posed;
+use stickslip::run::run_case::needs;
+use stickslip::run::verdict::{Accuracy, Verdict};
+use stickslip::studies::sweep::statistics::larger;
 use stickslip_methods::Tier;
 use stickslip_xfem::exact::{Field, Setting, solution};
 use stickslip_xfem::geometry::{dot, norm, sub};
 
-use crate::case::{Case, ContactSpace};
-use crate::model::body::Body;
-use crate::model::quantities::Snapshot;
-use crate::model::sides::Sides;
-use crate::run::choice::Choice;
-use crate::run::load_path::Posed;
-use crate::run::run_case::{Progress, RunError, needs};
-use crate::run::verdict::{Accuracy, Verdict};
-use crate::studies::sweep::statistics::larger;
+use super::catalogue::{Patch, State};
+use super::text::PRESSURE;
 
 /// Largest errors of a patch test that counts as passed.
 pub const PASSED: f64 = 1e-10;
 
 /// One patch test in one contact space.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct PatchRow {
     /// What the crack does.
     pub state: State,
-    /// What the boundary is given.
-    pub loaded: Loaded,
-    /// Space dimension.
-    pub dimension: usize,
     /// Shape and direction of the crack.
     pub crack: String,
-    /// Mesh.
-    pub mesh: String,
     /// Distance of the crack from a node in cell sizes; positive with the node on side 2.
     pub distance: f64,
     /// Contact space.
     pub space: String,
-    /// Contact points; 0 if the body was refused.
-    pub points: usize,
     /// Verdict on the run; refused where there is no body to run.
     pub verdict: Verdict,
     /// Traction error; NaN without an honest verdict.
@@ -68,103 +57,76 @@ impl PatchRow {
     }
 }
 
-/// Runs patch tests in some contact spaces, in the order given.
-///
-/// # Errors
-/// A patch that is no case, or that its closed form does not hold for; what the discretisation refuses is a row.
-pub fn run(
-    patches: &[Patch],
-    spaces: &[ContactSpace],
-    choice: &Choice,
-    progress: &dyn Progress,
-) -> Result<Vec<PatchRow>, RunError> {
-    progress.plan(patches.len());
-    let of_patch = |patch: &Patch| -> Result<Vec<PatchRow>, RunError> {
-        let mut rows: Vec<PatchRow> = Vec::new();
+/// Runs patch tests in some contact spaces, in the order given, by a method that takes whatever contact state comes; what the
+/// discretisation refuses is a row.
+pub fn rows(patches: &[Patch], spaces: &[ContactSpace]) -> Vec<PatchRow> {
+    assert!(!patches.is_empty());
+    let of_patch = |patch: &Patch| {
         let mut seen = BTreeSet::new();
-        let mut case = patch.case()?;
-        for &space in spaces {
+        let mut case = parse(&patch.text);
+        let mut row = |&space: &ContactSpace| {
             case.cracks.iter_mut().for_each(|c| c.contact = space);
-            let row = run_one(patch, &case, space, choice)?;
-            if seen.insert(row.space.clone()) {
-                rows.push(row);
-            }
-        }
-        progress.done(&patch.to_string());
-        Ok(rows)
+            run(patch, &case, space)
+        };
+        let mut rows: Vec<PatchRow> = spaces.iter().map(&mut row).collect();
+        rows.retain(|row| seen.insert(row.space.clone()));
+        rows
     };
-    let rows: Vec<Vec<PatchRow>> = patches.par_iter().map(of_patch).collect::<Result<_, _>>()?;
-    Ok(rows.into_iter().flatten().collect())
+    patches.par_iter().flat_map(of_patch).collect()
 }
 
 /// One patch test in the contact space of its case.
-fn run_one(
-    patch: &Patch,
-    case: &Case,
-    space: ContactSpace,
-    choice: &Choice,
-) -> Result<PatchRow, RunError> {
-    let row = |space: &str, points, verdict| PatchRow {
+fn run(patch: &Patch, case: &Case, space: ContactSpace) -> PatchRow {
+    let row = |space: &str, verdict| PatchRow {
         state: patch.state,
-        loaded: patch.loaded,
-        dimension: case.model.dim(),
         crack: patch.crack.clone(),
-        mesh: patch.mesh.clone(),
         distance: patch.distance,
         space: space.to_owned(),
-        points,
         verdict,
         traction: f64::NAN,
         displacement: f64::NAN,
     };
+    let choices = choices(&["hybrid"]);
     let friction: Vec<f64> = case.cracks.iter().map(|c| c.friction).collect();
-    let frictions = std::slice::from_ref(&friction);
-    let body = match Body::new(case, 1, needs(frictions, std::slice::from_ref(choice))) {
+    let body = match Body::new(case, 1, needs(std::slice::from_ref(&friction), &choices)) {
         Ok(body) => body,
-        Err(refused) => return Ok(row(space.name(), 0, Verdict::Refused(refused.to_string()))),
+        Err(refused) => return row(space.name(), Verdict::Refused(refused.to_string())),
     };
-    let posed = Posed::new(&body, case, &friction)?;
-    let path = posed.run(choice, Accuracy::of(case, Tier::High));
+    let posed = Posed::new(&body, case, &friction).unwrap();
+    let path = posed.run(&choices[0], Accuracy::of(case, Tier::High));
     let end = path.follow(&mut |_, _, _| ());
-    let mut row = row(&body.space, body.points.len(), end.verdict);
-    let Some(now) = end.now else { return Ok(row) };
+    let mut row = row(&body.space, end.verdict);
+    let Some(now) = end.now else { return row };
     let hydrostatic;
     let field = match posed.loading.exact(case.path.increments) {
         Some(field) => field,
         None => {
-            hydrostatic = pressed(case)?;
+            hydrostatic = pressed(case);
             hydrostatic.as_ref()
         }
     };
     row.traction = traction_error(&body, field, &now);
     row.displacement = displacement_error(case, &body, field, &now);
-    Ok(row)
+    row
 }
 
 /// Hydrostatic pressure about the middle of the first crack: the closed form of several cracks.
-fn pressed(case: &Case) -> Result<Box<dyn Field>, RunError> {
-    let refuse = |message: String| {
-        let allowed = "a body in hydrostatic pressure";
-        RunError::from(case.error(&case.mesh.span, &case.title, allowed, message))
-    };
-    let (Some(spec), Some(crack)) = (solution("uniform-stress"), case.cracks.first()) else {
-        return Err(refuse("no crack, or no closed form".into()));
-    };
+fn pressed(case: &Case) -> Box<dyn Field> {
+    let spec = solution("uniform-stress").unwrap();
     let setting = Setting {
         material: case.material,
         model: case.model,
         friction: 0.0,
-        crack: &crack.geometry,
+        crack: &case.cracks[0].geometry,
         body: [[0.0; 3]; 2],
     };
     let value = |name: &str, default: Option<f64>| match name {
-        "stress_xx_pa" | "stress_yy_pa" => -text::PRESSURE,
+        "stress_xx_pa" | "stress_yy_pa" => -PRESSURE,
         _ => default.unwrap_or_default(),
     };
     let parameters = spec.parameters.iter();
     let stress: Vec<f64> = parameters.map(|p| value(p.name, p.default)).collect();
-    let solution = (spec.build)(&setting, &stress).map_err(refuse)?;
-    solution.at(&[1.0]).map_err(refuse)
+    (spec.build)(&setting, &stress).unwrap().at(&[1.0]).unwrap()
 }
 
 fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {

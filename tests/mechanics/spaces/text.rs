@@ -2,21 +2,22 @@
 
 use std::fmt::Write;
 
+use crate::common::{load, support};
 use stickslip_xfem::geometry::Point;
 
 use super::catalogue::{Loaded, State};
 
 /// Pressure, or size of a stress [Pa].
-pub(super) const PRESSURE: f64 = 1e6;
+pub const PRESSURE: f64 = 1e6;
 
 /// Young's modulus [Pa].
-pub(super) const YOUNG: f64 = 1e10;
+pub const YOUNG: f64 = 1e10;
 
 /// Poisson's ratio.
-pub(super) const POISSON: f64 = 0.3;
+pub const POISSON: f64 = 0.3;
 
 /// Model, material and mesh.
-pub(super) fn head(model: &str, mesh: &str) -> String {
+pub fn head(model: &str, mesh: &str) -> String {
     format!(
         "title = \"Patch test\"\nmodel = \"{model}\"\ntolerance = 1e-13\n\
          material = {{ young_pa = {YOUNG:e}, poisson = {POISSON:?} }}\n{mesh}"
@@ -24,30 +25,21 @@ pub(super) fn head(model: &str, mesh: &str) -> String {
 }
 
 /// A crack through given points, as TOML.
-pub(super) fn chain(points: &[Point], friction: f64) -> String {
+pub fn chain(points: &[Point], friction: f64) -> String {
     let points: Vec<[f64; 2]> = points.iter().map(|x| [x[0], x[1]]).collect();
     format!("[[crack]]\npoints_m = {points:?}\nfriction = {friction:?}\ntip = \"none\"\n")
 }
 
-pub(super) fn support(on: &str, displacement: &str) -> String {
-    format!("[[support]]\non = {on}\ndisplacement_m = {displacement}\n")
-}
-
-pub(super) fn load(on: &str, what: &str) -> String {
-    format!("[[load]]\non = \"{on}\"\n{what}\n")
-}
-
-pub(super) fn uniform(stress: &[(&str, f64)]) -> String {
+pub fn uniform(stress: &[(&str, f64)]) -> String {
     let mut text = "[exact]\nsolution = \"uniform-stress\"\n".to_owned();
     for (component, value) in stress {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "stress_{component}_pa = {value:e}");
+        writeln!(text, "stress_{component}_pa = {value:e}").unwrap();
     }
     text
 }
 
 /// The opening of an open crack beside its stress.
-pub(super) fn parted(state: State) -> String {
+pub fn parted(state: State) -> String {
     /// δ [m]: of the size of the displacements.
     const OPENING: f64 = 1e-4;
     match state {
@@ -57,7 +49,7 @@ pub(super) fn parted(state: State) -> String {
 }
 
 /// Supports and loads of uniform stress; `free_to_slide`: the crack bears no shear, so the supports must.
-pub(super) fn boundary(dim: usize, loaded: Loaded, free_to_slide: bool) -> String {
+pub fn boundary(dim: usize, loaded: Loaded, free_to_slide: bool) -> String {
     let sides: &[&str] = if dim == 2 {
         &["left", "bottom", "right", "top"]
     } else {

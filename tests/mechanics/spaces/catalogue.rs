@@ -5,16 +5,11 @@
 //!   solid    1 × 1 × 1 m, 4 × 4 × 4 cells; planes at a distance from the middle node
 //! ```
 
-use std::fmt;
-
+use crate::common::{load, parse, support};
 use stickslip_xfem::geometry::{Point, add_scaled, dot, norm, sub, unit};
 use stickslip_xfem::mesh::box_mesh::box_mesh;
 
-use crate::case::{Case, CaseError, named, parse};
-
-use super::text::{
-    POISSON, PRESSURE, YOUNG, boundary, chain, head, load, parted, support, uniform,
-};
+use super::text::{POISSON, PRESSURE, YOUNG, boundary, chain, head, parted, uniform};
 
 /// Distances of the crack from a node in cell sizes, on both sides of it.
 pub const DISTANCES: [f64; 27] = [
@@ -22,39 +17,34 @@ pub const DISTANCES: [f64; 27] = [
     -1e-11, -1e-10, -1e-9, -1e-8, -1e-7, -1e-6, -1e-5, -1e-4, -1e-3, -1e-2, -1e-1, -3e-1,
 ];
 
-named! {
-    /// What the crack does.
-    pub enum State {
-        /// Closed under hydrostatic pressure, without friction.
-        Hydrostatic = "hydrostatic",
-        /// Sticks under a stress with all components.
-        Stick = "stick",
-        /// Open, free of traction beside a stress along it.
-        Open = "open",
-        /// Slides as a whole.
-        Slide = "block slides",
-        /// The sliding block with friction enough to hold.
-        Held = "block sticks",
-    }
+/// What the crack does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum State {
+    /// Closed under hydrostatic pressure, without friction.
+    Hydrostatic,
+    /// Sticks under a stress with all components.
+    Stick,
+    /// Open, free of traction beside a stress along it.
+    Open,
+    /// Slides as a whole.
+    Slide,
+    /// The sliding block with friction enough to hold.
+    Held,
 }
 
-named! {
-    /// What the boundary is given.
-    pub enum Loaded {
-        /// Displacements on all sides: the crack leaves through held sides.
-        Displacement = "displacement",
-        /// Tractions and just enough supports: the crack leaves through free sides.
-        Traction = "traction",
-    }
+/// What the boundary is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Loaded {
+    /// Displacements on all sides: the crack leaves through held sides.
+    Displacement,
+    /// Tractions and just enough supports: the crack leaves through free sides.
+    Traction,
 }
 
 /// A patch test.
-#[derive(Debug, Clone)]
 pub struct Patch {
     /// What the crack does.
     pub state: State,
-    /// What the boundary is given.
-    pub loaded: Loaded,
     /// Shape and direction of the crack.
     pub crack: String,
     /// Mesh: `regular` or how it is distorted.
@@ -63,40 +53,6 @@ pub struct Patch {
     pub distance: f64,
     /// The case file.
     pub text: String,
-}
-
-impl Patch {
-    /// The case, with the default contact space.
-    ///
-    /// # Errors
-    /// If the text is no case.
-    pub fn case(&self) -> Result<Case, CaseError> {
-        parse("patch.toml", self.text.as_str())
-    }
-}
-
-impl fmt::Display for Patch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Patch {
-            state,
-            loaded,
-            crack,
-            mesh,
-            distance,
-            ..
-        } = self;
-        write!(f, "{state}, {crack}, {mesh}, {loaded}, {distance:e}")
-    }
-}
-
-/// All patch tests at some distances.
-///
-/// # Errors
-/// If a text of this module is no case.
-pub fn catalogue(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
-    let mut patches = flat(distances)?;
-    patches.extend(solid(distances)?);
-    Ok(patches)
 }
 
 /// Angles of straight cracks [degrees].
@@ -114,40 +70,30 @@ struct Grid {
 
 impl Grid {
     /// The grid whose node next to `near` the crack passes.
-    fn new(
-        name: &'static str,
-        model: &str,
-        text: String,
-        near: Point,
-        size: f64,
-    ) -> Result<Self, CaseError> {
-        let case = parse("patch.toml", head(model, &text))?;
-        let mesh = box_mesh(&case.mesh.grid).map_err(|fold| {
-            let allowed = "a motion that keeps all cells convex";
-            case.error(case.mesh.motion_span(fold.motion), name, allowed, &fold)
-        })?;
+    fn new(name: &'static str, model: &str, text: String, near: Point, size: f64) -> Self {
+        let mesh = box_mesh(&parse(&head(model, &text)).mesh.grid).unwrap();
         let away = |x: &Point| norm(&sub(x, &near));
         let nearest = mesh.nodes.iter().min_by(|p, q| away(p).total_cmp(&away(q)));
-        Ok(Grid {
+        Grid {
             name,
-            node: nearest.copied().unwrap_or(near),
+            node: *nearest.unwrap(),
             text,
             size,
-        })
+        }
     }
 }
 
-fn flat_grids() -> Result<[Grid; 2], CaseError> {
+fn flat_grids() -> [Grid; 2] {
     let grid = |name, motion: &str| {
         let text = format!(
             "mesh = {{ box = {{ min_m = [0, 0], max_m = [1, 2], cells = [6, 12] }}{motion} }}\n"
         );
         Grid::new(name, "plane-strain", text, [0.5, 1.0, 0.0], 1.0 / 6.0)
     };
-    Ok([
-        grid("regular", "")?,
-        grid("distorted 25 %", ", distort = { amplitude = 0.25 }")?,
-    ])
+    [
+        grid("regular", ""),
+        grid("distorted 25 %", ", distort = { amplitude = 0.25 }"),
+    ]
 }
 
 fn direction(degrees: f64) -> Point {
@@ -164,16 +110,12 @@ fn turned(t: &Point) -> Point {
 }
 
 /// Patch tests in the plane.
-///
-/// # Errors
-/// If a text of this module is no case.
-pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
+pub fn flat(distances: &[f64]) -> Vec<Patch> {
     let mut patches = Vec::new();
-    for grid in flat_grids()? {
+    for grid in flat_grids() {
         for &distance in distances {
-            let at = |state, loaded, crack: &str, rest: String| Patch {
+            let at = |state, crack: &str, rest: String| Patch {
                 state,
-                loaded,
                 crack: crack.to_owned(),
                 mesh: grid.name.to_owned(),
                 distance,
@@ -186,23 +128,23 @@ pub fn flat(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
                 if degrees < 90.0 {
                     tests.extend(blocks(&c, &t));
                 }
-                for (state, loaded, rest) in tests {
-                    patches.push(at(state, loaded, &format!("{degrees}°"), rest));
+                for (state, rest) in tests {
+                    patches.push(at(state, &format!("{degrees}°"), rest));
                 }
             }
             for loaded in [Loaded::Displacement, Loaded::Traction] {
                 for (name, crack) in bent(&grid.node, distance * grid.size) {
                     let stress = [("xx", -PRESSURE), ("yy", -PRESSURE)];
                     let rest = crack + &boundary(2, loaded, true) + &uniform(&stress);
-                    patches.push(at(State::Hydrostatic, loaded, name, rest));
+                    patches.push(at(State::Hydrostatic, name, rest));
                 }
             }
             for (name, rest) in meeting(&grid.node, distance * grid.size) {
-                patches.push(at(State::Hydrostatic, Loaded::Displacement, name, rest));
+                patches.push(at(State::Hydrostatic, name, rest));
             }
         }
     }
-    Ok(patches)
+    patches
 }
 
 /// Entries of a symmetric stress by their names.
@@ -213,7 +155,7 @@ fn in_uniform_stress(
     dim: usize,
     crack: impl Fn(f64) -> String,
     [hydrostatic, stick, open]: [Stress<'_>; 3],
-) -> Vec<(State, Loaded, String)> {
+) -> Vec<(State, String)> {
     use Loaded::{Displacement, Traction};
     let tests = [
         (State::Hydrostatic, Displacement, 0.0, hydrostatic),
@@ -225,13 +167,13 @@ fn in_uniform_stress(
     let text = |(state, loaded, friction, stress): (State, Loaded, f64, Stress<'_>)| {
         let held = boundary(dim, loaded, state == State::Hydrostatic);
         let text = crack(friction) + &held + &uniform(stress) + &parted(state);
-        (state, loaded, text)
+        (state, text)
     };
     tests.map(text).into()
 }
 
 /// Uniform stress beside a straight crack through c along t.
-fn straight(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
+fn straight(c: &Point, t: &Point) -> Vec<(State, String)> {
     let ends = [-3.0, 3.0].map(|s| add_scaled(c, s, t));
     let along = |a: usize, b: usize| PRESSURE * t[a] * t[b];
     let hydrostatic = [("xx", -PRESSURE), ("yy", -PRESSURE)];
@@ -250,7 +192,7 @@ fn straight(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
 }
 
 /// The confined block that slides forward or sticks.
-fn blocks(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
+fn blocks(c: &Point, t: &Point) -> Vec<(State, String)> {
     /// Downward displacement of the top [m]: far beyond the onset of slip.
     const PUSH: f64 = 2e-3;
     let ends = [-3.0, 3.0].map(|s| add_scaled(c, s, t));
@@ -277,7 +219,7 @@ fn blocks(c: &Point, t: &Point) -> Vec<(State, Loaded, String)> {
                         + &load("right", &pressure)
                 }
             };
-            found.push((state, loaded, chain(&ends, friction) + &held + &exact));
+            found.push((state, chain(&ends, friction) + &held + &exact));
         }
     }
     found
@@ -341,13 +283,10 @@ fn meeting(node: &Point, shift: f64) -> Vec<(&'static str, String)> {
 }
 
 /// Patch tests in solids.
-///
-/// # Errors
-/// If a text of this module is no case.
-pub fn solid(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
+pub fn solid(distances: &[f64]) -> Vec<Patch> {
     let text =
         "mesh = { box = { min_m = [0, 0, 0], max_m = [1, 1, 1], cells = [4, 4, 4] } }\n".to_owned();
-    let grid = Grid::new("regular", "solid", text, [0.5; 3], 0.25)?;
+    let grid = Grid::new("regular", "solid", text, [0.5; 3], 0.25);
     let mut patches = Vec::new();
     for normal in [
         [0.0, 0.0, 1.0],
@@ -387,11 +326,9 @@ pub fn solid(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
                     "[[crack]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\nfriction = {mu:?}\n"
                 )
             };
-            for (state, loaded, rest) in in_uniform_stress(3, crack, [&hydrostatic, &stick, &open])
-            {
+            for (state, rest) in in_uniform_stress(3, crack, [&hydrostatic, &stick, &open]) {
                 patches.push(Patch {
                     state,
-                    loaded,
                     crack: format!("({}, {}, {})", normal[0], normal[1], normal[2]),
                     mesh: grid.name.to_owned(),
                     distance,
@@ -400,5 +337,5 @@ pub fn solid(distances: &[f64]) -> Result<Vec<Patch>, CaseError> {
             }
         }
     }
-    Ok(patches)
+    patches
 }
