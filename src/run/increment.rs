@@ -255,10 +255,10 @@ impl JudgedIncrement {
         row
     }
 
-    /// The answer, to be told from others.
-    pub fn answer(&self, key: &RunKey) -> Option<Answer> {
+    /// The answer, to be told from others of the same problem.
+    pub fn answer(&self, problem: String) -> Option<Answer> {
         Some(Answer {
-            key: key.clone(),
+            problem,
             jump: self.jump.clone()?,
             reference_jump: self.judged.as_ref()?.found.reference_jump,
         })

@@ -57,8 +57,8 @@ impl RunKey {
 /// Of an increment that was solved at tier high: what tells it from another answer. Not written.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// Which run.
-    pub key: RunKey,
+    /// Which problem.
+    pub problem: String,
     /// `[[u]]` by contact row [m].
     pub jump: Vec<f64>,
     /// u_ref [m].

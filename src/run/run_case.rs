@@ -117,7 +117,7 @@ pub fn run_case(
                     guess: Guess::Further(further),
                     ..posed.run(choice, accuracy)
                 };
-                path.follow(&mut |key, now, _| results.answers.extend(now.answer(key)));
+                path.follow(&mut |key, now, _| results.answers.extend(now.answer(key.problem())));
             }
             let Posed { friction, .. } = posed;
             progress.done(&format!(
@@ -196,7 +196,7 @@ fn run_path(path: &LoadPathRun<'_>, refine: usize, fields: bool) -> Results {
     let end = path.follow(&mut |key, increment, now| {
         results.runs.push(path.row(key, increment, now));
         results.history.extend(increment.history_rows(key));
-        results.answers.extend(increment.answer(key));
+        results.answers.extend(increment.answer(key.problem()));
         let Some(now) = now else { return };
         results.add_found(key, quantities(case, body, now), point_states(body, now));
         if fields {

@@ -1,28 +1,38 @@
 //! Problems with several answers: what no judge of a single one can see.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::run::record::{Answer, Results};
 use crate::run::verdict::Verdict;
 
 /// Jumps that differ by more, relative to u_ref and to the largest of both, are those of different answers: a thousand times what tier high
 /// allows the contact laws to be broken.
-const DIFFERENT: f64 = 1e-6;
+pub const DIFFERENT: f64 = 1e-6;
 
 /// Marks what is `solved` on problems to which different answers are known: then none of them is *the* answer. Above the critical
 /// friction of a contact an increment may have several, and which one a method finds depends on where it starts.
 pub fn mark_several(results: &mut Results) {
-    let mut problems: BTreeMap<String, Vec<&Answer>> = BTreeMap::new();
-    for answer in &results.answers {
-        let own = problems.entry(answer.key.problem()).or_default();
-        own.push(answer);
-    }
-    let several = |answers: &Vec<&Answer>| answers.iter().any(|a| a.differs_from(answers[0]));
-    problems.retain(|_, answers| several(answers));
-    let ambiguous: Vec<String> = problems.into_keys().collect();
+    let ambiguous = ambiguous(&results.answers);
     for row in &mut results.runs {
-        if row.verdict == Verdict::Solved && ambiguous.binary_search(&row.key.problem()).is_ok() {
-            row.verdict = Verdict::Several;
+        row.verdict.mark(ambiguous.contains(&row.key.problem()));
+    }
+}
+
+/// Problems with different answers among some.
+pub fn ambiguous(answers: &[Answer]) -> BTreeSet<String> {
+    let mut problems: BTreeMap<&str, Vec<&Answer>> = BTreeMap::new();
+    for answer in answers {
+        problems.entry(&answer.problem).or_default().push(answer);
+    }
+    problems.retain(|_, answers| answers.iter().any(|a| a.differs_from(answers[0])));
+    problems.into_keys().map(str::to_owned).collect()
+}
+
+impl Verdict {
+    /// Marks what is solved where another answer is known.
+    pub fn mark(&mut self, ambiguous: bool) {
+        if ambiguous && *self == Self::Solved {
+            *self = Self::Several;
         }
     }
 }

@@ -27,6 +27,7 @@ use crate::model::loading::Loading;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
 use crate::run::run_case::Progress;
+use crate::run::several::ambiguous;
 use crate::run::verdict::Verdict;
 use crate::studies::atlas::answers::Answers;
 use crate::studies::atlas::stopping::Stop;
@@ -331,10 +332,11 @@ fn run_body(
         )?);
         let unique = contact_wise_margin(&system)? > 0.0;
         let start = ContactState::zero(&system);
-        let mut answers: Vec<Option<Answers>> = vec![None; loads.len()];
+        let mut known: Vec<Option<Answers>> = vec![None; loads.len()];
+        let (first, mut answers) = (trials.len(), Vec::new());
         for choice in choices {
             let mut solver = Solver::new(choice, &system);
-            for ((problem, load), answers) in loads.iter().zip(&mut answers) {
+            for ((problem, load), known) in loads.iter().zip(&mut known) {
                 let increment = Increment {
                     system: &system,
                     load,
@@ -359,14 +361,15 @@ fn run_body(
                         stopped = stops(choice, solver, &increment)?;
                     }
                     if let Verdict::GaveUp(_) = tried.verdict {
-                        let known = match answers {
+                        let known = match known {
                             Some(known) => known,
-                            None => answers.insert(Answers::of(&increment)?),
+                            None => known.insert(Answers::of(&increment)?),
                         };
                         let verdict = &tried.verdict;
                         explanation = Some(explain(choice, solver, &increment, verdict, known)?);
                     }
                 }
+                answers.extend(tried.answer(problem.to_string()));
                 trials.push(Trial {
                     dim,
                     problem: *problem,
@@ -391,6 +394,11 @@ fn run_body(
                 "{dim}D body {number} mu={friction} {}",
                 choice.label
             ));
+        }
+        let ambiguous = ambiguous(&answers);
+        for trial in &mut trials[first..] {
+            let problem = trial.problem.to_string();
+            trial.verdict.mark(ambiguous.contains(&problem));
         }
     }
     Ok(trials)

@@ -42,6 +42,7 @@ impl Row for SuccessRow {
             "success_low" "–" .significant(4) = r.success()[1], "lower end of its interval";
             "success_high" "–" .significant(4) = r.success()[2], "upper end";
             "correct" "" .named("right") = r.correct, "cells that are right to the tier";
+            "several" "" = r.several, "of these, where different answers are known: far from the converged solution that the solver error refers to, or this of another cell";
             "correct_rate" "–" .significant(4).named("right").percent(1) = r.correctness()[0], "correct / cells";
             "correct_low" "–" .significant(4).named("from").percent(1) = r.correctness()[1], "lower end of its interval";
             "correct_high" "–" .significant(4).named("to").percent(1) = r.correctness()[2], "upper end";

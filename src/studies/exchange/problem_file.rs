@@ -325,7 +325,7 @@ impl ProblemFile {
             let row = tried.run_row(&key, &self.system, self.setup, accuracy);
             solved.results.runs.push(row);
             solved.results.history.extend(tried.history_rows(&key));
-            solved.results.answers.extend(tried.answer(&key));
+            solved.results.answers.extend(tried.answer(key.problem()));
             if let Some(judged) = tried.honest() {
                 solved.solutions.push(ProblemSolution {
                     velocity: local_velocity(&increment, &judged.outcome.state),
@@ -357,7 +357,7 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
         Problem::Local(problem) => ("W", &problem.w),
         Problem::Global(problem) => ("M", &problem.m),
     };
-    if operator.is_half() {
+    if matches!(operator.sides(), [true, false] | [false, true]) {
         return unsupported(&format!(
             "{name} holds one triangle: store it in full, or say `symmetric_packed = 1`"
         ));

@@ -27,12 +27,14 @@ pub struct RobustnessRow {
     pub problems: usize,
     /// Contact laws solved.
     pub solved: usize,
+    /// Those of them on problems to which another answer is known.
+    pub several: usize,
     /// Own laws solved, the contact laws held to each tier of `GRADES`, but not to the one asked for.
     pub approximate: [usize; 4],
     /// Ended without a claim.
     pub gave_up: usize,
-    /// Those of them with each of [`GIVE_UPS`] but the last: nobody stops a trial.
-    pub gave_up_by: [usize; 6],
+    /// Those of them with each of [`GIVE_UPS`].
+    pub gave_up_by: [usize; GIVE_UPS.len()],
     /// Claims the judge refuted.
     pub false_claims: usize,
     /// Errors, out of memory among them.
@@ -105,7 +107,7 @@ impl RobustnessRow {
     fn of(trials: &[&Trial], tier: Tier) -> Option<Self> {
         let first = trials.first()?;
         let (mut solved, mut refused, mut false_claims, mut crashed) = (0, 0, 0, 0);
-        let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; 6], 0);
+        let (mut approximate, mut gave_up_by, mut gave_up) = ([0; 4], [0; GIVE_UPS.len()], 0);
         for trial in trials {
             match &trial.verdict {
                 Verdict::Solved | Verdict::Several => solved += 1,
@@ -136,6 +138,10 @@ impl RobustnessRow {
             tier,
             problems: trials.len(),
             solved,
+            several: trials
+                .iter()
+                .filter(|t| t.verdict == Verdict::Several)
+                .count(),
             approximate,
             gave_up,
             gave_up_by,

@@ -21,6 +21,7 @@ use std::cmp::Ordering;
 use crate::files::bundle::file_name;
 use crate::run::choice::is_outside;
 use crate::run::registry::methods;
+use crate::run::several::DIFFERENT;
 use stickslip_methods::Tier;
 
 use super::cell::{Cell, Problem};
@@ -58,6 +59,25 @@ pub fn is_correct(record: &Record, tier: Tier) -> bool {
     is_honest(record)
         && found.increments.iter().all(|i| i.verdict.holds_to(tier))
         && found.violation() <= tier.tolerance()
+}
+
+/// Marks what is `solved` at tier high on problems to which different answers are known: cells are measured apart, and told
+/// apart by their distance from the converged solution.
+pub fn mark_several(records: &mut [Record]) {
+    let high = |r: &Record| r.cell.tolerance <= Tier::High.tolerance();
+    let differs = |r: &&Record| {
+        let error = r.found.solver_error.as_ref();
+        high(r) && r.found.verdict.is_solved() && error.is_some_and(|e| e.jump > DIFFERENT)
+    };
+    let ambiguous: Vec<Problem> = records
+        .iter()
+        .filter(differs)
+        .map(|r| r.cell.problem())
+        .collect();
+    for record in records.iter_mut().filter(|r| high(r)) {
+        let ambiguous = ambiguous.contains(&record.cell.problem());
+        record.found.verdict.mark(ambiguous);
+    }
 }
 
 /// Time of the method alone, preparation and enforcement on all increments: what methods differ in. K is factored and
@@ -226,6 +246,22 @@ mod tests {
         let solved = record("plate", "latin", 1e-6);
         assert!(is_correct(&solved, Tier::Low) && is_correct(&solved, Tier::Mid));
         assert!(!is_correct(&solved, Tier::High));
+    }
+
+    /// Goal: an answer far from the converged one marks all that is solved at tier high on its problem, and nothing else.
+    #[test]
+    fn different_answers_of_a_problem_are_marked() {
+        let mut far = record("plate", "latin", 1e-9);
+        far.found.solver_error.as_mut().unwrap().jump = 0.1;
+        let mut records = [
+            far,
+            record("plate", "nsgs", 1e-9),
+            record("plate", "nsgs", 1e-3),
+            record("beam", "nsgs", 1e-9),
+        ];
+        mark_several(&mut records);
+        let several = records.map(|r| r.found.verdict == Verdict::Several);
+        assert_eq!(several, [true, true, false, false]);
     }
 
     /// Goal: where equilibrium fails, as it may for laws of their own, a small natural map proves nothing; the grade knows.

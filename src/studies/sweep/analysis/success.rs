@@ -48,6 +48,8 @@ pub struct SuccessRow {
     pub claimed: usize,
     /// Cells that are right to the tier.
     pub correct: usize,
+    /// Those of them on problems to which another answer is known.
+    pub several: usize,
     /// Cells that are not, by [`FAILURES`].
     pub failures: [usize; FAILURES.len()],
 }
@@ -98,11 +100,13 @@ fn row(own: &[&Record], tier: Tier) -> Option<SuccessRow> {
         cells: own.len(),
         claimed: own.iter().filter(|r| claims(r)).count(),
         correct: 0,
+        several: 0,
         failures: [0; FAILURES.len()],
     };
     for record in own {
         if is_correct(record, tier) {
             row.correct += 1;
+            row.several += usize::from(record.found.verdict == Verdict::Several);
         } else {
             row.failures[failure(&record.found.verdict)] += 1;
         }
