@@ -86,7 +86,7 @@ pub mod newton;
 pub mod own_laws;
 pub mod splitting;
 
-pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
+pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS, check_rows};
 pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
 pub use algebra::rows::RowSet;
 pub use algebra::square::{DelassusMatrix, SquareMatrix};

@@ -292,6 +292,11 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
         probes,
         expects: each(root, "expect", |v| runs.expect(v))?,
     };
+    // Runs that differ in nothing would write files of one name.
+    let swept = case.cracks.is_empty() && !case.sweep.friction.is_empty();
+    if let (true, Some(value)) = (swept, root.get("sweep")) {
+        return Err(value.refuse("friction only beside cracks", "friction of no crack"));
+    }
     Ok(case.in_frame())
 }
 

@@ -1,7 +1,7 @@
 //! What several verbs ask of their arguments: cases and methods by name, no two of one name.
 
+use std::any::TypeId;
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
@@ -14,7 +14,7 @@ use crate::report::table::Description;
 use crate::report::tables::catalogue;
 use crate::report::{Claim, Plan, page};
 use crate::run::choice::{Choice, ChoiceError};
-use crate::run::outside::SECONDS;
+use crate::run::outside::{OUTSIDE, SECONDS};
 use crate::run::provenance::Provenance;
 use crate::run::registry::methods;
 use crate::run::run_case::Settings;
@@ -66,7 +66,8 @@ const BELOW: [&str; 5] = ["figures/a", "fields/a", "cases/a", "cells/a", "soluti
 impl Output {
     /// The folder.
     pub fn folder(&self, name: &str) -> PathBuf {
-        let usual = || Path::new("results").join(name);
+        // A name of dots would be another folder.
+        let usual = || Path::new("results").join(file_name(&[name]).trim_start_matches('.'));
         self.out.clone().unwrap_or_else(usual)
     }
 
@@ -106,21 +107,33 @@ pub fn plan(command: &clap::Command, matches: &clap::ArgMatches) -> Plan {
         *verb = format!("{} {verb}", own.get_name()).trim_end().to_owned();
         return plan;
     }
-    let told = |value: &OsStr| match regular::read(value.as_ref(), DIGESTED) {
-        Ok(bytes) => {
-            let name = Path::new(value).file_name().unwrap_or_default();
-            format!("{} {}", name.display(), digest_of_bytes(&bytes))
-        }
-        Err(_) => value.display().to_string(),
-    };
-    let ids = command.get_arguments().map(|own| own.get_id().as_str());
-    let known = ids.filter(|id| !HOW.contains(id));
-    let given = known.filter_map(|id| Some((id, matches.try_get_raw(id).ok()??)));
-    let told = given.map(|(id, values)| {
-        let values: Vec<String> = values.map(told).collect();
-        (id.to_owned(), visible(&values.join(", ")))
+    let asked = (command.get_arguments()).filter(|own| !HOW.contains(&own.get_id().as_str()));
+    let given = asked.filter_map(|own| {
+        let id = own.get_id().as_str();
+        let is_file = own.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+        let values = matches
+            .try_get_raw(id)
+            .ok()??
+            .map(|value| match value.to_str() {
+                Some(name) if id == "method" => told(name, name.strip_prefix(OUTSIDE)),
+                Some(name) => told(name, (is_file || id == "cases").then_some(name)),
+                None => told(&value.to_string_lossy(), None),
+            });
+        // In which order they are given does not matter.
+        let mut values: Vec<String> = values.collect();
+        values.sort();
+        Some((id.to_owned(), values.join(", ")))
     });
-    told.collect()
+    given.collect()
+}
+
+/// A value, of a file that can be read its name and the digest of its contents.
+pub fn told(value: &str, file: Option<&str>) -> String {
+    let read = file.and_then(|file| Some((file, regular::read(file.as_ref(), DIGESTED).ok()?)));
+    visible(&read.map_or(value.to_owned(), |(file, bytes)| {
+        let name = Path::new(file).file_name().unwrap_or_default();
+        format!("{} {}", name.display(), digest_of_bytes(&bytes))
+    }))
 }
 
 /// A limit on programs from outside.

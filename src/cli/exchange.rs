@@ -6,7 +6,7 @@ use clap::Args;
 use stickslip_methods::{Residuals, Tier};
 
 use super::arguments::{
-    Output, ProgramLimit, find_case, methods_or_all, only, provenance_with, refuse_twins,
+    Output, ProgramLimit, find_case, methods_or_all, only, provenance_with, refuse_twins, told,
 };
 use super::error::CliError;
 use super::output::{say, show};
@@ -105,7 +105,7 @@ pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
     Ok(true)
 }
 
-pub fn run_solve(args: SolveArgs, plan: Plan) -> Result<bool, CliError> {
+pub fn run_solve(args: SolveArgs, mut plan: Plan) -> Result<bool, CliError> {
     let chosen = methods_or_all(&args.method, &args.limit)?;
     let entries = entries(&args.files)?;
     refuse_twins("problem", entries.iter().map(|entry| entry.name.as_str()))?;
@@ -114,6 +114,10 @@ pub fn run_solve(args: SolveArgs, plan: Plan) -> Result<bool, CliError> {
         ProblemFile::read(&entry.path)?;
     }
     let name = only(entries.iter().map(|entry| entry.name.as_str()), "solve");
+    // A folder is what lies in it.
+    let files = entries.iter().map(|e| told(&e.name, e.path.to_str()));
+    let files: Vec<String> = files.collect();
+    plan.insert("files".into(), files.join(", "));
     let claim = args.output.claim(name, plan)?;
     let bar = Bar::new();
     bar.plan(entries.len() * chosen.len());

@@ -6,6 +6,7 @@ use super::output::{say, show, warn};
 use super::progress::Bar;
 use super::robustness;
 use super::sweep::{STOP, shard, watch_for_interruption};
+use crate::files::written::COMMAND;
 use crate::report::{Bundle, Claim, Plan, Provenance, page, stress as report};
 use crate::studies::stress::conduct::{Conduct, Suite, conduct};
 use crate::studies::stress::examine::{Effort, examine};
@@ -102,7 +103,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         stop: &STOP,
     };
     // Not how many scenes: findings are kept, more may follow.
-    plan.retain(|name, _| ["command", "seed"].contains(&name.as_str()));
+    plan.retain(|name, _| [COMMAND, "seed"].contains(&name.as_str()));
     let claim = arguments.output.claim("stress", plan)?;
     claim.mark()?;
     let bar = Bar::with_lines();
@@ -137,7 +138,11 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
 /// One scene: its case file, and what is found.
 fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliError> {
     let scene = scene(family, arguments.seed, number);
-    let claim = Claim::new(&arguments.output.folder("stress"), Plan::new(), false)?;
+    let claim = Claim::new(
+        &arguments.output.folder("stress"),
+        Plan::new(),
+        arguments.output.force,
+    )?;
     let mut bundle = Bundle::new();
     let file = format!("{}-{number}.toml", family.name());
     bundle.add(file.clone(), scene.text.clone())?;

@@ -10,14 +10,14 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Claim, Provenance, page, plan, sweep};
-use crate::studies::memory::allowed;
+use crate::studies::memory::is_short;
 use crate::studies::stress;
+use crate::studies::sweep::analysis::mark_several;
 use crate::studies::sweep::conduct::{self, Conduct, Request, Shard, conduct};
 use crate::studies::sweep::measure::Bench;
 use crate::studies::sweep::merge::merge;
 use crate::studies::sweep::plan::Plan;
-use crate::studies::sweep::record::Limits;
-use crate::studies::sweep::record::{Origin, Record};
+use crate::studies::sweep::record::{Limits, Origin, Record};
 use crate::studies::sweep::store::Store;
 use crate::studies::worker::serve;
 
@@ -121,10 +121,9 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     claim.mark()?;
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
-    let memory_mb = allowed(arguments.memory_limit);
-    if let Some(megabytes) = memory_mb.filter(|_| memory_mb != arguments.memory_limit) {
+    if is_short(arguments.memory_limit) {
         warn(format_args!(
-            "{megabytes} MB of memory per cell: this process may have no more itself (ulimit -v)"
+            "the shell bounds memory (ulimit -v or -d): a cell that is denied it ends this run"
         ));
     }
     let how = Conduct {
@@ -133,7 +132,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         timed: !arguments.untimed,
         limits: Limits {
             seconds: arguments.time_limit,
-            memory_mb,
+            memory_mb: arguments.memory_limit,
         },
         shard,
         redo: arguments.redo,
@@ -153,7 +152,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if arguments.shard.is_some() || !conducted.complete() {
         return Ok(conducted.complete());
     }
-    report(&claim, &store, &store.records()?)
+    report(&claim, &store, store.records()?)
 }
 
 /// The first interruption lets the cells end, another one does not. Batch systems send one to a process and again to its
@@ -188,7 +187,7 @@ pub fn run_merge(arguments: MergeArguments) -> Result<bool, CliError> {
         warn(format_args!("missing: {id}"));
     }
     claim.mark()?;
-    report(&claim, &merged.store, &merged.records)?;
+    report(&claim, &merged.store, merged.records)?;
     Ok(merged.missing.is_empty())
 }
 
@@ -223,16 +222,17 @@ fn end_with_parent() -> std::io::Result<()> {
 }
 
 /// Writes the report beside the records, and prints it; false if a method was wrong.
-fn report(claim: &Claim, store: &Store, records: &[Record]) -> Result<bool, CliError> {
+fn report(claim: &Claim, store: &Store, mut records: Vec<Record>) -> Result<bool, CliError> {
+    mark_several(&mut records);
     let wrong = |r: &&Record| r.found.verdict.is_wrong();
     for record in records.iter().filter(wrong) {
         warn(format_args!("{}: {}", record.found.verdict, record.id));
     }
     let total = store.contents().cells.len();
-    let mut bundle = sweep::bundle(records, total, &provenance(store, records))?;
+    let mut bundle = sweep::bundle(&records, total, &provenance(store, &records))?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
-    for sentence in sweep::sensitivity_sentences(records) {
+    for sentence in sweep::sensitivity_sentences(&records) {
         say(format_args!("{sentence}"));
     }
     say(format_args!("Results: {}", store.dir().display()));

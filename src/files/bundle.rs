@@ -1,4 +1,5 @@
-//! Files of one command, collected in memory; a [`Claim`](super::claim::Claim) writes them together or not at all.
+//! Files of one command, collected in memory; a [`Claim`](super::claim::Claim) writes them together or not at all. What may
+//! go wrong, and names.
 
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -140,8 +141,9 @@ impl Bundle {
 
 /// Whether a name stays below its folder.
 pub(super) fn is_inside(path: &str) -> bool {
-    let mut parts = Path::new(path).components();
-    !path.is_empty() && parts.all(|part| matches!(part, Component::Normal(_)))
+    let parts = Path::new(path).components();
+    let below = parts.filter(|part| matches!(part, Component::Normal(_)));
+    !path.is_empty() && below.collect::<PathBuf>().as_os_str() == path
 }
 
 /// A word that no other command uses at the same time, also on other machines and in containers whose processes have the

@@ -16,7 +16,8 @@ use super::bundle::{Bundle, FolderError, unique};
 use super::digest::sha256;
 use super::written::{LIST, Plan, Written};
 
-/// How the names of staging folders, and of single files that are being written, begin.
+/// How the names of staging folders, and of single files that are being written, begin. Only who has a folder alone removes
+/// what others left of them.
 const STAGING: &str = ".stickslip-staging-";
 
 /// The right to write into a folder. Two runs that wrote into one folder would leave some files of each.
@@ -43,7 +44,9 @@ impl Claim {
     /// [`FolderError::Io`] naming the path, [`FolderError::Busy`] where another run has a claim, [`FolderError::OtherPlan`]
     /// and [`FolderError::InTheWay`] where the folder holds what must not be replaced.
     pub fn new(dir: &Path, plan: Plan, force: bool) -> Result<Self, FolderError> {
-        Self::take(dir, plan, force, fs::File::try_lock)
+        let claim = Self::take(dir, plan, force, fs::File::try_lock)?;
+        claim.settle()?;
+        claim.check()
     }
 
     /// As [`Claim::new`], beside others that share the folder with care, such as the shards of a sweep.
@@ -51,7 +54,7 @@ impl Claim {
     /// # Errors
     /// Those of [`Claim::new`].
     pub fn shared(dir: &Path, plan: Plan, force: bool) -> Result<Self, FolderError> {
-        Self::take(dir, plan, force, fs::File::try_lock_shared)
+        Self::take(dir, plan, force, fs::File::try_lock_shared)?.check()
     }
 
     fn take(
@@ -86,17 +89,20 @@ impl Claim {
                 Err(fs::TryLockError::Error(_)) => {}
             }
         }
-        claim.settle()?;
-        write(&Staging::create(dir)?.new_file("probe"), b"probe")?;
-        let written = Written::read(dir)?.unwrap_or_default();
-        if !claim.plan.is_empty() {
-            if !force {
-                written.allow(&claim.plan, dir)?;
-            }
-            let mut listed = written.files.keys();
-            listed.try_for_each(|path| claim.free(path, &written))?;
-        }
         Ok(claim)
+    }
+
+    /// That files can be written, and those of the plan replaced.
+    fn check(self) -> Result<Self, FolderError> {
+        write(&Staging::create(&self.dir)?.new_file("probe"), b"probe")?;
+        let written = Written::read(&self.dir)?.unwrap_or_default();
+        if !self.plan.is_empty() {
+            if !self.force {
+                written.allow(&self.plan, &self.dir)?;
+            }
+            self.expect(written.files.keys().map(String::as_str))?;
+        }
+        Ok(self)
     }
 
     /// The folder.
@@ -113,14 +119,8 @@ impl Claim {
             if !name.starts_with(STAGING) || kind_of(&root)? == Kind::Nothing {
                 continue;
             }
-            // A process that is gone has left its lock; one that shares the folder is still writing.
-            let file = fs::File::open(&root);
-            let held = file.as_ref().map(fs::File::try_lock);
-            if matches!(held, Ok(Err(fs::TryLockError::WouldBlock))) {
-                continue;
-            }
             if kind_of(&root)? == Kind::Folder {
-                let staging = Staging { root, _lock: None };
+                let staging = Staging { root };
                 if let Some(after) = Written::read(&staging.root)? {
                     self.complete(&staging, &after)?;
                 }
@@ -141,14 +141,15 @@ impl Claim {
         names.try_for_each(|path| self.free(path, &written))
     }
 
-    /// Lists the plan before there are files of it: for results that are kept one by one.
+    /// Lists the plan before there are files of it, for results that are kept one by one; those of another plan go.
     ///
     /// # Errors
-    /// [`FolderError::Io`].
+    /// Those of [`Claim::commit`].
     pub fn mark(&self) -> Result<(), FolderError> {
-        let mut list = Written::read(&self.dir)?.unwrap_or_default();
-        list.plan.clone_from(&self.plan);
-        self.complete(&Staging::create(&self.dir)?, &list)
+        match Written::read(&self.dir)?.unwrap_or_default().plan == self.plan {
+            true => Ok(()),
+            false => self.commit(&Bundle::new()),
+        }
     }
 
     /// Writes all files of a bundle, or none. Listed files of an earlier run that are not in the bundle go, unless the plan is
@@ -159,14 +160,22 @@ impl Claim {
     /// it should after the next run.
     pub fn commit(&self, bundle: &Bundle) -> Result<(), FolderError> {
         let mut after = Written::read(&self.dir)?.unwrap_or_default();
-        if !self.plan.is_empty() {
-            after.plan.clone_from(&self.plan);
-            after.files.clear();
-        }
+        let own = match self.plan.is_empty() {
+            true => &mut after.beside,
+            false => {
+                after.plan.clone_from(&self.plan);
+                after.files.clear();
+                &mut after.files
+            }
+        };
         let staging = Staging::create(&self.dir)?;
         for (path, contents) in bundle.files() {
             write(&staging.new_file(path), contents)?;
-            after.files.insert(path.to_owned(), sha256(contents));
+            own.insert(path.to_owned(), sha256(contents));
+        }
+        match self.plan.is_empty() {
+            true => after.files.retain(|path, _| bundle.get(path).is_none()),
+            false => after.beside.retain(|path, _| bundle.get(path).is_none()),
         }
         self.complete(&staging, &after)
     }
@@ -174,12 +183,10 @@ impl Claim {
     /// Moves what is staged to its place, after a look that nothing is in the way; can be repeated where it was interrupted.
     fn complete(&self, staging: &Staging, after: &Written) -> Result<(), FolderError> {
         let before = Written::read(&self.dir)?.unwrap_or_default();
-        let new = after.files.keys();
+        let new = after.paths();
         let new: Vec<&String> = new.filter(|path| staging.new_file(path).exists()).collect();
-        let stale = before.files.keys();
-        let stale: Vec<&String> = stale
-            .filter(|path| !after.files.contains_key(*path))
-            .collect();
+        let stale = before.paths();
+        let stale: Vec<&String> = stale.filter(|path| after.digest(path).is_none()).collect();
         for path in new.iter().chain(&stale) {
             self.free(path, &before)?;
         }
@@ -202,10 +209,15 @@ impl Claim {
         rename(&staging.root.join(LIST), &self.dir.join(LIST))
     }
 
-    /// That nothing stands at a place, or a file that this program may replace.
+    /// That nothing stands at a place, or a file that this program may replace, in a folder where it can: a command that ends
+    /// half way leaves half of its files.
     fn free(&self, path: &str, written: &Written) -> Result<(), FolderError> {
         let place = self.dir.join(path);
-        let why = match (kind_below(&self.dir, path)?, written.files.get(path)) {
+        if let Some(folder) = place.ancestors().skip(1).find(|folder| folder.is_dir()) {
+            open_to_renames(folder, &self.dir)
+                .map_err(|e| FolderError::io("write into", folder, e))?;
+        }
+        let why = match (kind_below(&self.dir, path)?, written.digest(path)) {
             (Kind::Nothing, _) => return Ok(()),
             (Kind::Folder, _) => "a folder stands where a file goes",
             (Kind::File, None) => "it was not written by this program",
@@ -220,6 +232,24 @@ impl Claim {
     }
 }
 
+/// That files can be moved into a folder.
+#[cfg(unix)]
+fn open_to_renames(folder: &Path, dir: &Path) -> std::io::Result<()> {
+    use rustix::fs::{Access, access};
+    use std::os::unix::fs::MetadataExt;
+    access(folder, Access::WRITE_OK | Access::EXEC_OK)?;
+    match folder.metadata()?.dev() == dir.metadata()?.dev() {
+        true => Ok(()),
+        false => Err(ErrorKind::CrossesDevices.into()),
+    }
+}
+
+/// Only the attempt tells.
+#[cfg(not(unix))]
+fn open_to_renames(_: &Path, _: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
 impl Drop for Claim {
     fn drop(&mut self) {
         // Only empty folders can be removed so.
@@ -231,17 +261,13 @@ impl Drop for Claim {
 /// Working folder inside the output folder, removed when dropped, unless it is complete and not all of it in place.
 struct Staging {
     root: PathBuf,
-    /// Shows others that its process lives.
-    _lock: Option<fs::File>,
 }
 
 impl Staging {
     fn create(dir: &Path) -> Result<Self, FolderError> {
         let root = dir.join(format!("{STAGING}{}", unique()));
         fs::create_dir(&root).map_err(|e| FolderError::io("create folder", &root, e))?;
-        let lock = fs::File::open(&root).ok();
-        let _lock = lock.filter(|folder| folder.try_lock().is_ok());
-        Ok(Self { root, _lock })
+        Ok(Self { root })
     }
 
     fn new_file(&self, path: &str) -> PathBuf {
@@ -313,8 +339,6 @@ pub fn write_whole(dir: &Path, path: &str, contents: &[u8]) -> Result<(), Folder
     let partial = dir.join(format!("{STAGING}{}", unique()));
     let written = fs::File::create_new(&partial)
         .and_then(|mut file| {
-            // For others to see that somebody writes; where a file system knows no locks they cannot.
-            let _ = file.try_lock();
             file.write_all(contents)?;
             // A full disk may tell only now; the rename must not come before the contents.
             file.sync_all()

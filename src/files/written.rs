@@ -11,12 +11,16 @@ use serde::{Deserialize, Serialize};
 use super::bundle::{FolderError, is_inside};
 use super::claim::{Kind, kind_of};
 use super::regular;
+use super::visible::excerpt;
 
 /// Name of the list in its folder.
 pub const LIST: &str = "written.toml";
 
 /// Largest list read [bytes]: a hundred thousand files.
 const MOST: u64 = 16 << 20;
+
+/// Most characters shown of where plans differ.
+const SHOWN: usize = 100;
 
 /// What is said to who opens it.
 const HEAD: &str = "# What stickslip wrote here, with SHA-256 digests. It replaces and removes these files, unless they \
@@ -41,6 +45,9 @@ pub(super) struct Written {
     pub plan: Plan,
     /// Digests by path relative to the folder.
     pub files: BTreeMap<String, String>,
+    /// The same of files of no plan.
+    #[serde(default)]
+    pub beside: BTreeMap<String, String>,
 }
 
 impl Written {
@@ -54,9 +61,19 @@ impl Written {
         let text = text.map_err(|e| FolderError::io("read file", &path, e))?;
         // A list is believed in what may be removed: never what lies elsewhere.
         let list = toml::from_str::<Self>(&text).ok();
-        let list = list.filter(|list| list.files.keys().all(|path| is_inside(path)));
+        let list = list.filter(|list| list.paths().all(|path| is_inside(path)));
         let why = "it is no list of this program";
         list.map(Some).ok_or(FolderError::InTheWay { path, why })
+    }
+
+    /// All paths.
+    pub fn paths(&self) -> impl Iterator<Item = &String> {
+        self.files.keys().chain(self.beside.keys())
+    }
+
+    /// Digest of a listed file.
+    pub fn digest(&self, path: &str) -> Option<&String> {
+        self.files.get(path).or_else(|| self.beside.get(path))
     }
 
     /// Its text.
@@ -72,7 +89,10 @@ impl Written {
         let Some(what) = other.filter(|_| !self.plan.is_empty()) else {
             return Ok(());
         };
-        let value = |of: &Plan| of.get(what).cloned().unwrap_or_default();
+        let value = |of: &Plan| {
+            of.get(what)
+                .map_or(String::new(), |own| excerpt(own, SHOWN))
+        };
         Err(FolderError::OtherPlan {
             path: dir.to_path_buf(),
             there: value(&self.plan),

@@ -279,8 +279,8 @@ impl Folder {
         answer::most(form.q.len() + form.modes.len())
     }
 
-    /// How the program ended, and what it wrote.
-    fn answer(&self, ended: &Ended, form: &LocalForm) -> Result<Answer, MethodError> {
+    /// How the program ended, and what it wrote; then the folder goes.
+    fn answer(self, ended: &Ended, form: &LocalForm) -> Result<Answer, MethodError> {
         let gave_up = match ended.status.code() {
             Some(SOLVED) => false,
             Some(GAVE_UP) => true,

@@ -260,8 +260,10 @@ impl From<MethodError> for Verdict {
             MethodError::OutOfMemory { .. } => Verdict::OutOfMemory,
             MethodError::TimeLimit => Verdict::TimedOut,
             MethodError::Refused { reason } => Verdict::Refused(reason),
-            // A problem without a scale, by the fault of no method.
-            MethodError::RigidContact => Verdict::Refused(error.to_string()),
+            // A problem without a scale, or too large for a full W, by the fault of no method.
+            MethodError::RigidContact | MethodError::TooManyRows { .. } => {
+                Verdict::Refused(error.to_string())
+            }
             other => Verdict::Crashed(other.to_string()),
         }
     }

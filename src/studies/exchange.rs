@@ -14,7 +14,7 @@ use faer::sparse::{FaerError, SparseColMat, SymbolicSparseColMatRef, Triplet};
 use nalgebra::{DMatrix, DVector};
 use stickslip_methods::{
     ContactState, DelassusMatrix, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError,
-    SymmetricMatrix,
+    SymmetricMatrix, check_rows,
 };
 
 use crate::files::interchange::{GlobalProblem, Info, LocalProblem, Solution, SparseMatrix};
@@ -175,6 +175,7 @@ const SOLVED: f64 = 1e-9;
 /// W = Hᵀ M⁻¹ H and q = Hᵀ M⁻¹ f + w by a sparse LU factor of M, with a step of iterative refinement.
 fn condensed(problem: &GlobalProblem) -> Result<LocalProblem, MethodError> {
     let (n, rows, what) = (problem.f.len(), problem.w.len(), "LU factorisation of M");
+    check_rows(rows)?;
     let failed = |reason: String| MethodError::Kernel { what, reason };
     let triplets: Vec<_> = (problem.m.entries())
         .map(|(i, j, v)| Triplet::new(i, j, v))

@@ -15,31 +15,35 @@ pub fn reset_peak() {
     let _not_allowed = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// The bound on a process of this one that asks for some [MB]: no more than this one may have itself. A process that asks for
-/// none inherits that.
+/// Whether the shell denies processes of this one the memory [MB] that they ask for, or all there is (`ulimit -v`, `-d`).
 #[cfg(unix)]
-pub fn allowed(megabytes: Option<u64>) -> Option<u64> {
+pub fn is_short(megabytes: Option<u64>) -> bool {
     use rustix::process::{Resource, getrlimit};
-    let own = getrlimit(Resource::As);
-    let most = megabytes.map_or(own.current, |_| own.maximum);
-    let most = most.map(|bytes| bytes / 1_000_000);
-    megabytes.into_iter().chain(most).min()
+    let space = getrlimit(Resource::As);
+    let space = megabytes.map_or(space.current, |_| space.maximum);
+    let least = [space, getrlimit(Resource::Data).current]
+        .into_iter()
+        .flatten()
+        .min();
+    least.is_some_and(|bytes| megabytes.is_none_or(|asked| bytes / 1_000_000 < asked))
 }
 
-/// As asked for: this system has no such bound.
+/// This system has no such bound.
 #[cfg(not(unix))]
-pub fn allowed(megabytes: Option<u64>) -> Option<u64> {
-    megabytes
+pub fn is_short(_megabytes: Option<u64>) -> bool {
+    false
 }
 
-/// Bounds the address space of this process [MB]; an allocation beyond it ends the process.
+/// Bounds the address space of this process [MB], to what it may have at most; an allocation beyond it ends the process.
 ///
 /// # Errors
 /// A system without such a bound, or one that refuses it.
 #[cfg(unix)]
 pub fn bound(megabytes: u64) -> std::io::Result<()> {
-    use rustix::process::{Resource, Rlimit, setrlimit};
-    let bytes = Some(megabytes.saturating_mul(1_000_000));
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    let asked = megabytes.saturating_mul(1_000_000);
+    let most = getrlimit(Resource::As).maximum;
+    let bytes = Some(most.map_or(asked, |most| most.min(asked)));
     let limit = Rlimit {
         current: bytes,
         maximum: bytes,

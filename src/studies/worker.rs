@@ -30,6 +30,22 @@ pub struct WorkerError {
     pub why: String,
 }
 
+impl WorkerError {
+    /// That memory was denied by somebody else's limit, where it was: such an end says nothing about what was asked.
+    ///
+    /// # Errors
+    /// That error.
+    pub fn if_denied(what: &str, denied: bool, limits: Limits) -> Result<(), Self> {
+        match denied && memory::is_short(limits.memory_mb) {
+            true => Err(Self {
+                what: what.into(),
+                why: "denied memory by a limit of the shell (ulimit -v or -d), not by one that was asked for".into(),
+            }),
+            false => Ok(()),
+        }
+    }
+}
+
 /// First line of a worker, once it has begun under its limits: what ends it later may be what it was asked.
 const READY: &str = "ready";
 
@@ -255,8 +271,7 @@ impl Running {
         let ended = told(&status);
         match complaint.as_str() {
             _ if status.is_ok_and(from_outside) => Err(WorkerError {
-                what: "a process that measures was ended by the system for want of memory (see --memory-limit), a limit \
-                       of the shell, or by hand"
+                what: "a process that measures was ended by the system for want of memory, a limit of the shell, or by hand"
                     .into(),
                 why: ended,
             }),
@@ -279,11 +294,15 @@ fn from_outside(status: ExitStatus) -> bool {
     {
         use rustix::process::Signal;
         use std::os::unix::process::ExitStatusExt;
-        let signal = status.signal().and_then(Signal::from_named_raw);
-        matches!(
-            signal,
-            Some(Signal::HUP | Signal::INT | Signal::KILL | Signal::TERM | Signal::XCPU)
-        )
+        let own = [
+            Signal::ABORT,
+            Signal::BUS,
+            Signal::FPE,
+            Signal::ILL,
+            Signal::SEGV,
+        ];
+        let own = own.map(Signal::as_raw);
+        status.signal().is_some_and(|signal| !own.contains(&signal))
     }
     #[cfg(not(unix))]
     false

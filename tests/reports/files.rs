@@ -4,7 +4,7 @@ use crate::report_data::results;
 use std::fs;
 use std::path::Path;
 use stickslip::files::bundle::FolderError;
-use stickslip::report::{Bundle, Claim, Provenance, plan, standard};
+use stickslip::report::{Bundle, Claim, Plan, Provenance, plan, standard};
 
 /// Writes the tables, all or none.
 fn write_tables(dir: &Path) -> Result<(), FolderError> {
@@ -13,13 +13,18 @@ fn write_tables(dir: &Path) -> Result<(), FolderError> {
     Claim::new(dir, plan("run"), false)?.commit(&bundle)
 }
 
-/// Writes files whose contents are their names, for a plan.
+/// Writes files whose contents are their names, for the plan of a command; for `""` for none.
 fn write(dir: &Path, own: &str, names: &[&str], force: bool) -> Result<(), FolderError> {
     let mut bundle = Bundle::new();
     for name in names {
         bundle.add(*name, *name)?;
     }
-    Claim::new(dir, plan(own), force)?.commit(&bundle)
+    let plan = if own.is_empty() {
+        Plan::new()
+    } else {
+        plan(own)
+    };
+    Claim::new(dir, plan, force)?.commit(&bundle)
 }
 
 /// That something is refused, with the words for it.
@@ -125,6 +130,26 @@ fn files_of_others_are_neither_replaced_nor_removed() {
     )
     .expect("a file");
     refused(write(dir.path(), "solve", &other, true), &["written.toml"]);
+}
+
+/// Goal: files of no plan stay when a plan writes beside them, and are replaced by their own kind, or by a plan that has
+/// them too.
+#[test]
+fn files_of_no_plan_stand_beside_those_of_any() {
+    let dir = temporary();
+    let put = |own, names: &[&str]| write(dir.path(), own, names, false).expect("written");
+    put("", &["case.toml", "index.html"]);
+    put("stress", &["a.csv", "index.html"]);
+    put("", &["index.html", "other.toml"]);
+    put("stress", &["b.csv"]);
+    let left = [
+        "b.csv",
+        "case.toml",
+        "index.html",
+        "other.toml",
+        "written.toml",
+    ];
+    assert_eq!(files_below(dir.path()), left);
 }
 
 /// Goal: neither a file nor a folder is reached through a link, not even one that a listed file became.

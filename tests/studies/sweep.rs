@@ -178,6 +178,35 @@ fn two_shards_merged_equal_one_run() {
         text.filter(|t| !t.contains("\"spent\": null")).count()
     };
     assert_eq!((spent("one"), spent("two")), (15, 0));
+    // Records of the target without its list keep their times, and what is no record there is left alone.
+    fs::remove_file(at("one/sweep.json")).unwrap();
+    let into_one = || {
+        let mut command = Command::new(PROGRAM);
+        command
+            .arg("merge")
+            .arg(at("two"))
+            .arg("--out")
+            .arg(at("one"));
+        command.output().unwrap().status.code()
+    };
+    assert_eq!((into_one(), spent("one")), (Some(0), 15));
+    let mine = fs::read_dir(at("one/cells"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let record = fs::read(&mine).unwrap();
+    fs::write(&mine, "mine").unwrap();
+    fs::remove_file(at("one/sweep.json")).unwrap();
+    assert_eq!(into_one(), Some(2));
+    assert_eq!(fs::read(&mine).unwrap(), b"mine");
+    fs::write(&mine, record).unwrap();
+    fs::write(
+        at("one/sweep.json"),
+        fs::read(at("two/sweep.json")).unwrap(),
+    )
+    .unwrap();
 
     // Another machine, and another result of the same program.
     let change = |from: &str, to: &str| {
@@ -361,7 +390,7 @@ fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
         command.args(study.get_args()).stdout(Stdio::null());
         command
     };
-    // A hard limit below the one asked for bounds the cells instead of it.
+    // A limit below the one asked for bounds the cells instead of it, as long as it lasts.
     let out = folder.path().join("out");
     let warned = limited(4_000_000, &out, &["--shard", "1/20"])
         .output()
@@ -370,7 +399,7 @@ fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
     assert!(
         String::from_utf8(warned.stderr)
             .unwrap()
-            .contains("4096 MB")
+            .contains("the shell bounds memory")
     );
     assert!(
         found(&out)

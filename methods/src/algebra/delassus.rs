@@ -245,7 +245,10 @@ impl Delassus for Series {
 }
 
 /// Refuses more rows than a full W has memory for.
-pub(crate) fn check_rows(rows: usize) -> Result<(), MethodError> {
+///
+/// # Errors
+/// [`MethodError::TooManyRows`].
+pub fn check_rows(rows: usize) -> Result<(), MethodError> {
     if rows > MAX_CONDENSED_ROWS {
         return Err(MethodError::TooManyRows {
             rows,

@@ -86,11 +86,11 @@ impl GlobalProblem {
             w: tree.reals(&w_name, rows)?,
             mu: read_friction(tree, GROUP, rows / dim)?,
             equality,
-            info: read_info(tree, GROUP)?,
+            info: read_info(tree, GROUP),
             solution: None,
             guesses: Vec::new(),
         };
-        (problem.solution, problem.guesses) = read_solutions(tree, problem.lengths())?;
+        (problem.solution, problem.guesses) = read_solutions(tree, problem.lengths());
         Ok(problem)
     }
 

@@ -89,11 +89,11 @@ impl LocalProblem {
             q: tree.reals(&q_name, rows)?,
             mu,
             equality,
-            info: read_info(tree, GROUP)?,
+            info: read_info(tree, GROUP),
             solution: None,
             guesses: Vec::new(),
         };
-        (problem.solution, problem.guesses) = read_solutions(tree, problem.lengths())?;
+        (problem.solution, problem.guesses) = read_solutions(tree, problem.lengths());
         Ok(problem)
     }
 

@@ -18,6 +18,9 @@ use super::sparse::SparseMatrix;
 /// Says that a matrix holds one triangle of a symmetric one.
 const PACKED: &str = "symmetric_packed";
 
+/// Matrices that may be symmetric.
+const OPERATORS: [&str; 3] = ["/W", "/M", "/R"];
+
 /// Reads a matrix of known size.
 pub(super) fn read_matrix(
     tree: &Tree,
@@ -64,7 +67,7 @@ pub(super) fn read_matrix(
         i: &i,
         x: &x,
     };
-    let mut triplets: Vec<_> = match nz {
+    let triplets: Vec<_> = match nz {
         -1 => stored
             .compressed(cols, rows)?
             .map(|(j, i, v)| (i, j, v))
@@ -72,17 +75,15 @@ pub(super) fn read_matrix(
         -2 => stored.compressed(rows, cols)?.collect(),
         _ => stored.triplets(nz as usize, rows, cols)?,
     };
-    if rows == cols && is_packed(tree, name)? {
-        let both = [usize::lt, usize::gt].map(|side| triplets.iter().any(|t| side(&t.0, &t.1)));
-        if both == [true; 2] {
+    let matrix = SparseMatrix::from_triplets(rows, cols, triplets);
+    let mut matrix = matrix.ok_or_else(|| stored.outside("i", 0, 0, rows))?;
+    if OPERATORS.iter().any(|own| name.ends_with(own)) && is_packed(tree, name)? {
+        if matrix.sides() == [true; 2] {
             let what = "is `symmetric_packed` and has entries on both sides of its diagonal";
             return Err(tree.refused(name, what));
         }
-        let beside = triplets.clone().into_iter().filter(|t| t.0 != t.1);
-        triplets.extend(beside.map(|(i, j, value)| (j, i, value)));
+        matrix = matrix.mirrored();
     }
-    let matrix = SparseMatrix::from_triplets(rows, cols, triplets);
-    let matrix = matrix.ok_or_else(|| stored.outside("i", 0, 0, rows))?;
     let overflow = matrix.entries().find(|e| !e.2.is_finite());
     if let Some((i, j, value)) = overflow {
         let allowed = format!("finite sums; entry ({i}, {j}) is stored more than once");
@@ -91,7 +92,7 @@ pub(super) fn read_matrix(
     Ok(matrix)
 }
 
-/// Whether a square matrix is marked, itself or with all others of the problem or the file, by an attribute or a number.
+/// Whether a matrix is marked, itself or with all others of the problem or the file, by an attribute or a number.
 fn is_packed(tree: &Tree, name: &str) -> Result<bool, InterchangeError> {
     let number = format!("{name}/{PACKED}");
     if tree.has(&number)? {

@@ -72,57 +72,36 @@ pub(super) fn rows(tree: &Tree, name: &str, dim: usize) -> Result<usize, Interch
     Err(tree.length(name, rows, format!("a multiple of spacedim = {dim}")))
 }
 
-/// Info of a problem group, empty where there is none.
-pub(super) fn read_info(tree: &Tree, group: &str) -> Result<Info, InterchangeError> {
+/// Info of a problem group: what is there.
+pub(super) fn read_info(tree: &Tree, group: &str) -> Info {
     let text = |part: &str| tree.text(&format!("{group}/info/{part}"));
-    if !tree.has_group(&format!("{group}/info"))? {
-        return Ok(Info::default());
+    Info {
+        title: text("title"),
+        description: text("description"),
+        math_info: text("math_info"),
     }
-    Ok(Info {
-        title: text("title")?,
-        description: text("description")?,
-        math_info: text("math_info")?,
+}
+
+/// A solution, if it is there and complete.
+fn read_solution(tree: &Tree, group: &str, len: Lengths) -> Option<Solution> {
+    let part = |part: &str, len: usize| match len {
+        0 => Some(Vec::new()),
+        _ => tree.reals(&format!("{group}/{part}"), len).ok(),
+    };
+    Some(Solution {
+        v: part("v", len.v)?,
+        u: part("u", len.r)?,
+        r: part("r", len.r)?,
+        l: part("l", len.l)?,
     })
 }
 
-/// A solution, unless a part of it is missing.
-fn read_solution(
-    tree: &Tree,
-    group: &str,
-    len: Lengths,
-) -> Result<Option<Solution>, InterchangeError> {
-    let mut parts = Vec::new();
-    for (part, len) in [("v", len.v), ("u", len.r), ("r", len.r), ("l", len.l)] {
-        let name = format!("{group}/{part}");
-        match len {
-            0 => parts.push(Vec::new()),
-            _ if tree.has(&name)? => parts.push(tree.reals(&name, len)?),
-            _ => return Ok(None),
-        }
-    }
-    let [v, u, r, l] = parts.try_into().unwrap_or_default();
-    Ok(Some(Solution { v, u, r, l }))
-}
-
-/// Solution and guesses of a file, which need not be there.
-pub(super) fn read_solutions(
-    tree: &Tree,
-    len: Lengths,
-) -> Result<(Option<Solution>, Vec<Solution>), InterchangeError> {
-    let solution = read_solution(tree, "solution", len)?;
-    let mut guesses = Vec::new();
-    let name = "guesses/number_of_guesses";
-    let count = match tree.has(name)? {
-        true => tree.integer(name)?,
-        false => 0,
-    };
-    for number in 1..=count {
-        match read_solution(tree, &format!("guesses/{number}"), len)? {
-            Some(guess) => guesses.push(guess),
-            None => break,
-        }
-    }
-    Ok((solution, guesses))
+/// Solution and guesses of a file, which need not be there: nothing is solved with them.
+pub(super) fn read_solutions(tree: &Tree, len: Lengths) -> (Option<Solution>, Vec<Solution>) {
+    let count = tree.integer("guesses/number_of_guesses").unwrap_or(0);
+    let guess = |number| read_solution(tree, &format!("guesses/{number}"), len);
+    let guesses = (1..=count).map_while(guess).collect();
+    (read_solution(tree, "solution", len), guesses)
 }
 
 /// A problem on its way into a file.

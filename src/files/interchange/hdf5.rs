@@ -10,8 +10,8 @@ use std::io::{Read, Result as IoResult, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use hdf5_pure::{
-    CharacterSet, DType, Dataset, Datatype, Error, File, FileBuilder, FormatError, GroupBuilder,
-    LibVer, StringPadding,
+    CharacterSet, DType, Dataset, Datatype, Error, File, FileBuilder, FormatError, Group,
+    GroupBuilder, LibVer, StringPadding,
 };
 
 use super::error::InterchangeError;
@@ -22,7 +22,7 @@ const SHOWN: usize = 200;
 
 /// Bytes that a file may unpack to: so many beside its size, and so many times its size. Datasets that were never written
 /// take no room and read as zeros, and zeros take a thousandth of theirs.
-const UNPACKED: u64 = 512 << 20;
+const UNPACKED: u64 = 64 << 20;
 const RATIO: u64 = 32;
 
 /// Largest whole number up to which reals hold all.
@@ -78,13 +78,17 @@ impl Tree {
         }
     }
 
-    /// Names of the groups and datasets in a group, of the file itself for `""`; none where they cannot be listed.
-    pub fn names(&self, group: &str) -> Vec<String> {
-        let group = match group {
+    /// A group, the file itself for `""`.
+    fn group(&self, name: &str) -> Result<Group, Error> {
+        match name {
             "" => Ok(self.file.root()),
             name => self.file.group(name),
-        };
-        let Ok(group) = group else {
+        }
+    }
+
+    /// Names of the groups and datasets in a group, of the file itself for `""`; none where they cannot be listed.
+    pub fn names(&self, group: &str) -> Vec<String> {
+        let Ok(group) = self.group(group) else {
             return Vec::new();
         };
         let [groups, datasets] = [group.groups(), group.datasets()].map(Result::unwrap_or_default);
@@ -208,7 +212,11 @@ impl Tree {
     /// Takes what a dataset unpacks to off what all may.
     fn charge(&self, name: &str, dataset: &Dataset, extent: u64) -> Result<(), InterchangeError> {
         let element = (dataset.element_size()).map_err(|e| unreadable(&self.path, name, &e))?;
-        let left = self.room.get().checked_sub(extent.saturating_mul(element));
+        // Numbers are read into eight bytes, whatever they take there.
+        let left = self
+            .room
+            .get()
+            .checked_sub(extent.saturating_mul(element.max(8)));
         let what = "and the datasets before it unpack to more than";
         let more = || format!("{what} {UNPACKED} bytes and {RATIO} times the file");
         let left = left.ok_or_else(|| self.refused(name, &more()))?;
@@ -218,29 +226,23 @@ impl Tree {
 
     /// Whether a group, the file itself for `""`, has an attribute that is 1; not where its attributes cannot be read.
     pub fn flagged(&self, group: &str, attribute: &str) -> bool {
-        let group = match group {
-            "" => Ok(self.file.root()),
-            name => self.file.group(name),
-        };
+        let group = self.group(group);
         let mut found = group.and_then(|group| group.attrs()).unwrap_or_default();
         let value = found.remove(attribute).map(|value| value.to_string());
         value.is_some_and(|value| value.trim_matches(['[', ']']) == "1")
     }
 
     /// One text, if it is there: what a file says of itself decides nothing.
-    pub fn text(&self, name: &str) -> Result<Option<String>, InterchangeError> {
-        let Some(dataset) = self.dataset(name)? else {
-            return Ok(None);
-        };
-        let unreadable = |e: Error| unreadable(&self.path, name, &e);
-        let found = dataset.dtype().map_err(unreadable)?;
+    pub fn text(&self, name: &str) -> Option<String> {
+        let dataset = self.dataset(name).ok()??;
+        let is_text = matches!(
+            dataset.dtype().ok()?,
+            DType::String | DType::VariableLengthString
+        );
         // Texts of variable length may all be the same bytes of the file, which the extent does not bound.
-        let one = self.extent(name)? == 1;
-        if !one || !matches!(found, DType::String | DType::VariableLengthString) {
-            return Ok(None);
-        }
-        self.charge(name, &dataset, 1)?;
-        Ok(dataset.read_string().map_err(unreadable)?.pop())
+        let one = is_text && self.extent(name).ok()? == 1;
+        one.then(|| self.charge(name, &dataset, 1).ok())??;
+        dataset.read_string().ok()?.pop()
     }
 }
 

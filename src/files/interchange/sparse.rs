@@ -93,14 +93,19 @@ impl SparseMatrix {
         Self::from_dense(rows, columns.len(), |i, j| columns[j][i])
     }
 
-    /// Whether it has entries on one side of its diagonal, and none on the other: what is left of a symmetric matrix whose
-    /// writer stored a half.
-    pub fn is_half(&self) -> bool {
-        let beside = |sign: fn(&usize, &usize) -> bool| {
+    /// Whether it has entries above and below its diagonal.
+    pub fn sides(&self) -> [bool; 2] {
+        [usize::lt, usize::gt].map(|is: fn(&usize, &usize) -> bool| {
             self.entries()
-                .any(|(i, j, value)| value != 0.0 && sign(&i, &j))
-        };
-        beside(usize::lt) != beside(usize::gt)
+                .any(|(i, j, value)| value != 0.0 && is(&i, &j))
+        })
+    }
+
+    /// The symmetric matrix of which it is one triangle.
+    pub fn mirrored(&self) -> Self {
+        let beside = self.entries().filter(|(i, j, _)| i != j);
+        let beside = beside.map(|(i, j, value)| (j, i, value));
+        Self::sorted(self.rows, self.cols, self.entries().chain(beside).collect())
     }
 
     /// The transpose.

@@ -100,7 +100,7 @@ impl<'a> Folder<'a> {
 
     /// The folder that a bundle becomes.
     pub fn of(bundle: &'a Bundle) -> Self {
-        let shown = |path: &&str| has_kind(path) && !SKIPPED.iter().any(|f| path.starts_with(f));
+        let shown = |path: &&str| has_kind(path);
         Self {
             root: PathBuf::new(),
             bundle: Some(bundle),

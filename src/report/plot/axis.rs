@@ -146,10 +146,14 @@ impl Axis {
     }
 
     fn fit_log(&mut self, low: f64, high: f64, count: usize) {
-        let pad = (high / low).powf(0.05).max(1.1);
-        (self.low, self.high) = (low / pad, high * pad);
+        let pad = (high.powf(0.05) / low.powf(0.05)).max(1.1);
+        // Numbers that nearly are none leave no room beyond them.
+        (self.low, self.high) = (
+            (low / pad).max(f64::MIN_POSITIVE),
+            (high * pad).min(f64::MAX),
+        );
         let (low, high) = (self.low, self.high);
-        let decades = (high / low).log10();
+        let decades = high.log10() - low.log10();
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let of = |steps: &'static [f64]| {
             let powers = exponents.clone().map(|e| 10f64.powi(e));

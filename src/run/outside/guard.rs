@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use crate::files::bundle::unique;
 
@@ -20,7 +20,6 @@ command -p rm -rf -- "$1" || { command -p chmod -R u+rwx -- "$1"; command -p rm 
 pub struct Guarded {
     path: PathBuf,
     guardian: Child,
-    tells: Option<ChildStdin>,
 }
 
 impl Guarded {
@@ -30,6 +29,8 @@ impl Guarded {
     /// A folder that cannot be created, or a shell that cannot be started, in words.
     pub fn folder() -> Result<Self, String> {
         let path = std::env::temp_dir().join(format!("stickslip-{}", unique()));
+        // The program works in it.
+        let path = std::path::absolute(path).map_err(|e| e.to_string())?;
         private(&path).map_err(|e| format!("cannot create `{}`: {e}", path.display()))?;
         let mut shell = Command::new("/bin/sh");
         shell.args(["-c", GUARDIAN, "guardian"]).arg(&path);
@@ -39,11 +40,7 @@ impl Guarded {
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(shell, 0);
         match shell.spawn() {
-            Ok(mut guardian) => Ok(Self {
-                path,
-                tells: guardian.stdin.take(),
-                guardian,
-            }),
+            Ok(guardian) => Ok(Self { path, guardian }),
             Err(error) => {
                 let _still_empty = std::fs::remove_dir(&path);
                 Err(format!("cannot start the guardian /bin/sh: {error}"))
@@ -70,15 +67,14 @@ impl Guarded {
     }
 
     fn tell(&mut self, line: &str) -> io::Result<()> {
-        self.tells
-            .as_mut()
-            .map_or(Ok(()), |pipe| pipe.write_all(line.as_bytes()))
+        let pipe = self.guardian.stdin.as_mut();
+        pipe.map_or(Ok(()), |pipe| pipe.write_all(line.as_bytes()))
     }
 }
 
 impl Drop for Guarded {
     fn drop(&mut self) {
-        drop(self.tells.take());
+        // Its input is closed first, which is what it waits for.
         let _status = self.guardian.wait();
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! e(h) ≈ C h^p: p by least squares of ln e over ln h on a mesh and the two before it, the order over the last two halvings.
 //! Without a closed form the finest value is the reference, see [`error_bar`](super::error_bar) for how far it may be off, and
-//! p is that of the steps between three meshes. Theoretical orders of bilinear elements with and without enriched tips: Laborde, Pommier, Renard, Salaün, Int. J. Numer.
-//! Meth. Engng 64 (2005) 354.
+//! p is that of the steps between three meshes. Theoretical orders of bilinear elements with and without enriched tips:
+//! Laborde, Pommier, Renard, Salaün, Int. J. Numer. Meth. Engng 64 (2005) 354.
 
 use std::collections::BTreeMap;
 
@@ -140,7 +140,7 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
         for (points, bar) in sequences.into_iter().zip(bars) {
             let (found, order) = sequence(points, bar);
             errors.extend(found);
-            orders.extend(order);
+            orders.push(order);
         }
     }
     (errors, orders)
@@ -199,16 +199,11 @@ fn course<'a>(points: &'a [Point<'_>]) -> Course<'a> {
     }
 }
 
-/// Rows of one quantity: every mesh, and the sequence.
-fn sequence(
-    mut points: Vec<Point<'_>>,
-    bar: Result<f64, NoBar>,
-) -> (Vec<ErrorRow>, Option<OrderRow>) {
-    let Some(Point { sample, row, value }) = points.last() else {
-        return (Vec::new(), None);
-    };
-    let (sample, value, reference) = (*sample, *value, row.found);
+/// Rows of one quantity, on at least one mesh: every mesh, and the sequence.
+fn sequence(mut points: Vec<Point<'_>>, bar: Result<f64, NoBar>) -> (Vec<ErrorRow>, OrderRow) {
     let finest = points.len() - 1;
+    let Point { sample, row, value } = &points[finest];
+    let (sample, value, reference) = (*sample, *value, row.found);
     for (index, Point { row, .. }) in points.iter_mut().enumerate() {
         if let Some(value) = value {
             row.reference = reference;
@@ -236,16 +231,14 @@ fn sequence(
         };
         rows[first + 2].order = order.unwrap_or(f64::NAN);
     }
-    let order = rows.last().map(|last| {
-        let with_error = rows.iter().rev().find(|row| row.error.is_finite());
-        OrderRow {
-            finest: last.clone(),
-            meshes: rows.len(),
-            error: with_error.map_or(f64::NAN, |row| row.error),
-            theory: theoretical_order(&last.quantity, sample.regularity),
-            dim: sample.dim,
-        }
-    });
+    let with_error = rows.iter().rev().find(|row| row.error.is_finite());
+    let order = OrderRow {
+        finest: rows[finest].clone(),
+        meshes: rows.len(),
+        error: with_error.map_or(f64::NAN, |row| row.error),
+        theory: theoretical_order(&rows[finest].quantity, sample.regularity),
+        dim: sample.dim,
+    };
     (rows, order)
 }
 

@@ -9,6 +9,7 @@ use crate::studies::paper::lookup::{
 
 /// Multiples of the natural scale that the penalty stiffness is swept over.
 const PENALTIES: [f64; 7] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+
 /// Error of the penalty method for one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PenaltyRow {

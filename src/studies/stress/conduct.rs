@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{BufRead, BufReader, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -20,15 +20,18 @@ use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
 use crate::files::bundle::FolderError;
 use crate::files::claim::write_whole;
+use crate::files::regular;
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
-use crate::studies::memory;
 use crate::studies::sweep::cell::digest;
 use crate::studies::sweep::record::{Limits, Origin};
 use crate::studies::worker::{Worker, WorkerError, share};
 
 /// Name of the file of findings.
 pub const FILE: &str = "scenes.jsonl";
+
+/// Largest file of findings read [bytes]: a million of them.
+const MOST: u64 = 4 << 30;
 
 /// What makes the program a worker that examines scenes.
 const WORK: &[&str] = &["work", "--scenes"];
@@ -156,11 +159,7 @@ pub fn conduct(
         *count += 1;
         *count <= SHRUNK
     };
-    let limits = Limits {
-        memory_mb: memory::allowed(LIMITS.memory_mb),
-        ..LIMITS
-    };
-    let worker = || Worker::new(how.program, WORK, limits);
+    let worker = || Worker::new(how.program, WORK, LIMITS);
     share(&left, how.jobs, how.stop, worker, |worker, own| {
         let scene = scene(own.0, suite.seed, own.1);
         let mut finding = ask(worker, &scene)?;
@@ -185,18 +184,18 @@ pub fn conduct(
 fn read(path: &Path, head: &Head, force: bool) -> Result<(Vec<Finding>, String), ConductError> {
     let mut text = serde_json::to_string(head).unwrap_or_default() + "\n";
     let mut findings = Vec::new();
-    let file = match File::open(path) {
-        Ok(file) => file,
+    let bytes = match regular::read(path, MOST) {
+        Ok(bytes) => bytes,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok((findings, text)),
         Err(source) => {
             let path = path.to_path_buf();
             return Err(ConductError::File { path, source });
         }
     };
-    let lines: Vec<String> = BufReader::new(file).lines().map_while(Result::ok).collect();
+    let lines: Vec<&[u8]> = bytes.split_inclusive(|byte| *byte == b'\n').collect();
     for (index, own) in lines.iter().enumerate() {
         if index == 0 {
-            match serde_json::from_str::<Head>(own) {
+            match serde_json::from_slice::<Head>(own) {
                 Ok(found) if found == *head => continue,
                 Ok(_) if force => return Ok((findings, text)),
                 _ => {
@@ -205,7 +204,7 @@ fn read(path: &Path, head: &Head, force: bool) -> Result<(Vec<Finding>, String),
                 }
             }
         }
-        let sound = serde_json::from_str::<Line>(own).ok();
+        let sound = serde_json::from_slice::<Line>(own).ok();
         let sound = sound.filter(|l| l.digest == seal(&l.finding));
         match sound {
             Some(own) => {
@@ -237,7 +236,7 @@ fn line(finding: &Finding) -> String {
     serde_json::to_string(&line).unwrap_or_default() + "\n"
 }
 
-/// Examines a scene in a worker. That memory was denied is no finding under a limit that is not [`LIMITS`].
+/// Examines a scene in a worker.
 fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
     let finding = match worker.ask::<Scene, Finding>(scene, 1)? {
         Ok(finding) => finding,
@@ -250,13 +249,8 @@ fn ask(worker: &mut Worker<'_>, scene: &Scene) -> Result<Finding, WorkerError> {
     };
     let denied = |cause: Option<Cause>| cause == Some(Cause::Memory);
     let any = denied(finding.cause) || finding.trials.iter().any(|t| denied(t.cause));
-    match memory::allowed(LIMITS.memory_mb) {
-        own if any && own != LIMITS.memory_mb => Err(WorkerError {
-            what: format!("{} {}", scene.family.name(), scene.number),
-            why: "denied memory by the shell (ulimit -v), not by a limit of the suite".into(),
-        }),
-        _ => Ok(finding),
-    }
+    let what = format!("{} {}", scene.family.name(), scene.number);
+    WorkerError::if_denied(&what, any, LIMITS).and(Ok(finding))
 }
 
 /// The worker's side.

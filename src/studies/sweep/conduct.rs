@@ -212,6 +212,7 @@ pub fn conduct(
                 return Ok(());
             }
             let mut record = one(task, how.limits, worker, &origin)?;
+            denied(&record, how.limits)?;
             // None until they are taken in turn, so that a run that ends here goes on with this cell.
             let spent = record.spent.take().filter(|_| timed);
             store.put(&record)?;
@@ -222,6 +223,7 @@ pub fn conduct(
         }
         records.retain(|record| timed && is_honest(record));
         for mut record in with_times(records, &group[0].source, repeats, seconds, worker)? {
+            denied(&record, how.limits)?;
             record.limits = limits_of(&record, how.limits);
             store.put(&record)?;
         }
@@ -347,6 +349,15 @@ fn one(
     };
     record.limits = limits_of(&record, limits);
     Ok(record)
+}
+
+/// That no record is made of what the shell denied.
+fn denied(record: &Record, limits: Limits) -> Result<(), WorkerError> {
+    WorkerError::if_denied(
+        &record.id,
+        record.found.verdict == Verdict::OutOfMemory,
+        limits,
+    )
 }
 
 fn limits_of(record: &Record, limits: Limits) -> Option<Limits> {

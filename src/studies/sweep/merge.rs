@@ -29,12 +29,16 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
         .iter()
         .map(|dir| Store::open(dir))
         .collect::<Result<Vec<_>, _>>()?;
-    // What the target holds already is part of what is merged.
-    match Store::open(into) {
-        Ok(store) => stores.push(store),
-        Err(StoreError::NoSweep { .. }) => {}
+    let Some(contents) = stores.first().map(|first| first.contents().clone()) else {
+        let dir = into.to_path_buf();
+        return Err(StoreError::NoSweep { dir });
+    };
+    // What the target holds already is part of what is merged, whatever its list says; what is no record there is refused.
+    stores.push(match Store::open(into) {
+        Ok(store) if !forced || store.contents() == &contents => store,
+        Ok(_) | Err(StoreError::NoSweep { .. }) => Store::at(into, contents.clone()),
         Err(error) => return Err(error),
-    }
+    });
     let mut chosen: BTreeMap<String, (Record, &Store)> = BTreeMap::new();
     let mut origin: Option<Origin> = None;
     for store in &stores {
@@ -64,18 +68,13 @@ pub fn merge(from: &[PathBuf], into: &Path, forced: bool) -> Result<Merged, Stor
             }
         }
     }
-    let Some(first) = stores.first() else {
-        return Err(StoreError::NoSweep {
-            dir: into.to_path_buf(),
-        });
-    };
     // Every folder names the whole sweep, also the cells of the other shards.
     for store in &stores {
-        if store.contents() != first.contents() {
-            return Err(first.other(store));
+        if store.contents() != &contents {
+            return Err(stores[0].other(store));
         }
     }
-    let store = Store::create(into, first.contents().clone(), forced)?;
+    let store = Store::create(into, contents, forced)?;
     for (record, _) in chosen.values() {
         store.put(record)?;
     }

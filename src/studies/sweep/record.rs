@@ -51,16 +51,6 @@ impl Record {
             spent,
         }
     }
-
-    /// Texts that end up on terminals, in tables and in figures.
-    pub(super) fn labels(&self) -> impl Iterator<Item = &str> {
-        let cell = [&self.cell.case, &self.cell.method, &self.found.method];
-        let problem = self.found.problem.iter().flat_map(|p| [&p.mesh, &p.space]);
-        let own = (cell.into_iter()).chain(&self.cell.space);
-        let own = own.chain(&self.cell.program).chain(problem);
-        let origin = self.origin.parts().map(|(_, text)| text);
-        own.map(String::as_str).chain(origin)
-    }
 }
 
 /// Limits on one cell.

@@ -165,16 +165,19 @@ pub enum StoreError {
 }
 
 impl Store {
+    /// A folder of records that is not looked at yet.
+    pub(super) fn at(dir: &Path, contents: Contents) -> Self {
+        let dir = dir.to_path_buf();
+        Self { dir, contents }
+    }
+
     /// Opens a folder for a sweep, and makes it if need be. With `force` the sweep takes the place of another one, whose
     /// records stay: cells of both are not measured again.
     ///
     /// # Errors
     /// A folder that cannot be written, or that holds another sweep.
     pub fn create(dir: &Path, contents: Contents, force: bool) -> Result<Self, StoreError> {
-        let store = Self {
-            dir: dir.to_path_buf(),
-            contents,
-        };
+        let store = Self::at(dir, contents);
         match Self::open(dir) {
             Ok(found) if found.contents == store.contents => {}
             Ok(found) if !force => return Err(store.other(&found)),
@@ -229,9 +232,6 @@ impl Store {
                 path,
                 found: clip(&record.id),
             });
-        }
-        if let Some(text) = record.labels().find(|t| !t.chars().all(is_visible)) {
-            return Err(content(path, text, "visible text"));
         }
         Ok(Some(record))
     }
@@ -317,6 +317,9 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(FolderError::io("read", path, e).into()),
     };
+    if let Some(line) = text.lines().find(|line| !is_plain(line)) {
+        return Err(content(path.to_path_buf(), line, "visible text"));
+    }
     let Version { schema } = serde_json::from_str(&text).map_err(|e| broken(path, e))?;
     if schema != SCHEMA {
         return Err(StoreError::Schema {
@@ -334,6 +337,13 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<Option<T>, StoreError
         });
     }
     serde_json::from_str(&text).map_err(|e| broken(path, e))
+}
+
+/// Whether a line of JSON holds no control character, neither as it stands nor escaped: texts end up on terminals, in tables
+/// and in figures.
+fn is_plain(line: &str) -> bool {
+    let rest = line.replace(r"\\", "").replace("\\\"", "");
+    !rest.contains('\\') && line.chars().all(is_visible)
 }
 
 /// The line of the seal, from 1.

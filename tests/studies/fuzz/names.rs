@@ -169,7 +169,11 @@ fn texts_made_up_in_records_are_refused() {
     let title = ("\"title\": \"t\"", "title of a sweep");
     for (file, (from, what), to) in [
         (&list, title, "\"title\": \"=1+1\""),
-        (&list, title, "\"title\": \"a\\u001b[31mb\""),
+        (
+            &list,
+            ("\"title\": \"t\"", "visible text"),
+            "\"title\": \"a\\u001b[31mb\"",
+        ),
         (&list, (id, "id of a cell"), "../../../etc/x"),
         (&list, (id, "id of a cell"), &"x".repeat(400)),
         (
