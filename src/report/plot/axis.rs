@@ -270,6 +270,7 @@ mod tests {
         let parts = labels(Axis::log("e"), [0.2, 2.0]);
         assert_eq!(parts, ["0.2", "0.5", "1", "2"]);
         assert!(labels(Axis::log("e"), [1e-16, 1.0]).len() <= 6);
+        assert!(labels(Axis::log("e"), [1e-307, 1e308]).len() <= 6);
         assert!(labels(Axis::log("e"), [973.0, 1138.0]).len() >= 2);
         assert!(Axis::log("e").fitted([0.0, -1.0], 5).is_none());
         let counts = labels(Axis::counts("n"), [0.0, 90.0]);

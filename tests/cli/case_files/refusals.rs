@@ -319,6 +319,10 @@ fn cells_without_width_are_refused() {
     let refined =
         SOLID.replace("[0, 0.5, 1]]", "[0, 1, 1.00000000000002]]") + "[sweep]\nrefine = [2]\n";
     assert_eq!(refused(&refined).key(), "sweep.refine[1]");
+    // Runs that differ in nothing.
+    let whole = "title = \"t\"\nmodel = \"plane-strain\"\nmaterial = { young_pa = 1, poisson = 0 }\n\
+                 mesh = { box = { min_m = [0, 0], max_m = [1, 1], cells = [2, 2] } }\nsweep = { friction = [0, 1] }\n";
+    assert_eq!(refused(whole).message(), "friction of no crack");
 }
 
 #[test]
