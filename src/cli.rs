@@ -59,12 +59,10 @@ enum Verb {
     Work(sweep::WorkArguments),
     /// Show a report folder as one page, index.html
     Page(page::Arguments),
-    /// Write one increment of a case as files for other programs: FCLIB (HDF5) and MatrixMarket
+    /// Write one increment of a case as files for other programs: FCLIB (HDF5)
     Export(exchange::ExportArgs),
     /// Solve contact problems from FCLIB files (HDF5)
     Solve(exchange::SolveArgs),
-    /// Judge reactions that other programs found for a problem from an FCLIB file
-    Judge(exchange::JudgeArgs),
     /// Test a method, or a program as one, on small problems with known answers
     Conform(conform::Arguments),
     /// List the methods and the shipped cases
@@ -122,7 +120,6 @@ pub fn main(cli: Cli, plan: Plan) -> Result<bool, CliError> {
         Verb::Page(arguments) => page::run(arguments),
         Verb::Export(arguments) => exchange::run_export(arguments),
         Verb::Solve(arguments) => exchange::run_solve(arguments, plan),
-        Verb::Judge(arguments) => exchange::run_judge(arguments),
         Verb::Conform(arguments) => conform::run(&arguments),
         Verb::List => show::run_list(),
         Verb::Show(arguments) => show::run(arguments),

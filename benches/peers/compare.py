@@ -31,12 +31,6 @@ def least(rows, time):
     return min(rows, key=lambda row: float(row[time]), default=None)
 
 
-def vector(path):
-    """A MatrixMarket array."""
-    lines = [line for line in Path(path).read_text().splitlines() if not line.startswith("%")]
-    return np.array([float(line) for line in lines[1:]])
-
-
 def differences(problem, found):
     """Of the reactions and of the jumps."""
     with h5py.File(problem, "r") as file:
@@ -91,7 +85,7 @@ def main():
                 if ours:
                     row[ratio] = f"{float(fastest['time_s']) / float(ours['solve_s']):.2f}"
             if "difference" not in row:
-                found = differences(problem, vector(path.parent / fastest["reaction"]))
+                found = differences(problem, np.loadtxt(path.parent / fastest["reaction"]))
                 row |= zip(("difference", "jump_difference"), (f"{value:.1e}" for value in found))
         table.append(row)
     arguments.out.mkdir(parents=True, exist_ok=True)

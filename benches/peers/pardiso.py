@@ -43,13 +43,15 @@ def pardiso(matrix):
 
 def exported(program, case, folder):
     """K of a case as a file of SciPy, and its size."""
-    import scipy.io
+    import h5py
     import scipy.sparse as sparse
 
     subprocess.run([program, "export", case, "--out", folder], check=True, stdout=subprocess.DEVNULL)
-    (text,) = pathlib.Path(folder).glob(pathlib.Path(case).stem + ".*.K.mtx")
-    k = scipy.io.mmread(text).tocsr()
-    path = text.with_suffix(".npz")
+    (file,) = pathlib.Path(folder).glob(pathlib.Path(case).stem + ".*.global.hdf5")
+    m = h5py.File(file)["fclib_global/M"]
+    n, entries = int(m["n"][0]), int(m["nz"][0])
+    k = sparse.coo_matrix((m["x"][:entries], (m["i"][:entries], m["p"][:entries])), (n, n)).tocsr()
+    path = file.with_suffix(".npz")
     sparse.save_npz(path, k)
     return path, k.shape[0]
 

@@ -173,9 +173,8 @@ def run(peer, problem, solver, iterations, arguments):
 
 
 def write_vector(path, values):
-    """MatrixMarket, every digit."""
+    """A line a number, every digit."""
     with open(path, "w") as file:
-        file.write(f"%%MatrixMarket matrix array real general\n{len(values)} 1\n")
         file.writelines(f"{float(value)!r}\n" for value in values)
 
 
@@ -211,7 +210,7 @@ def main(peer):
                 row.update(run(peer, problem, solver, solvers.get(solver, 1_000_000), arguments))
                 reaction = row.pop("r", None)
                 if reaction is not None:
-                    row["reaction"] = f"{name}.{solver}.r.mtx"
+                    row["reaction"] = f"{name}.{solver}.r.txt"
                     write_vector(arguments.out / row["reaction"], reaction)
                 if row["status"] != "solved":
                     # A time is published only beside a right answer.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stickslip_methods::{Residuals, Tier};
+use stickslip_methods::Tier;
 
 use super::arguments::{
     Output, ProgramLimit, find_case, methods_or_all, only, provenance_with, refuse_twins, told,
@@ -11,15 +11,13 @@ use super::arguments::{
 use super::error::CliError;
 use super::output::{say, show};
 use super::progress::Bar;
-use crate::files::interchange::matrix_market;
 use crate::report::names::{self, problem_name};
 use crate::report::standard;
-use crate::report::table::{self, Column, Order, Row, columns};
+use crate::report::table;
 use crate::report::{Bundle, Claim, Plan};
 use crate::run::choice::Choice;
 use crate::run::record::Results;
 use crate::run::run_case::{Fields, Progress, Settings};
-use crate::run::verdict::EQUILIBRIUM;
 use crate::studies::exchange::collection::{Entry, FamilyRun, ProblemRow, by_family, entries};
 use crate::studies::exchange::export::{Request, export};
 use crate::studies::exchange::problem_file::ProblemFile;
@@ -65,19 +63,6 @@ pub struct SolveArgs {
     output: Output,
     #[command(flatten)]
     limit: ProgramLimit,
-}
-
-/// Arguments of `judge`.
-#[derive(Debug, Args)]
-pub struct JudgeArgs {
-    /// FCLIB file (HDF5), local or global
-    problem: PathBuf,
-    /// Reactions as MatrixMarket vectors, components normal first, compression positive
-    #[arg(required = true)]
-    reactions: Vec<PathBuf>,
-    /// Accuracy asked for: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
-    #[arg(long, default_value = "high")]
-    tier: Tier,
 }
 
 pub fn run_export(args: ExportArgs) -> Result<bool, CliError> {
@@ -153,8 +138,9 @@ pub fn run_solve(args: SolveArgs, mut plan: Plan) -> Result<bool, CliError> {
         for solution in solved.solutions {
             let stem = names::stem(&solution.key);
             for (part, values) in [("r", &solution.reaction), ("u", &solution.velocity)] {
-                let text = matrix_market::vector(values);
-                solutions.add(format!("solutions/{stem}.{part}.mtx"), text)?;
+                // The fewest digits that give the number back, as programs from outside answer.
+                let lines: String = values.iter().map(|v| format!("{v:e}\n")).collect();
+                solutions.add(format!("solutions/{stem}.{part}.txt"), lines)?;
             }
         }
     }
@@ -183,74 +169,4 @@ pub fn run_solve(args: SolveArgs, mut plan: Plan) -> Result<bool, CliError> {
         claim.dir().display()
     ));
     Ok(results.as_expected())
-}
-
-pub fn run_judge(args: JudgeArgs) -> Result<bool, CliError> {
-    let problem = ProblemFile::read(&args.problem)?;
-    let mut rows = Vec::new();
-    let mut all_hold = true;
-    for reaction in &args.reactions {
-        let found = problem.judge(reaction)?;
-        all_hold &= holds(&found, args.tier);
-        let name = reaction.display().to_string();
-        rows.push(JudgedRow { name, found });
-    }
-    let note = format!(" of {}", problem.name);
-    show(&rows, &note);
-    Ok(all_hold)
-}
-
-/// What the judge says of a reaction from another program.
-struct JudgedRow {
-    name: String,
-    found: Residuals,
-}
-
-impl Row for JudgedRow {
-    const NAME: &'static str = "judged";
-    const TITLE: &'static str = "Residuals";
-    const QUESTION: &'static str = "Do reactions of another program solve the problem?";
-    const ORDER: Order<Self> = Order::Given;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "reaction" "" .shown() = r.name.clone(), "file of the reactions";
-            "natural_map" "–" .residual().shown() = r.found.natural_map, "residual of all contact conditions";
-            "equilibrium" "–" .residual().shown() = r.found.equilibrium, "backward error of equilibrium";
-            "penetration" "–" .residual().shown() = r.found.penetration, "deepest overlap";
-            "adhesion" "–" .residual().shown() = r.found.adhesion, "largest tension";
-            "complementarity" "–" .residual().shown() = r.found.complementarity, "largest product of gap and pressure";
-            "cone" "–" .residual().shown() = r.found.cone, "largest excess over the friction bound";
-            "slip_direction" "–" .residual().shown() = r.found.slip_direction, "largest deviation of the friction from the slip";
-        }
-    }
-}
-
-/// Whether the contact laws hold, in the same sense as in a verdict. NaN passes no comparison.
-fn holds(found: &Residuals, tier: Tier) -> bool {
-    found.violation <= tier.tolerance() && found.equilibrium <= EQUILIBRIUM
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_violation_counts_only_in_equilibrium() {
-        let found = |violation, equilibrium| Residuals {
-            equilibrium,
-            violation,
-            ..Default::default()
-        };
-        for (violation, equilibrium, expected) in [
-            (1e-10, 1e-14, true),
-            (1e-10, 10.0 * EQUILIBRIUM, false),
-            (1e-8, 1e-14, false),
-            (1e-10, f64::NAN, false),
-            (f64::NAN, 1e-14, false),
-        ] {
-            let held = holds(&found(violation, equilibrium), Tier::High);
-            assert_eq!(held, expected, "{violation:e} {equilibrium:e}");
-        }
-    }
 }

@@ -1,4 +1,4 @@
-//! Contact problems as files: FCLIB (HDF5) read and written, MatrixMarket written and read.
+//! Contact problems as files: FCLIB (HDF5), read and written.
 //!
 //! ```text
 //! local    Vᵀ r + R λ + s = 0,   u = W r + V λ + q        W = B K⁻¹ Bᵀ
@@ -18,7 +18,6 @@ pub mod fclib_local;
 mod fclib_matrix;
 mod fclib_parts;
 mod hdf5;
-pub mod matrix_market;
 mod sparse;
 
 pub use error::InterchangeError;

@@ -97,7 +97,7 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
             .map(|item| item.unwrap().path());
         let own = |path: &PathBuf| {
             let name = path.file_name().unwrap().to_str().unwrap();
-            name.starts_with(&start) && name.ends_with(".r.mtx")
+            name.starts_with(&start) && name.ends_with(".r.txt")
         };
         vector(&found.into_iter().find(own).unwrap())
     };

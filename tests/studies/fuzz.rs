@@ -10,7 +10,6 @@ mod devices;
 mod fclib;
 mod found;
 mod large;
-mod matrix_market;
 mod names;
 mod records;
 mod sweeps;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::common::*;
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::files::interchange::{Problem, fclib, matrix_market};
+use stickslip::files::interchange::{Problem, fclib};
 use stickslip::run::choice::Choice;
 use stickslip::run::registry::methods;
 use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
@@ -62,7 +62,7 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
 
 pub fn vector(path: &Path) -> Vec<f64> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    matrix_market::parse(path, &text).unwrap().column(0)
+    text.lines().map(|line| line.parse().unwrap()).collect()
 }
 
 /// The verdict of one row of `runs.csv`.
@@ -82,11 +82,10 @@ fn files_give_what_the_case_gives(
     let case = shipped::find(name).unwrap().unwrap();
     let (mu, k) = (friction.to_string(), increment.to_string());
     let (dir, stem) = exported(&[name, "--friction", &mu, "--increment", &k]);
-    let floating = dir.path().join(format!("problems/{stem}.V.mtx")).exists();
-    let kinds = if floating {
-        &["local"][..]
-    } else {
-        &["local", "global"]
+    let local = dir.path().join(format!("problems/{stem}.local.hdf5"));
+    let kinds = match fclib::read(&local).unwrap() {
+        Problem::Local(problem) if problem.equality.is_some() => &["local"][..],
+        _ => &["local", "global"],
     };
     let files: Vec<String> = (kinds.iter())
         .map(|kind| format!("problems/{stem}.{kind}.hdf5"))
@@ -121,7 +120,7 @@ fn files_give_what_the_case_gives(
                 assert!(verdict.starts_with("approximate"), "{at}");
                 continue;
             }
-            let run = format!("{problem}.{kind}.fclib.{}.mu-{mu}.r.mtx", method.name);
+            let run = format!("{problem}.{kind}.fclib.{}.mu-{mu}.r.txt", method.name);
             let found = vector(&dir.path().join("results/solutions").join(run));
             let difference = relative_difference(&found, &expected);
             assert!(difference <= close, "{at}: {difference:e}");
@@ -146,13 +145,10 @@ fn plate_and_beam_and_later_increments_that_start_where_the_path_has_led() {
 fn floating_block_with_its_rigid_motions() {
     let (dir, stem) = files_give_what_the_case_gives("sliding_block_embedded", 0.2, 3);
     std::fs::remove_dir_all(dir.path().join("results")).unwrap();
-    let file = |kind: &str| format!("problems/{stem}.{kind}");
-    let [global, local, q] = ["global.hdf5", "local.hdf5", "q.mtx"].map(file);
+    let global = format!("problems/{stem}.global.hdf5");
     let (_, singular) = ends_with(2, &["solve", &global], dir.path());
     let told = singular.contains("M is singular") && singular.contains("local problem");
     assert!(told, "{singular}");
-    let (_, floats) = ends_with(2, &["judge", &local, &q], dir.path());
-    assert!(floats.contains("the body floats"), "{floats}");
     assert!(!dir.path().join("results").exists());
 }
 
@@ -228,68 +224,16 @@ fn exported_solutions_fulfil_the_equations_of_the_format() {
         );
         let largest = solution.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         assert!(close(&u, &solution.u, largest));
-        // The text files are the same numbers.
-        assert_eq!(vector(&file("f.mtx")), global.f);
-        assert_eq!(vector(&file("q.mtx")), local.q);
-        for (part, matrix) in [
-            ("K", &global.m),
-            ("B", &global.h.transposed()),
-            ("W", &local.w),
-        ] {
-            let path = file(&format!("{part}.mtx"));
-            let text = std::fs::read_to_string(&path).unwrap();
-            assert_eq!(
-                &matrix_market::parse(&path, &text).unwrap(),
-                matrix,
-                "{part}"
-            );
-        }
     }
 }
 
 #[test]
-fn reactions_of_other_programs_are_judged() {
+fn what_needs_the_stiffness_refuses_local_files() {
     let (dir, stem) = exported(&["plate_mesh1", "--friction", "0.8"]);
-    let file = format!("problems/{stem}.local.hdf5");
-    let reaction = solution(&dir.path().join(&file));
-    let write = |name: &str, values: &[f64]| {
-        std::fs::write(dir.path().join(name), matrix_market::vector(values)).unwrap();
-    };
-    write("good.mtx", &reaction);
-    write("zero.mtx", &vec![0.0; reaction.len()]);
-    let rough: Vec<f64> = reaction.iter().map(|r| r * (1.0 + 1e-5)).collect();
-    write("rough.mtx", &rough);
-    write("short.mtx", &reaction[1..]);
-    // More entries than a number can count.
-    let huge = "%%MatrixMarket matrix coordinate real general\n18446744073709551615 2 0\n";
-    std::fs::write(dir.path().join("huge.mtx"), huge).unwrap();
-    let sizes = "line 2: `18446744073709551615 2 0`, expected sizes that the file can hold";
-    let wide = "%%MatrixMarket matrix coordinate real general\n4000000 2 0\n";
-    std::fs::write(dir.path().join("wide.mtx"), wide).unwrap();
-    let shape = format!("4000000 × 2, expected {} × 1", reaction.len());
-    for (arguments, code, words) in [
-        (&["good.mtx"][..], 0, ""),
-        (&["good.mtx", "zero.mtx"], 1, ""),
-        (&["rough.mtx"], 1, ""),
-        (&["rough.mtx", "--tier", "low"], 0, ""),
-        (&["short.mtx"], 2, ""),
-        (&["huge.mtx"], 2, sizes),
-        (&["wide.mtx"], 2, &shape),
-        (&["nowhere.mtx"], 2, ""),
-    ] {
-        let arguments = [&["judge", &*file], arguments].concat();
-        let (_, complaints) = ends_with(code, &arguments, dir.path());
-        assert!(complaints.contains(words), "{complaints}");
-    }
-    // The global file says the same, within its own rounding.
-    let global = format!("problems/{stem}.global.hdf5");
-    let (shown, _) = ends_with(0, &["judge", &global, "good.mtx"], dir.path());
-    assert!(shown.contains("equilibrium"));
-
-    // What needs the stiffness refuses local files.
+    let [local, global] = ["local", "global"].map(|kind| format!("problems/{stem}.{kind}.hdf5"));
     let monolithic = [
         "solve",
-        &file,
+        &local,
         &global,
         "--out",
         "results",

@@ -56,18 +56,6 @@ pub enum InterchangeError {
         /// Why.
         what: String,
     },
-    /// A line of a text file.
-    #[error("`{}`, line {line}: `{found}`, expected {allowed}", path.display())]
-    Line {
-        /// Which file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Text found.
-        found: String,
-        /// What is allowed there.
-        allowed: String,
-    },
     /// A problem whose parts do not fit, so that no file of it would be readable.
     #[error("cannot write the problem: {what}")]
     Unwritable {

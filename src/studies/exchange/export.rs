@@ -3,7 +3,7 @@
 use stickslip_methods::{ContactState, Increment, Tier};
 
 use crate::case::Case;
-use crate::files::interchange::{Info, InterchangeError, matrix_market};
+use crate::files::interchange::{Info, InterchangeError};
 use crate::model::body::{Body, BodyError, Needs};
 use crate::run::choice::Choice;
 use crate::run::load_path::Posed;
@@ -29,7 +29,7 @@ pub struct Request {
 pub struct ExportedIncrement {
     /// Which one, and who solved the increments up to it.
     pub key: RunKey,
-    /// Ends of the names of the files, e.g. `W.mtx`, and their contents.
+    /// Ends of the names of the files, e.g. `local.hdf5`, and their contents.
     pub files: Vec<(&'static str, Vec<u8>)>,
 }
 
@@ -169,27 +169,9 @@ fn files(
     let form = increment.local_form().map_err(BodyError::from);
     let form = form.map_err(RunError::from)?;
     let local = local_problem(increment, &form, solution, info.clone());
-    let mut files = vec![
-        ("local.hdf5", local.to_bytes()?),
-        ("W.mtx", matrix_market::symmetric(&local.w).into()),
-        ("q.mtx", matrix_market::vector(&local.q).into()),
-        ("mu.mtx", matrix_market::vector(&local.mu).into()),
-    ];
-    if let Some(equality) = &local.equality {
-        files.push(("V.mtx", matrix_market::general(&equality.v).into()));
-        files.push(("s.mtx", matrix_market::vector(&equality.s).into()));
-    }
+    let mut files = vec![("local.hdf5", local.to_bytes()?)];
     if let Some(global) = global_problem(increment, solution, info) {
-        files.extend([
-            ("K.mtx", matrix_market::symmetric(&global.m).into()),
-            (
-                "B.mtx",
-                matrix_market::general(&global.h.transposed()).into(),
-            ),
-            ("f.mtx", matrix_market::vector(&global.f).into()),
-            ("offset.mtx", matrix_market::vector(&global.w).into()),
-            ("global.hdf5", global.to_bytes()?),
-        ]);
+        files.push(("global.hdf5", global.to_bytes()?));
     }
     Ok(files)
 }

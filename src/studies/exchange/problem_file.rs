@@ -4,12 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use stickslip_methods::{
-    ContactState, ContactSystem, Increment, Load, MethodError, Residuals, Tier, residuals,
-};
+use stickslip_methods::{ContactState, ContactSystem, Increment, Load, MethodError, Tier};
 
 use crate::case::label::visible;
-use crate::files::interchange::{InterchangeError, Problem, fclib, matrix_market};
+use crate::files::interchange::{InterchangeError, Problem, fclib};
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};
@@ -26,10 +24,6 @@ const MOST_MOTIONS: usize = 60;
 
 /// Longest name of a problem [bytes]: files of its solutions have longer ones, and file systems take 255.
 const MAX_NAME: usize = 200;
-
-/// Bytes of comments that a file of reactions may have, and of a line with one number.
-const COMMENTS: u64 = 1 << 20;
-const LINE: u64 = 128;
 
 /// Most rows of which the rank is found out: that takes as long as tens of factorisations.
 const MOST_RANKED: usize = 2000;
@@ -68,7 +62,6 @@ pub struct ProblemFile {
     pub name: String,
     /// `local` or `global`.
     pub kind: &'static str,
-    path: PathBuf,
     /// The body with its friction coefficients.
     pub system: ContactSystem,
     /// What acts on it.
@@ -200,7 +193,6 @@ impl ProblemFile {
         let factor_s = shared.analysis_s + shared.factorisation_s;
         Ok(Self {
             name,
-            path: path.into(),
             kind,
             rest: Load::zero(system.elastic()),
             start: ContactState::zero(&system),
@@ -253,36 +245,6 @@ impl ProblemFile {
             index: 0,
             tolerance,
         }
-    }
-
-    /// Judges a reaction that another program found, from a MatrixMarket file with `dim` entries per point.
-    ///
-    /// # Errors
-    /// A file that is no such vector; a floating body, whose rigid motion no reaction tells.
-    pub fn judge(&self, reaction: &Path) -> Result<Residuals, ProblemFileError> {
-        let rows = self.load.offset.len();
-        let most = COMMENTS + LINE * rows as u64;
-        let vector = matrix_market::read(reaction, most)?;
-        if (vector.rows(), vector.cols()) != (rows, 1) {
-            let found = format!("a matrix of {} × {}", vector.rows(), vector.cols());
-            let allowed = format!("{rows} × 1");
-            return Err(InterchangeError::unexpected(reaction, found, allowed).into());
-        }
-        let elastic = self.system.elastic();
-        if !elastic.floating().is_empty() {
-            let what = "the body floats: a reaction alone does not tell its rigid motion";
-            return Err(InterchangeError::refused(&self.path, what).into());
-        }
-        let p = vector.column(0);
-        let mut u = self.load.force.clone();
-        elastic.jump().mul_transpose_add(&p, &mut u);
-        let increment = self.increment(Tier::High.tolerance());
-        let judged =
-            (elastic.solve(&mut u)).and_then(|()| residuals(&increment, &ContactState { u, p }));
-        judged.map_err(|source| ProblemFileError::System {
-            path: self.path.clone(),
-            source,
-        })
     }
 
     /// One method on the problem, from rest, judged; the time is that of the fastest of `repeats` solutions.

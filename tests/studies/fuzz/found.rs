@@ -5,71 +5,13 @@ use std::thread;
 
 use hdf5_pure::{Datatype, FileBuilder};
 use stickslip::files::interchange::{
-    Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib, matrix_market,
+    Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib,
 };
 use stickslip::studies::sweep::cell::{Cell, digest};
 use stickslip::studies::sweep::plan::Outline;
 
 use super::assert_clear;
 use crate::common::ends_with;
-
-fn matrix_refused(text: &str) -> String {
-    let error = matrix_market::parse(Path::new("a.mtx"), text).unwrap_err();
-    assert_clear(&error.to_string(), "`a.mtx`, line ", 1);
-    error.to_string()
-}
-
-const COORDINATES: &str = "%%MatrixMarket matrix coordinate real general\n";
-
-/// The transpose of such a matrix took eight terabytes, and the program with it.
-#[test]
-fn rows_beyond_all_entries_are_refused() {
-    let message = matrix_refused(&format!("{COORDINATES}1099511627783 1 1\n1 1 1\n"));
-    assert!(
-        message.contains("line 2") && message.contains("1099511627783 1 1"),
-        "{message}"
-    );
-    // A tall matrix with few entries is none of those.
-    let tall = format!("{COORDINATES}100000 1 1\n1 1 1\n");
-    assert_eq!(
-        matrix_market::parse(Path::new("a.mtx"), &tall)
-            .unwrap()
-            .rows(),
-        100_000
-    );
-}
-
-#[test]
-fn finite_entries_whose_sum_is_not_are_refused() {
-    let message = matrix_refused(&format!("{COORDINATES}1 1 2\n1 1 1.7e308\n1 1 1.7e308\n"));
-    assert!(
-        message.contains("line 2") && message.contains("entry (1, 1)"),
-        "{message}"
-    );
-}
-
-/// What the header does not count was left unread: a doubled line changed the matrix unnoticed.
-#[test]
-fn lines_behind_the_last_entry_are_refused() {
-    let message = matrix_refused(&format!("{COORDINATES}2 2 1\n1 1 1\n\n2 2 5\n"));
-    assert!(message.contains("line 5: `2 2 5`"), "{message}");
-    let trailing = format!("{COORDINATES}2 2 1\n1 1 1\n% the end\n\n");
-    assert!(matrix_market::parse(Path::new("a.mtx"), &trailing).is_ok());
-}
-
-#[test]
-fn a_header_with_more_than_sizes_is_refused() {
-    for header in ["2 2 1 nan", "2 2 1 x", "2 2 1 1", "2 2 -1", "2 2 1e3"] {
-        let message = matrix_refused(&format!("{COORDINATES}{header}\n1 1 1\n"));
-        assert!(message.contains("line 2: "), "{header}: {message}");
-    }
-}
-
-#[test]
-fn control_characters_of_a_line_stay_out_of_the_message() {
-    let message = matrix_refused(&format!("{COORDINATES}1 1 1\n\u{1b}[31m\n"));
-    assert!(message.contains("line 3"), "{message}");
-}
 
 /// Drawn without a word for hours: a digit too many.
 #[test]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use hdf5_pure::FileBuilder;
 use stickslip::case;
-use stickslip::files::interchange::{Problem, fclib, matrix_market};
+use stickslip::files::interchange::{Problem, fclib};
 use stickslip::studies::sweep::plan::Outline;
 use stickslip_xfem::mesh::stream::Stream;
 
@@ -208,39 +208,7 @@ fn long_lists_cost_no_more_than_their_length() {
 
 #[test]
 fn a_header_that_claims_a_trillion_entries_is_refused_before_it_is_believed() {
-    let banner = "%%MatrixMarket matrix";
-    for (text, part) in [
-        (
-            format!("{banner} coordinate real general\n1 1 1000000000000\n"),
-            "the file can hold",
-        ),
-        (
-            format!("{banner} coordinate real general\n1 1000000000000 1\n1 1 1\n"),
-            "the file can hold",
-        ),
-        (
-            format!("{banner} coordinate real general\n1000000000000 1 1\n1 1 1\n"),
-            "the file can hold",
-        ),
-        (
-            format!("{banner} array real general\n1000000000000 1\n1\n"),
-            "the file can hold",
-        ),
-        (
-            format!("{banner} array real general\n4294967296 4294967296\n1\n"),
-            "the file can hold",
-        ),
-    ] {
-        let found = quick("MatrixMarket", || {
-            matrix_market::parse(Path::new("a.mtx"), &text)
-        });
-        let message = found.unwrap_err().to_string();
-        assert!(
-            message.contains("line 2") && message.contains(part),
-            "{message}"
-        );
-    }
-    // Of HDF5 every place that holds the length of a dataset, put right or wrong: sizes lie aligned in its headers.
+    // Every place that holds the length of a dataset, put right or wrong: sizes lie aligned in its headers.
     let shipped = std::fs::read(super::folder("tests/data/fclib/local_csr.hdf5")).unwrap();
     for at in (0..shipped.len() - 8).step_by(8) {
         let mut bytes = shipped.clone();
@@ -293,22 +261,4 @@ fn guesses_that_are_not_there_cost_nothing() {
     };
     assert_eq!(problem.guesses.len(), 1);
     assert!(read(local(20_000, 1)).is_ok());
-}
-
-/// Goal: a megabyte of entries is read in a moment, in whatever order they stand.
-#[test]
-fn a_megabyte_of_entries_is_read_at_once() {
-    let mut stream = Stream::new(7);
-    let mut lines = String::new();
-    let count = 60_000;
-    for _ in 0..count {
-        let (i, j) = (stream.whole(1, 5000), stream.whole(1, 5000));
-        lines += &format!("{i} {j} {:e}\n", stream.unit());
-    }
-    let text = format!("%%MatrixMarket matrix coordinate real general\n5000 5000 {count}\n{lines}");
-    let matrix = quick("entries", || {
-        matrix_market::parse(Path::new("a.mtx"), &text)
-    })
-    .unwrap();
-    assert!(matrix.len() > 59_000);
 }

@@ -90,8 +90,6 @@ fn names_of_problem_files_stay_names() {
         let solve = ["solve", &file, "-m", "b-newton", "--out", "out"];
         let (_, shown, complaints) = stickslip(&solve, dir.path());
         assert_harmless(&dir.path().join("out"), &(shown + &complaints));
-        let (_, shown, complaints) = stickslip(&["judge", &file, &file], dir.path());
-        assert_harmless(&dir.path().join("out"), &(shown + &complaints));
     }
 }
 
