@@ -7,7 +7,6 @@ use hdf5_pure::FileBuilder;
 use stickslip::case;
 use stickslip::files::interchange::{Problem, fclib};
 use stickslip::studies::sweep::plan::Outline;
-use stickslip_xfem::mesh::stream::Stream;
 
 /// Bytes of a large text, a little below what is read at all.
 const LARGE: usize = 1_000_000;
