@@ -31,7 +31,7 @@ for part in $parts; do
         paper) "$stickslip" paper --full --out results ;;
         accuracy)
             "$stickslip" converge inclined_crack partial_slip partial_opening closing_crack manufactured_slip \
-                manufactured_slip_rotated circular_interface --refine 1,2,4,8 --spaces star,facet,p0,edge-pairs \
+                manufactured_slip_rotated circular_interface --refine 1,2,4,8 --spaces star,edge-pairs \
                 --tips none,branch,0.2 --out results/accuracy || [[ $? == 1 ]] ;; # 1: a mesh is not solved, which the tables show
         stress) "$stickslip" stress --out results/stress || [[ $? == 1 ]] ;; # 1: a scene fails, which the tables show
         robustness) "$stickslip" stress methods --problems 200 --out results/robustness ;;

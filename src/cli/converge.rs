@@ -18,7 +18,7 @@ pub struct Arguments {
     /// Refinement factors, e.g. 1,2,4,8; by default those of the case if it has several, else 1,2,4,8
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     refine: Vec<u16>,
-    /// Contact spaces of all cracks: star, facet, p0, edge-pairs; by default star and the case's own
+    /// Contact spaces of all cracks: star, edge-pairs; by default star and the case's own
     #[arg(long, value_delimiter = ',', value_parser = space)]
     spaces: Vec<ContactSpace>,
     /// Enrichment of all tips: none, branch, or a radius in m; by default the case's own

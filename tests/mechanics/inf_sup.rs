@@ -339,23 +339,7 @@ fn edge_pairs_are_stable_along_the_grid_only() {
     assert!(!diagonal.is_stable());
 }
 
-/// Goal: constants per cell fail along the grid, where they outnumber what the jump can do by far; integrated functions of
-/// all pairs fail on the diagonal; both like h.
-#[test]
-fn p0_and_facet_lose_their_bound_like_h() {
-    for (name, space) in [
-        (ALONG[0], ContactSpace::P0),
-        ("45°, offset 0.3h", ContactSpace::Facet),
-        ("normal (1, 0, 1), offset 1e-3h", ContactSpace::Facet),
-    ] {
-        let found = sequence(name, space);
-        assert!(found.slope > 0.85 && found.slope < 1.2, "{name}");
-        assert!(!found.is_stable(), "{name}");
-    }
-}
-
-/// Source: an independent program, two digits. Goal: the same numbers within 5 % for pairs on the same meshes, within 10 % for
-/// P0 and facets, known at n = 10, 20 where they go like 1/n.
+/// Source: an independent program, two digits. Goal: the same numbers within 5 % for pairs on the same meshes.
 #[test]
 fn numbers_agree_with_an_independent_program() {
     let pairs = ContactSpace::EdgePairs;
@@ -371,12 +355,4 @@ fn numbers_agree_with_an_independent_program() {
     }
     let near = betas("45°, offset 1e-3h", pairs)[0];
     assert_near(near / 1.7e-3, 1.0, 0.05, "near");
-    for (name, space, coarse, fine) in [
-        (ALONG[0], ContactSpace::P0, 0.21, 0.11),
-        ("45°, offset 0.3h", ContactSpace::Facet, 0.11, 0.054),
-    ] {
-        let [_, eleven, twenty_one] = betas(name, space);
-        assert_near(1.1 * eleven / coarse, 1.0, 0.1, name);
-        assert_near(1.05 * twenty_one / fine, 1.0, 0.1, name);
-    }
 }

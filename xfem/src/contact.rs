@@ -20,7 +20,6 @@ use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use self::edge_pairs::edge_pairs;
 use self::integrated::integrated;
-use self::multipliers::{constant_space, facet_space, star_space};
 use self::pairs::ContactSurface;
 
 /// Contact space of a crack.
@@ -28,32 +27,15 @@ use self::pairs::ContactSurface;
 pub enum ContactSpace {
     /// One point pair per crossed mesh edge, point forces (the founding paper's).
     EdgePairs,
-    /// One multiplier per crossed mesh edge, linear in between, integrated over the crack.
-    Facet,
     /// One multiplier per star of crossed edges, integrated over the crack: stable.
     Star,
-    /// One constant multiplier per cut cell.
-    P0,
     /// One point per pair of nodes of a crack along cell facets; by name only.
     NodePairs,
 }
 
 impl ContactSpace {
-    /// All spaces, in the order of their definition.
-    pub const ALL: [Self; 4] = [Self::EdgePairs, Self::Facet, Self::Star, Self::P0];
-
-    /// All spaces, the stable one first: the order in which others are compared with it.
-    pub fn stable_first() -> [Self; 4] {
-        let mut spaces = Self::ALL;
-        spaces.sort_by_key(|space| match space {
-            ContactSpace::Star => 0,
-            ContactSpace::Facet => 1,
-            ContactSpace::P0 => 2,
-            ContactSpace::EdgePairs => 3,
-            ContactSpace::NodePairs => 4,
-        });
-        spaces
-    }
+    /// Those of cracks through cells, the stable one first.
+    pub const ALL: [Self; 2] = [Self::Star, Self::EdgePairs];
 
     /// The space of that name.
     pub fn named(name: &str) -> Option<Self> {
@@ -64,16 +46,14 @@ impl ContactSpace {
     pub fn name(self) -> &'static str {
         match self {
             ContactSpace::EdgePairs => "edge-pairs",
-            ContactSpace::Facet => "facet",
             ContactSpace::Star => "star",
-            ContactSpace::P0 => "p0",
             ContactSpace::NodePairs => "node-pairs",
         }
     }
 
     /// Whether contact points are means over multiplier functions, not places.
     pub fn is_integrated(self) -> bool {
-        !matches!(self, ContactSpace::EdgePairs | ContactSpace::NodePairs)
+        self == ContactSpace::Star
     }
 }
 
@@ -89,9 +69,7 @@ pub fn surface(
 ) -> Result<ContactSurface, CellError> {
     match space {
         ContactSpace::EdgePairs => edge_pairs(integrator, index, held),
-        ContactSpace::Facet => integrated(integrator, index, held, facet_space),
-        ContactSpace::Star => integrated(integrator, index, held, star_space),
-        ContactSpace::P0 => integrated(integrator, index, held, constant_space),
+        ContactSpace::Star => integrated(integrator, index, held),
         ContactSpace::NodePairs => Ok(ContactSurface::default()),
     }
 }

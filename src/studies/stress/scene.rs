@@ -225,9 +225,8 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
                 }
             };
         }
+        // By name or by default.
         text += match s.whole(0, 5) {
-            0 => "contact = \"facet\"\n",
-            1 => "contact = \"p0\"\n",
             2 => "contact = \"star\"\n",
             _ => "",
         };

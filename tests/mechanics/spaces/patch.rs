@@ -29,7 +29,7 @@ use super::catalogue::{Patch, State};
 use super::text::PRESSURE;
 
 /// Largest errors of a patch test that counts as passed.
-pub const PASSED: f64 = 1e-10;
+const PASSED: f64 = 1e-10;
 
 /// One patch test in one contact space.
 #[derive(Debug)]

@@ -10,11 +10,7 @@ use crate::geometry::tip_frame::FrontShape;
 use crate::geometry::{Point, norm, root, sub};
 use crate::stiffness::cell_matrix::CellIntegrator;
 
-use super::pairs::{AT_TIP, vertex_weights};
-
-/// A facet smaller than this, in units of its cell's size to the power of its dimension, has no multiplier of its own: its
-/// traction would be a force over next to no area, with the rounding of all forces around it.
-const SLIVER: f64 = 0.02;
+use super::pairs::AT_TIP;
 
 /// What the displacement does at a crossed mesh edge or node.
 #[derive(Debug, Clone, Copy)]
@@ -188,18 +184,6 @@ impl<'a> FreeJumps<'a> {
         let sign = if first <= last { 1.0 } else { -1.0 };
         let length = crack.range[1] - crack.range[0];
         move |corner| round(sign * crack.abscissa(&self.facets.corners[corner].x) / length)
-    }
-
-    /// Whether a facet can carry a constant multiplier: a free jump, and an area worth an equation.
-    pub fn carries(&self, facet: &Facet) -> bool {
-        let mesh = self.integrator.mesh;
-        let nodes = mesh.cell(facet.cell);
-        let area: f64 = vertex_weights(&self.facets.polygon(facet)).iter().sum();
-        let sizes = nodes
-            .iter()
-            .map(|&n| self.integrator.enrichment.sizes[n as usize]);
-        let size = sizes.fold(f64::INFINITY, f64::min);
-        area > SLIVER * size.powi(mesh.dim() as i32 - 1) && self.jumps_on(facet)
     }
 
     /// Whether anything free jumps on a facet.

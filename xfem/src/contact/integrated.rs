@@ -1,4 +1,4 @@
-//! Contact surfaces integrated over the crack: spaces `facet`, `star`, `p0`.
+//! Contact surfaces integrated over the crack: the space `star`.
 //!
 //! ```text
 //!   (B u)_k = (1/w_k) ∫ φ_k F(x) [[u]] dΓ,   w_k = ∫ φ_k dΓ,   P_k = w_k λ_k,   F = (n, a[, b])ᵀ
@@ -15,21 +15,20 @@ use crate::geometry::{Point, add_scaled, cross, dot, unit};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::free_jumps::FreeJumps;
-use super::multipliers::Multipliers;
+use super::multipliers::{Multipliers, star_space};
 use super::pairs::{ContactPoint, ContactSurface, CrackSurface, SurfaceCorner};
 use super::surface_point::SurfacePoint;
 use super::surface_rule::surface_points;
 
-/// Contact surface of the `index`-th crack in a multiplier space. `held` tells the prescribed unknowns.
+/// Contact surface of the `index`-th crack. `held` tells the prescribed unknowns.
 pub fn integrated(
     integrator: &CellIntegrator<'_>,
     index: usize,
     held: impl Fn(usize) -> bool,
-    space: impl Fn(&mut FreeJumps<'_>) -> Multipliers,
 ) -> Result<ContactSurface, CellError> {
     let crack = &integrator.cracks[index];
     let mut free = FreeJumps::new(integrator, index, held);
-    let multipliers = space(&mut free);
+    let multipliers = star_space(&mut free);
     let facets = &free.facets;
     let quadrature = surface_points(integrator, index, facets, &multipliers)?;
     let mut points = vec![Moments::default(); multipliers.count];

@@ -3,13 +3,11 @@
 //! ```text
 //!   λ_h(x) = Σ_corners hat_c(x) Σ_k share_ck λ_k            Σ_k share_ck = 1
 //!
-//!   facet   every crossed mesh edge has a multiplier of its own
 //!   star    one multiplier per star of crossed edges; a crossed edge (i, j) that belongs to none, cut at the fraction w
 //!           from i, takes (1 − w) λ_star(i) + w λ_star(j)                      (Géniaut, Massin & Moës 2007);
 //!           where the crack turns along a star, each of its edges has one;
 //!           an arm with branch functions at a corner has two of its own there: in the corner and a little way from it,
 //!           or the pressure of a corner would be that of the next crossing
-//!   p0      every facet has a constant multiplier
 //! ```
 //!
 //! Corners whose jump is prescribed, tips, and facets too small to have an equation of their own take the mean of their
@@ -40,13 +38,6 @@ pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
     let own = number.iter().map(|k| k.map(|k| vec![(k, 1.0)])).collect();
     let count = number.iter().flatten().count();
     by_corner(facets, own, count)
-}
-
-/// One multiplier per crossing.
-pub fn facet_space(free: &mut FreeJumps<'_>) -> Multipliers {
-    let crossings = free.crossings().into_iter();
-    let (own, count) = numbered(crossings.map(|crossing| crossing.is_some()));
-    complete(free, by_corner(&free.facets, own, count))
 }
 
 /// One multiplier per star of crossings, and two at the ends of arms in corners.
@@ -151,27 +142,6 @@ fn near_end(free: &FreeJumps<'_>, ends: &[(Point, f64)], corner: usize) -> Optio
     Some((k, if share < 1e-6 { 0.0 } else { share }))
 }
 
-/// One multiplier per facet that can carry one.
-pub fn constant_space(free: &mut FreeJumps<'_>) -> Multipliers {
-    let facets = &free.facets.facets;
-    let (mut own, count) = numbered(facets.iter().map(|facet| free.carries(facet)));
-    // Facets are neighbours if they share a corner.
-    let mut facets_at = vec![Vec::new(); free.facets.corners.len()];
-    for (number, facet) in facets.iter().enumerate() {
-        facet
-            .corners
-            .iter()
-            .for_each(|&c| facets_at[c].push(number));
-    }
-    extend(&mut own, &facets_at);
-    let shares = facets
-        .iter()
-        .zip(own)
-        .map(|(facet, share)| vec![share.unwrap_or_default(); facet.corners.len()])
-        .collect();
-    complete(free, Multipliers { count, shares })
-}
-
 /// Gives facets with jumps that no multiplier reaches a constant one, common to those that share corners: next to a junction
 /// the nodes of one cell may jump over an arm that ends in the next.
 fn complete(free: &FreeJumps<'_>, mut multipliers: Multipliers) -> Multipliers {
@@ -198,18 +168,6 @@ fn complete(free: &FreeJumps<'_>, mut multipliers: Multipliers) -> Multipliers {
         of_corner.extend(facet.corners.iter().map(|&c| (c, multipliers.count as u32)));
         multipliers.count += 1;
     }
-}
-
-/// A multiplier of its own for everything that carries one, and their number.
-fn numbered(carries: impl Iterator<Item = bool>) -> (Vec<Option<Shares>>, usize) {
-    let mut count = 0;
-    let own = carries.map(|carries| {
-        carries.then(|| {
-            count += 1;
-            vec![(count - 1, 1.0)]
-        })
-    });
-    (own.collect(), count as usize)
 }
 
 /// Extends the shares of some corners to all of them.
