@@ -6,4 +6,3 @@ mod common;
 mod case_files;
 mod program;
 mod refusals;
-mod scripts;
