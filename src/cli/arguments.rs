@@ -67,7 +67,9 @@ impl Output {
     /// The folder.
     pub fn folder(&self, name: &str) -> PathBuf {
         // A name of dots would be another folder.
-        let usual = || Path::new("results").join(file_name(&[name]).trim_start_matches('.'));
+        let name = file_name(&[name]);
+        let name = Some(name.trim_start_matches('.')).filter(|name| !name.is_empty());
+        let usual = || Path::new("results").join(name.unwrap_or("unnamed"));
         self.out.clone().unwrap_or_else(usual)
     }
 

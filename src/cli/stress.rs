@@ -105,9 +105,8 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     // Not how many scenes: findings are kept, more may follow.
     plan.retain(|name, _| [COMMAND, "seed"].contains(&name.as_str()));
     let claim = arguments.output.claim("stress", plan)?;
-    claim.mark()?;
     let bar = Bar::with_lines();
-    let findings = conduct(&suite, claim.dir(), arguments.output.force, how, &bar)?;
+    let findings = conduct(&suite, &claim, arguments.output.force, how, &bar)?;
     bar.finish();
     let provenance = Provenance::collect(how.jobs).with_option("seed", suite.seed.to_string());
     let mut bundle = report::bundle(&suite, &findings, &provenance)?;

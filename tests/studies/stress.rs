@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::common::*;
+use stickslip::report::{Claim, plan};
 use stickslip::run::run_case::Quiet;
 use stickslip::studies::stress::conduct::{Conduct, FILE, Suite, conduct};
 use stickslip::studies::stress::examine::{DEFAULT, Effort, examine};
@@ -212,13 +213,26 @@ fn findings_are_kept_sealed_and_gone_on_with() {
             shard: (1, 1),
             stop: &stop,
         };
-        conduct(&suite, &out, false, how, &Quiet)
+        let claim = Claim::new(&out, plan("stress"), false).unwrap();
+        conduct(&suite, &claim, false, how, &Quiet)
     };
     let two = run(3, 2).unwrap();
     let three = run(3, 3).unwrap();
     // Also the time it took: it was not examined again.
     assert_eq!(two[..], three[..2]);
     assert!(run(4, 1).unwrap_err().to_string().contains("another seed"));
+    // What is no file of findings is left alone, and the folder not marked.
+    let mine = dir.path().join("mine");
+    std::fs::create_dir(&mine).unwrap();
+    std::fs::write(mine.join(FILE), "mine").unwrap();
+    let stress = [
+        "stress", "--family", "patch-2d", "--scenes", "1", "--out", "mine",
+    ];
+    ends_with(2, &stress, dir.path());
+    assert_eq!(
+        files(&mine),
+        BTreeMap::from([(FILE.to_owned(), b"mine".to_vec())])
+    );
     let file = out.join(FILE);
     let text = std::fs::read_to_string(&file).unwrap();
     let forged = text.replacen("\"category\":\"", "\"category\":\"x", 1);

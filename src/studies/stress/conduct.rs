@@ -19,7 +19,7 @@ use super::finding::{Cause, Finding};
 use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
 use crate::files::bundle::FolderError;
-use crate::files::claim::write_whole;
+use crate::files::claim::{Claim, write_whole};
 use crate::files::regular;
 use crate::run::run_case::Progress;
 use crate::run::verdict::Verdict;
@@ -117,18 +117,18 @@ pub enum ConductError {
     Worker(#[from] WorkerError),
 }
 
-/// Examines all scenes of a suite that have no finding in a folder yet; all findings, in order.
+/// Examines all scenes of a suite that have no finding in a folder yet, which is marked as theirs; all findings, in order.
 ///
 /// # Errors
 /// The first [`ConductError`]; findings that were kept before it stay.
 pub fn conduct(
     suite: &Suite,
-    dir: &Path,
+    claim: &Claim,
     force: bool,
     how: Conduct<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Finding>, ConductError> {
-    let path = dir.join(FILE);
+    let path = claim.dir().join(FILE);
     let failed = |source| ConductError::File {
         path: path.clone(),
         source,
@@ -138,6 +138,7 @@ pub fn conduct(
         origin: Origin::here(),
     };
     let (mut findings, text) = read(&path, &head, force)?;
+    claim.mark()?;
     let wanted = |f: &Finding| suite.scenes.get(&f.family).is_some_and(|n| f.number < *n);
     findings.retain(wanted);
     let known: BTreeSet<(Family, u64)> = findings.iter().map(|f| (f.family, f.number)).collect();
@@ -148,7 +149,7 @@ pub fn conduct(
         .collect();
     progress.plan(left.len());
     // A line that was being written when the program was ended is written again.
-    write_whole(dir, FILE, text.as_bytes())?;
+    write_whole(claim.dir(), FILE, text.as_bytes())?;
     let file = File::options().append(true).open(&path).map_err(failed)?;
     let kept = Mutex::new((file, findings));
     let shrunk: Mutex<BTreeMap<(Family, String, Cause), usize>> = Mutex::default();
