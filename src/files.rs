@@ -4,6 +4,7 @@ pub mod bundle;
 pub mod claim;
 pub mod digest;
 pub mod interchange;
+mod place;
 pub(crate) mod regular;
 pub(crate) mod visible;
 pub mod written;

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use super::bundle::{Bundle, FolderError, unique};
 use super::digest::sha256;
+use super::place::{Kind, kind_below, kind_of, open_to_renames};
 use super::written::{LIST, Plan, Written};
 
 /// How the names of staging folders, and of single files that are being written, begin. Only who has a folder alone removes
@@ -100,7 +101,8 @@ impl Claim {
             if !self.force {
                 written.allow(&self.plan, &self.dir)?;
             }
-            self.expect(written.files.keys().map(String::as_str))?;
+            let mut listed = written.files.keys();
+            listed.try_for_each(|path| self.free(path, &written))?;
         }
         Ok(self)
     }
@@ -116,16 +118,20 @@ impl Claim {
         for entry in fs::read_dir(&self.dir).map_err(listing)? {
             let root = entry.map_err(listing)?.path();
             let name = root.file_name().unwrap_or_default().to_string_lossy();
-            if !name.starts_with(STAGING) || kind_of(&root)? == Kind::Nothing {
+            if !name.starts_with(STAGING) {
                 continue;
             }
-            if kind_of(&root)? == Kind::Folder {
-                let staging = Staging { root };
-                if let Some(after) = Written::read(&staging.root)? {
-                    self.complete(&staging, &after)?;
+            match kind_of(&root)? {
+                Kind::Nothing => {}
+                Kind::Folder => {
+                    let staging = Staging { root };
+                    if let Some(after) = Written::read(&staging.root)? {
+                        self.complete(&staging, &after)?;
+                    }
                 }
-            } else {
-                fs::remove_file(&root).map_err(|e| FolderError::io("remove file", &root, e))?;
+                Kind::File => {
+                    fs::remove_file(&root).map_err(|e| FolderError::io("remove file", &root, e))?;
+                }
             }
         }
         Ok(())
@@ -137,7 +143,9 @@ impl Claim {
     /// [`FolderError::InTheWay`].
     pub fn expect<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> Result<(), FolderError> {
         let written = Written::read(&self.dir)?.unwrap_or_default();
-        let mut names = names.into_iter();
+        // Those of the plan were looked at when the folder was claimed.
+        let own = |path: &&str| written.files.contains_key(*path);
+        let mut names = names.into_iter().filter(|path| !own(path));
         names.try_for_each(|path| self.free(path, &written))
     }
 
@@ -160,22 +168,19 @@ impl Claim {
     /// it should after the next run.
     pub fn commit(&self, bundle: &Bundle) -> Result<(), FolderError> {
         let mut after = Written::read(&self.dir)?.unwrap_or_default();
-        let own = match self.plan.is_empty() {
-            true => &mut after.beside,
+        let (own, other) = match self.plan.is_empty() {
+            true => (&mut after.beside, &mut after.files),
             false => {
                 after.plan.clone_from(&self.plan);
                 after.files.clear();
-                &mut after.files
+                (&mut after.files, &mut after.beside)
             }
         };
         let staging = Staging::create(&self.dir)?;
         for (path, contents) in bundle.files() {
             write(&staging.new_file(path), contents)?;
             own.insert(path.to_owned(), sha256(contents));
-        }
-        match self.plan.is_empty() {
-            true => after.files.retain(|path, _| bundle.get(path).is_none()),
-            false => after.beside.retain(|path, _| bundle.get(path).is_none()),
+            other.remove(path);
         }
         self.complete(&staging, &after)
     }
@@ -232,24 +237,6 @@ impl Claim {
     }
 }
 
-/// That files can be moved into a folder.
-#[cfg(unix)]
-fn open_to_renames(folder: &Path, dir: &Path) -> std::io::Result<()> {
-    use rustix::fs::{Access, access};
-    use std::os::unix::fs::MetadataExt;
-    access(folder, Access::WRITE_OK | Access::EXEC_OK)?;
-    match folder.metadata()?.dev() == dir.metadata()?.dev() {
-        true => Ok(()),
-        false => Err(ErrorKind::CrossesDevices.into()),
-    }
-}
-
-/// Only the attempt tells.
-#[cfg(not(unix))]
-fn open_to_renames(_: &Path, _: &Path) -> std::io::Result<()> {
-    Ok(())
-}
-
 impl Drop for Claim {
     fn drop(&mut self) {
         // Only empty folders can be removed so.
@@ -281,51 +268,6 @@ impl Drop for Staging {
             let _ = fs::remove_dir_all(&self.root);
         }
     }
-}
-
-/// What stands at a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Nothing,
-    File,
-    Folder,
-}
-
-/// What stands at a place.
-///
-/// # Errors
-/// [`FolderError::InTheWay`] at a link, through which files of others would be reached, and at what is no regular file.
-pub(super) fn kind_of(path: &Path) -> Result<Kind, FolderError> {
-    let kind = match fs::symlink_metadata(path) {
-        Ok(described) => described.file_type(),
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Kind::Nothing),
-        Err(e) => return Err(FolderError::io("look at", path, e)),
-    };
-    let why = match (kind.is_file(), kind.is_dir(), kind.is_symlink()) {
-        (true, ..) => return Ok(Kind::File),
-        (_, true, _) => return Ok(Kind::Folder),
-        (.., true) => "it is a link, and links are not followed",
-        _ => "it is no regular file",
-    };
-    let path = path.to_path_buf();
-    Err(FolderError::InTheWay { path, why })
-}
-
-/// As [`kind_of`], of a place below a folder and all places on the way to it.
-fn kind_below(dir: &Path, path: &str) -> Result<Kind, FolderError> {
-    let (mut place, mut kind) = (dir.to_path_buf(), Kind::Folder);
-    for part in Path::new(path) {
-        match kind {
-            Kind::Folder => place.push(part),
-            Kind::Nothing => break,
-            Kind::File => {
-                let why = "a file stands where a folder goes";
-                return Err(FolderError::InTheWay { path: place, why });
-            }
-        }
-        kind = kind_of(&place)?;
-    }
-    Ok(kind)
 }
 
 /// Writes a single file below `dir` under another name and renames it, so that it is whole or absent; not through a link.

@@ -9,7 +9,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::bundle::{FolderError, is_inside};
-use super::claim::{Kind, kind_of};
+use super::place::{Kind, kind_of};
 use super::regular;
 use super::visible::excerpt;
 
