@@ -13,7 +13,6 @@ pub mod interior_point;
 pub(crate) mod central_path;
 pub(crate) mod contact_point;
 pub(crate) mod iteration;
-pub(crate) mod kinks;
 pub(crate) mod line_search;
 pub(crate) mod reuse;
 pub(crate) mod springs;

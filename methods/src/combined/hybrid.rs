@@ -244,7 +244,6 @@ impl NewtonRuns<'_> {
             multiple: self.multiple,
             limits: Limits::new(self.settings.max_iterations, NEWTON_PATIENCE),
             line_search: true,
-            kinks: false,
             rescue: false,
             tangent: std::mem::take(self.tangent),
         }

@@ -113,7 +113,6 @@ impl FixedPoint {
             multiple: 1.0,
             limits: Limits::new(self.settings.max_iterations, POLISH_PATIENCE),
             line_search: true,
-            kinks: false,
             rescue: false,
             tangent: Tangent::default(),
         };

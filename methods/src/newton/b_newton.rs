@@ -25,10 +25,7 @@
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
 //! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows, as
-//! papers usually run the method; the iterates are the same. `kinks`: 1 ends a step that the line search would shorten at
-//! the least merit on its way, from kink to kink (`newton/kinks.rs`). It does not pay: medians on random problems
-//! (`stickslip stress methods`, 100 per μ and dimension) are the same up to μ = 1, in 3D 11 instead of 9 steps at μ = 2 and
-//! 18 instead of 12 at μ = 5. Least merits lie on kinks, where the next direction begins undecided.
+//! papers usually run the method; the iterates are the same.
 //!
 //! # Guarantees
 //! Full steps are tried first; a non-monotone line search on the energy-scaled merit Σ H²/r steps in only after a rise
@@ -108,10 +105,6 @@ impl Scheme for BEquations {
             H[k] = P[k] - H[k];
         }
         H
-    }
-
-    fn bound(&self, at: &ContactPoint<'_>) -> f64 {
-        at.P[0]
     }
 
     /// Closed and sticking on a kink.

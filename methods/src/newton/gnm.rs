@@ -25,9 +25,8 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point, the paper's c. `max_iterations`. `monolithic`: 1 solves each step on
-//! all unknowns with a sparse LU of K bordered by the contact rows. `kinks`: 1 searches along steps that raise the merit
-//! (see `b-newton`). `return_map`: 0 never (the paper's GNM), 1 before every step that follows one without progress, 2
-//! before every step but the first (GNM-RM).
+//! all unknowns with a sparse LU of K bordered by the contact rows. `return_map`: 0 never (the paper's GNM), 1 before every
+//! step that follows one without progress, 2 before every step but the first (GNM-RM).
 //!
 //! # Guarantees
 //! Locally superlinear where no state changes. None beyond; steps are full. That what converged is a solution is
@@ -73,8 +72,8 @@ pub static METHOD: Method = Method {
     summary: "Newton's method on complementarity functions, with forces mapped back to Coulomb's bound where it makes no progress",
     exact: true,
     options: &{
-        let [r, steps, monolithic, kinks] = scheme_options(MAX_ITERATIONS);
-        [r, steps, monolithic, kinks, OptionSpec::Whole(RETURN_MAP)]
+        let [r, steps, monolithic] = scheme_options(MAX_ITERATIONS);
+        [r, steps, monolithic, OptionSpec::Whole(RETURN_MAP)]
     },
     source: include_str!("gnm.rs"),
     build: |options| {

@@ -10,14 +10,13 @@
 
 #![allow(non_snake_case)]
 
-use crate::algebra::dense::{along, minus, refill};
+use crate::algebra::dense::refill;
 use crate::condensed::branches::changed;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::stages::rescue;
 use crate::condensed::starts::RIDGE;
 use crate::contract::law::return_map;
 use crate::newton::contact_point::ContactPoint;
-use crate::newton::kinks::add_kinks;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{MONOLITHIC, Tangent};
 use crate::{
@@ -27,18 +26,12 @@ use crate::{
 
 options! {
     R: Real("r", 1.0, 1e-3, 1e3): "multiple of 1/W_ii that turns gaps and slips into forces";
-    KINKS: Switch("kinks", false): "1: a step that raises the merit is shortened to the least on its way, searched from kink to kink";
 }
 
 /// Options of a scheme that gives up after so many steps.
-pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 4] {
+pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
     let steps = OptionSpec::Whole(max_iterations);
-    [
-        OptionSpec::Real(R),
-        steps,
-        Tangent::OPTION,
-        OptionSpec::Switch(KINKS),
-    ]
+    [OptionSpec::Real(R), steps, Tangent::OPTION]
 }
 
 /// Steps without progress after which an iteration counts as cycling.
@@ -57,11 +50,6 @@ pub(crate) trait Scheme: Send {
             *H = P - *H;
         }
         H
-    }
-
-    /// The normal force that bounds friction, linear in P and v.
-    fn bound(&self, at: &ContactPoint<'_>) -> f64 {
-        at.trial()[0]
     }
 
     /// The piece at (P, v).
@@ -99,8 +87,6 @@ pub(crate) struct Newton<S> {
     pub limits: Limits,
     /// Shorten steps that raise the merit.
     pub line_search: bool,
-    /// And search for the least on the way.
-    pub kinks: bool,
     /// Move on by a few local and global stages where stuck.
     pub rescue: bool,
     pub tangent: Tangent,
@@ -114,7 +100,6 @@ impl<S: Scheme> Newton<S> {
             multiple: options.real(&R),
             limits: Limits::new(options.count(max_iterations), PATIENCE),
             line_search: true,
-            kinks: options.switch(&KINKS),
             rescue: true,
             tangent: Tangent::new(options.switch(&MONOLITHIC)),
         }
@@ -202,15 +187,7 @@ impl<S: Scheme> Newton<S> {
             }
 
             let mut t = 1.0;
-            if self.kinks {
-                search.record(self.merit(problem, &r, &x.p, &v));
-                problem.jump_after(&x, 1.0, &step, &mut work.trial, &mut work.jump);
-                let dv = minus(&work.jump, &v);
-                let kinks = self.kinks(problem, &r, (&x.p, &v), (&step.p, &dv));
-                t = search.exact(&kinks, |t| {
-                    self.merit(problem, &r, &along(&x.p, t, &step.p), &along(&v, t, &dv))
-                });
-            } else if self.line_search {
+            if self.line_search {
                 search.record(merit.unwrap_or_else(|| self.merit(problem, &r, &x.p, &v)));
                 let Work { trial, jump, .. } = &mut work;
                 let mut last = (f64::NAN, f64::NAN);
@@ -257,29 +234,6 @@ impl<S: Scheme> Newton<S> {
         let point = |i| ContactPoint::of(problem, i, r, (P, v));
         let points = 0..problem.rows.points();
         refill(pieces, points.map(|i| self.scheme.piece(&point(i))));
-    }
-
-    /// Where the pieces change along a step, in increasing order.
-    fn kinks(
-        &self,
-        problem: &ContactProblem<'_>,
-        r: &[f64],
-        x: (&[f64], &[f64]),
-        step: (&[f64], &[f64]),
-    ) -> Vec<f64> {
-        let mut kinks = Vec::new();
-        for i in 0..problem.rows.points() {
-            let of = |x| {
-                let at = ContactPoint::of(problem, i, r, x);
-                (at.trial(), self.scheme.bound(&at))
-            };
-            let ((z, bound), (dz, dbound)) = (of(x), of(step));
-            let (mu, size) = (problem.friction(i), problem.rows.of(i).len());
-            add_kinks(mu, (&z[..size], bound), (&dz[..size], dbound), &mut kinks);
-        }
-        kinks.sort_by(f64::total_cmp);
-        kinks.dedup();
-        kinks
     }
 
     /// Σ H²/r over all rows, an energy.

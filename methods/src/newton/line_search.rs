@@ -39,36 +39,6 @@ impl LineSearch {
         // Strictly below: a cycle of full steps between equal merits must not pass for ever.
         merit <= (1.0 - 2.0 * DECREASE * t) * bound
     }
-
-    /// The same, but a step that is shortened ends at the least merit on its way: between two of the `kinks`, given in
-    /// increasing order, that is the vertex of a parabola.
-    pub fn exact(&self, kinks: &[f64], mut merit: impl FnMut(f64) -> f64) -> f64 {
-        let full = merit(1.0);
-        let now = self.recent[0];
-        if self.accepts(1.0, full) {
-            return 1.0;
-        }
-        let (mut left, mut best) = ((0.0, now), (1.0, full));
-        for &t in kinks.iter().chain(&[1.0]) {
-            let (middle, half) = (0.5 * (left.0 + t), 0.5 * (t - left.0));
-            let right = (t, merit(t));
-            let curvature = left.1 - 2.0 * merit(middle) + right.1;
-            let vertex = -0.5 * (right.1 - left.1) / curvature;
-            let mut candidates = vec![right];
-            if curvature > 0.0 && vertex.abs() < 1.0 {
-                let t = middle + vertex * half;
-                candidates.push((t, merit(t)));
-            }
-            best = candidates
-                .into_iter()
-                .fold(best, |best, at| if at.1 < best.1 { at } else { best });
-            left = right;
-        }
-        match best.1 <= (1.0 - 2.0 * DECREASE * best.0) * now {
-            true => best.0,
-            false => 1.0,
-        }
-    }
 }
 
 #[cfg(test)]

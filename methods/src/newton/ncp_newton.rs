@@ -29,8 +29,7 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. `max_iterations`. `monolithic`: 1 solves each step on all unknowns
-//! with a sparse LU of K bordered by the contact rows. `kinks`: 1 searches along steps that raise the merit (see
-//! `b-newton`). `function`: the table. ε is a tenth of what is violated, natural map times reference force per point, and
+//! with a sparse LU of K bordered by the contact rows. `function`: the table. ε is a tenth of what is violated, natural map times reference force per point, and
 //! never grows; |d| is smoothed by ε/r_t in the derivative alone.
 //!
 //! # Guarantees
@@ -57,8 +56,6 @@
 //! | 3D, `function` 3 | 6  | 15  | 7   | 7   | 8  | 12 | 22    |
 //! | 3D, `newton-ac`  | 3  | 5   | 5   | 6   | 6  | 6, 1 | 6   |
 //!
-//! `kinks` and `function` 2 do not go together: of 40 frictionless problems in 3D three stall between two kinks.
-//!
 //! # Skips
 //! An open crack is one linear solve; without friction there are no tangential rows. With Fischer–Burmeister and
 //! smoothed functions no row reads δP = const, so that open points stay in the dense LU.
@@ -79,8 +76,8 @@ pub static METHOD: Method = Method {
     summary: "Newton's method on the Fischer-Burmeister or min function of Coulomb's cone and its dual, smoothed or not",
     exact: true,
     options: &{
-        let [r, steps, monolithic, kinks] = scheme_options(MAX_ITERATIONS);
-        [r, steps, monolithic, kinks, OptionSpec::Whole(FUNCTION)]
+        let [r, steps, monolithic] = scheme_options(MAX_ITERATIONS);
+        [r, steps, monolithic, OptionSpec::Whole(FUNCTION)]
     },
     source: include_str!("ncp_newton.rs"),
     build: |options| {

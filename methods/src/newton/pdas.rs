@@ -29,9 +29,7 @@
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
 //! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows;
-//! the iterates are the same. `kinks`: 1 gives the method a line search, which it has none of: a step that raises the merit
-//! ends at the least on its way, from kink to kink (`newton/kinks.rs`). It does not pay: on random problems (`stickslip
-//! stress methods`, 100 per μ and dimension, μ from 0 to 5) medians are the same or one step more.
+//! the iterates are the same.
 //!
 //! # Guarantees
 //! Without friction, if W⁻¹ is an M-matrix: finite termination, from any start, and monotone from the second step on

@@ -7,10 +7,9 @@ use crate::run::increment::Solver;
 use crate::run::registry::method;
 
 /// Options of the method's own that are changed one by one, in this order, where it has them.
-pub const OWN: [(&str, f64); 7] = [
+pub const OWN: [(&str, f64); 6] = [
     ("r", 0.1),
     ("r", 10.0),
-    ("kinks", 1.0),
     ("anderson", 5.0),
     ("spectral", 1.0),
     ("step", 1.0),
