@@ -100,7 +100,7 @@ fn penalty_error_falls_like_one_over_its_stiffness_and_that_of_the_barrier_like_
 fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     let (s, load, reference) = specimen();
     #[rustfmt::skip]
-    let sweeps: [(&str, &str, &[f64]); 19] = [
+    let sweeps: [(&str, &str, &[f64]); 18] = [
         ("b-newton", "r", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         ("augmented-lagrangian", "stiffness", &[1.0, 10.0, 1e2, 1e3, 1e4, 1e6]),
         ("gnm", "return_map", &[0.0, 2.0]),
@@ -115,7 +115,6 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
         ("latin", "relaxation", &[0.5, 0.7, 0.9]),
         ("admm", "penalty", &[1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3]),
         ("admm", "over_relaxation", &[0.5, 1.0, 1.9]),
-        ("projection", "variant", &[0.0, 1.0]),
         ("nsgs", "relaxation", &[0.5, 0.8, 1.2]),
         ("interior-point", "fraction", &[0.5, 0.9, 0.999]),
         ("socp", "anderson", &[0.0, 1.0, 20.0]),

@@ -100,7 +100,7 @@ const STEPS: [f64; 2] = [1e-6, 1e6];
 impl CondensedMethod for AcceleratedGradient {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
-        let gradient = Step::new(problem, false);
+        let gradient = Step::new(problem);
         let saddle = &gradient.saddle;
         let mut x = saddle.start(problem);
         let mut program = Program::new(problem, &gradient, SOLVED[usize::from(self.step == 1)], &x);

@@ -1,18 +1,16 @@
-//! Projection methods: fixed point and extragradient.
+//! Projection: steps against the corrected jump, projected on Coulomb's cone.
 //!
 //! De Saxcé & Feng, Math. Comput. Modelling 28 (1998) 225; compared with other solvers by Acary, Brémond & Huber, in
-//! Advanced Topics in Nonsmooth Dynamics (2018) 375. Extragradient: Korpelevich (1976); its step: Khobotov, USSR Comput.
-//! Math. Math. Phys. 27 (1987) 120; He & Liao, J. Optim. Theory Appl. 112 (2002) 111.
+//! Advanced Topics in Nonsmooth Dynamics (2018) 375. The step length: Khobotov, USSR Comput. Math. Math. Phys. 27 (1987)
+//! 120; He & Liao, J. Optim. Theory Appl. 112 (2002) 111.
 //!
 //! ```text
 //! ṽ(P, γ) = (g + μ|d|, d),  v = (g, d) = q' + W' P + Q γ            De Saxcé's correction
 //!
-//! fixed point      γ <- γ + κ (Qᵀ P − c)                            bodies that float: method of multipliers
-//!                  P <- P̄ = proj_{K_μ}(P − τ r ṽ(P, γ))
-//! extragradient    P̄ = proj_{K_μ}(P − τ r ṽ(P, γ)),  γ̄ = γ + τ κ (Qᵀ P − c)
-//!                  P <- proj_{K_μ}(P − τ r ṽ(P̄, γ̄)),  γ <- γ + τ κ (Qᵀ P̄ − c)
+//! γ <- γ + κ (Qᵀ P − c)                            bodies that float: method of multipliers
+//! P <- P̄ = proj_{K_μ}(P − τ r ṽ(P, γ))
 //!
-//! step    l = τ |F(P̄, γ̄) − F(P, γ)| / |(P̄, γ̄) − (P, γ)|,   F = (ṽ, c − Qᵀ P)
+//! step    l = τ |F(P̄, γ) − F(P, γ)| / |P̄ − P|,   F = (ṽ, c − Qᵀ P)
 //!         l > 0.9: τ <- 2/3 τ min(1, 1/l) and P̄ again;   l < 0.3: τ <- 3/2 τ for the next step
 //! ```
 //! r = 1/mean(W'_ii) per point makes τ a number near 1; it is the same for both tangents, so that their frame does not matter.
@@ -21,12 +19,11 @@
 //! `condensed/saddle.rs`.
 //!
 //! # Options
-//! `max_iterations`. `variant`: 0 fixed point, 1 extragradient. 0 is the default, by measurement: it solves as many
-//! random, strongly coupled systems (`tests/robustness.rs`) in 0.53 to 0.69 of the iterations, each at half the cost.
+//! `max_iterations`.
 //!
 //! # Guarantees
-//! Both converge without friction for bodies that do not float, as projected gradients of a convex programme; extragradient
-//! for any monotone law. With friction ṽ is not monotone and there is no proof.
+//! Converges without friction for bodies that do not float, as projected gradients of a convex programme. With friction ṽ is
+//! not monotone and there is no proof.
 //!
 //! # Failure modes
 //! Slow, with plateaus of thousands of iterations: their number grows like the condition of W, and with μ. Of 200 of
@@ -37,7 +34,7 @@
 //! Nothing is factored. v follows P by columns of W', without those whose force did not change; it is computed afresh
 //! only every now and then, and before anything is claimed.
 
-use crate::algebra::dense::{minus, refill};
+use crate::algebra::dense::refill;
 use crate::condensed::branches::changed;
 use crate::condensed::problem::COMPLIANCE_FLOOR;
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
@@ -61,7 +58,6 @@ pub static METHOD: Method = Method {
 options! {
     Projection {
         max_iterations: Count(100_000, 1, 100_000_000), "steps before giving up";
-        variant: Whole(0, 0, 1), "0: fixed point, one projection per step; 1: extragradient, two";
     }
 }
 
@@ -81,12 +77,11 @@ impl CondensedMethod for Projection {
     }
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
-        let extragradient = self.variant == 1;
         let limits = Limits::new(self.max_iterations, PATIENCE);
-        let step = Step::new(problem, extragradient);
+        let step = Step::new(problem);
         let saddle = &step.saddle;
         let mut x = saddle.start(problem);
-        let (mut trial, mut second) = (Trial::default(), Trial::default());
+        let mut trial = Trial::default();
         let (mut tau, mut changes) = (1.0, 0);
         let mut before = vec![Branch::Open; problem.rows.points()];
 
@@ -94,21 +89,14 @@ impl CondensedMethod for Projection {
             if let Some(status) = saddle.ends(problem, &mut x, changes, limits, monitor)? {
                 break status;
             }
-            if !extragradient {
-                saddle.update_multipliers(problem, &mut x);
-            }
+            saddle.update_multipliers(problem, &mut x);
             if problem.counters.iterations.is_multiple_of(REFRESH) {
                 saddle.refresh(problem, &mut x);
             }
             let next_tau = step.adapted(problem, &x, &mut tau, &mut trial);
             changes = changed(&trial.branches, &before);
             std::mem::swap(&mut before, &mut trial.branches);
-            if extragradient {
-                step.project(problem, &x, &trial.x, tau, &mut second);
-                std::mem::swap(&mut x, &mut second.x);
-            } else {
-                std::mem::swap(&mut x, &mut trial.x);
-            }
+            std::mem::swap(&mut x, &mut trial.x);
             tau = next_tau;
         };
         let (p, beta) = saddle.balanced(problem, &x);
@@ -120,7 +108,7 @@ impl CondensedMethod for Projection {
 /// Where a step ends.
 #[derive(Default)]
 struct Trial {
-    /// (P̄, γ̄) and its v.
+    /// (P̄, γ) and its v.
     x: Iterate,
     /// P̄ − P.
     dp: Vec<f64>,
@@ -132,13 +120,11 @@ pub(crate) struct Step {
     pub saddle: Saddle,
     /// r by row, in N/m.
     pub r: Vec<f64>,
-    /// Whether γ moves within the step.
-    moves_gamma: bool,
 }
 
 impl Step {
-    /// `moves_gamma`: whether γ moves within the step.
-    pub fn new(problem: &ContactProblem<'_>, moves_gamma: bool) -> Self {
+    /// Of the problem.
+    pub fn new(problem: &ContactProblem<'_>) -> Self {
         let saddle = Saddle::new(problem.operator.clone());
         let floor = COMPLIANCE_FLOOR / problem.operator.rho;
         let mut r = vec![0.0; problem.len()];
@@ -149,11 +135,7 @@ impl Step {
             r[rows.clone()].fill(1.0 / mean.max(floor));
             r[rows.start] /= problem.friction(i).max(1.0);
         }
-        Self {
-            saddle,
-            r,
-            moves_gamma,
-        }
+        Self { saddle, r }
     }
 
     /// The trial with `tau` shortened until l <= 0.9; returns the τ to begin the next step with.
@@ -165,7 +147,7 @@ impl Step {
         trial: &mut Trial,
     ) -> f64 {
         loop {
-            self.project(problem, x, x, *tau, trial);
+            self.project(problem, x, *tau, trial);
             let l = *tau * self.lipschitz(problem, x, trial);
             if l < SMALLEST {
                 return *tau / SHRINK;
@@ -176,12 +158,11 @@ impl Step {
         }
     }
 
-    /// The step from `x` against F at `at`, in place of what `trial` holds.
+    /// The step from `x`, in place of what `trial` holds.
     fn project(
         &self,
         problem: &mut ContactProblem<'_>,
         x: &Iterate,
-        at: &Iterate,
         tau: f64,
         trial: &mut Trial,
     ) {
@@ -197,21 +178,15 @@ impl Step {
             let rows = problem.rows.of(i);
             let mu = problem.friction(i);
             for k in rows.clone() {
-                p[k] -= tau * self.r[k] * at.v[k];
+                p[k] -= tau * self.r[k] * x.v[k];
             }
-            p[rows.start] -= tau * self.r[rows.start] * mu * tangential_norm(&at.v[rows.clone()]);
+            p[rows.start] -= tau * self.r[rows.start] * mu * tangential_norm(&x.v[rows.clone()]);
             branches.push(self.project_point(mu, &self.r[rows.clone()], &mut p[rows]));
         }
         gamma.clone_from(&x.gamma);
-        if self.moves_gamma {
-            for (gamma, missing) in gamma.iter_mut().zip(problem.missing(&at.p)) {
-                *gamma -= tau * self.saddle.kappa * missing;
-            }
-        }
         refill(dp, p.iter().zip(&x.p).map(|(p, old)| p - old));
         v.clone_from(&x.v);
         self.saddle.w().apply_add(dp, v);
-        problem.operator.modes.add(&minus(gamma, &x.gamma), v);
     }
 
     /// Projects on the cone of one point, nearest in |P|²/r.
@@ -224,7 +199,7 @@ impl Step {
         branch
     }
 
-    /// |F(P̄, γ̄) − F(P, γ)| / |(P̄, γ̄) − (P, γ)|.
+    /// |F(P̄) − F(P)| / |P̄ − P|, F = (ṽ, c − Qᵀ P).
     fn lipschitz(&self, problem: &ContactProblem<'_>, x: &Iterate, trial: &Trial) -> f64 {
         let Trial { x: end, dp, .. } = trial;
         let (mut forces, mut jumps) = (0.0, 0.0);
@@ -241,11 +216,7 @@ impl Step {
             }
         }
         let kappa = self.saddle.kappa;
-        for (dgamma, dc) in minus(&end.gamma, &x.gamma)
-            .iter()
-            .zip(problem.operator.modes.components(dp))
-        {
-            forces += dgamma * dgamma / kappa;
+        for dc in problem.operator.modes.components(dp) {
             jumps += kappa * dc * dc;
         }
         // Forces at rest: any step will do.

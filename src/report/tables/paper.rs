@@ -171,7 +171,7 @@ impl Row for ComparisonRow {
 impl Row for VariantRow {
     const NAME: &'static str = "variants";
     const TITLE: &'static str = "Plate (Mesh I) and beam (Model I) by every method and variant";
-    const QUESTION: &'static str = "What does a variant of a method change: monolithic, without final Newton steps, other fixed points, other signs of Nitsche's θ?";
+    const QUESTION: &'static str = "What does a variant of a method change: monolithic, without final Newton steps, other signs of Nitsche's θ?";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,

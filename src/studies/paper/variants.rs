@@ -17,10 +17,9 @@ const PROBLEMS: [(&str, &[f64], Compared); 2] = [
 ];
 
 /// Variants beside the defaults and the monolithic ones: one option changed.
-const VARIANTS: [(&str, &str, f64); 5] = [
+const VARIANTS: [(&str, &str, f64); 4] = [
     ("socp", "polish", 0.0),
     ("tresca", "polish", 0.0),
-    ("projection", "variant", 1.0),
     ("nitsche", "theta", 0.0),
     ("nitsche", "theta", -1.0),
 ];
