@@ -37,7 +37,6 @@ fn candidates() -> Vec<(&'static Method, Vec<(&'static str, f64)>)> {
         ("socp", ("anderson", 0.0)),
         ("tresca", ("anderson", 0.0)),
         ("admm", ("over_relaxation", 1.0)),
-        ("accelerated-gradient", ("step", 1.0)),
         ("gnm", ("return_map", 0.0)),
         ("ncp-newton", ("function", 0.0)),
         ("nsgs", ("anderson", 5.0)),

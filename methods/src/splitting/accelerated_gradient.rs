@@ -1,46 +1,38 @@
-//! Accelerated and spectral projected gradients.
+//! Accelerated projected gradients.
 //!
 //! Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32, after Nesterov, Soviet Math. Dokl. 27 (1983) 372; restart:
-//! O'Donoghue & Candès, Found. Comput. Math. 15 (2015) 715. Spectral: Birgin, Martínez & Raydan, SIAM J. Optim. 10 (2000)
-//! 1196, with the steps of Barzilai & Borwein, IMA J. Numer. Anal. 8 (1988) 141. Both minimise the convex problem of a given
-//! shift; the shift makes it Coulomb's law: De Saxcé & Feng, Math. Comput. Modelling 28 (1998) 225.
+//! O'Donoghue & Candès, Found. Comput. Math. 15 (2015) 715. They minimise the convex problem of a given shift; the shift
+//! makes it Coulomb's law: De Saxcé & Feng, Math. Comput. Modelling 28 (1998) 225.
 //!
 //! ```text
 //! min ½ P·W' P + (q' + Q γ + s)·P   over P in K_μ                    f = q' + W' P + Q γ + s, the gradient
 //!
-//! Nesterov   P⁺ = proj(y − t r f(y)),   t <- min(t/2, |δP|²/δP·W'δP) and again while δP·W'δP > |δP|²/t,  δP = P⁺ − y
-//!            θ⁺² = (1 − θ⁺) θ²,  y <- P⁺ + θ (1 − θ)/(θ² + θ⁺) (P⁺ − P);   y <- P⁺, θ <- 1 if f(y)·(P⁺ − P) > 0
-//!            t <- t/0.9
-//! spectral   δ = proj(P − t r f(P)) − P,  P <- P + α δ,   α = 1 if that is below the worst of the last ten, else the minimiser
-//!            t <- |δP|²/δP·δf of the last step
-//!
-//! shift      s <- (μ|d|, 0), accelerated,  γ <- γ + κ (Qᵀ P − c)    once the convex problem is solved better than its shift is known
+//! step    P⁺ = proj(y − t r f(y)),   t <- min(t/2, |δP|²/δP·W'δP) and again while δP·W'δP > |δP|²/t,  δP = P⁺ − y
+//!         θ⁺² = (1 − θ⁺) θ²,  y <- P⁺ + θ (1 − θ)/(θ² + θ⁺) (P⁺ − P);   y <- P⁺, θ <- 1 if f(y)·(P⁺ − P) > 0
+//!         t <- t/0.9
+//! shift   s <- (μ|d|, 0), accelerated,  γ <- γ + κ (Qᵀ P − c)    once the convex problem is solved better than its shift is known
 //! ```
 //! Norms and projections are those of the metric |P|²/r, with r, W', q' and γ as in `projection`, whose fixed point takes
 //! the plain step and a new shift every time. The convex problem counts as solved where what a projected step would still
-//! move is less than a fraction of what a new shift would, one half with Nesterov's steps and a tenth with spectral ones.
-//! Shifts are accelerated by Anderson's method, as those of `socp`.
+//! move is less than half of what a new shift would. Shifts are accelerated by Anderson's method, as those of `socp`.
 //!
 //! # Options
-//! `max_iterations`. `step`: 0 Nesterov's, 1 spectral.
+//! `max_iterations`.
 //!
 //! # Guarantees
-//! Without friction, for bodies that do not float, the objective falls like 1/k² with Nesterov's steps and converges with
-//! spectral ones. With friction each shift gives a convex problem; their sequence has no proof.
+//! Without friction, for bodies that do not float, the objective falls like 1/k². With friction each shift gives a convex
+//! problem; their sequence has no proof.
 //!
 //! # Failure modes
 //! Large μ: shifts then overshoot, and each convex problem has to be solved the better. At μ = 50 it stalls where
-//! `projection`, with a new shift in every step, does not. Spectral steps stall at times where nothing is hard otherwise;
-//! why is open. On random problems (`stickslip stress methods`; 60 per entry, `step` 1: 30, `projection`: 100) median
-//! iterations and how many gave up:
+//! `projection`, with a new shift in every step, does not. On random problems (`stickslip stress methods`; 60 per entry,
+//! `projection`: 100) median iterations and how many gave up:
 //!
 //! | μ                | 0   | 0.3    | 1       | 2       | 5         |
 //! |------------------|-----|--------|---------|---------|-----------|
-//! | 2D, `step` 0     | 179 | 269    | 551     | 793     | 1685      |
-//! | 2D, `step` 1     | 196 | 481    | 960     | 2210, 1 | 4292, 4   |
+//! | 2D, this method  | 179 | 269    | 551     | 793     | 1685      |
 //! | 2D, `projection` | 944 | 900    | 1507    | 3286    | 7894, 7   |
-//! | 3D, `step` 0     | 147 | 242    | 479     | 1077    | 2423, 3   |
-//! | 3D, `step` 1     | 109 | 192, 2 | 427, 2  | 1316    | 4732, 1   |
+//! | 3D, this method  | 147 | 242    | 479     | 1077    | 2423, 3   |
 //! | 3D, `projection` | 776 | 832    | 1489, 3 | 4167, 6 | 12221, 23 |
 //!
 //! A step costs one product with W' and two more projections to know when the shift is due.
@@ -48,8 +40,6 @@
 //! # Skips
 //! Nothing is factored. v follows P by columns of W', without those whose force did not change; it is computed afresh
 //! only every now and then, and before anything is claimed.
-
-use std::collections::VecDeque;
 
 use crate::algebra::dense::{dot, refill, zero};
 use crate::condensed::anderson::Anderson;
@@ -66,7 +56,7 @@ pub static METHOD: Method = Method {
     name: "accelerated-gradient",
     label: "Accelerated projected gradient",
     reference: "Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32",
-    summary: "projected gradients with Nesterov's momentum or spectral steps on convex problems shifted by the slip",
+    summary: "projected gradients with Nesterov's momentum on convex problems shifted by the slip",
     exact: true,
     options: AcceleratedGradient::OPTIONS,
     source: include_str!("accelerated_gradient.rs"),
@@ -76,26 +66,18 @@ pub static METHOD: Method = Method {
 options! {
     AcceleratedGradient {
         max_iterations: Count(100_000, 1, 100_000_000), "steps before giving up";
-        step: Whole(0, 0, 1), "0: Nesterov's momentum with restarts; 1: spectral steps of Barzilai and Borwein";
     }
 }
 
 /// Iterations without progress after which the iteration counts as stalled.
 const PATIENCE: usize = 20_000;
-/// Part of what a new shift moves below which the convex problem counts as solved: spectral steps, which rise now and then,
-/// look solved too early.
-const SOLVED: [f64; 2] = [0.5, 0.1];
+/// Part of what a new shift moves below which the convex problem counts as solved.
+const SOLVED: f64 = 0.5;
 /// Differences of shifts kept.
 const SHIFTS: usize = 5;
-/// Shortening of Nesterov's step, and what it is lengthened by after every step.
+/// Shortening of a step, and what it is lengthened by after every step.
 const SHRINK: f64 = 0.5;
 const GROW: f64 = 1.0 / 0.9;
-/// Objectives the spectral step may rise to.
-const MEMORY: usize = 10;
-/// Sufficient decrease.
-const DECREASE: f64 = 1e-4;
-/// Bounds of the spectral step.
-const STEPS: [f64; 2] = [1e-6, 1e6];
 
 impl CondensedMethod for AcceleratedGradient {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
@@ -103,7 +85,7 @@ impl CondensedMethod for AcceleratedGradient {
         let gradient = Step::new(problem);
         let saddle = &gradient.saddle;
         let mut x = saddle.start(problem);
-        let mut program = Program::new(problem, &gradient, SOLVED[usize::from(self.step == 1)], &x);
+        let mut program = Program::new(problem, &gradient, &x);
         let mut changes = 0;
         let mut before = vec![Branch::Open; problem.rows.points()];
 
@@ -121,10 +103,7 @@ impl CondensedMethod for AcceleratedGradient {
             } else if stale {
                 program.restart(&x);
             }
-            match self.step {
-                0 => program.accelerated(problem, &mut x),
-                _ => program.spectral(problem, &mut x),
-            }
+            program.step(problem, &mut x);
             let branches = &mut program.trial.branches;
             changes = changed(branches, &before);
             std::mem::swap(&mut before, branches);
@@ -138,8 +117,6 @@ impl CondensedMethod for AcceleratedGradient {
 /// The convex problem of one shift, and where its iteration stands.
 struct Program<'g> {
     gradient: &'g Step,
-    /// Of [`SOLVED`].
-    fraction: f64,
     /// s by row.
     s: Vec<f64>,
     /// What the shifts before teach.
@@ -149,8 +126,6 @@ struct Program<'g> {
     /// Nesterov's point and θ.
     y: Iterate,
     theta: f64,
-    /// Objectives of the spectral steps less that of the first.
-    recent: VecDeque<f64>,
     /// The projected step tried last.
     trial: Trial,
     /// The shift of the iterate itself, and the projected step with it.
@@ -208,16 +183,14 @@ fn shift_of(problem: &ContactProblem<'_>, v: &[f64], s: &mut Vec<f64>) {
 }
 
 impl<'g> Program<'g> {
-    fn new(problem: &ContactProblem<'_>, gradient: &'g Step, fraction: f64, x: &Iterate) -> Self {
+    fn new(problem: &ContactProblem<'_>, gradient: &'g Step, x: &Iterate) -> Self {
         let mut program = Self {
             gradient,
-            fraction,
             s: Vec::new(),
             anderson: Anderson::new(SHIFTS),
             t: 1.0,
             y: Iterate::default(),
             theta: 1.0,
-            recent: VecDeque::with_capacity(MEMORY),
             trial: Trial::default(),
             own_s: Vec::new(),
             shifted: Trial::default(),
@@ -237,8 +210,6 @@ impl<'g> Program<'g> {
     fn restart(&mut self, x: &Iterate) {
         self.y.copy(x);
         self.theta = 1.0;
-        self.recent.clear();
-        self.recent.push_back(0.0);
     }
 
     /// Whether a step with the shift of `x` itself would do much more than one with the old.
@@ -250,8 +221,7 @@ impl<'g> Program<'g> {
         let missing = problem.missing(&x.p);
         let unbalanced = gradient.saddle.kappa * dot(&missing, &missing);
         let (old, new) = (&self.trial.p, &self.shifted.p);
-        self.squared(old, &x.p)
-            <= (self.fraction * self.fraction) * (self.squared(new, old) + unbalanced)
+        self.squared(old, &x.p) <= (SOLVED * SOLVED) * (self.squared(new, old) + unbalanced)
     }
 
     /// |δP|²/r between two forces.
@@ -262,7 +232,7 @@ impl<'g> Program<'g> {
     }
 
     /// Nesterov's step.
-    fn accelerated(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) {
+    fn step(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) {
         let gradient = self.gradient;
         loop {
             (self.trial).project(problem, gradient, &self.y, &self.s, self.t);
@@ -294,33 +264,5 @@ impl<'g> Program<'g> {
             (x.p[k], x.v[k]) = (p, v);
         }
         self.t *= GROW;
-    }
-
-    /// The spectral step.
-    fn spectral(&mut self, problem: &mut ContactProblem<'_>, x: &mut Iterate) {
-        (self.trial).project(problem, self.gradient, x, &self.s, self.t);
-        self.trial.multiply(self.gradient, &x.p);
-        let Trial { p, dp, dv, .. } = &self.trial;
-        let (size, curvature) = (self.squared(p, &x.p), dot(dp, dv));
-        let slope: f64 = (0..dp.len()).map(|k| (x.v[k] + self.s[k]) * dp[k]).sum();
-        let last = self.recent.back().copied().unwrap_or(0.0);
-        let worst = self.recent.iter().copied().fold(last, f64::max);
-        let mut alpha = 1.0;
-        if last + slope + 0.5 * curvature > worst + DECREASE * slope && curvature > 0.0 {
-            alpha = (-slope / curvature).clamp(0.0, 1.0);
-        }
-        for k in 0..dp.len() {
-            x.p[k] += alpha * dp[k];
-            x.v[k] += alpha * dv[k];
-        }
-        if self.recent.len() == MEMORY {
-            self.recent.pop_front();
-        }
-        self.recent
-            .push_back(last + alpha * slope + 0.5 * alpha * alpha * curvature);
-        self.t = match curvature > 0.0 {
-            true => (size / curvature).clamp(STEPS[0], STEPS[1]),
-            false => STEPS[1],
-        };
     }
 }
