@@ -24,9 +24,7 @@
 //! al. §3.4.1) in powers of 2, by the mean of their ratio since the last look, at iterations ever farther apart. The ratio
 //! is the geometric mean of two that fail in different places: relative to |P| and |ξ|/k (Wohlberg 2017; misled by large
 //! gaps elsewhere), and to the scale 1 : 1/ρ of the natural map (misled by the condition of W). `over_relaxation`: α,
-//! dropped to 1 once 25 iterations in a row bring no progress. `max_iterations`. `spectral`: 1 takes the rule of Carpentier,
-//! Montaut & Le Lidec (arXiv:2405.17020) instead, k = `penalty` (L/m)^p/√(m L), with m and L the extreme eigenvalues of W, p
-//! = −0.2 to begin with and ±0.05 whenever one residual is ten times the other (the sign of p is theirs turned, as is k).
+//! dropped to 1 once 25 iterations in a row bring no progress. `max_iterations`.
 //! `anderson`: differences kept by the acceleration of (y, ξ) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken back
 //! where the natural map doubles, begun anew when k moves. On random problems (`stickslip stress methods`, 100 per entry)
 //! median iterations and how many gave up:
@@ -34,10 +32,8 @@
 //! | μ                | 0       | 0.3     | 1       | 2       | 5       |
 //! |------------------|---------|---------|---------|---------|---------|
 //! | 2D, default      | 64      | 251     | 116     | 109     | 147     |
-//! | 2D, `spectral` 1 | 69      | 256     | 118     | 118     | 136     |
 //! | 2D, `anderson` 5 | 34      | 60      | 56      | 59      | 87      |
 //! | 3D, default      | 118, 1  | 327, 7  | 208, 2  | 240, 2  | 558, 3  |
-//! | 3D, `spectral` 1 | 179, 2  | 300, 7  | 301, 4  | 258, 2  | 496, 5  |
 //! | 3D, `anderson` 5 | 56      | 101     | 105     | 116     | 237     |
 //!
 //! # Guarantees
@@ -57,7 +53,6 @@
 use std::sync::Arc;
 
 use crate::algebra::dense::{norm, refill};
-use crate::algebra::spectrum::extremes;
 use crate::condensed::acceleration::Acceleration;
 use crate::condensed::pair::Pair;
 use crate::condensed::stages::GlobalStage;
@@ -84,7 +79,6 @@ options! {
         penalty: Real(1.0, 1e-3, 1e3), "first k, the inverse of the penalty parameter, as a multiple of rho = rows/trace(W)";
         over_relaxation: Real(1.6, 0.5, 1.9), "over-relaxation; 1 is the plain method";
         max_iterations: Count(20_000, 1, 10_000_000), "pairs of steps before giving up";
-        spectral: Switch(false), "1: k follows the residuals in powers of the condition of W, from a fixed start; penalty multiplies it";
         anderson: Count(0, 0, 20), Acceleration::HELP;
     }
 }
@@ -97,14 +91,6 @@ const STAGNATION: usize = 25;
 const FIRST_BALANCE: usize = 10;
 /// Largest power of 2 in one move of k.
 const MAX_MOVE: f64 = 4.0;
-
-/// Exponent of the condition of W by which the spectral rule moves k, and the first power: (W's condition)^(-0.2).
-const SPECTRAL_STEP: f64 = 0.05;
-const SPECTRAL_START: i32 = -4;
-/// Least factor between neighbouring k of the spectral rule, where W has one eigenvalue.
-const LEAST_BASE: f64 = 1.1;
-/// Ratio of the residuals at which the spectral rule moves k.
-const IMBALANCE: f64 = 10.0;
 
 /// Factors kept: each is as large as W. The first k, the one before a move and the one after.
 const KEPT: usize = 3;
@@ -123,23 +109,7 @@ impl Admm {
         }
     }
 
-    /// (k, b) of the directions k b^power.
-    fn directions(&self, problem: &ContactProblem<'_>) -> (f64, f64) {
-        let (operator, penalty) = (&problem.operator, self.settings.penalty);
-        let extremes = match self.settings.spectral {
-            true => extremes(&*operator.w, &operator.modes),
-            false => None,
-        };
-        match extremes {
-            Some((least, most)) => (
-                penalty / (least * most).sqrt(),
-                (most / least).powf(SPECTRAL_STEP).max(LEAST_BASE),
-            ),
-            None => (penalty * operator.rho, 2.0),
-        }
-    }
-
-    /// The linear step with k b^power.
+    /// The linear step with k = `penalty` ρ 2^power.
     fn stage(
         &mut self,
         problem: &mut ContactProblem<'_>,
@@ -151,8 +121,7 @@ impl Admm {
         let stage = if let Some(place) = kept {
             self.stages.remove(place).1
         } else {
-            let (k, base) = self.directions(problem);
-            let k = k * base.powi(power);
+            let k = self.settings.penalty * problem.operator.rho * 2.0_f64.powi(power);
             problem.counters.factorisations += 1;
             Arc::new(GlobalStage::along(problem.operator.clone(), k)?)
         };
@@ -171,10 +140,7 @@ impl CondensedMethod for Admm {
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.settings.max_iterations, PATIENCE);
-        let (mut power, mut balance) = match self.settings.spectral {
-            true => (SPECTRAL_START, Balance::Spectral),
-            false => (0, Balance::default()),
-        };
+        let (mut power, mut balance) = (0, Balance::default());
         let mut stage = self.stage(problem, power)?;
         let (mut pair, mut new) = (Pair::start(problem), Pair::default());
         let mut cone = Cone::start(problem, &pair, stage.k0());
@@ -214,21 +180,16 @@ impl CondensedMethod for Admm {
     }
 }
 
-/// When k moves and how far.
-enum Balance {
-    /// By the mean of what was asked for, ever more rarely.
-    Mean {
-        next: usize,
-        /// Sum of log₂ of the growth asked for since the last look, and in how many iterations.
-        asked: (f64, usize),
-    },
-    /// A small step whenever one residual is ten times the other.
-    Spectral,
+/// When k moves and how far: by the mean of what was asked for, ever more rarely.
+struct Balance {
+    next: usize,
+    /// Sum of log₂ of the growth asked for since the last look, and in how many iterations.
+    asked: (f64, usize),
 }
 
 impl Default for Balance {
     fn default() -> Self {
-        Self::Mean {
+        Self {
             next: FIRST_BALANCE,
             asked: (0.0, 0),
         }
@@ -238,10 +199,7 @@ impl Default for Balance {
 impl Balance {
     /// The power by which k moves, from the growth each iteration asks for.
     fn moves(&mut self, iteration: usize, growth: f64) -> i32 {
-        let Self::Mean { next, asked } = self else {
-            let ratio = growth * growth;
-            return i32::from(ratio > IMBALANCE) - i32::from(ratio < 1.0 / IMBALANCE);
-        };
+        let Self { next, asked } = self;
         asked.0 += growth.log2();
         asked.1 += 1;
         if iteration < *next {
