@@ -38,7 +38,6 @@ fn candidates() -> Vec<(&'static Method, Vec<(&'static str, f64)>)> {
         ("tresca", ("anderson", 0.0)),
         ("admm", ("over_relaxation", 1.0)),
         ("gnm", ("return_map", 0.0)),
-        ("ncp-newton", ("function", 0.0)),
         ("nsgs", ("anderson", 5.0)),
         ("latin", ("anderson", 5.0)),
         ("admm", ("anderson", 5.0)),

@@ -159,13 +159,7 @@ impl Step {
     }
 
     /// The step from `x`, in place of what `trial` holds.
-    fn project(
-        &self,
-        problem: &mut ContactProblem<'_>,
-        x: &Iterate,
-        tau: f64,
-        trial: &mut Trial,
-    ) {
+    fn project(&self, problem: &mut ContactProblem<'_>, x: &Iterate, tau: f64, trial: &mut Trial) {
         problem.counters.local_solves += problem.rows.points();
         let Trial {
             x: Iterate { p, gamma, v },

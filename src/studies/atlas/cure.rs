@@ -7,11 +7,7 @@ use crate::run::increment::Solver;
 use crate::run::registry::method;
 
 /// Options of the method's own that are changed one by one, in this order, where it has them.
-pub const OWN: [(&str, f64); 3] = [
-    ("r", 0.1),
-    ("r", 10.0),
-    ("anderson", 5.0),
-];
+pub const OWN: [(&str, f64); 3] = [("r", 0.1), ("r", 10.0), ("anderson", 5.0)];
 
 /// Other methods, with their defaults, the cheapest first.
 pub const OTHERS: [&str; 4] = ["newton-ac", "pdas", "hybrid", "interior-point"];
