@@ -19,7 +19,8 @@ use faer::Mat;
 use crate::algebra::dense::{dot, larger, mul_add, mul_transpose_add, norm};
 use crate::algebra::strips::cholesky;
 use crate::condensed::problem::{Begin, ContactProblem};
-use crate::conic::cone_program::{ConeProgram, TIGHTEST, refused, settings};
+use crate::conic::cone_program::{ConeProgram, refused, settings};
+use crate::conic::fixed_point::TIGHTEST;
 use crate::contract::law::tangential_norm;
 use crate::{Claim, DelassusForm, Increment, MethodError};
 

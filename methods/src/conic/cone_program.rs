@@ -1,12 +1,10 @@
-//! Contact with an associated law as a cone program, solved by the interior-point code clarabel.
+//! Contact with Coulomb's cone as an associated law: a cone program, solved by the interior-point code clarabel.
 //! ```text
-//! min ½ P·W P + q̃·P,   Qᵀ P = c
-//!   Coulomb's cone:   |P_t| <= μ P_n                 q̃ = q + a e_n     a per point, in m
-//!   given bound:      P_n >= 0,  |P_t| <= a          q̃ = q             a per point, in N (2D: N/m)
+//! min ½ P·W P + (q + a e_n)·P   over |P_t| <= μ P_n,   Qᵀ P = c          a per point, in m
 //! ```
 //! The multiplier of Qᵀ P = c is β. Forces are in units of the reference force per point, W in units of 1/ρ: nothing is
 //! left to equilibrate, and clarabel's own equilibration would see units and tangent frames. Built once; between solves only
-//! the linear term or the right side changes. P stays dense: a factor of W with variables of its own fills in as much.
+//! the linear term changes. P stays dense: a factor of W with variables of its own fills in as much.
 
 #![allow(non_snake_case)]
 
@@ -17,50 +15,25 @@ use clarabel::solver::{
 
 use crate::algebra::dense::norm;
 use crate::algebra::factor::kernel;
+use crate::conic::fixed_point::{Program, TIGHTEST};
 use crate::{ContactProblem, Forces, MethodError};
 
-/// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
-pub(crate) const TIGHTEST: f64 = 1e-11;
 /// A tolerance that was not reached is asked for again, this much larger …
 const RELAX: f64 = 100.0;
 /// … up to here; then the last iterate has to do.
 const LOOSEST_RETRY: f64 = 1e-6;
-/// Least bound, in units of force: a cone without interior costs clarabel its last digits.
-const LEAST_BOUND: f64 = 1e-8;
-
-/// The associated law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Law {
-    /// Coulomb's cone with a shifted gap.
-    Cone,
-    /// A given bound of the tangential force (Tresca).
-    Bound,
-}
 
 /// The program of one increment.
 pub(crate) struct ConeProgram {
     solver: DefaultSolver<f64>,
-    law: Law,
     /// Unit of P.
     force: f64,
     /// Unit of v.
     length: f64,
     /// (I − Q Qᵀ) q, scaled.
     linear: Vec<f64>,
-    /// Right side of all constraints, scaled.
-    right: Vec<f64>,
-    /// Entry of `linear` or `right` that the parameter of each point is for; none without friction.
-    entry: Vec<Option<usize>>,
     /// Qᵀ q.
     rigid: Vec<f64>,
-}
-
-/// What a program ended with.
-pub(crate) struct Solution {
-    /// `None` if none fulfils the constraints.
-    pub forces: Option<Forces>,
-    /// Factorisations of clarabel's matrix, of 2 m rows and more.
-    pub factorisations: usize,
 }
 
 /// Constraints s = right − A P in their cones.
@@ -68,7 +41,6 @@ struct Constraints {
     A: CscMatrix<f64>,
     right: Vec<f64>,
     cones: Vec<SupportedConeT<f64>>,
-    entry: Vec<Option<usize>>,
 }
 
 impl ConeProgram {
@@ -76,7 +48,7 @@ impl ConeProgram {
     ///
     /// # Errors
     /// Data clarabel refuses.
-    pub fn new(problem: &ContactProblem<'_>, law: Law) -> Result<Self, MethodError> {
+    pub fn new(problem: &ContactProblem<'_>) -> Result<Self, MethodError> {
         let rho = problem.operator.rho;
         let force = problem.reference_force() / (problem.rows.points() as f64).sqrt();
         let length = force / rho;
@@ -85,7 +57,7 @@ impl ConeProgram {
         modes.project_out(&mut linear);
         linear.iter_mut().for_each(|q| *q /= length);
 
-        let constraints = Constraints::new(problem, law, force);
+        let constraints = Constraints::new(problem, force);
         let P = upper_triangle(problem, rho);
         let solver = DefaultSolver::new(
             &P,
@@ -98,12 +70,9 @@ impl ConeProgram {
         .map_err(refused)?;
         Ok(Self {
             solver,
-            law,
             force,
             length,
             linear,
-            right: constraints.right,
-            entry: constraints.entry,
             rigid: modes.components(&problem.q),
         })
     }
@@ -118,7 +87,7 @@ impl ConeProgram {
         if load == 0.0 {
             return Ok(None);
         }
-        let constraints = Constraints::new(problem, Law::Cone, load);
+        let constraints = Constraints::new(problem, load);
         let n = problem.len();
         let mut solver = DefaultSolver::new(
             &CscMatrix::zeros((n, n)),
@@ -132,43 +101,6 @@ impl ConeProgram {
         solver.solve();
         let proved = solver.solution.status == SolverStatus::PrimalInfeasible;
         Ok(proved.then(|| solver.solution.z[..problem.modes()].to_vec()))
-    }
-
-    /// Solves it for one parameter a per point.
-    ///
-    /// # Errors
-    /// Data clarabel refuses.
-    pub fn solve(&mut self, a: &[f64], tolerance: f64) -> Result<Solution, MethodError> {
-        let (mut linear, mut right) = (self.linear.clone(), self.right.clone());
-        for (a, entry) in a.iter().zip(&self.entry) {
-            match (entry, self.law) {
-                (None, _) => {}
-                (Some(k), Law::Cone) => linear[*k] += a / self.length,
-                (Some(k), Law::Bound) => right[*k] = (a / self.force).max(LEAST_BOUND),
-            }
-        }
-        match self.law {
-            Law::Cone => self.solver.update_q(&linear),
-            Law::Bound => self.solver.update_b(&right),
-        }
-        .map_err(refused)?;
-        let mut factorisations = 0;
-        let mut tolerance = tolerance;
-        loop {
-            let settings = settings(tolerance)?;
-            self.solver.update_settings(settings).map_err(refused)?;
-            self.solver.solve();
-            factorisations += self.solver.solution.iterations as usize;
-            let solved = self.solver.solution.status == SolverStatus::Solved;
-            if solved || self.infeasible() || tolerance >= LOOSEST_RETRY {
-                break;
-            }
-            tolerance *= RELAX;
-        }
-        Ok(Solution {
-            forces: self.forces(),
-            factorisations,
-        })
     }
 
     fn infeasible(&self) -> bool {
@@ -192,34 +124,53 @@ impl ConeProgram {
     }
 }
 
+impl Program for ConeProgram {
+    /// Steps of clarabel, each a factorisation of 2 m rows and more, count as factorisations.
+    fn solve(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        a: &[f64],
+        mut tolerance: f64,
+    ) -> Result<Option<Forces>, MethodError> {
+        let mut linear = self.linear.clone();
+        for (own, a) in problem.rows.iter().zip(a) {
+            // Without friction there is no slip to shift by.
+            if own.len() > 1 {
+                linear[own.start] += a / self.length;
+            }
+        }
+        self.solver.update_q(&linear).map_err(refused)?;
+        loop {
+            let settings = settings(tolerance)?;
+            self.solver.update_settings(settings).map_err(refused)?;
+            self.solver.solve();
+            problem.counters.factorisations += self.solver.solution.iterations as usize;
+            let solved = self.solver.solution.status == SolverStatus::Solved;
+            if solved || self.infeasible() || tolerance >= LOOSEST_RETRY {
+                return Ok(self.forces());
+            }
+            tolerance *= RELAX;
+        }
+    }
+}
+
 impl Constraints {
-    fn new(problem: &ContactProblem<'_>, law: Law, force: f64) -> Self {
+    fn new(problem: &ContactProblem<'_>, force: f64) -> Self {
         let (n, modes) = (problem.len(), &problem.operator.modes.q);
         let mut right: Vec<f64> = problem.balance.iter().map(|c| c / force).collect();
         let mut cones = vec![SupportedConeT::ZeroConeT(modes.len())];
-        let mut entry = vec![None; problem.rows.points()];
         // Row and value of each force component in A.
         let mut place = vec![(0, -1.0); n];
         for i in 0..problem.rows.points() {
             let rows = problem.rows.of(i);
-            let (normal, size) = (rows.start, rows.len());
-            place[normal].0 = right.len();
-            right.push(0.0);
-            match law {
-                _ if size == 1 => cones.push(SupportedConeT::NonnegativeConeT(1)),
-                Law::Cone => {
-                    place[normal].1 = -problem.friction(i);
-                    entry[i] = Some(normal);
-                    cones.push(SupportedConeT::SecondOrderConeT(size));
+            cones.push(match rows.len() {
+                1 => SupportedConeT::NonnegativeConeT(1),
+                size => {
+                    place[rows.start].1 = -problem.friction(i);
+                    SupportedConeT::SecondOrderConeT(size)
                 }
-                Law::Bound => {
-                    entry[i] = Some(right.len());
-                    right.push(0.0);
-                    cones.push(SupportedConeT::NonnegativeConeT(1));
-                    cones.push(SupportedConeT::SecondOrderConeT(size));
-                }
-            }
-            for k in rows.skip(1) {
+            });
+            for k in rows {
                 place[k].0 = right.len();
                 right.push(0.0);
             }
@@ -238,7 +189,6 @@ impl Constraints {
             A: CscMatrix::new(right.len(), n, starts, rows, values),
             right,
             cones,
-            entry,
         }
     }
 }
@@ -279,7 +229,7 @@ mod tests {
 
     use super::*;
     use crate::condensed::fixture::with_contact;
-    use crate::contract::law::{project_ball, project_cone};
+    use crate::contract::law::project_cone;
     use crate::{Elastic, SymmetricMatrix};
 
     /// One point on springs of stiffness k in all directions; W = I/k and q = f/k.
@@ -290,11 +240,14 @@ mod tests {
     }
 
     /// P for a load and several parameters, one program for all.
-    fn solve(law: Law, k: f64, mu: f64, f: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
+    fn solve(k: f64, mu: f64, f: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let load = (f.to_vec(), vec![0.0; f.len()]);
-        with_contact(&springs(f.len(), k), vec![mu], load, |_, problem| {
-            let mut program = ConeProgram::new(&problem, law).unwrap();
-            let solve = |a: &f64| program.solve(&[*a], TIGHTEST).unwrap().forces.unwrap().p;
+        with_contact(&springs(f.len(), k), vec![mu], load, |_, mut problem| {
+            let mut program = ConeProgram::new(&problem).unwrap();
+            let solve = |a: &f64| {
+                let solved = program.solve(&mut problem, &[*a], TIGHTEST);
+                solved.unwrap().unwrap().p
+            };
             parameters.iter().map(solve).collect()
         })
     }
@@ -322,25 +275,12 @@ mod tests {
                 .flat_map(move |f| [1.0, 1e9].map(|k| (mu, k, f)))
         }) {
             let shifts = [0.0, 0.9 / k, 30.0 / k, 0.5 / k];
-            let found = solve(Law::Cone, k, mu, f, &shifts);
+            let found = solve(k, mu, f, &shifts);
             for (P, a) in found.iter().zip(shifts) {
                 let mut exact: Vec<f64> = f.iter().map(|f| -f).collect();
                 exact[0] -= k * a;
                 project_cone(mu, &mut exact);
                 assert_close(P, &exact, 30.0);
-            }
-        }
-    }
-
-    #[test]
-    fn a_single_point_with_a_given_bound_is_a_projection_on_the_ball() {
-        for (k, f) in LOADS.into_iter().flat_map(|f| [1.0, 1e9].map(|k| (k, f))) {
-            let bounds = [2.0, 0.5, 20.0];
-            let found = solve(Law::Bound, k, 0.4, f, &bounds);
-            for (P, a) in found.iter().zip(bounds) {
-                let mut exact: Vec<f64> = f.iter().map(|f| -f).collect();
-                project_ball(a, &mut exact[1..]);
-                assert_close(P, &exact, 10.0);
             }
         }
     }

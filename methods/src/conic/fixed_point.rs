@@ -1,6 +1,6 @@
 //! Coulomb friction as the fixed point of a convex problem with one parameter per point: the loop of `socp` and `tresca`.
 //! ```text
-//! (P, β) <- cone program with parameter a          to a tolerance that follows the natural map
+//! (P, β) <- convex program with parameter a        to a tolerance that follows the natural map
 //! a <- parameter of (P, v), accelerated by Anderson's method
 //! stuck:  once more from the forces of a tied crack
 //! polish: Newton's method of Alart and Curnier once the natural map is below 1e-6, or the programs have reached their floor
@@ -11,8 +11,6 @@
 use crate::condensed::anderson::Anderson;
 use crate::condensed::branches::Branches;
 use crate::condensed::starts::tied_forces;
-use crate::conic::cone_program::{ConeProgram, Law, TIGHTEST};
-use crate::conic::mprgp::Mprgp;
 use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
@@ -21,9 +19,11 @@ use crate::{
     Options, options,
 };
 
-/// Tolerance of a cone program, relative to the natural map before it.
+/// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
+pub(crate) const TIGHTEST: f64 = 1e-11;
+/// Tolerance of a program, relative to the natural map before it.
 const LOOSE: f64 = 1e-3;
-/// Tolerance of a cone program after a step that has not halved the natural map, relative to the one before.
+/// Tolerance of a program after a step that has not halved the natural map, relative to the one before.
 const TIGHTEN: f64 = 1e-2;
 /// Natural map below which Newton's method takes over.
 const POLISH: f64 = 1e-6;
@@ -38,9 +38,9 @@ const POLISH_PATIENCE: usize = 30;
 
 options! {
     Settings {
-        max_iterations: Count(200, 1, 1_000_000), "cone programs and Newton steps before giving up";
+        max_iterations: Count(200, 1, 1_000_000), "convex programs and Newton steps before giving up";
         anderson: Count(Settings::ANDERSON, 0, 20), "differences that Anderson acceleration keeps; 0: the plain fixed point";
-        polish: Switch(true), "1: finish by Newton steps, which reach what the cone programs cannot";
+        polish: Switch(true), "1: finish by Newton steps, which reach what the programs cannot";
     }
 }
 
@@ -49,38 +49,41 @@ impl Settings {
     const ANDERSON: i64 = 5;
 }
 
+/// The convex problem of one parameter per point.
+pub(crate) trait Program {
+    /// `None` if no force fulfils the constraints.
+    fn solve(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        a: &[f64],
+        tolerance: f64,
+    ) -> Result<Option<Forces>, MethodError>;
+}
+
+/// The program of an increment.
+pub(crate) type NewProgram = fn(&ContactProblem<'_>) -> Result<Box<dyn Program>, MethodError>;
+/// a of one point from μ, P, v.
+pub(crate) type Parameter = fn(f64, &[f64], &[f64]) -> f64;
+
 /// The fixed point of one law.
 pub(crate) struct FixedPoint {
     settings: Settings,
-    law: Law,
-    /// a of one point from μ, P, v.
-    parameter: fn(f64, &[f64], &[f64]) -> f64,
-    /// Given bounds by gradients instead of clarabel.
-    gradients: bool,
+    program: NewProgram,
+    parameter: Parameter,
 }
 
 impl FixedPoint {
     /// As the options say.
-    pub fn new(options: &Options, law: Law, parameter: fn(f64, &[f64], &[f64]) -> f64) -> Self {
+    pub fn new(options: &Options, program: NewProgram, parameter: Parameter) -> Self {
         Self {
             settings: Settings::new(options),
-            law,
+            program,
             parameter,
-            gradients: false,
         }
     }
 
-    /// Whether given bounds are left to gradients instead of clarabel.
-    pub fn by_gradients(self, gradients: bool) -> Self {
-        Self { gradients, ..self }
-    }
-
     /// As a part of a method that takes so many iterations at most.
-    pub fn within(
-        max_iterations: usize,
-        law: Law,
-        parameter: fn(f64, &[f64], &[f64]) -> f64,
-    ) -> Self {
+    pub fn within(max_iterations: usize, program: NewProgram, parameter: Parameter) -> Self {
         let (anderson, polish) = (Settings::ANDERSON as usize, true);
         Self {
             settings: Settings {
@@ -88,17 +91,9 @@ impl FixedPoint {
                 anderson,
                 polish,
             },
-            law,
+            program,
             parameter,
-            gradients: false,
         }
-    }
-
-    fn program(&self, problem: &ContactProblem<'_>) -> Result<Program, MethodError> {
-        Ok(match self.gradients {
-            true => Program::Gradients(Box::new(Mprgp::new(problem))),
-            false => Program::Conic(Box::new(ConeProgram::new(problem, self.law)?)),
-        })
     }
 
     /// A few Newton steps.
@@ -130,35 +125,10 @@ impl FixedPoint {
     }
 }
 
-/// The convex problem of one parameter per point.
-enum Program {
-    Conic(Box<ConeProgram>),
-    Gradients(Box<Mprgp>),
-}
-
-impl Program {
-    /// `None` if no force fulfils the constraints.
-    fn solve(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        a: &[f64],
-        tolerance: f64,
-    ) -> Result<Option<Forces>, MethodError> {
-        match self {
-            Self::Conic(program) => {
-                let solution = program.solve(a, tolerance)?;
-                problem.counters.factorisations += solution.factorisations;
-                Ok(solution.forces)
-            }
-            Self::Gradients(program) => Ok(Some(program.solve(problem, a, tolerance))),
-        }
-    }
-}
-
 impl CondensedMethod for FixedPoint {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let mut x = problem.start();
-        let mut program = self.program(problem)?;
+        let mut program = (self.program)(problem)?;
         let mut anderson = Anderson::new(self.settings.anderson);
         let mut branches = Branches::default();
         let mut accuracy = Accuracy::new(problem);
@@ -186,7 +156,7 @@ impl CondensedMethod for FixedPoint {
                 Check::GoOn => {}
                 Check::Corrected => {
                     // The program holds q.
-                    program = self.program(problem)?;
+                    program = (self.program)(problem)?;
                     continue;
                 }
                 Check::End(status) => return Ok(End { status, at: x }),

@@ -15,8 +15,9 @@ use crate::algebra::dense::{dot, minus, norm};
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::spectrum::extremes;
 use crate::condensed::saddle::{Iterate, Saddle};
+use crate::conic::fixed_point::Program;
 use crate::contract::law::{project_ball, tangential_norm};
-use crate::{ContactProblem, Forces};
+use crate::{ContactProblem, Forces, MethodError};
 
 /// ᾱ λ_max.
 const FIXED_STEP: f64 = 1.9;
@@ -53,7 +54,7 @@ impl Mprgp {
     }
 
     /// Forces for one bound per point, to a projected gradient of `tolerance` times the reference force.
-    pub fn solve(
+    fn forces(
         &mut self,
         problem: &mut ContactProblem<'_>,
         bounds: &[f64],
@@ -157,6 +158,17 @@ impl Mprgp {
         let reduced = self.reduced(problem, bounds, &phi);
         self.projected(problem, bounds, &reduced);
         None
+    }
+}
+
+impl Program for Mprgp {
+    fn solve(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        bounds: &[f64],
+        tolerance: f64,
+    ) -> Result<Option<Forces>, MethodError> {
+        Ok(Some(self.forces(problem, bounds, tolerance)))
     }
 }
 

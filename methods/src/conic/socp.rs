@@ -39,10 +39,10 @@
 //! # Skips
 //! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.
 
-use crate::Method;
-use crate::conic::cone_program::Law;
-use crate::conic::fixed_point::{FixedPoint, Settings};
+use crate::conic::cone_program::ConeProgram;
+use crate::conic::fixed_point::{FixedPoint, Program, Settings};
 use crate::contract::law::tangential_norm;
+use crate::{ContactProblem, Method, MethodError};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -53,12 +53,16 @@ pub static METHOD: Method = Method {
     exact: true,
     options: Settings::OPTIONS,
     source: include_str!("socp.rs"),
-    build: |options| Box::new(FixedPoint::new(options, Law::Cone, shift)),
+    build: |options| Box::new(FixedPoint::new(options, program, shift)),
 };
 
 /// The method as a part of another that takes so many iterations at most.
 pub(crate) fn within(max_iterations: usize) -> FixedPoint {
-    FixedPoint::within(max_iterations, Law::Cone, shift)
+    FixedPoint::within(max_iterations, program, shift)
+}
+
+fn program(problem: &ContactProblem<'_>) -> Result<Box<dyn Program>, MethodError> {
+    Ok(Box::new(ConeProgram::new(problem)?))
 }
 
 /// μ s of a point.

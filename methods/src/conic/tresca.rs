@@ -1,29 +1,26 @@
 //! Tresca fixed point: contact with a given friction bound, again and again.
 //!
 //! Nečas, Jarušek & Haslinger, Boll. Un. Mat. Ital. B 17 (1980) 796, for the existence of Coulomb solutions; as algorithm
-//! Haslinger, Hlaváček & Nečas, Handbook of Numerical Analysis IV (1996) 313. Programs: clarabel, Goulart & Chen,
-//! arXiv:2405.12762 (2024). Acceleration: Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
+//! Haslinger, Hlaváček & Nečas, Handbook of Numerical Analysis IV (1996) 313. Problems: MPRGP,
+//! Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23 (`conic/mprgp.rs`). Acceleration: Walker & Ni, SIAM J. Numer. Anal.
+//! 49 (2011) 1715.
 //!
 //! ```text
 //! min ½ P·W P + q·P    over P_n >= 0, |P_t| <= g at every point,   Qᵀ P = c
 //! g <- μ P_n
 //! ```
 //! Each problem is convex: Tresca's friction with the bound g. Its solution with g = μ P_n is one of Coulomb's. The first
-//! bound is that of the increment's start: from rest it is 0, and the first problem is frictionless. Far from the fixed point
-//! the problems are solved to 1e-3 of the natural map. Near it, at a natural map of 1e-6 or where clarabel makes no more
-//! progress, a few steps of the Alart–Curnier method (see `newton-ac`) polish the result. Programs and Newton steps count as
-//! iterations, clarabel's own steps as factorisations.
+//! bound is that of the increment's start: from rest it is 0, and the first problem is frictionless. Each problem is solved by
+//! projected and conjugate gradients on active sets (MPRGP), from the last one's forces, far from the fixed point to 1e-3 of
+//! the natural map. Near it, at a natural map of 1e-6 or where the problems make no more progress, a few steps of the
+//! Alart–Curnier method (see `newton-ac`) polish the result. Problems and Newton steps count as iterations.
 //!
 //! # Options
 //! `max_iterations`. `anderson`: differences kept by the acceleration of g; 0 is the plain iteration. `polish`: 0 ends at
-//! what clarabel reaches, with status `stalled` if that is not enough. `solver`: 1 solves each problem by projected and
-//! conjugate gradients (MPRGP: Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23; `conic/mprgp.rs`), from the last one's
-//! forces: on random problems (`stickslip stress methods`, 60 per dimension and μ = 0, 0.3, 1, 2, 5) as many problems, in a
-//! tenth to a thirtieth of the time, without clarabel's 58 to 101 factorisations of 2 m rows; one of 60 more gives up at μ =
-//! 5 in 2D and in 3D. A problem without friction is then factored nowhere.
+//! what gradients reach, with status `stalled` if that is not enough.
 //!
 //! # Guarantees
-//! Without friction one program is the solution. The fixed point contracts for small μ. Measured on random, strongly
+//! Without friction one problem is the solution. The fixed point contracts for small μ. Measured on random, strongly
 //! coupled systems of 12 points (100 per entry, tolerance 1e-9, `tests/robustness.rs`), median iterations and failures:
 //!
 //! | μ                 | 0.1   | 0.3   | 0.6     | 1       | 2           | 5             |
@@ -38,17 +35,15 @@
 //! acceleration drops differences along which the iteration expands, their secant would lead back. Without progress for 15
 //! steps the iteration starts once more from the forces of a tied crack. For μ > 1 the plain fixed point cycles between bounds;
 //! acceleration breaks nearly all cycles. The rest is reported as `stalled`: above a natural map of 1e-3 nothing is polished.
-//! Bounds are kept above 1e-8 of the reference force per point, because an empty cone costs clarabel its last digits;
-//! polishing takes that away again.
 //!
 //! # Skips
-//! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.
+//! An open crack is one linear solve. Problems are factored nowhere; polishing factors a tangent per step.
 
 #![allow(non_snake_case)]
 
-use crate::conic::cone_program::Law;
-use crate::conic::fixed_point::{FixedPoint, Settings};
-use crate::{Method, OptionSpec, options};
+use crate::conic::fixed_point::{FixedPoint, Program, Settings};
+use crate::conic::mprgp::Mprgp;
+use crate::{ContactProblem, Method, MethodError};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -57,19 +52,13 @@ pub static METHOD: Method = Method {
     reference: "Haslinger, Hlaváček & Nečas, Handbook of Numerical Analysis IV (1996) 313",
     summary: "contact with a given friction bound, taken from the normal forces of the problem before",
     exact: true,
-    options: &{
-        let own = Settings::OPTIONS;
-        [own[0], own[1], own[2], OptionSpec::Whole(SOLVER)]
-    },
+    options: Settings::OPTIONS,
     source: include_str!("tresca.rs"),
-    build: |options| {
-        let programs = FixedPoint::new(options, Law::Bound, bound);
-        Box::new(programs.by_gradients(options.whole(&SOLVER) == 1))
-    },
+    build: |options| Box::new(FixedPoint::new(options, program, bound)),
 };
 
-options! {
-    SOLVER: Whole("solver", 0, 0, 1): "of each problem, 0: clarabel, an interior-point code; 1: MPRGP, active sets and conjugate gradients";
+fn program(problem: &ContactProblem<'_>) -> Result<Box<dyn Program>, MethodError> {
+    Ok(Box::new(Mprgp::new(problem)))
 }
 
 /// g of a point.
