@@ -1,6 +1,6 @@
 //! Newton methods on the contact points.
 
-// Contact equations, solved by one loop (`iteration`) that differs in H and H'.
+// Contact equations, solved by one loop (`iteration`) that differs in H and H' (`scheme`).
 pub mod b_newton;
 pub mod gnm;
 pub mod ncp_newton;
@@ -15,5 +15,6 @@ pub(crate) mod contact_point;
 pub(crate) mod iteration;
 pub(crate) mod line_search;
 pub(crate) mod reuse;
+pub(crate) mod scheme;
 pub(crate) mod springs;
 pub(crate) mod step;

@@ -58,9 +58,10 @@ use crate::conic::socp;
 use crate::contract::law::{Branch, return_map};
 use crate::newton::b_newton::BEquations;
 use crate::newton::interior_point::{self, along_path};
-use crate::newton::iteration::{self, Newton, Scheme};
+use crate::newton::iteration::{self, Newton};
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::pdas::Sets;
+use crate::newton::scheme::Scheme;
 use crate::newton::step::Tangent;
 use crate::{
     CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, MethodError, Monitor,

@@ -25,10 +25,10 @@
 //!
 //! | μ                 | 0.1   | 0.3   | 0.6     | 1       | 2           | 5             |
 //! |-------------------|-------|-------|---------|---------|-------------|---------------|
-//! | 2D, `anderson` 5  | 6     | 8     | 9       | 10      | 11          | 11, 1 fails  |
-//! | 2D, `anderson` 0  | 6     | 9     | 11      | 15      | 19, 13 fail | 6, 44 fail   |
-//! | 3D, `anderson` 5  | 6     | 8     | 9       | 11      | 12, 1 fails | 13, 3 fail   |
-//! | 3D, `anderson` 0  | 6     | 9     | 12      | 15      | 19, 15 fail | 8, 50 fail   |
+//! | 2D, `anderson` 5  | 6     | 8     | 9       | 10      | 11          | 10, 1 fails  |
+//! | 2D, `anderson` 0  | 6     | 8     | 11      | 16      | 20, 12 fail | 5, 44 fail   |
+//! | 3D, `anderson` 5  | 6     | 7     | 9       | 10      | 13, 1 fails | 13, 3 fail   |
+//! | 3D, `anderson` 0  | 6     | 8     | 12      | 16      | 19, 15 fail | 8, 50 fail   |
 //!
 //! # Failure modes
 //! Where friction locks a wedge (μ above the tangent of its angle) μ P_n exceeds the bound it came from until all sticks: the

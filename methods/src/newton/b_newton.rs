@@ -57,7 +57,8 @@ use crate::algebra::dense::zero;
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
 use crate::newton::contact_point::ContactPoint;
-use crate::newton::iteration::{At, Newton, Scheme, scheme_options};
+use crate::newton::iteration::{Newton, scheme_options};
+use crate::newton::scheme::{At, Scheme};
 use crate::{Forces, Method, MethodError, options};
 
 /// Registry entry.

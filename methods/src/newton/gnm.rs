@@ -61,7 +61,8 @@
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, return_map, tangential_norm};
 use crate::newton::contact_point::ContactPoint;
-use crate::newton::iteration::{At, Newton, Scheme, scheme_options};
+use crate::newton::iteration::{Newton, scheme_options};
+use crate::newton::scheme::{At, Scheme};
 use crate::{ContactProblem, Forces, Method, MethodError, OptionSpec, options};
 
 /// Registry entry.

@@ -5,24 +5,28 @@
 //! ```
 //! What H and V are is the [`Scheme`]. Full steps are tried first; the non-monotone line search on the energy-scaled
 //! merit Σ H²/r steps in only after a rise above the last five merits. A singular V is regularised once by 1e-10/ρ on
-//! the diagonal of W: redundant points make W singular, and this picks one of the possible P. Where V leaves a floating piece
-//! loose it is moved on by a few local and global stages, and after that held by a spring.
+//! the diagonal of W: redundant points make W singular, and this picks one of the possible P.
+//!
+//! Safeguards stand around the loop, which they start again: where V leaves a floating piece loose, or nothing gets better, the
+//! iterate is moved on by a few local and global stages, and after that a loose piece is held by a spring.
 
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::refill;
 use crate::condensed::branches::changed;
-use crate::condensed::point_row::PointRow;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::condensed::stages::rescue;
-use crate::condensed::starts::RIDGE;
-use crate::contract::law::return_map;
+use crate::contract::options::{OptionSpec, Options, Whole, options};
+use crate::contract::registry::Needs;
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::line_search::LineSearch;
+use crate::newton::scheme::{At, Scheme, Work};
 use crate::newton::step::{MONOLITHIC, Tangent};
-use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Limits, MethodError,
-    Monitor, Needs, OptionSpec, Options, Status, Whole, options,
-};
 
 options! {
     R: Real("r", 1.0, 1e-3, 1e3): "multiple of 1/W_ii that turns gaps and slips into forces";
@@ -37,48 +41,6 @@ pub(crate) const fn scheme_options(max_iterations: Whole) -> [OptionSpec; 3] {
 /// Steps without progress after which an iteration counts as cycling.
 pub(crate) const PATIENCE: usize = 60;
 
-/// The equations of one point and the pieces of their derivative.
-pub(crate) trait Scheme: Send {
-    /// Which smooth piece of H a point is on.
-    type Piece: Copy + PartialEq;
-
-    /// H; P − Π(P − r v), Π the return mapping, unless the scheme has its own: the equations of the augmented Lagrangian.
-    fn equations(&self, at: &ContactPoint<'_>) -> [f64; 3] {
-        let mut H = at.trial();
-        return_map(at.mu, &mut H[..at.size()]);
-        for (H, P) in H.iter_mut().zip(at.P) {
-            *H = P - *H;
-        }
-        H
-    }
-
-    /// The piece at (P, v).
-    fn piece(&self, at: &ContactPoint<'_>) -> Self::Piece;
-
-    /// V (δP, δv) = −H on a piece: sets the coefficients of `rows`, which are zero and have [`equations`](Self::equations) on
-    /// their right-hand sides. A scheme that steps from other forces sets these, too.
-    fn linearise(&self, at: &ContactPoint<'_>, piece: Self::Piece, rows: &mut [PointRow; 3]);
-
-    /// Called before the first iterate, for what must not outlast a run.
-    fn begin(&mut self) {}
-
-    /// Called with every iterate and its violation before the next step, for what changes with them; whether the equations do.
-    fn prepare(&mut self, _problem: &ContactProblem<'_>, _violation: f64) -> bool {
-        false
-    }
-
-    /// The Newton direction in place of what `step` holds; false if the tangent is singular. `pieces` are those at x, which may
-    /// be changed.
-    fn direction(
-        &self,
-        at: &mut At<'_, '_>,
-        pieces: &mut [Self::Piece],
-        step: &mut Forces,
-    ) -> Result<bool, MethodError> {
-        at.step(self, pieces, step)
-    }
-}
-
 /// Newton's method on a scheme.
 pub(crate) struct Newton<S> {
     pub scheme: S,
@@ -90,6 +52,33 @@ pub(crate) struct Newton<S> {
     /// Move on by a few local and global stages where stuck.
     pub rescue: bool,
     pub tangent: Tangent,
+}
+
+/// Where the loop stands. Every step works in the memory of the one before.
+struct State<P> {
+    x: Forces,
+    v: Vec<f64>,
+    /// Scale by row that turns jumps into forces.
+    r: Vec<f64>,
+    pieces: Vec<P>,
+    /// Those of the last iterate that went on.
+    before: Vec<P>,
+    step: Forces,
+    search: LineSearch,
+    /// The merit of x where it was the last trial of a line search; then its jump is at hand, too.
+    merit: Option<f64>,
+    /// What r grows by once slender parts sway.
+    sharper: f64,
+    work: Work,
+}
+
+/// Why the loop stops.
+#[derive(Clone, Copy, PartialEq)]
+enum Stop {
+    End(Status),
+    /// Nothing has got better for too long.
+    Stuck,
+    SingularTangent,
 }
 
 impl<S: Scheme> Newton<S> {
@@ -105,135 +94,132 @@ impl<S: Scheme> Newton<S> {
         }
     }
 
-    /// From `x` until it ends.
+    /// The loop.
+    fn steps(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        at: &mut State<S::Piece>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Stop, MethodError> {
+        loop {
+            at.follow(problem);
+            self.choose_pieces(problem, at);
+            let (violation, forces) = (problem.violation(&at.x.p, &at.v), (&*at.x.p, &*at.x.beta));
+            let changes = changed(&at.pieces, &at.before);
+            match problem.check(violation, forces, changes, self.limits, monitor)? {
+                Check::GoOn => {}
+                Check::Corrected => {
+                    at.sharpen();
+                    continue;
+                }
+                Check::End(status) => return Ok(Stop::End(status)),
+            }
+            at.before.clone_from(&at.pieces);
+            if self.scheme.prepare(problem, violation) {
+                at.merit = None;
+            }
+            if self.rescue && problem.stagnates() {
+                return Ok(Stop::Stuck);
+            }
+            if !self.find_direction(problem, at, false)? {
+                return Ok(Stop::SingularTangent);
+            }
+            self.advance(problem, at)?;
+        }
+    }
+
+    /// The loop from `x` until it ends, with what lets it go on where it stops.
     pub fn run(
         &mut self,
         problem: &mut ContactProblem<'_>,
         x: Forces,
         monitor: &mut dyn Monitor,
     ) -> Ended {
-        let end = self.steps(problem, x, monitor);
+        let end = self.guarded(problem, x, monitor);
         self.tangent.forget();
         end
     }
 
-    /// The loop. Every step works in the memory of the one before.
-    fn steps(
+    fn guarded(
         &mut self,
         problem: &mut ContactProblem<'_>,
-        mut x: Forces,
+        x: Forces,
         monitor: &mut dyn Monitor,
     ) -> Ended {
-        let mut r = problem.scales(&vec![0.0; problem.len()]);
-        r.iter_mut().for_each(|r| *r *= self.multiple);
-        let mut sharper = problem.operator.sharp / problem.operator.rho;
-        let mut search = LineSearch::default();
-        let (mut pieces, mut before) = (Vec::new(), Vec::new());
-        let (mut v, mut step) = (Vec::new(), Forces::default());
-        let mut work = Work::default();
-        // The merit of x, where it was the last trial of a line search; then its jump is at hand, too.
-        let mut tried = None;
         self.scheme.begin();
+        let mut at = State::new(problem, x, self.multiple);
         loop {
-            let mut merit = tried.take();
-            match merit {
-                Some(_) => std::mem::swap(&mut v, &mut work.jump),
-                None => problem.jump_into(&x.p, &x.beta, &mut v),
-            }
-            self.pieces(problem, &r, &x.p, &v, &mut pieces);
-            let changes = changed(&pieces, &before);
-            let violation = problem.violation(&x.p, &v);
-            match problem.check(violation, (&x.p, &x.beta), changes, self.limits, monitor)? {
-                Check::GoOn => {}
-                Check::Corrected => {
-                    // Where slender parts sway, the gaps that are left drown in the rounding of P − v/W_ii.
-                    if sharper > 1.0 {
-                        r.iter_mut().for_each(|r| *r *= sharper);
-                        search = LineSearch::default();
-                        sharper = 1.0;
-                    }
-                    continue;
-                }
-                Check::End(status) => return Ok(End { status, at: x }),
-            }
-            if self.scheme.prepare(problem, violation) {
-                merit = None;
-            }
-            before.clone_from(&pieces);
-
-            let stuck = self.rescue && problem.stagnates();
-            let mut found = !stuck
-                && self.direction(problem, &r, (&x, &v), &mut pieces, &mut work, &mut step)?;
-            if !found
-                && self.rescue
+            let stop = self.steps(problem, &mut at, monitor)?;
+            let status = match stop {
+                Stop::End(status) => return Ok(End { status, at: at.x }),
+                Stop::Stuck => Status::Stalled,
+                Stop::SingularTangent => problem.singular(),
+            };
+            if self.rescue
                 && problem.rescue_left()
                 && let Some(pair) = rescue(problem)?
             {
-                x = pair.into();
+                (at.x, at.merit) = (pair.into(), None);
                 continue;
             }
-            if !found && !stuck {
-                work.hold = true;
-                pieces.clone_from(&before);
-                found = self.direction(problem, &r, (&x, &v), &mut pieces, &mut work, &mut step)?;
-                work.hold = false;
+            let singular = stop == Stop::SingularTangent;
+            if !(singular && self.find_direction(problem, &mut at, true)?) {
+                return Ok(End { status, at: at.x });
             }
-            if !found {
-                let status = match stuck {
-                    true => Status::Stalled,
-                    false => problem.singular(),
-                };
-                return Ok(End { status, at: x });
-            }
-
-            let mut t = 1.0;
-            if self.line_search {
-                search.record(merit.unwrap_or_else(|| self.merit(problem, &r, &x.p, &v)));
-                let Work { trial, jump, .. } = &mut work;
-                let mut last = (f64::NAN, f64::NAN);
-                t = search.length(|t| {
-                    problem.jump_after(&x, t, &step, trial, jump);
-                    last = (t, self.merit(problem, &r, &trial.p, jump));
-                    last.1
-                });
-                tried = (last.0 == t && !problem.corrects_steps()).then_some(last.1);
-            }
-            problem.move_along(&mut x, t, &step)?;
+            self.advance(problem, &mut at)?;
         }
     }
 
-    fn direction(
-        &mut self,
-        problem: &mut ContactProblem<'_>,
-        r: &[f64],
-        (x, v): (&Forces, &[f64]),
-        pieces: &mut [S::Piece],
-        work: &mut Work,
-        step: &mut Forces,
-    ) -> Result<bool, MethodError> {
-        let tangent = &mut self.tangent;
-        let mut at = At {
-            problem,
-            tangent,
-            work,
-            r,
-            x,
-            v,
-        };
-        self.scheme.direction(&mut at, pieces, step)
+    /// The pieces at x.
+    fn choose_pieces(&self, problem: &ContactProblem<'_>, at: &mut State<S::Piece>) {
+        let point = |i| ContactPoint::of(problem, i, &at.r, (&at.x.p, &at.v));
+        let points = 0..problem.rows.points();
+        refill(&mut at.pieces, points.map(|i| self.scheme.piece(&point(i))));
     }
 
-    fn pieces(
+    /// The Newton direction; false if the tangent is singular. `hold`: loose pieces by springs.
+    fn find_direction(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        at: &mut State<S::Piece>,
+        hold: bool,
+    ) -> Result<bool, MethodError> {
+        at.work.hold = hold;
+        // A direction before may have asked for others.
+        at.pieces.clone_from(&at.before);
+        let mut of_step = At {
+            problem,
+            tangent: &mut self.tangent,
+            work: &mut at.work,
+            r: &at.r,
+            x: &at.x,
+            v: &at.v,
+        };
+        self.scheme
+            .direction(&mut of_step, &mut at.pieces, &mut at.step)
+    }
+
+    /// x <- x + t δ, t = 1 unless that raises the merit.
+    fn advance(
         &self,
-        problem: &ContactProblem<'_>,
-        r: &[f64],
-        P: &[f64],
-        v: &[f64],
-        pieces: &mut Vec<S::Piece>,
-    ) {
-        let point = |i| ContactPoint::of(problem, i, r, (P, v));
-        let points = 0..problem.rows.points();
-        refill(pieces, points.map(|i| self.scheme.piece(&point(i))));
+        problem: &mut ContactProblem<'_>,
+        at: &mut State<S::Piece>,
+    ) -> Result<(), MethodError> {
+        let mut t = 1.0;
+        if self.line_search {
+            let merit = at.merit.take();
+            let merit = merit.unwrap_or_else(|| self.merit(problem, &at.r, &at.x.p, &at.v));
+            at.search.record(merit);
+            let Work { trial, jump, .. } = &mut at.work;
+            let mut last = (f64::NAN, f64::NAN);
+            t = at.search.length(|t| {
+                problem.jump_after(&at.x, t, &at.step, trial, jump);
+                last = (t, self.merit(problem, &at.r, &trial.p, jump));
+                last.1
+            });
+            at.merit = (last.0 == t && !problem.corrects_steps()).then_some(last.1);
+        }
+        problem.move_along(&mut at.x, t, &at.step)
     }
 
     /// Σ H²/r over all rows, an energy.
@@ -245,6 +231,43 @@ impl<S: Scheme> Newton<S> {
             sum += at.r.iter().zip(H).map(|(r, h)| h * h / r).sum::<f64>();
         }
         sum
+    }
+}
+
+impl<P> State<P> {
+    fn new(problem: &ContactProblem<'_>, x: Forces, multiple: f64) -> Self {
+        let mut r = problem.scales(&vec![0.0; problem.len()]);
+        r.iter_mut().for_each(|r| *r *= multiple);
+        Self {
+            x,
+            v: Vec::new(),
+            r,
+            pieces: Vec::new(),
+            before: Vec::new(),
+            step: Forces::default(),
+            search: LineSearch::default(),
+            merit: None,
+            sharper: problem.operator.sharp / problem.operator.rho,
+            work: Work::default(),
+        }
+    }
+
+    /// v of x.
+    fn follow(&mut self, problem: &ContactProblem<'_>) {
+        match self.merit {
+            Some(_) => std::mem::swap(&mut self.v, &mut self.work.jump),
+            None => problem.jump_into(&self.x.p, &self.x.beta, &mut self.v),
+        }
+    }
+
+    /// Where slender parts sway, the gaps that are left drown in the rounding of P − v/W_ii.
+    fn sharpen(&mut self) {
+        self.merit = None;
+        if self.sharper > 1.0 {
+            self.r.iter_mut().for_each(|r| *r *= self.sharper);
+            self.search = LineSearch::default();
+            self.sharper = 1.0;
+        }
     }
 }
 
@@ -260,71 +283,5 @@ impl<S: Scheme> CondensedMethod for Newton<S> {
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let start = problem.start();
         self.run(problem, start, monitor)
-    }
-}
-
-/// What steps are computed in.
-#[derive(Default)]
-pub(crate) struct Work {
-    /// Loose pieces are held by springs.
-    hold: bool,
-    rows: Vec<[PointRow; 3]>,
-    /// An iterate that is tried, and its jump.
-    trial: Forces,
-    pub jump: Vec<f64>,
-}
-
-/// Where the iteration stands.
-pub(crate) struct At<'p, 'i> {
-    pub problem: &'p mut ContactProblem<'i>,
-    pub tangent: &'p mut Tangent,
-    pub work: &'p mut Work,
-    /// Scale by row that turns jumps into forces.
-    pub r: &'p [f64],
-    pub x: &'p Forces,
-    pub v: &'p [f64],
-}
-
-impl At<'_, '_> {
-    /// Point `i` of the iterate.
-    pub fn point(&self, i: usize) -> ContactPoint<'_> {
-        ContactPoint::of(self.problem, i, self.r, (&self.x.p, self.v))
-    }
-
-    /// The step of the given pieces, regularised if their tangent is singular.
-    pub fn step<S: Scheme + ?Sized>(
-        &mut self,
-        scheme: &S,
-        pieces: &[S::Piece],
-        step: &mut Forces,
-    ) -> Result<bool, MethodError> {
-        self.linearise(scheme, pieces);
-        if self.solve(step)? {
-            return Ok(true);
-        }
-        self.linearise(scheme, pieces);
-        let ridge = RIDGE / self.problem.operator.rho;
-        for row in self.work.rows.iter_mut().flatten() {
-            for l in 0..3 {
-                row.a[l] += ridge * row.c[l];
-            }
-        }
-        self.solve(step)
-    }
-
-    fn solve(&mut self, step: &mut Forces) -> Result<bool, MethodError> {
-        let Work { rows, hold, .. } = &mut *self.work;
-        self.tangent.solve(self.problem, self.x, rows, *hold, step)
-    }
-
-    fn linearise<S: Scheme + ?Sized>(&mut self, scheme: &S, pieces: &[S::Piece]) {
-        let x = (&*self.x.p, self.v);
-        let rows = &mut self.work.rows;
-        rows.resize(pieces.len(), PointRow::reading([0.0; 3]));
-        for (i, (&piece, rows)) in pieces.iter().zip(rows).enumerate() {
-            let at = ContactPoint::of(self.problem, i, self.r, x);
-            *rows = PointRow::reading(scheme.equations(&at));
-            scheme.linearise(&at, piece, rows);
-        }
     }
 }

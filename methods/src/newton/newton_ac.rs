@@ -43,7 +43,8 @@
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
 use crate::newton::contact_point::ContactPoint;
-use crate::newton::iteration::{Newton, Scheme, scheme_options};
+use crate::newton::iteration::{Newton, scheme_options};
+use crate::newton::scheme::Scheme;
 use crate::{Method, options};
 
 /// Registry entry.
