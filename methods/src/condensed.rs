@@ -25,4 +25,4 @@ pub use gauge::Gauge;
 pub use local_form::LocalForm;
 pub use method::CondensedMethod;
 pub use problem::{Check, ContactProblem, Limits};
-pub use starts::{Start, Uniqueness, contact_wise_margin, from_all_starts, guess};
+pub use starts::{contact_wise_margin, guess};

@@ -1,7 +1,7 @@
 //! Which solutions an increment has, as far as exact methods from several starts and enumeration can tell.
 
 use stickslip_methods::conic::no_equilibrium;
-use stickslip_methods::{ContactState, Gauge, Increment, MethodError, from_all_starts, residuals};
+use stickslip_methods::{ContactState, Gauge, Increment, MethodError, Silent, guess, residuals};
 
 use super::enumerate::enumerate;
 use crate::run::choice::Choice;
@@ -18,8 +18,8 @@ const ASKED: [&str; 6] = [
     "interior-point",
 ];
 
-/// The one that is asked from all starts.
-const FROM_ALL_STARTS: &str = "newton-ac";
+/// The one that is asked from other contact forces too, and from how many: none, those of tied points, tension.
+const FROM_ELSEWHERE: (&str, usize) = ("newton-ac", 3);
 
 /// Violation they are asked for: the condition of a problem enlarges what a tolerance leaves open.
 const TOLERANCE: f64 = 1e-12;
@@ -122,8 +122,17 @@ fn asked(increment: &Increment<'_>) -> Result<Vec<ContactState>, MethodError> {
         };
         states.push(solver.solve(&posed).0?.state);
     }
-    if let Ok(choice) = Choice::parse(FROM_ALL_STARTS) {
-        states.extend(from_all_starts(choice.build().as_mut(), &posed)?.1);
+    let (name, starts) = FROM_ELSEWHERE;
+    if let Ok(choice) = Choice::parse(name) {
+        let mut method = choice.build();
+        for number in 0..starts {
+            let guess = guess(&posed, number)?;
+            let posed = Increment {
+                guess: guess.as_deref(),
+                ..posed
+            };
+            states.push(method.solve(&posed, &mut Silent)?.state);
+        }
     }
     Ok(states)
 }
