@@ -10,6 +10,5 @@ pub(crate) mod multifrontal;
 pub(crate) mod plain;
 pub(crate) mod rows;
 pub(crate) mod spectrum;
-pub mod square;
 pub(crate) mod stiffness;
 pub(crate) mod strips;

@@ -70,9 +70,9 @@ pub enum MethodError {
         /// Dimension of the space of such motions.
         modes: usize,
     },
-    /// What only a symmetric Delassus operator has was asked of another.
-    #[error("the Delassus operator is not symmetric")]
-    UnsymmetricDelassus,
+    /// The stiffness is not symmetric.
+    #[error("the stiffness is not symmetric")]
+    UnsymmetricStiffness,
     /// Friction was asked of an [`Elastic`](super::Elastic) built for frictionless contact only.
     #[error(
         "point {point} has friction {friction}, but the elastic body was set up for frictionless contact only"

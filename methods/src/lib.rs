@@ -31,7 +31,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let elastic = Elastic::new(ElasticParts {
 //!     dim: 2,
-//!     stiffness: SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![2.0, 5.0])?,
+//!     stiffness: SquareMatrix::symmetric(2, vec![0, 1, 2], vec![0, 1], vec![2.0, 5.0])?,
 //!     jump: JumpOperator::new(2, 2, vec![0, 1, 2], vec![0, 1], vec![1.0, 1.0])?,
 //!     weight: vec![1.0],
 //!     order: vec![0, 1],
@@ -87,9 +87,8 @@ pub mod own_laws;
 pub mod splitting;
 
 pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS, check_rows};
-pub use algebra::matrix::{JumpOperator, SymmetricMatrix};
+pub use algebra::matrix::{JumpOperator, SquareMatrix};
 pub use algebra::rows::RowSet;
-pub use algebra::square::{DelassusMatrix, SquareMatrix};
 pub use condensed::*;
 pub use contract::*;
 pub use error::MethodError;

@@ -110,7 +110,7 @@ fn cracked_box(n: usize, patch: usize, floating: bool) -> ElasticParts {
         values.extend(column.values());
         col_ptr.push(row_idx.len());
     }
-    let stiffness = SymmetricMatrix::new(count, col_ptr, row_idx, values).unwrap();
+    let stiffness = SquareMatrix::symmetric(count, col_ptr, row_idx, values).unwrap();
     let (mut col_idx, mut entries) = (vec![], vec![]);
     for (below, above) in &upper {
         for component in [2, 0, 1] {

@@ -21,7 +21,7 @@ fn square(w: &Rows) -> SquareMatrix {
     let m = w.len();
     let values = (0..m).flat_map(|j| w.iter().map(move |row| row[j]));
     let (ends, rows) = ((0..=m).map(|j| j * m), (0..m * m).map(|k| k % m));
-    SquareMatrix::new(m, ends.collect(), rows.collect(), values.collect()).unwrap()
+    SquareMatrix::general(m, ends.collect(), rows.collect(), values.collect()).unwrap()
 }
 
 fn transposed(w: &Rows) -> Rows {
@@ -177,13 +177,16 @@ fn rounding_does_not_make_w_indefinite() {
 }
 
 #[test]
-fn what_only_a_symmetric_operator_has_is_not_made_of_another() {
+fn the_local_form_takes_an_unsymmetric_operator_as_it_is_and_no_stiffness_does() {
     let w = skewed(&mut Random(4), 4, 0.1);
     let s = ContactSystem::new(body(2, &w), vec![0.3; 2]).unwrap();
-    let error = s.elastic().delassus();
-    assert_eq!(error, Err(MethodError::UnsymmetricDelassus));
-    // The local form takes it as it is.
     let (load, start) = (Load::zero(s.elastic()), ContactState::zero(&s));
     let form = increment(&s, &load, &load, &start, 1e-9).local_form();
-    assert_eq!(form.unwrap().w, square(&w).into());
+    assert_eq!(form.unwrap().w, square(&w));
+    let parts = ElasticParts {
+        stiffness: square(&w),
+        ..parts(2, &w, &diagonal(&[1.0; 4]), vec![], false)
+    };
+    let error = Elastic::new(parts).err();
+    assert_eq!(error, Some(MethodError::UnsymmetricStiffness));
 }

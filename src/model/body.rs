@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use stickslip_methods::{
-    Elastic, ElasticParts, JumpOperator, MethodError, SymmetricMatrix, in_contact,
+    Elastic, ElasticParts, JumpOperator, MethodError, SquareMatrix, in_contact,
 };
 use stickslip_xfem::contact::facet_samples::facet_samples;
 use stickslip_xfem::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
@@ -214,7 +214,7 @@ impl Body {
         setup_s += clock.elapsed().as_secs_f64() - traction_s;
         let elastic = Elastic::new(ElasticParts {
             dim,
-            stiffness: SymmetricMatrix::new(free, col_ptr, row_idx, values)?,
+            stiffness: SquareMatrix::symmetric(free, col_ptr, row_idx, values)?,
             jump: jump_of_free,
             weight: points.iter().map(|p| p.weight).collect(),
             order,

@@ -21,7 +21,7 @@ pub fn unsolved(increment: &Increment<'_>, form: &LocalForm, info: Info) -> Loca
     let (rows, count) = (form.q.len(), form.modes.len());
     LocalProblem {
         dim: increment.system.dim(),
-        w: SparseMatrix::from_delassus(&form.w),
+        w: SparseMatrix::from_square(&form.w),
         q: form.q.clone(),
         mu: increment.system.friction().to_vec(),
         equality: (count > 0).then(|| LocalEquality {

@@ -13,8 +13,8 @@ use faer::sparse::linalg::amd;
 use faer::sparse::{FaerError, SparseColMat, SymbolicSparseColMatRef, Triplet};
 use nalgebra::{DMatrix, DVector};
 use stickslip_methods::{
-    ContactState, DelassusMatrix, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError,
-    SymmetricMatrix, check_rows,
+    ContactState, Elastic, ElasticParts, Increment, Load, LocalForm, MethodError, SquareMatrix,
+    check_rows,
 };
 
 use crate::files::interchange::{GlobalProblem, Info, LocalProblem, Solution, SparseMatrix};
@@ -67,7 +67,7 @@ pub fn global_problem(
     let none = ContactState::zero(increment.system);
     Some(GlobalProblem {
         dim: increment.system.dim(),
-        m: SparseMatrix::from_symmetric(elastic.stiffness()?),
+        m: SparseMatrix::from_square(elastic.stiffness()?),
         h: SparseMatrix::from_rows(elastic.jump()).transposed(),
         f: increment.load.force.clone(),
         w: local_velocity(increment, &none),
@@ -98,8 +98,8 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     let rows = problem.q.len();
     let square = problem.w.as_square()?;
     let w = match square.asymmetry() {
-        ..=ROUNDING => DelassusMatrix::from(problem.w.symmetric_part()?),
-        _ => square.into(),
+        ..=ROUNDING => problem.w.symmetric_part()?,
+        _ => square,
     };
     let (mut modes, mut force) = (Vec::new(), vec![0.0; rows]);
     // V may have no columns: then it says nothing.
@@ -215,7 +215,7 @@ fn condensed(problem: &GlobalProblem) -> Result<LocalProblem, MethodError> {
 }
 
 /// Approximate minimum degree order: a file has no mesh to dissect (Amestoy, Davis, Duff 1996).
-fn minimum_degree(k: &SymmetricMatrix) -> Result<Vec<usize>, MethodError> {
+fn minimum_degree(k: &SquareMatrix) -> Result<Vec<usize>, MethodError> {
     let n = k.size();
     let what = "elimination order";
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, k.col_ptr(), None, k.row_idx());

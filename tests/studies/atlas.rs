@@ -15,7 +15,6 @@ use stickslip::studies::atlas::watch::{Seen, Watch};
 use stickslip::studies::atlas::{Explanation, explain, stops};
 use stickslip_methods::{
     ContactState, ContactSystem, Elastic, Gauge, Increment, Load, SquareMatrix, Status,
-    SymmetricMatrix,
 };
 
 /// A problem known by its Delassus operator, a method that gives up on it, and why.
@@ -59,10 +58,10 @@ fn elastic(dim: usize, w: &[Vec<f64>]) -> Arc<Elastic> {
         pointers.push(rows.len());
     }
     if symmetric {
-        let w = SymmetricMatrix::new(n, pointers, rows, values).unwrap();
+        let w = SquareMatrix::symmetric(n, pointers, rows, values).unwrap();
         return Elastic::from_delassus(dim, w, vec![]).unwrap();
     }
-    let w = SquareMatrix::new(n, pointers, rows, values).unwrap();
+    let w = SquareMatrix::general(n, pointers, rows, values).unwrap();
     Elastic::from_delassus(dim, w, vec![]).unwrap()
 }
 

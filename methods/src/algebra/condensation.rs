@@ -303,7 +303,7 @@ fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, from: usize, first: &[
 mod tests {
     use super::*;
     use crate::algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
-    use crate::{Elastic, ElasticParts, SymmetricMatrix};
+    use crate::{Elastic, ElasticParts, SquareMatrix};
 
     /// Two separate strips of `long` × 3 nodes with springs to all neighbours; contact couples unknowns of each strip
     /// with itself only, so the trailing block has several supernodes.
@@ -328,7 +328,7 @@ mod tests {
             .collect();
         ElasticParts {
             dim: 2,
-            stiffness: SymmetricMatrix::new(n, col_ptr, row_idx, values).unwrap(),
+            stiffness: SquareMatrix::symmetric(n, col_ptr, row_idx, values).unwrap(),
             jump: JumpOperator::new(
                 rows,
                 n,
@@ -383,7 +383,7 @@ mod tests {
         let unit = |n: usize| (0..=n).collect::<Vec<_>>();
         let body = Elastic::new(ElasticParts {
             dim: 2,
-            stiffness: SymmetricMatrix::new(n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
+            stiffness: SquareMatrix::symmetric(n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
             jump: JumpOperator::new(n, n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
             weight: vec![1.0; n / 2],
             order: (0..n).collect(),

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use crate::MethodError;
 use crate::algebra::dense::{dot, mul_add, norm, refill};
-use crate::algebra::matrix::SymmetricMatrix;
-use crate::algebra::square::{DelassusMatrix, SquareMatrix};
+use crate::algebra::matrix::SquareMatrix;
+use crate::error::MethodError;
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
 pub const MAX_CONDENSED_ROWS: usize = 12_000;
@@ -124,43 +123,24 @@ impl Dense {
         Self::new(block, self.symmetric)
     }
 
-    /// The lower triangle, every entry stored.
-    ///
-    /// # Errors
-    /// A matrix that is not symmetric.
-    pub fn lower(&self) -> Result<SymmetricMatrix, MethodError> {
-        if !self.symmetric {
-            return Err(MethodError::UnsymmetricDelassus);
-        }
-        let m = self.w.nrows();
-        let mut col_ptr = vec![0];
-        let (mut row_idx, mut values) = (Vec::new(), Vec::new());
-        for j in 0..m {
-            row_idx.extend(j..m);
-            values.extend(&self.w.col_as_slice(j)[j..]);
-            col_ptr.push(values.len());
-        }
-        SymmetricMatrix::new(m, col_ptr, row_idx, values)
-    }
-
-    /// All of it; of an unsymmetric one what is not 0.
-    pub fn matrix(&self) -> Result<DelassusMatrix, MethodError> {
-        if self.symmetric {
-            return Ok(self.lower()?.into());
-        }
+    /// All of it, of an unsymmetric one what is not 0.
+    pub fn matrix(&self) -> Result<SquareMatrix, MethodError> {
         let m = self.w.nrows();
         let mut col_ptr = vec![0];
         let (mut row_idx, mut values) = (Vec::new(), Vec::new());
         for j in 0..m {
             for (i, &value) in self.w.col_as_slice(j).iter().enumerate() {
-                if value != 0.0 {
+                if if self.symmetric { i >= j } else { value != 0.0 } {
                     row_idx.push(i);
                     values.push(value);
                 }
             }
             col_ptr.push(values.len());
         }
-        Ok(SquareMatrix::new(m, col_ptr, row_idx, values)?.into())
+        match self.symmetric {
+            true => SquareMatrix::symmetric(m, col_ptr, row_idx, values),
+            false => SquareMatrix::general(m, col_ptr, row_idx, values),
+        }
     }
 }
 
@@ -242,6 +222,25 @@ impl Delassus for Series {
     fn symmetric(&self) -> bool {
         false
     }
+}
+
+/// A W that was given as a full matrix.
+///
+/// # Errors
+/// Those of [`check_rows`].
+pub(crate) fn dense(w: &SquareMatrix) -> Result<Mat<f64>, MethodError> {
+    let m = w.size();
+    check_rows(m)?;
+    let mut full = Mat::<f64>::zeros(m, m);
+    for j in 0..m {
+        for (i, value) in w.column(j) {
+            full[(i, j)] = value;
+            if w.is_symmetric() {
+                full[(j, i)] = value;
+            }
+        }
+    }
+    Ok(full)
 }
 
 /// Refuses more rows than a full W has memory for.

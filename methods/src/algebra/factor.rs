@@ -13,7 +13,7 @@ use faer::{Mat, MatRef};
 
 use crate::algebra::dense::norm;
 use crate::algebra::floating::Balance;
-use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::multifrontal::{Analysis, Cholesky, Ordering};
 use crate::algebra::strips::Failure;
 use crate::error::MethodError;
@@ -44,7 +44,7 @@ impl Elimination {
     /// With the contact unknowns last W follows from their part of L alone, which is dense: where cracks run all over a body
     /// that is most of the work. Then W is condensed along the tree of the free order instead. Rows that balance a floating body
     /// touch all contact unknowns, which come last there.
-    fn analysis(&self, k: &SymmetricMatrix, balance: &Balance) -> Analysis {
+    fn analysis(&self, k: &SquareMatrix, balance: &Balance) -> Analysis {
         /// Multiplications and additions below which the order does not matter: a tenth of a second.
         const WORTH: f64 = 2e9;
         /// What is gained by the free order at least.
@@ -91,7 +91,7 @@ pub(crate) struct Factor {
 impl Factor {
     /// Of K without its pinned rows and columns.
     pub fn new(
-        k: &SymmetricMatrix,
+        k: &SquareMatrix,
         elimination: Elimination,
         pins: Vec<usize>,
         balance: Arc<Balance>,
@@ -137,7 +137,7 @@ impl Factor {
     }
 
     /// x := G f in place with iterative refinement: solves K x = f if f leaves no rigid motion a resultant.
-    pub fn solve(&self, k: &SymmetricMatrix, x: &mut [f64]) {
+    pub fn solve(&self, k: &SquareMatrix, x: &mut [f64]) {
         let n = k.size();
         let mut work = vec![0.0; n];
         let mut f = x.to_vec();
@@ -236,7 +236,7 @@ pub(crate) struct Columns<'a> {
 /// Values of D K D below its diagonal of ones, in the order of L, column `c` from `begin[c]` on; 0 where a pinned unknown
 /// has a part.
 fn scaled_values(
-    k: &SymmetricMatrix,
+    k: &SquareMatrix,
     scale: &[f64],
     pins: &[usize],
     ordering: &Ordering,
@@ -275,7 +275,7 @@ mod tests {
     use super::*;
 
     /// A grid of n × n points with springs to their neighbours.
-    fn grid(n: usize) -> SymmetricMatrix {
+    fn grid(n: usize) -> SquareMatrix {
         let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..n * n {
             let right = (j % n + 1 < n).then_some(j + 1);
@@ -288,7 +288,7 @@ mod tests {
             }
             col_ptr.push(row_idx.len());
         }
-        SymmetricMatrix::new(n * n, col_ptr, row_idx, values).unwrap()
+        SquareMatrix::symmetric(n * n, col_ptr, row_idx, values).unwrap()
     }
 
     /// By halves, the line between them last.

@@ -8,7 +8,7 @@
 //! slender piece sways about its pins by 10⁵ times what it deforms, and as many digits are lost.
 
 use crate::algebra::dense::{dot, norm};
-use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::error::MethodError;
 
 /// A mode whose pivot falls below this fraction of its size depends on the others.
@@ -19,7 +19,7 @@ const RIGID: f64 = 1e-9;
 /// Checks that the modes are in the kernel of K and chooses one unknown per mode to pin (Gaussian elimination with
 /// complete pivoting of D R, modes scaled to unit size): unknowns of much stiffness, since what is left of K is the softer
 /// the smaller its part in the motion.
-pub(crate) fn pins(k: &SymmetricMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, MethodError> {
+pub(crate) fn pins(k: &SquareMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, MethodError> {
     let n = k.size();
     let mut kr = vec![0.0; n];
     for (mode, r) in modes.iter().enumerate() {
@@ -103,7 +103,7 @@ pub(crate) struct Balance {
 impl Balance {
     /// From modes that span the kernel of K. A motion that moves no contact unknown is left to the pins: no force
     /// balances it.
-    pub fn new(k: &SymmetricMatrix, modes: &[Vec<f64>], in_contact: &[bool]) -> Self {
+    pub fn new(k: &SquareMatrix, modes: &[Vec<f64>], in_contact: &[bool]) -> Self {
         let mut balance = Self {
             root: Vec::new(),
             motions: Vec::new(),

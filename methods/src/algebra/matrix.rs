@@ -1,41 +1,43 @@
-//! The two sparse matrices of the problem: the stiffness K and the jump operator B.
+//! The sparse matrices of the problem: the stiffness K or a Delassus operator W that is given, and the jump operator B.
 
 use crate::error::{MethodError, check_finite, check_len};
 
-/// Symmetric sparse matrix, lower triangle, compressed columns with sorted rows and every diagonal entry present.
+/// Square sparse matrix, compressed columns with sorted rows: of a symmetric one the lower triangle with every diagonal entry, of
+/// another all that is not 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SymmetricMatrix {
+pub struct SquareMatrix {
     n: usize,
     col_ptr: Vec<usize>,
     row_idx: Vec<usize>,
     values: Vec<f64>,
+    symmetric: bool,
 }
 
-impl SymmetricMatrix {
-    /// Takes the arrays of the lower triangle.
+impl SquareMatrix {
+    /// Takes the arrays of a matrix that need not be symmetric, as where a time step linearises gyroscopic forces, or a writer has
+    /// rounded.
     ///
     /// # Errors
-    /// Wrong lengths, rows unsorted or outside the lower triangle, a missing diagonal entry, non-finite values.
-    pub fn new(
+    /// Wrong lengths, rows unsorted or outside the matrix, non-finite values.
+    pub fn general(
         n: usize,
         col_ptr: Vec<usize>,
         row_idx: Vec<usize>,
         values: Vec<f64>,
     ) -> Result<Self, MethodError> {
-        check_pointers("stiffness column pointers", &col_ptr, n, row_idx.len())?;
-        check_len("stiffness values", values.len(), row_idx.len())?;
-        check_finite("stiffness values", &values)?;
-        let bad = |index, reason| Err(MethodError::pattern("stiffness", index, reason));
+        let what = "square matrix";
+        check_pointers("square matrix column pointers", &col_ptr, n, row_idx.len())?;
+        check_len("square matrix values", values.len(), row_idx.len())?;
+        check_finite("square matrix values", &values)?;
         for j in 0..n {
             let rows = &row_idx[col_ptr[j]..col_ptr[j + 1]];
-            if rows.first() != Some(&j) {
-                return bad(j, "the first row of a column must be its diagonal entry");
-            }
             if rows.windows(2).any(|w| w[0] >= w[1]) {
-                return bad(j, "the rows of a column must increase");
+                let reason = "the rows of a column must increase";
+                return Err(MethodError::pattern(what, j, reason));
             }
             if rows.last().is_some_and(|&i| i >= n) {
-                return bad(j, "a row index exceeds the size");
+                let reason = "a row index exceeds the size";
+                return Err(MethodError::pattern(what, j, reason));
             }
         }
         Ok(Self {
@@ -43,7 +45,33 @@ impl SymmetricMatrix {
             col_ptr,
             row_idx,
             values,
+            symmetric: false,
         })
+    }
+
+    /// Takes the arrays of the lower triangle of a symmetric matrix.
+    ///
+    /// # Errors
+    /// Those of [`general`](Self::general), entries above the diagonal, a missing diagonal entry.
+    pub fn symmetric(
+        n: usize,
+        col_ptr: Vec<usize>,
+        row_idx: Vec<usize>,
+        values: Vec<f64>,
+    ) -> Result<Self, MethodError> {
+        let mut lower = Self::general(n, col_ptr, row_idx, values)?;
+        let begins = |&j: &usize| lower.column(j).next().is_none_or(|(i, _)| i != j);
+        if let Some(j) = (0..n).find(begins) {
+            let reason = "the first row of a column must be its diagonal entry";
+            return Err(MethodError::pattern("symmetric matrix", j, reason));
+        }
+        lower.symmetric = true;
+        Ok(lower)
+    }
+
+    /// Whether it is held as a symmetric one.
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
     }
 
     /// Number of rows and columns.
@@ -68,37 +96,76 @@ impl SymmetricMatrix {
 
     /// Diagonal entry of column `j`.
     pub fn diagonal(&self, j: usize) -> f64 {
-        self.values[self.col_ptr[j]]
+        match self.symmetric {
+            true => self.values[self.col_ptr[j]],
+            false => self.stored(j, j),
+        }
+    }
+
+    /// Stored entries of a column, of a symmetric matrix from the diagonal on: (row, value).
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let own = self.col_ptr[j]..self.col_ptr[j + 1];
+        let rows = self.row_idx[own.clone()].iter().copied();
+        rows.zip(self.values[own].iter().copied())
+    }
+
+    /// What is stored at (i, j); 0 where nothing is.
+    fn stored(&self, i: usize, j: usize) -> f64 {
+        let own = self.col_ptr[j]..self.col_ptr[j + 1];
+        match self.row_idx[own.clone()].binary_search(&i) {
+            Ok(place) => self.values[own.start + place],
+            Err(_) => 0.0,
+        }
     }
 
     /// y = A x.
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for j in 0..self.n {
-            let (begin, end) = (self.col_ptr[j], self.col_ptr[j + 1]);
-            let mut sum = self.values[begin] * x[j];
-            for k in begin + 1..end {
-                let i = self.row_idx[k];
-                y[i] += self.values[k] * x[j];
-                sum += self.values[k] * x[i];
-            }
-            y[j] += sum;
-        }
+        self.product(x, y, |a, x| a * x);
     }
 
     /// |A| |x| with absolute values throughout: what rounding of A x is relative to.
     pub fn mul_abs(&self, x: &[f64], y: &mut [f64]) {
+        self.product(x, y, |a, x| (a * x).abs());
+    }
+
+    #[inline(always)]
+    fn product(&self, x: &[f64], y: &mut [f64], times: impl Fn(f64, f64) -> f64) {
         y.fill(0.0);
-        for j in 0..self.n {
-            let (begin, end) = (self.col_ptr[j], self.col_ptr[j + 1]);
-            let mut sum = (self.values[begin] * x[j]).abs();
-            for k in begin + 1..end {
-                let i = self.row_idx[k];
-                let value = self.values[k].abs();
-                y[i] += value * x[j].abs();
-                sum += value * x[i].abs();
+        for (j, &xj) in x.iter().enumerate() {
+            let (mut begin, end) = (self.col_ptr[j], self.col_ptr[j + 1]);
+            let mut sum = 0.0;
+            if self.symmetric {
+                sum = times(self.values[begin], xj);
+                begin += 1;
             }
-            y[j] += sum;
+            for (&i, &a) in self.row_idx[begin..end]
+                .iter()
+                .zip(&self.values[begin..end])
+            {
+                y[i] += times(a, xj);
+                if self.symmetric {
+                    sum += times(a, x[i]);
+                }
+            }
+            if self.symmetric {
+                y[j] += sum;
+            }
+        }
+    }
+
+    /// How far it is from its transpose: max |a_ij − a_ji| / max |a_ij|; 0 for a symmetric matrix.
+    pub fn asymmetry(&self) -> f64 {
+        if self.symmetric {
+            return 0.0;
+        }
+        let largest = self.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let beside = |j| {
+            self.column(j)
+                .map(move |(i, a)| (a - self.stored(j, i)).abs())
+        };
+        match (0..self.n).flat_map(beside).fold(0.0, f64::max) {
+            0.0 => 0.0,
+            most => most / largest,
         }
     }
 }
@@ -218,37 +285,67 @@ pub(crate) fn check_pointers(
 mod tests {
     use super::*;
 
-    #[test]
-    fn malformed_matrices_are_refused() {
-        let k = |col_ptr: &[usize], row_idx: &[usize], values: &[f64]| {
-            SymmetricMatrix::new(2, col_ptr.to_vec(), row_idx.to_vec(), values.to_vec())
-        };
-        assert!(k(&[0, 2, 3], &[0, 1, 1], &[2.0, -1.0, 2.0]).is_ok());
-        assert!(
-            k(&[0, 1, 2], &[1, 1], &[2.0, 2.0]).is_err(),
-            "missing diagonal"
-        );
-        assert!(
-            k(&[0, 2, 3], &[0, 2, 1], &[2.0, -1.0, 2.0]).is_err(),
-            "row out of range"
-        );
-        assert!(k(&[0, 2], &[0, 1], &[2.0, -1.0]).is_err(), "short pointers");
-        assert!(
-            k(&[0, 2, 3], &[0, 1, 1], &[2.0, f64::NAN, 2.0]).is_err(),
-            "NaN"
-        );
-        assert!(
-            JumpOperator::new(1, 2, vec![0, 1], vec![2], vec![1.0]).is_err(),
-            "column out of range"
-        );
+    type New = fn(usize, Vec<usize>, Vec<usize>, Vec<f64>) -> Result<SquareMatrix, MethodError>;
+
+    /// [[4, 1, 0], [2, 5, 0], [0, 0, 0]].
+    fn unsymmetric() -> SquareMatrix {
+        let (rows, values) = (vec![0, 1, 0, 1], vec![4.0, 2.0, 1.0, 5.0]);
+        SquareMatrix::general(3, vec![0, 2, 4, 4], rows, values).unwrap()
     }
 
     #[test]
-    fn products_use_both_triangles() {
-        let k =
-            SymmetricMatrix::new(2, vec![0, 2, 3], vec![0, 1, 1], vec![2.0, -1.0, 3.0]).unwrap();
+    fn products_know_rows_from_columns_and_use_both_triangles() {
+        let a = unsymmetric();
+        let mut y = [0.0; 3];
+        a.mul(&[1.0, -1.0, 7.0], &mut y);
+        assert_eq!(y, [3.0, -3.0, 0.0]);
+        a.mul_abs(&[1.0, -1.0, 7.0], &mut y);
+        assert_eq!(y, [5.0, 7.0, 0.0]);
+        assert_eq!(a.asymmetry(), 0.2);
+        let (ends, rows, values) = (vec![0, 2, 3], vec![0, 1, 1], vec![2.0, -1.0, 3.0]);
+        let k = SquareMatrix::symmetric(2, ends, rows, values).unwrap();
         let mut y = [0.0; 2];
         k.mul(&[1.0, 10.0], &mut y);
         assert_eq!(y, [-8.0, 29.0]);
+    }
+
+    /// An entry without mirror image counts, on whichever side of the diagonal it stands.
+    #[test]
+    fn an_entry_alone_is_compared_with_zero() {
+        for (ends, row) in [([0, 1, 1], 1), ([0, 0, 1], 0)] {
+            let a = SquareMatrix::general(2, ends.to_vec(), vec![row], vec![-3.0]).unwrap();
+            assert_eq!(a.asymmetry(), 1.0);
+        }
+        let none = SquareMatrix::general(2, vec![0; 3], vec![], vec![]).unwrap();
+        assert_eq!(none.asymmetry(), 0.0);
+    }
+
+    #[test]
+    fn malformed_matrices_are_refused() {
+        let refused = |new: New, ends: &[usize], rows: &[usize], values: &[f64]| {
+            new(2, ends.to_vec(), rows.to_vec(), values.to_vec()).is_err()
+        };
+        let (lower, full): (New, New) = (SquareMatrix::symmetric, SquareMatrix::general);
+        let values = [2.0, -1.0, 2.0];
+        assert!(!refused(lower, &[0, 2, 3], &[0, 1, 1], &values));
+        assert!(
+            refused(lower, &[0, 1, 2], &[1, 1], &values[..2]),
+            "no diagonal"
+        );
+        assert!(
+            refused(full, &[0, 2, 3], &[0, 2, 1], &values),
+            "row out of range"
+        );
+        assert!(
+            refused(full, &[0, 2, 2], &[1, 0], &values[..2]),
+            "rows fall"
+        );
+        assert!(
+            refused(full, &[0, 2], &[0, 1], &values[..2]),
+            "short pointers"
+        );
+        assert!(refused(full, &[0, 1, 1], &[0], &[f64::NAN]), "NaN");
+        let out = JumpOperator::new(1, 2, vec![0, 1], vec![2], vec![1.0]);
+        assert!(out.is_err(), "column out of range");
     }
 }

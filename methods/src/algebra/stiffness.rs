@@ -4,11 +4,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::MethodError;
 use crate::algebra::condensation::{self, Condensed, Tractions};
+use crate::algebra::delassus::dense;
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
-use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
-use crate::algebra::square::DelassusMatrix;
+use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::strips::cholesky;
 
 /// K behind a factor: factorise, solve, Schur complement on the contact rows. Everything above works through this door.
@@ -17,7 +17,7 @@ pub(crate) trait Stiffness: Send + Sync {
     fn unknowns(&self) -> usize;
 
     /// K itself, where it is known.
-    fn matrix(&self) -> Option<&SymmetricMatrix>;
+    fn matrix(&self) -> Option<&SquareMatrix>;
 
     /// Factors K unless that is done.
     fn factorise(&self) -> Result<(), MethodError>;
@@ -73,7 +73,7 @@ pub(crate) const INDEFINITE: f64 = 1e-9;
 
 /// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
-    k: SymmetricMatrix,
+    k: SquareMatrix,
     /// Until K is factored.
     elimination: Mutex<Elimination>,
     pins: Vec<usize>,
@@ -87,7 +87,7 @@ impl SparseStiffness {
     /// # Errors
     /// Motions that are not rigid or depend on each other.
     pub fn new(
-        k: SymmetricMatrix,
+        k: SquareMatrix,
         elimination: Elimination,
         floating: &[Vec<f64>],
     ) -> Result<Self, MethodError> {
@@ -121,7 +121,7 @@ impl Stiffness for SparseStiffness {
         self.k.size()
     }
 
-    fn matrix(&self) -> Option<&SymmetricMatrix> {
+    fn matrix(&self) -> Option<&SquareMatrix> {
         Some(&self.k)
     }
 
@@ -191,7 +191,7 @@ impl Stiffness for SparseStiffness {
 
 /// A body known by its Delassus operator alone: its unknowns are the jumps of the contact points, u = W f.
 pub(crate) struct DelassusOnly {
-    w: DelassusMatrix,
+    w: SquareMatrix,
     asymmetry: f64,
     modes: ModeJumps,
     indefinite: OnceLock<bool>,
@@ -199,7 +199,7 @@ pub(crate) struct DelassusOnly {
 
 impl DelassusOnly {
     /// `floating` are the jumps of the rigid motions.
-    pub fn new(w: DelassusMatrix, jump: &JumpOperator, floating: &[Vec<f64>]) -> Self {
+    pub fn new(w: SquareMatrix, jump: &JumpOperator, floating: &[Vec<f64>]) -> Self {
         let all: Vec<usize> = (0..jump.rows()).collect();
         let modes = ModeJumps::new(jump, &all, floating);
         Self {
@@ -213,7 +213,7 @@ impl DelassusOnly {
     /// Whether W, symmetric, moved by [`INDEFINITE`] times its largest entry has no Cholesky factor. What is too large to be
     /// formed is not known to be.
     fn has_negative_eigenvalue(&self) -> bool {
-        let Ok(mut full) = self.w.dense() else {
+        let Ok(mut full) = dense(&self.w) else {
             return false;
         };
         let columns = 0..full.ncols();
@@ -233,7 +233,7 @@ impl Stiffness for DelassusOnly {
         self.w.size()
     }
 
-    fn matrix(&self) -> Option<&SymmetricMatrix> {
+    fn matrix(&self) -> Option<&SquareMatrix> {
         None
     }
 
@@ -256,7 +256,7 @@ impl Stiffness for DelassusOnly {
 
     fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
         let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
-        Ok((self.w.dense()?, diagonal))
+        Ok((dense(&self.w)?, diagonal))
     }
 
     fn tractions(

@@ -2,9 +2,8 @@
 
 use crate::algebra::dense::minus;
 use crate::algebra::floating::ModeJumps;
-use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::rows::RowSet;
-use crate::algebra::square::{DelassusMatrix, SquareMatrix};
 use crate::contract::judge::slip_from;
 use crate::contract::state::ContactState;
 use crate::contract::system::Increment;
@@ -15,7 +14,7 @@ use crate::error::{MethodError, check_finite, check_len};
 pub struct LocalForm {
     /// Delassus operator W, `dim` rows per point, in m/N (2D: m²/N). Of a body set up without friction the normal rows; the
     /// tangential ones, on which no force acts, are coupled to nothing and have the mean of its diagonal.
-    pub w: DelassusMatrix,
+    pub w: SquareMatrix,
     /// Gaps and slips without contact forces, `dim` per point, in m; the tangential jump at the start of the increment
     /// is taken off. Slips of a body set up without friction are 0.
     pub q: Vec<f64>,
@@ -94,7 +93,7 @@ impl Increment<'_> {
 }
 
 /// A matrix on the rows listed among all rows, which have the mean of its diagonal.
-fn spread(w: DelassusMatrix, rows: &RowSet, all: usize) -> Result<DelassusMatrix, MethodError> {
+fn spread(w: SquareMatrix, rows: &RowSet, all: usize) -> Result<SquareMatrix, MethodError> {
     if rows.len() == all {
         return Ok(w);
     }
@@ -120,8 +119,8 @@ fn spread(w: DelassusMatrix, rows: &RowSet, all: usize) -> Result<DelassusMatrix
         }
         col_ptr.push(values.len());
     }
-    Ok(match w {
-        DelassusMatrix::Symmetric(_) => SymmetricMatrix::new(all, col_ptr, row_idx, values)?.into(),
-        DelassusMatrix::General(_) => SquareMatrix::new(all, col_ptr, row_idx, values)?.into(),
-    })
+    match w.is_symmetric() {
+        true => SquareMatrix::symmetric(all, col_ptr, row_idx, values),
+        false => SquareMatrix::general(all, col_ptr, row_idx, values),
+    }
 }

@@ -230,12 +230,12 @@ mod tests {
     use super::*;
     use crate::condensed::fixture::with_contact;
     use crate::contract::law::project_cone;
-    use crate::{Elastic, SymmetricMatrix};
+    use crate::{Elastic, SquareMatrix};
 
     /// One point on springs of stiffness k in all directions; W = I/k and q = f/k.
     fn springs(dim: usize, k: f64) -> Arc<Elastic> {
         let (ends, all) = ((0..=dim).collect(), (0..dim).collect());
-        let w = SymmetricMatrix::new(dim, ends, all, vec![1.0 / k; dim]).unwrap();
+        let w = SquareMatrix::symmetric(dim, ends, all, vec![1.0 / k; dim]).unwrap();
         Elastic::from_delassus(dim, w, vec![]).unwrap()
     }
 

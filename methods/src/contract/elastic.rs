@@ -8,10 +8,9 @@ use crate::algebra::condensation::Tractions;
 use crate::algebra::delassus::Dense;
 use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
-use crate::algebra::matrix::{JumpOperator, SymmetricMatrix};
+use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::rank;
-use crate::algebra::square::DelassusMatrix;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
 use crate::contract::operator::ContactOperator;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
@@ -23,7 +22,7 @@ pub struct ElasticParts {
     pub dim: usize,
     /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating`. In N/m, in 2D
     /// N/m².
-    pub stiffness: SymmetricMatrix,
+    pub stiffness: SquareMatrix,
     /// Jump operator B, `dim` rows per contact point, n columns; dimensionless.
     pub jump: JumpOperator,
     /// Tributary area (2D: length) per contact point, > 0, in m² (m).
@@ -104,10 +103,13 @@ impl Elastic {
     /// Checks the parts. Nothing is factored yet.
     ///
     /// # Errors
-    /// Inconsistent sizes, non-finite or non-positive entries, an order that is no permutation, motions that are not
-    /// rigid, dependent or without any jump.
+    /// A stiffness that is not symmetric, inconsistent sizes, non-finite or non-positive entries, an order that is no
+    /// permutation, motions that are not rigid, dependent or without any jump.
     pub fn new(parts: ElasticParts) -> Result<Arc<Self>, MethodError> {
         let n = parts.stiffness.size();
+        if !parts.stiffness.is_symmetric() {
+            return Err(MethodError::UnsymmetricStiffness);
+        }
         check_len("elimination order", parts.order.len(), n)?;
         let diagonal = (0..n).map(|j| parts.stiffness.diagonal(j));
         check_positive("stiffness diagonal", diagonal)?;
@@ -151,17 +153,15 @@ impl Elastic {
     /// jumps `floating` of its rigid motions, one vector each. Its unknowns u are the jumps of the contact points:
     /// u = W (f + P) + R α, and a load carries the free jump q as its offset.
     ///
-    /// W need not be symmetric ([`SquareMatrix`](crate::SquareMatrix)): then it acts on forces as it stands, row by row, and
-    /// methods that need a symmetric one [refuse](crate::Needs::refuses) it.
+    /// W need not be symmetric: then it acts on forces as it stands, row by row, and methods that need a symmetric one [refuse](crate::Needs::refuses) it.
     ///
     /// # Errors
     /// Inconsistent sizes, negative diagonal entries, non-finite values.
     pub fn from_delassus(
         dim: usize,
-        w: impl Into<DelassusMatrix>,
+        w: SquareMatrix,
         floating: Vec<Vec<f64>>,
     ) -> Result<Arc<Self>, MethodError> {
-        let w = w.into();
         let m = w.size();
         if let Some(index) = (0..m).find(|&j| w.diagonal(j) < 0.0) {
             return Err(MethodError::range(
@@ -221,7 +221,7 @@ impl Elastic {
     }
 
     /// Stiffness K; `None` if only the Delassus operator is known.
-    pub fn stiffness(&self) -> Option<&SymmetricMatrix> {
+    pub fn stiffness(&self) -> Option<&SquareMatrix> {
         self.stiffness.matrix()
     }
 
@@ -396,19 +396,6 @@ impl Elastic {
             Ok(Arc::new(operator))
         };
         self.condensed.get_or_init(build).clone()
-    }
-
-    /// The Delassus operator W = B K⁻¹ Bᵀ, formed unless it exists: `dim` rows per point, in m/N (2D: m²/N); where the body
-    /// floats, that of the body held at the pinned unknowns.
-    ///
-    /// # Errors
-    /// Those of the first factorisation and condensation; a body set up without friction, which has only normal rows; a W
-    /// that was given and is not symmetric.
-    pub fn delassus(&self) -> Result<SymmetricMatrix, MethodError> {
-        if self.frictionless {
-            return Err(MethodError::NoTangentialRows);
-        }
-        self.formed()?.lower()
     }
 
     /// Numerical rank of the Delassus operator, formed unless it exists: singular values above 1e-10 of the largest. Where it

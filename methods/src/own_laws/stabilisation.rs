@@ -241,7 +241,7 @@ mod tests {
 
     use super::*;
     use crate::algebra::dense::dot;
-    use crate::{Elastic, ElasticParts, JumpOperator, SymmetricMatrix};
+    use crate::{Elastic, ElasticParts, JumpOperator, SquareMatrix};
 
     /// Numbers without symmetry between −1 and 1.
     fn number(k: usize) -> f64 {
@@ -280,7 +280,7 @@ mod tests {
         }
         let elastic = Elastic::new(ElasticParts {
             dim: 2,
-            stiffness: SymmetricMatrix::new(n, col_ptr, row_idx, values).unwrap(),
+            stiffness: SquareMatrix::symmetric(n, col_ptr, row_idx, values).unwrap(),
             jump: sparse(m, n, b),
             weight: weight.clone(),
             order: (0..n).collect(),

@@ -307,11 +307,11 @@ impl Cone {
 mod tests {
     use super::*;
     use crate::condensed::fixture::with_contact;
-    use crate::{Elastic, SymmetricMatrix};
+    use crate::{Elastic, SquareMatrix};
 
     #[test]
     fn only_the_last_factors_are_kept() {
-        let w = SymmetricMatrix::new(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
+        let w = SquareMatrix::symmetric(2, vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
         let body = Elastic::from_delassus(2, w, vec![]).unwrap();
         let load = (vec![-1.0, 0.0], vec![0.0; 2]);
         with_contact(&body, vec![0.3], load, |_, mut problem| {

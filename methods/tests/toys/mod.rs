@@ -25,7 +25,7 @@ pub fn elastic(
 }
 
 /// Parts from dense K and B; structural zeros are left out.
-fn parts(
+pub fn parts(
     dim: usize,
     k: &Rows,
     b: &Rows,
@@ -55,7 +55,7 @@ fn parts(
 }
 
 /// Lower half of a symmetric matrix, without its structural zeros.
-pub fn sparse(a: &Rows) -> SymmetricMatrix {
+pub fn sparse(a: &Rows) -> SquareMatrix {
     let (mut col_ptr, mut row_idx, mut values) = (vec![0], vec![], vec![]);
     for j in 0..a.len() {
         for i in (j..a.len()).filter(|&i| i == j || a[i][j] != 0.0) {
@@ -64,7 +64,7 @@ pub fn sparse(a: &Rows) -> SymmetricMatrix {
         }
         col_ptr.push(row_idx.len());
     }
-    SymmetricMatrix::new(a.len(), col_ptr, row_idx, values).unwrap()
+    SquareMatrix::symmetric(a.len(), col_ptr, row_idx, values).unwrap()
 }
 
 /// A diagonal matrix.

@@ -1,6 +1,6 @@
 //! A sparse matrix between file and solver.
 
-use stickslip_methods::{DelassusMatrix, JumpOperator, MethodError, SquareMatrix, SymmetricMatrix};
+use stickslip_methods::{JumpOperator, MethodError, SquareMatrix};
 
 /// Sparse matrix in compressed columns, rows sorted within a column, no position stored twice.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,31 +55,18 @@ impl SparseMatrix {
         matrix
     }
 
-    /// Both triangles of a symmetric matrix.
-    pub fn from_symmetric(lower: &SymmetricMatrix) -> Self {
-        let mut triplets = Vec::with_capacity(2 * lower.values().len());
-        for j in 0..lower.size() {
-            for k in lower.col_ptr()[j]..lower.col_ptr()[j + 1] {
-                let (i, value) = (lower.row_idx()[k], lower.values()[k]);
+    /// All of a matrix, of a symmetric one both triangles.
+    pub fn from_square(a: &SquareMatrix) -> Self {
+        let mut triplets = Vec::with_capacity(2 * a.values().len());
+        for j in 0..a.size() {
+            for (i, value) in a.column(j) {
                 triplets.push((i, j, value));
-                if i != j {
+                if a.is_symmetric() && i != j {
                     triplets.push((j, i, value));
                 }
             }
         }
-        Self::sorted(lower.size(), lower.size(), triplets)
-    }
-
-    /// A Delassus operator in full.
-    pub fn from_delassus(w: &DelassusMatrix) -> Self {
-        let n = w.size();
-        match w {
-            DelassusMatrix::Symmetric(lower) => Self::from_symmetric(lower),
-            DelassusMatrix::General(w) => {
-                let column = |j| w.column(j).map(move |(i, value)| (i, j, value));
-                Self::sorted(n, n, (0..n).flat_map(column).collect())
-            }
-        }
+        Self::sorted(a.size(), a.size(), triplets)
     }
 
     /// The jump operator B.
@@ -118,7 +105,7 @@ impl SparseMatrix {
     ///
     /// # Errors
     /// A matrix that is not square.
-    pub fn symmetric_part(&self) -> Result<SymmetricMatrix, MethodError> {
+    pub fn symmetric_part(&self) -> Result<SquareMatrix, MethodError> {
         let lower = self
             .entries()
             .map(|(i, j, value)| (i.max(j), i.min(j), 0.5 * value));
@@ -128,7 +115,7 @@ impl SparseMatrix {
         let diagonal = self.entries().filter(|e| e.0 == e.1);
         triplets.extend(diagonal.map(|(i, j, value)| (i, j, 0.5 * value)));
         let lower = Self::sorted(self.rows, self.cols, triplets);
-        SymmetricMatrix::new(self.cols, lower.col_ptr, lower.row_idx, lower.values)
+        SquareMatrix::symmetric(self.cols, lower.col_ptr, lower.row_idx, lower.values)
     }
 
     /// The matrix as it stands, where it is square.
@@ -137,7 +124,7 @@ impl SparseMatrix {
     /// A matrix that is not square, non-finite values.
     pub fn as_square(&self) -> Result<SquareMatrix, MethodError> {
         let (ends, rows) = (self.col_ptr.clone(), self.row_idx.clone());
-        SquareMatrix::new(self.rows, ends, rows, self.values.clone())
+        SquareMatrix::general(self.rows, ends, rows, self.values.clone())
     }
 
     /// The matrix as jump operator.
@@ -264,11 +251,10 @@ mod tests {
         let a = SparseMatrix::from_triplets(2, 2, entries).unwrap();
         let lower = a.symmetric_part().unwrap();
         assert_eq!(lower.values(), [4.0, 0.3, 5.0]);
-        assert_eq!(SparseMatrix::from_symmetric(&lower), a);
+        assert_eq!(SparseMatrix::from_square(&lower), a);
         let skew = SparseMatrix::from_triplets(2, 2, [(0, 1, 1.0), (1, 0, 2.0)]).unwrap();
         assert_eq!(skew.symmetric_part().unwrap().values(), [0.0, 1.5, 0.0]);
-        let square = skew.as_square().unwrap();
-        assert_eq!((square.get(0, 1), square.get(1, 0)), (1.0, 2.0));
+        assert_eq!(SparseMatrix::from_square(&skew.as_square().unwrap()), skew);
         let b = SparseMatrix::from_triplets(2, 3, [(1, 0, 2.0), (0, 2, -1.0)]).unwrap();
         assert_eq!(SparseMatrix::from_rows(&b.as_rows().unwrap()), b);
         assert_eq!(b.transposed().get(2, 0), -1.0);

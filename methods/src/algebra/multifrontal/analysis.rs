@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::multifrontal::tree::{AssemblyTree, NONE, postorder};
 use crate::algebra::strips::Trapezoid;
 
@@ -51,7 +51,7 @@ pub(crate) struct Analysis {
 
 impl Analysis {
     /// Of K, eliminated in the order `preferred` (a permutation), contact unknowns last; `in_contact[j]` marks them.
-    pub fn new(k: &SymmetricMatrix, preferred: &[usize], in_contact: &[bool]) -> Self {
+    pub fn new(k: &SquareMatrix, preferred: &[usize], in_contact: &[bool]) -> Self {
         let rest = preferred.iter().copied().filter(|&j| !in_contact[j]);
         let contact = preferred.iter().copied().filter(|&j| in_contact[j]);
         let contact_begin = in_contact.iter().filter(|c| !**c).count();
@@ -99,7 +99,7 @@ impl Lists {
 }
 
 /// Calls `visit` with the two positions of every entry of K beside the diagonal, the earlier one first.
-fn each_pair(k: &SymmetricMatrix, ordering: &Ordering, visit: &mut dyn FnMut(usize, usize)) {
+fn each_pair(k: &SquareMatrix, ordering: &Ordering, visit: &mut dyn FnMut(usize, usize)) {
     for j in 0..k.size() {
         let b = ordering.inverse[j];
         for &i in &k.row_idx()[k.col_ptr()[j] + 1..k.col_ptr()[j + 1]] {
@@ -120,7 +120,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(k: &SymmetricMatrix, wished: &Ordering) -> Self {
+    fn new(k: &SquareMatrix, wished: &Ordering) -> Self {
         let n = k.size();
         let earlier = Lists::new(n, |visit| each_pair(k, wished, &mut |a, b| visit(b, a)));
         let tree = elimination_tree(&earlier);
@@ -374,7 +374,7 @@ impl Groups {
 
 /// The tree of supernodes of these sizes, and where the entries of K go in their fronts.
 fn assembly_tree(
-    k: &SymmetricMatrix,
+    k: &SquareMatrix,
     ordering: &Ordering,
     sizes: &[usize],
 ) -> (AssemblyTree, Entries) {

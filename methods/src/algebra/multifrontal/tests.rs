@@ -1,7 +1,7 @@
 //! The factor against the definition of what it is, on matrices whose factors are known or can be formed.
 
 use super::*;
-use crate::algebra::matrix::SymmetricMatrix;
+use crate::algebra::matrix::SquareMatrix;
 
 /// Numbers in [0, 1) that are the same everywhere (Knuth's MMIX generator).
 struct Random(u64);
@@ -17,7 +17,7 @@ impl Random {
 }
 
 /// A unit diagonal with couplings weak enough for it to dominate.
-fn matrix(n: usize, links: &[(usize, usize)], random: &mut Random) -> SymmetricMatrix {
+fn matrix(n: usize, links: &[(usize, usize)], random: &mut Random) -> SquareMatrix {
     let mut columns = vec![std::collections::BTreeMap::from([]); n];
     let mut degree = vec![0; n];
     for &(a, b) in links {
@@ -37,7 +37,7 @@ fn matrix(n: usize, links: &[(usize, usize)], random: &mut Random) -> SymmetricM
         values.extend(column.values());
         begin.push(rows.len());
     }
-    SymmetricMatrix::new(n, begin, rows, values).unwrap()
+    SquareMatrix::symmetric(n, begin, rows, values).unwrap()
 }
 
 /// Neighbours in a box of nodes, `dofs` unknowns each.
@@ -70,7 +70,7 @@ fn shuffled(n: usize, step: usize, random: &mut Random) -> (Vec<usize>, Vec<bool
     (order, (0..n).map(|j| j % step == 0).collect())
 }
 
-fn factor(k: &SymmetricMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky, Failure>) {
+fn factor(k: &SquareMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky, Failure>) {
     let Analysis {
         ordering,
         tree,
@@ -90,7 +90,7 @@ fn factor(k: &SymmetricMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky
 }
 
 /// |K x − f| / |f| by column, with x from the factor.
-fn residuals(k: &SymmetricMatrix, ordering: &Ordering, cholesky: &Cholesky) -> f64 {
+fn residuals(k: &SquareMatrix, ordering: &Ordering, cholesky: &Cholesky) -> f64 {
     let n = k.size();
     let f = |column: usize, j: usize| ((3 * j + 7 * column) % 11) as f64 - 5.0;
     let mut x = faer::Mat::from_fn(n, 40, |i, j| f(j, ordering.forward[i]));
@@ -267,7 +267,7 @@ fn the_first_column_without_a_positive_pivot_is_named() {
     for j in [30, 333] {
         values[k.col_ptr()[j] + 1] = 1.5;
     }
-    let k = SymmetricMatrix::new(n, k.col_ptr().to_vec(), k.row_idx().to_vec(), values).unwrap();
+    let k = SquareMatrix::symmetric(n, k.col_ptr().to_vec(), k.row_idx().to_vec(), values).unwrap();
     let order: Vec<usize> = (0..n).collect();
     let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order, &vec![false; n]));
     let Err(Failure::NotPositive(column)) = cholesky.map(|_| ()) else {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::condensed::fixture::with_contact;
 use crate::condensed::point_row::{Bordered, Law};
-use crate::{Elastic, SymmetricMatrix};
+use crate::{Elastic, SquareMatrix};
 
 /// More rows than plain loops factor.
 const POINTS: usize = 17;
@@ -40,7 +40,7 @@ fn with_body(
         values.extend((j..ROWS).map(|i| entry(i, j)));
         col_ptr.push(values.len());
     }
-    let w = SymmetricMatrix::new(ROWS, col_ptr, row_idx, values).unwrap();
+    let w = SquareMatrix::symmetric(ROWS, col_ptr, row_idx, values).unwrap();
     let body = Elastic::from_delassus(3, w, motions).unwrap();
     let load = (vec![-1.0; ROWS], vec![0.0; ROWS]);
     with_contact(&body, vec![0.3; POINTS], load, |_, problem| test(&problem));
