@@ -14,6 +14,7 @@ pub(crate) mod method;
 pub(crate) mod pair;
 pub(crate) mod point_row;
 pub(crate) mod problem;
+pub(crate) mod recovery;
 pub(crate) mod saddle;
 pub(crate) mod stages;
 pub(crate) mod starts;

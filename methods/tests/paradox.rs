@@ -52,14 +52,20 @@ fn from_all_starts(
         if outcome.status == Status::Converged {
             let judged = residuals_of(&posed, &outcome.state, outcome.claim).unwrap();
             // A NaN is no solution.
-            broken |= !(judged.claimed <= i.tolerance);
+            broken |= judged.claimed.is_nan() || judged.claimed > i.tolerance;
         } else {
             failed = failed.or(Some(outcome.status));
         }
         states.push(outcome.state);
     }
+    // Tension is as large as the reference force.
+    let largest = |m: f64, p: &f64| m.max(p.abs());
+    let size = starts.iter().flatten().flatten().fold(0.0, largest);
     let first: &ContactState = &states[0];
-    let same = |s: &ContactState| difference(&s.p, &first.p) < 1e4 * i.tolerance;
+    let same = |s: &ContactState| {
+        let mut apart = s.p.iter().zip(&first.p).map(|(a, b)| (a - b).abs());
+        apart.all(|apart| apart <= 1e4 * i.tolerance * size)
+    };
     let verdict = match failed {
         _ if broken => Uniqueness::FalseClaim,
         Some(status) => Uniqueness::Failed(status),

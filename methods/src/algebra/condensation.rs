@@ -18,13 +18,13 @@ use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, Par};
 use rayon::prelude::*;
 
-use crate::MethodError;
 use crate::algebra::delassus::check_rows;
 use crate::algebra::factor::{Columns, Factor};
 use crate::algebra::matrix::JumpOperator;
 use crate::algebra::strips::{
     STRIP, WORTH_THREADS, column_strips, for_all, permute_rows, row_strips,
 };
+use crate::error::MethodError;
 
 /// W and its diagonal.
 pub(crate) type Condensed = (Mat<f64>, Vec<f64>);
@@ -303,7 +303,8 @@ fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, from: usize, first: &[
 mod tests {
     use super::*;
     use crate::algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
-    use crate::{Elastic, ElasticParts, SquareMatrix};
+    use crate::algebra::matrix::SquareMatrix;
+    use crate::contract::elastic::{Elastic, ElasticParts};
 
     /// Two separate strips of `long` × 3 nodes with springs to all neighbours; contact couples unknowns of each strip
     /// with itself only, so the trailing block has several supernodes.

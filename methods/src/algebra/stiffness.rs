@@ -2,7 +2,6 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::MethodError;
 use crate::algebra::condensation::{self, Condensed, Tractions};
 use crate::algebra::delassus::dense;
 use crate::algebra::dense::{norm, ratio};
@@ -10,6 +9,7 @@ use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::strips::cholesky;
+use crate::error::MethodError;
 
 /// K behind a factor: factorise, solve, Schur complement on the contact rows. Everything above works through this door.
 pub(crate) trait Stiffness: Send + Sync {

@@ -49,13 +49,20 @@
 
 #![allow(non_snake_case)]
 
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
 use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{self, Saddle};
 use crate::condensed::stages::alternate;
 use crate::condensed::starts::tied_forces;
 use crate::condensed::sweeps::Sweeps;
 use crate::conic::socp;
 use crate::contract::law::{Branch, return_map};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::error::MethodError;
 use crate::newton::b_newton::BEquations;
 use crate::newton::interior_point::{self, along_path};
 use crate::newton::iteration::{self, Newton};
@@ -63,10 +70,6 @@ use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::pdas::Sets;
 use crate::newton::scheme::Scheme;
 use crate::newton::step::Tangent;
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, MethodError, Monitor,
-    Needs, Status, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use crate::condensed::problem::{Begin, ContactProblem};
-use crate::{Claim, ContactState, ContactSystem, DelassusForm, Elastic, Increment, Load};
+use crate::contract::elastic::Elastic;
+use crate::contract::operator::DelassusForm;
+use crate::contract::state::{Claim, ContactState};
+use crate::contract::system::{ContactSystem, Increment, Load};
 
 /// Runs a test on the first increment of a body under a load that closes the contact.
 pub(crate) fn with_contact<T>(

@@ -4,7 +4,7 @@ use crate::algebra::dense::minus;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::rows::RowSet;
-use crate::contract::judge::slip_from;
+use crate::contract::free_jump::slip_from;
 use crate::contract::state::ContactState;
 use crate::contract::system::Increment;
 use crate::error::{MethodError, check_finite, check_len};

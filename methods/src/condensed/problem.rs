@@ -10,8 +10,8 @@ use crate::algebra::dense::{dot, norm, ratio};
 use crate::algebra::rows::RowSet;
 use crate::condensed::anchor::Anchor;
 use crate::condensed::forces::{End, Forces};
-use crate::contract::free_jump::FreeJump;
-use crate::contract::judge::{Violations, slip_from};
+use crate::contract::free_jump::{FreeJump, slip_from};
+use crate::contract::judge::Violations;
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState, Counters, Iteration, Monitor, Outcome, Status};
 use crate::contract::system::Increment;
@@ -276,7 +276,7 @@ impl<'a> ContactProblem<'a> {
         self.operator.modes.add(&missing, p);
     }
 
-    /// Whether a Newton method that cannot go on by itself may be moved on by [`rescue`](crate::condensed::stages::rescue): after
+    /// Whether a Newton method that cannot go on by itself may be moved on by the sweeps of `stages.rs`: after
     /// too long without progress, or where the tangent of a floating body is singular. On the way all points of a piece
     /// may open or slide, but a piece that gets loose again and again is a mechanism.
     pub(crate) fn rescue_left(&mut self) -> bool {

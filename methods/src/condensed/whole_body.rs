@@ -25,7 +25,8 @@ use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::elastic::Elastic;
 use crate::contract::operator::DelassusForm;
-use crate::{ContactSystem, MethodError};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 
 /// Largest |A x − b|/|b| of a solve that counts: a singular matrix leaves more.
 const SOLVED: f64 = 1e-6;

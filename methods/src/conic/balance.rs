@@ -22,7 +22,10 @@ use crate::condensed::problem::{Begin, ContactProblem};
 use crate::conic::cone_program::{ConeProgram, refused, settings};
 use crate::conic::fixed_point::TIGHTEST;
 use crate::contract::law::tangential_norm;
-use crate::{Claim, DelassusForm, Increment, MethodError};
+use crate::contract::operator::DelassusForm;
+use crate::contract::state::Claim;
+use crate::contract::system::Increment;
+use crate::error::MethodError;
 
 /// Part of |v| by which the motion may miss the cones: forces that would balance the load all the same are at least
 /// [`DRIVEN`]/`CLOSED` times the load.

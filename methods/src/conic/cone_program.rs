@@ -15,8 +15,10 @@ use clarabel::solver::{
 
 use crate::algebra::dense::norm;
 use crate::algebra::factor::kernel;
+use crate::condensed::forces::Forces;
+use crate::condensed::problem::ContactProblem;
 use crate::conic::fixed_point::{Program, TIGHTEST};
-use crate::{ContactProblem, Forces, MethodError};
+use crate::error::MethodError;
 
 /// A tolerance that was not reached is asked for again, this much larger …
 const RELAX: f64 = 100.0;
@@ -228,9 +230,10 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::algebra::matrix::SquareMatrix;
     use crate::condensed::fixture::with_contact;
+    use crate::contract::elastic::Elastic;
     use crate::contract::law::project_cone;
-    use crate::{Elastic, SquareMatrix};
 
     /// One point on springs of stiffness k in all directions; W = I/k and q = f/k.
     fn springs(dim: usize, k: f64) -> Arc<Elastic> {

@@ -10,14 +10,16 @@
 
 use crate::condensed::anderson::Anderson;
 use crate::condensed::branches::Branches;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::condensed::starts::tied_forces;
+use crate::contract::options::{Options, options};
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
 use crate::newton::step::Tangent;
-use crate::{
-    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, MethodError, Monitor,
-    Options, options,
-};
 
 /// Tolerance beyond which clarabel falls back to a worse iterate more often than it gains a digit.
 pub(crate) const TIGHTEST: f64 = 1e-11;

@@ -14,10 +14,12 @@
 use crate::algebra::dense::{dot, minus, norm};
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::spectrum::extremes;
+use crate::condensed::forces::Forces;
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::saddle::{Iterate, Saddle};
 use crate::conic::fixed_point::Program;
 use crate::contract::law::{project_ball, tangential_norm};
-use crate::{ContactProblem, Forces, MethodError};
+use crate::error::MethodError;
 
 /// ᾱ λ_max.
 const FIXED_STEP: f64 = 1.9;

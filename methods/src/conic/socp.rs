@@ -39,10 +39,12 @@
 //! # Skips
 //! An open crack is one linear solve; without friction there is one program and no cone. Points without friction have none.
 
+use crate::condensed::problem::ContactProblem;
 use crate::conic::cone_program::ConeProgram;
 use crate::conic::fixed_point::{FixedPoint, Program, Settings};
 use crate::contract::law::tangential_norm;
-use crate::{ContactProblem, Method, MethodError};
+use crate::contract::registry::Method;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

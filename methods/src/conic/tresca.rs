@@ -41,9 +41,11 @@
 
 #![allow(non_snake_case)]
 
+use crate::condensed::problem::ContactProblem;
 use crate::conic::fixed_point::{FixedPoint, Program, Settings};
 use crate::conic::mprgp::Mprgp;
-use crate::{ContactProblem, Method, MethodError};
+use crate::contract::registry::Method;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -159,7 +159,7 @@ pub(crate) fn resolvent(D: &[[f64; 3]; 3], r: &[f64]) -> [[f64; 3]; 3] {
     if r.len() == 1 {
         return S;
     }
-    // One r for both tangential rows, see [`ContactProblem::scales`](crate::condensed::problem::ContactProblem::scales).
+    // One r for both tangential rows, as in `ContactProblem::scales`.
     let t = |a: usize, b: usize| f64::from(u8::from(a == b)) - D[a][b] / r[1];
     if r.len() == 2 {
         S[1][1] = 1.0 / t(1, 1);

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use crate::algebra::condensation::Tractions;
-use crate::algebra::delassus::Dense;
+use crate::algebra::delassus::{Delassus, Dense};
 use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
@@ -323,14 +323,17 @@ impl Elastic {
         self.stiffness.imbalance(u, forces)
     }
 
-    /// Σ_j B_ij² / K_jj over the listed rows of B: compliance of the contact unknowns with all others held.
-    pub(crate) fn local_compliance(&self, rows: &[usize]) -> f64 {
-        self.stiffness.local_compliance(&self.jump, rows)
-    }
-
-    /// Compliance of the rows on their stiffest unknowns alone.
-    pub(crate) fn stiffest_compliance(&self, rows: &[usize]) -> f64 {
-        self.stiffness.stiffest_compliance(&self.jump, rows)
+    /// The body seen from some rows, `w` the Delassus operator on them.
+    pub(crate) fn operator(
+        &self,
+        rows: &RowSet,
+        w: Arc<dyn Delassus>,
+    ) -> Result<ContactOperator, MethodError> {
+        let (jump, rows) = (&self.jump, &rows.source);
+        let local = self.stiffness.local_compliance(jump, rows);
+        let stiffest = self.stiffness.stiffest_compliance(jump, rows);
+        let modes = ModeJumps::new(jump, rows, &self.floating);
+        ContactOperator::new(w, modes, local, stiffest)
     }
 
     /// Rows that are condensed.
@@ -392,7 +395,7 @@ impl Elastic {
     /// The operator on [`rows`](Self::rows) with W formed, shared by all systems that use them all.
     pub(crate) fn condensed(&self) -> Result<Arc<ContactOperator>, MethodError> {
         let build = || {
-            let operator = ContactOperator::new(self, &self.rows(), self.formed()?)?;
+            let operator = self.operator(&self.rows(), self.formed()?)?;
             Ok(Arc::new(operator))
         };
         self.condensed.get_or_init(build).clone()

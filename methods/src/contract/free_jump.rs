@@ -1,7 +1,7 @@
 //! What acts on the contact points without contact forces, and the scale that it sets for whatever breaks the contact laws.
 
 use crate::algebra::dense::{dot, norm};
-use crate::contract::judge::slip_from;
+use crate::algebra::rows::RowSet;
 use crate::contract::operator::{ContactOperator, NO_TRACE};
 use crate::contract::system::Increment;
 use crate::error::MethodError;
@@ -74,6 +74,20 @@ impl FreeJump {
             scale,
         })
     }
+}
+
+/// Rows (g, d): normal gap, and tangential jump since the start of the increment.
+pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) -> Vec<f64> {
+    rows.source
+        .iter()
+        .map(|&r| {
+            if r % dim == 0 {
+                jump[r]
+            } else {
+                jump[r] - start[r]
+            }
+        })
+        .collect()
 }
 
 impl Increment<'_> {

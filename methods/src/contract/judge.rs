@@ -3,7 +3,7 @@
 use crate::algebra::dense::{larger, norm, ratio};
 use crate::algebra::rows::RowSet;
 use crate::contract::barrier_law::BarrierLaw;
-use crate::contract::free_jump::FreeJump;
+use crate::contract::free_jump::{FreeJump, slip_from};
 use crate::contract::law::{natural_map_squared, return_map, tangential_norm};
 use crate::contract::operator::{ContactOperator, DelassusForm};
 use crate::contract::state::{Claim, ContactState};
@@ -235,20 +235,6 @@ pub(crate) fn imbalance(i: &Increment<'_>, s: &ContactState, further: &[f64]) ->
     let mut contact = vec![0.0; s.u.len()];
     elastic.jump().mul_transpose_add(&s.p, &mut contact);
     elastic.imbalance(&s.u, &[&i.load.force, &contact, further])
-}
-
-/// Rows (g, d): normal gap, and tangential jump since the start of the increment.
-pub(crate) fn slip_from(rows: &RowSet, dim: usize, jump: &[f64], start: &[f64]) -> Vec<f64> {
-    rows.source
-        .iter()
-        .map(|&r| {
-            if r % dim == 0 {
-                jump[r]
-            } else {
-                jump[r] - start[r]
-            }
-        })
-        .collect()
 }
 
 /// What of the contact laws a pair of forces and jumps breaks, each relative to its own scale; see [`Residuals`].

@@ -4,12 +4,10 @@
 
 use std::sync::Arc;
 
-use crate::MethodError;
-use crate::algebra::delassus::{Delassus, columns_abs_add};
-use crate::algebra::dense::{dot, zero};
+use crate::algebra::delassus::Delassus;
+use crate::algebra::dense::dot;
 use crate::algebra::floating::ModeJumps;
-use crate::algebra::rows::RowSet;
-use crate::contract::elastic::Elastic;
+use crate::error::MethodError;
 
 /// Below this fraction of the local compliance the trace of W is rounding, and what moves beside rigid motions of what their load
 /// would.
@@ -48,30 +46,30 @@ pub struct ContactOperator {
 }
 
 impl ContactOperator {
+    /// `local`: compliance of the contact unknowns with all others held, `stiffest`: on the stiffest unknowns alone.
     pub(crate) fn new(
-        elastic: &Elastic,
-        rows: &RowSet,
         w: Arc<dyn Delassus>,
+        modes: ModeJumps,
+        local: f64,
+        stiffest: f64,
     ) -> Result<Self, MethodError> {
-        let modes = ModeJumps::new(elastic.jump(), &rows.source, elastic.floating());
+        let rows = w.rows();
         let mut trace = w.trace();
         for q in &modes.q {
             let mut wq = vec![0.0; q.len()];
             w.apply_add(q, &mut wq);
             trace -= dot(q, &wq);
         }
-        let local = elastic.local_compliance(&rows.source);
-        if rows.len() > 0 && local <= 0.0 {
+        if rows > 0 && local <= 0.0 {
             return Err(MethodError::RigidContact);
         }
-        let stiffest = elastic.stiffest_compliance(&rows.source);
         // Where every contact row moves rigidly, W⊥ vanishes and the local compliance sets the scale.
         let compliance = if trace > NO_TRACE * local {
             trace
         } else {
             local
         };
-        let scale = |compliance: f64| rows.len() as f64 / compliance;
+        let scale = |compliance: f64| rows as f64 / compliance;
         Ok(Self {
             w,
             modes,
@@ -96,59 +94,5 @@ impl ContactOperator {
     /// A bound of ε ||W||P||, what rounding leaves of W P.
     pub(crate) fn rounding(&self, p: &[f64]) -> f64 {
         f64::EPSILON * self.w.magnitude(p)
-    }
-}
-
-/// W that is never formed: a product is one solve with K.
-pub(crate) struct Products {
-    elastic: Arc<Elastic>,
-    rows: RowSet,
-    diagonal: Vec<f64>,
-}
-
-impl Products {
-    pub fn new(elastic: Arc<Elastic>, rows: RowSet) -> Result<Self, MethodError> {
-        Ok(Self {
-            diagonal: elastic.diagonal(&rows)?,
-            elastic,
-            rows,
-        })
-    }
-}
-
-impl Delassus for Products {
-    fn rows(&self) -> usize {
-        self.rows.len()
-    }
-
-    fn apply_add(&self, p: &[f64], v: &mut [f64]) {
-        self.elastic.product_add(&self.rows, p, v);
-    }
-
-    fn diagonal(&self) -> &[f64] {
-        &self.diagonal
-    }
-
-    fn column<'a>(&'a self, k: usize, work: &'a mut Vec<f64>) -> &'a [f64] {
-        let mut unit = vec![0.0; self.rows.len()];
-        unit[k] = 1.0;
-        zero(work, self.rows.len());
-        self.apply_add(&unit, work);
-        work
-    }
-
-    fn apply_abs_add(&self, p: &[f64], v: &mut [f64]) {
-        match self.elastic.product_abs(&self.rows, p) {
-            Some(product) => v.iter_mut().zip(product).for_each(|(v, w)| *v += w),
-            None => columns_abs_add(self, p, v),
-        }
-    }
-
-    fn formed(&self) -> bool {
-        false
-    }
-
-    fn symmetric(&self) -> bool {
-        self.elastic.asymmetry() == 0.0
     }
 }

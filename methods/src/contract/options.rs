@@ -53,29 +53,29 @@ macro_rules! options {
         }
 
         impl $settings {
-            pub(crate) const OPTIONS: &'static [$crate::OptionSpec] =
+            pub(crate) const OPTIONS: &'static [$crate::contract::options::OptionSpec] =
                 &[$(options!(@spec $kind, stringify!($name), $help, $($value),+)),*];
 
-            fn new(options: &$crate::Options) -> Self {
+            fn new(options: &$crate::contract::options::Options) -> Self {
                 Self { $($name: options!(@read options, $kind, stringify!($name), $help, $($value),+),)* }
             }
         }
     };
     ($($id:ident: $kind:ident($name:literal, $($value:expr),+): $help:literal;)*) => {
-        $(pub(crate) const $id: $crate::$kind = options!(@new $kind, $name, $help, $($value),+);)*
+        $(pub(crate) const $id: $crate::contract::options::$kind = options!(@new $kind, $name, $help, $($value),+);)*
     };
     (@type Real) => { f64 };
     (@type Whole) => { i64 };
     (@type Count) => { usize };
     (@type Switch) => { bool };
     (@new Switch, $name:expr, $help:expr, $default:expr) => {
-        $crate::Switch { name: $name, default: $default, help: $help }
+        $crate::contract::options::Switch { name: $name, default: $default, help: $help }
     };
     (@new $kind:ident, $name:expr, $help:expr, $default:expr, $min:expr, $max:expr) => {
-        $crate::$kind { name: $name, default: $default, min: $min, max: $max, help: $help }
+        $crate::contract::options::$kind { name: $name, default: $default, min: $min, max: $max, help: $help }
     };
     (@spec Count, $($of:expr),+) => { options!(@spec Whole, $($of),+) };
-    (@spec $kind:ident, $($of:expr),+) => { $crate::OptionSpec::$kind(options!(@new $kind, $($of),+)) };
+    (@spec $kind:ident, $($of:expr),+) => { $crate::contract::options::OptionSpec::$kind(options!(@new $kind, $($of),+)) };
     (@read $options:ident, Real, $($of:expr),+) => { $options.real(&options!(@new Real, $($of),+)) };
     (@read $options:ident, Whole, $($of:expr),+) => { $options.whole(&options!(@new Whole, $($of),+)) };
     (@read $options:ident, Count, $($of:expr),+) => { $options.count(&options!(@new Whole, $($of),+)) };

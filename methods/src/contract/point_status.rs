@@ -1,7 +1,7 @@
 //! Open, stick or slip: what the contact law says of every point of a state.
 
 use crate::algebra::rows::RowSet;
-use crate::contract::judge::slip_from;
+use crate::contract::free_jump::slip_from;
 use crate::contract::law::tangential_norm;
 use crate::contract::operator::DelassusForm;
 use crate::contract::state::ContactState;

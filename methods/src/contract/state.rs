@@ -1,6 +1,5 @@
 //! What a method returns: a state, a status, a history and counters.
 
-use crate::contract::system::ContactSystem;
 use crate::error::{MethodError, check_finite, check_positive};
 
 /// Displacements and contact forces at the end of an increment. They are the whole history: slip is measured from
@@ -12,16 +11,6 @@ pub struct ContactState {
     /// Contact forces on side 1, `dim` per point `(n, a[, b])`, compression positive; tangential entries are exactly 0
     /// where friction is 0. In N, in 2D N/m.
     pub p: Vec<f64>,
-}
-
-impl ContactState {
-    /// The unloaded state of a system.
-    pub fn zero(system: &ContactSystem) -> Self {
-        Self {
-            u: vec![0.0; system.elastic().unknowns()],
-            p: vec![0.0; system.dim() * system.points()],
-        }
-    }
 }
 
 /// The enum with the list of its values and their names, so that neither can forget one.

@@ -4,7 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use crate::algebra::rows::RowSet;
 use crate::contract::elastic::Elastic;
-use crate::contract::operator::{ContactOperator, DelassusForm, Products};
+use crate::contract::operator::{ContactOperator, DelassusForm};
+use crate::contract::products::Products;
 use crate::contract::state::ContactState;
 use crate::error::{MethodError, check_finite, check_len};
 
@@ -126,7 +127,7 @@ impl ContactSystem {
     pub fn operator(&self, form: DelassusForm) -> Result<Arc<ContactOperator>, MethodError> {
         let products = || {
             let w = Arc::new(Products::new(self.elastic.clone(), self.rows.clone())?);
-            ContactOperator::new(&self.elastic, &self.rows, w).map(Arc::new)
+            self.elastic.operator(&self.rows, w).map(Arc::new)
         };
         let formed = || {
             let (whole, from) = (self.elastic.formed()?, self.elastic.rows());
@@ -134,11 +135,21 @@ impl ContactSystem {
                 return self.elastic.condensed();
             }
             let w = Arc::new(whole.select(&self.rows.positions_in(&from)));
-            ContactOperator::new(&self.elastic, &self.rows, w).map(Arc::new)
+            self.elastic.operator(&self.rows, w).map(Arc::new)
         };
         match form {
             DelassusForm::Formed => self.formed.get_or_init(formed).clone(),
             DelassusForm::Products => self.products.get_or_init(products).clone(),
+        }
+    }
+}
+
+impl ContactState {
+    /// The unloaded state of a system.
+    pub fn zero(system: &ContactSystem) -> Self {
+        Self {
+            u: vec![0.0; system.elastic().unknowns()],
+            p: vec![0.0; system.dim() * system.points()],
         }
     }
 }

@@ -54,12 +54,15 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::dense::zero;
+use crate::condensed::forces::Forces;
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{ball_derivative, project_ball, tangential_norm};
+use crate::contract::options::options;
+use crate::contract::registry::Method;
+use crate::error::MethodError;
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::iteration::{Newton, scheme_options};
 use crate::newton::scheme::{At, Scheme};
-use crate::{Forces, Method, MethodError, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -2,8 +2,8 @@
 
 #![allow(non_snake_case)]
 
-use crate::ContactProblem;
 use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map};
 
 /// Forces and jump of a point; all slices are its rows.

@@ -58,12 +58,16 @@
 
 #![allow(non_snake_case)]
 
+use crate::condensed::forces::Forces;
 use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, return_map, tangential_norm};
+use crate::contract::options::{OptionSpec, options};
+use crate::contract::registry::Method;
+use crate::error::MethodError;
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::iteration::{Newton, scheme_options};
 use crate::newton::scheme::{At, Scheme};
-use crate::{ContactProblem, Forces, Method, MethodError, OptionSpec, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -44,12 +44,14 @@ use std::ops::Range;
 
 use crate::algebra::dense::{add, refill};
 use crate::condensed::branches::Branches;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
 use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::Monitor;
 use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
-use crate::{
-    Check, CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs,
-    options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -49,11 +49,13 @@
 #![allow(non_snake_case)]
 
 use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
 use crate::contract::law::{Branch, tangential_norm};
+use crate::contract::options::options;
+use crate::contract::registry::Method;
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::iteration::{Newton, scheme_options};
 use crate::newton::scheme::Scheme;
-use crate::{ContactProblem, Method, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -42,10 +42,11 @@
 
 use crate::condensed::point_row::PointRow;
 use crate::contract::law::{Branch, ball_derivative};
+use crate::contract::options::options;
+use crate::contract::registry::Method;
 use crate::newton::contact_point::ContactPoint;
 use crate::newton::iteration::{Newton, scheme_options};
 use crate::newton::scheme::Scheme;
-use crate::{Method, options};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

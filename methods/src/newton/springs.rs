@@ -26,14 +26,17 @@ use faer::Mat;
 use crate::algebra::delassus::Series;
 use crate::algebra::dense::{DenseLu, mul_add, ratio, refill, zero};
 use crate::condensed::branches::changed;
+use crate::condensed::forces::Forces;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
 use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
+use crate::contract::state::{Monitor, Status};
+use crate::error::MethodError;
 use crate::newton::line_search::LineSearch;
 use crate::newton::step::{Tangent, monolithic_step};
-use crate::{ContactProblem, Forces, MethodError, Monitor, Status};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;

@@ -10,13 +10,17 @@
 
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::{refill, zero};
+use crate::condensed::forces::Forces;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law, PointRow};
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::whole_body::WholeBody;
+use crate::contract::operator::DelassusForm;
+use crate::contract::options::{OptionSpec, options};
+use crate::contract::registry::Needs;
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 use crate::newton::reuse::{Factored, Rows, Solved};
-use crate::{
-    ContactProblem, ContactSystem, DelassusForm, Forces, MethodError, Needs, OptionSpec, options,
-};
 
 /// Where the linear problems of a method are solved.
 pub(crate) enum Tangent {

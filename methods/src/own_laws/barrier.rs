@@ -49,17 +49,20 @@
 
 use crate::algebra::dense::{along, ratio};
 use crate::condensed::branches::changed;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::{Bordered, Law};
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
 use crate::contract::barrier_law::{BarrierLaw, resolvent};
 use crate::contract::law::{Branch, tangential_norm};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
 use crate::newton::line_search::LineSearch;
 use crate::own_laws::confirm::confirm;
 use crate::own_laws::unloaded::unloaded;
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Method, Monitor, Needs, Status, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -3,7 +3,10 @@
 //! Their Newton methods stop by another norm than the judge's, which weights slip by μ, and they solve with W where the
 //! judge takes K: either can turn a claim false.
 
-use crate::{ContactProblem, MethodError, Status, residuals_of};
+use crate::condensed::problem::ContactProblem;
+use crate::contract::judge::residuals_of;
+use crate::contract::state::Status;
+use crate::error::MethodError;
 
 /// Backward error of equilibrium to reach, below what verdicts allow.
 const EQUILIBRIUM: f64 = 1e-13;

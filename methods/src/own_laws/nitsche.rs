@@ -50,13 +50,17 @@
 
 use std::sync::Arc;
 
+use crate::condensed::forces::{End, Ended};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
+use crate::contract::options::{Options, options};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 use crate::newton::springs::{SpringNewton, recorded};
 use crate::own_laws::stabilisation::Stabilisation;
-use crate::{
-    CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, MethodError, Monitor,
-    Needs, Options, Status, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

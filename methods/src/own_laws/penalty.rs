@@ -33,13 +33,16 @@
 //! With large μ the Newton iteration may cycle. Large k does no harm here, unlike in K + k Bᵀ B: the springs are added
 //! to W as compliances 1/k.
 
+use crate::condensed::forces::{End, Ended};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::ContactProblem;
+use crate::contract::options::{Options, options};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Claim, Monitor, Status};
+use crate::contract::system::ContactSystem;
 use crate::newton::springs::{SpringNewton, Springs, recorded};
 use crate::newton::step::Tangent;
 use crate::own_laws::confirm::confirm;
-use crate::{
-    Claim, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Method, Monitor, Needs,
-    Options, Status, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

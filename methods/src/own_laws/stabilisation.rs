@@ -31,11 +31,16 @@ use crate::algebra::delassus::{Dense, Series};
 use crate::algebra::dense::{mul_add, mul_transpose_add};
 use crate::algebra::factor::kernel;
 use crate::algebra::floating::ModeJumps;
+use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::extremes;
+use crate::condensed::problem::ContactProblem;
 use crate::contract::judge::implied_forces;
+use crate::contract::operator::ContactOperator;
+use crate::contract::state::{Claim, Status};
+use crate::contract::system::ContactSystem;
+use crate::error::MethodError;
 use crate::newton::springs::{Coupled, Springs};
 use crate::own_laws::confirm::{Judged, judge};
-use crate::{Claim, ContactOperator, ContactProblem, ContactSystem, MethodError, RowSet, Status};
 
 /// Nitsche's terms for one system, θ and γ.
 pub(crate) struct Stabilisation {
@@ -241,7 +246,8 @@ mod tests {
 
     use super::*;
     use crate::algebra::dense::dot;
-    use crate::{Elastic, ElasticParts, JumpOperator, SquareMatrix};
+    use crate::algebra::matrix::{JumpOperator, SquareMatrix};
+    use crate::contract::elastic::{Elastic, ElasticParts};
 
     /// Numbers without symmetry between −1 and 1.
     fn number(k: usize) -> f64 {

@@ -44,12 +44,15 @@
 use crate::algebra::dense::{dot, refill, zero};
 use crate::condensed::anderson::Anderson;
 use crate::condensed::branches::changed;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{Iterate, REFRESH};
 use crate::contract::law::{Branch, tangential_norm};
+use crate::contract::options::options;
+use crate::contract::registry::Method;
+use crate::contract::state::Monitor;
 use crate::splitting::projection::Step;
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

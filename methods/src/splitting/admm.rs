@@ -54,13 +54,16 @@ use std::sync::Arc;
 
 use crate::algebra::dense::{norm, refill};
 use crate::condensed::acceleration::Acceleration;
+use crate::condensed::forces::{End, Ended};
+use crate::condensed::method::CondensedMethod;
 use crate::condensed::pair::Pair;
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::stages::GlobalStage;
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Needs,
-    Options, options,
-};
+use crate::contract::options::{Options, options};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -306,8 +309,9 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::matrix::SquareMatrix;
     use crate::condensed::fixture::with_contact;
-    use crate::{Elastic, SquareMatrix};
+    use crate::contract::elastic::Elastic;
 
     #[test]
     fn only_the_last_factors_are_kept() {

@@ -32,12 +32,15 @@
 //! Slow for small k; with friction the inner problem can fail for large μ, as for the penalty method.
 
 use crate::condensed::acceleration::Acceleration;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::{Options, options};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::contract::system::ContactSystem;
 use crate::newton::springs::{SpringNewton, Springs};
 use crate::newton::step::Tangent;
-use crate::{
-    Check, CondensedMethod, ContactProblem, ContactSystem, End, Ended, Forces, Limits, Method,
-    Monitor, Needs, Options, Status, options,
-};
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -42,12 +42,15 @@ use std::sync::Arc;
 
 use crate::condensed::acceleration::Acceleration;
 use crate::condensed::branches::Branches;
+use crate::condensed::forces::{End, Ended};
+use crate::condensed::method::CondensedMethod;
 use crate::condensed::pair::Pair;
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::stages::{GlobalStage, local_stage};
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Limits, Method, MethodError, Monitor, Needs,
-    Options, options,
-};
+use crate::contract::options::{Options, options};
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::Monitor;
+use crate::error::MethodError;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

@@ -42,12 +42,15 @@
 //! is computed afresh only every now and then, and before anything is claimed.
 
 use crate::condensed::acceleration::Acceleration;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{ContactProblem, Limits};
 use crate::condensed::saddle::{REFRESH, Saddle};
 use crate::condensed::sweeps::Sweeps;
 use crate::contract::law::Branch;
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs, options,
-};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::Monitor;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

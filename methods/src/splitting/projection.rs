@@ -36,12 +36,14 @@
 
 use crate::algebra::dense::refill;
 use crate::condensed::branches::changed;
-use crate::condensed::problem::COMPLIANCE_FLOOR;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{COMPLIANCE_FLOOR, ContactProblem, Limits};
 use crate::condensed::saddle::{Iterate, REFRESH, Saddle};
 use crate::contract::law::{Branch, project_cone, tangential_norm};
-use crate::{
-    CondensedMethod, ContactProblem, End, Ended, Forces, Limits, Method, Monitor, Needs, options,
-};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::Monitor;
 
 /// Registry entry.
 pub static METHOD: Method = Method {

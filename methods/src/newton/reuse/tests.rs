@@ -1,9 +1,10 @@
 //! Steps with earlier factors against the factored system.
 
 use super::*;
+use crate::algebra::matrix::SquareMatrix;
 use crate::condensed::fixture::with_contact;
 use crate::condensed::point_row::{Bordered, Law};
-use crate::{Elastic, SquareMatrix};
+use crate::contract::elastic::Elastic;
 
 /// More rows than plain loops factor.
 const POINTS: usize = 17;
