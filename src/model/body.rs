@@ -18,6 +18,7 @@ use stickslip_xfem::cut::off_facets::off_facets;
 use stickslip_xfem::enrichment::pieces::free_motions;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::{Point, add_scaled};
+use stickslip_xfem::loads::supports::{Prescribed, Supports};
 use stickslip_xfem::material::{Dilatation, Lame};
 use stickslip_xfem::mesh::box_mesh::box_mesh;
 use stickslip_xfem::mesh::{Lengths, Mesh};
@@ -28,12 +29,12 @@ use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 use stickslip_xfem::stiffness::orthonormal::SolverBasis;
 
 use crate::case::{Case, CaseError, ContactSpace, CrackSpec, Quadrature};
-use crate::model::boundary::{Prescribed, Supports};
+use crate::model::boundary::supports;
 use crate::model::fixed_loads::{FixedLoad, fixed_loads};
 use crate::model::memory;
 use crate::model::mesh_checks::{MeshChecks, mesh_checks, swaying};
 pub use crate::model::refusals::BodyError;
-use crate::model::refusals::{cell_error, check_probes, crack_error, motion_error};
+use crate::model::refusals::{cell_error, check_probes, crack_error, motion_error, support_error};
 
 /// A discretised case: everything that does not depend on friction, method or increment.
 pub struct Body {
@@ -131,7 +132,9 @@ impl Body {
             joined,
             doubled,
         } = place_cracks(case, &mut mesh)?;
-        let supports = Supports::new(case, &mesh)?;
+        let unheld = |e| support_error(case, e);
+        let all = supports(case);
+        let supports = Supports::new(&all, &mesh).map_err(unheld)?;
         let enrichment = Enrichment::new(&mesh, &lengths, &cracks, &supports.beside(&cracks))
             .map_err(|e| crack_error(case, &e))?;
         let lame = case.lame();
@@ -142,7 +145,7 @@ impl Body {
             quadrature: case.quadrature,
             lame,
         };
-        let fixed = supports.prescribed(&integrator)?;
+        let fixed = supports.prescribed(&integrator).map_err(unheld)?;
         check_probes(case, &mesh, &enrichment)?;
         let dim = mesh.dim();
         let unknowns = 0..enrichment.functions.len() * dim;
@@ -231,7 +234,7 @@ impl Body {
             }
             other => other?,
         };
-        let loads = fixed_loads(case, &integrator, &supports.border, &points, needs.traction)?;
+        let loads = fixed_loads(case, &integrator, &points, needs.traction)?;
         let space = space_name(case, &cracks);
         let mut body = Body {
             origin: case.origin,

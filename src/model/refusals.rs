@@ -7,11 +7,12 @@ use stickslip_xfem::enrichment::pieces::MotionError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
 use stickslip_xfem::geometry::norm;
+use stickslip_xfem::loads::nodal_forces::LoadError;
+use stickslip_xfem::loads::supports::SupportError;
 use stickslip_xfem::mesh::Mesh;
 use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
 
-use crate::case::{Case, CaseError, CrackSide, LoadKind, Span, SupportSpec};
-use crate::model::nodal_forces::LoadError;
+use crate::case::{Case, CaseError, LoadKind, Span};
 
 /// Why a case cannot be discretised.
 #[derive(Debug, thiserror::Error)]
@@ -27,36 +28,37 @@ pub enum BodyError {
     Method(#[from] MethodError),
 }
 
-/// The error of a support whose region holds no node.
-pub fn empty_support(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed = "a region with at least one node";
-    case.error(
-        &support.on.span,
-        "no node",
-        allowed,
-        "the support holds nothing",
-    )
-}
-
-/// The error of a support that holds a node on a crack and no part of the side beside it.
-pub fn lip_error(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed = "crack_side = 1 or 2, or a region with a part of the side beside the crack";
-    let message = "holds a node on a crack, where two lips part, and no lip";
-    case.refuse(&support.on.span, allowed, message)
-}
-
-/// The error of a support that holds one lip of a crack where another holds the other in other components.
-pub fn lips_error(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed =
-        "on one lip all components that are held on the other, or a mesh without a node there";
-    let message = "another support holds the other lip of a node on a crack in other components";
-    case.refuse(&support.on.span, allowed, message)
-}
-
-/// The error of a `crack_side` where the region tells the lips apart.
-pub fn needless_lip(case: &Case, lip: &CrackSide) -> CaseError {
-    let allowed = "no crack_side beside a region that holds a part of the side";
-    case.refuse(&lip.span, allowed, "the region tells itself what it holds")
+/// The error of a support, at its region or its lip.
+pub fn support_error(case: &Case, error: SupportError) -> CaseError {
+    let (SupportError::Empty(number)
+    | SupportError::NoLip(number)
+    | SupportError::NeedlessLip(number)
+    | SupportError::OtherLip(number)) = error;
+    let support = &case.supports[number];
+    let region = &support.on.span;
+    match error {
+        SupportError::Empty(_) => {
+            let allowed = "a region with at least one node";
+            case.error(region, "no node", allowed, "the support holds nothing")
+        }
+        SupportError::NoLip(_) => {
+            let allowed =
+                "crack_side = 1 or 2, or a region with a part of the side beside the crack";
+            let message = "holds a node on a crack, where two lips part, and no lip";
+            case.refuse(region, allowed, message)
+        }
+        SupportError::NeedlessLip(_) => {
+            let span = support.lip.as_ref().map_or(region, |lip| &lip.span);
+            let allowed = "no crack_side beside a region that holds a part of the side";
+            case.refuse(span, allowed, "the region tells itself what it holds")
+        }
+        SupportError::OtherLip(_) => {
+            let allowed = "on one lip all components that are held on the other, or a mesh without a node there";
+            let message =
+                "another support holds the other lip of a node on a crack in other components";
+            case.refuse(region, allowed, message)
+        }
+    }
 }
 
 /// Refuses a probe that is at no node, or on a crack, where the displacement has two values.

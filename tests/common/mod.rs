@@ -21,6 +21,7 @@ use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status,
 };
+use stickslip_xfem::loads::sides::Sides;
 
 /// A method whose limit are the contact laws and that ends in round-off: the default where the method does not matter.
 pub const METHOD: &str = "b-newton";
@@ -121,6 +122,12 @@ pub fn friction(case: &Case, body: &Body) -> Vec<f64> {
 pub fn loading<'a>(body: &'a Body, case: &'a Case) -> Loading<'a> {
     let friction = case.cracks.first().map_or(0.0, |crack| crack.friction);
     Loading::new(body, case, friction).unwrap_or_else(|e| panic!("{e}\n{}", case.source))
+}
+
+/// Sides of the first crack of a case in its body.
+pub fn sides(case: &Case, body: &Body) -> Option<Sides> {
+    let first = case.cracks.first().map(|spec| (&spec.geometry, spec.tip));
+    Sides::new(first, &body.integrator())
 }
 
 /// The load of a body nothing acts on.

@@ -15,6 +15,7 @@
 //!   contact     contact spaces and points, traction, samples of the faces
 //!   intensity   stress intensity factors: Williams' fields, fit of the jump, interaction integral
 //!   exact       closed forms
+//!   loads       supports and loads: prescribed unknowns, nodal forces
 //! ```
 
 pub mod contact;
@@ -24,6 +25,7 @@ pub mod exact;
 pub mod fields;
 pub mod geometry;
 pub mod intensity;
+pub mod loads;
 pub mod material;
 pub mod mesh;
 pub mod quadrature;

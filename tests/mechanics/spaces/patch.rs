@@ -11,12 +11,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{choices, parse};
+use crate::common::{choices, parse, sides};
 use rayon::prelude::*;
 use stickslip::case::{Case, ContactSpace};
 use stickslip::model::body::Body;
 use stickslip::model::quantities::Snapshot;
-use stickslip::model::sides::Sides;
 use stickslip::run::load_path::Posed;
 use stickslip::run::run_case::needs;
 use stickslip::run::verdict::{Accuracy, Verdict};
@@ -148,7 +147,7 @@ fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
 fn displacement_error(case: &Case, body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
     let dim = body.mesh.dim();
     let integrator = body.integrator();
-    let sides = Sides::new(case, &integrator);
+    let sides = sides(case, body);
     let (mut worst, mut size) = (0.0, 0.0);
     for (node, x) in body.mesh.nodes.iter().enumerate() {
         let side = sides.as_ref().map_or(1.0, |s| s.of_node(node));

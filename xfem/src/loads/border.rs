@@ -2,13 +2,33 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_xfem::geometry::Point;
-use stickslip_xfem::mesh::{Facet, Mesh};
-
-use crate::case::{Parts, Region};
+use crate::geometry::Point;
+use crate::mesh::{Facet, Mesh};
 
 /// Bounds of regions closer than this to a node go through it, in shortest cell edges.
 const ON_NODE: f64 = 1e-9;
+
+/// Convex polygons or segments.
+pub type Parts = Vec<Vec<Point>>;
+
+/// A condition on the place; comparisons of coordinates forgive δ [m].
+pub trait Condition {
+    /// Whether it holds at a place.
+    fn holds(&self, x: &Point, delta: f64) -> bool;
+    /// What it holds of a convex polygon or segment, and the rest.
+    fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2];
+    /// Lowest and highest coordinate along an axis where it can hold.
+    fn range(&self, axis: usize) -> [f64; 2];
+}
+
+/// The part of the border that a support or load acts on.
+#[derive(Clone, Copy)]
+pub struct Region<'a> {
+    /// One side of the box, or two or three that meet: their edge or corner.
+    pub sides: &'a [String],
+    /// Keeps only the part of the sides where it holds.
+    pub condition: Option<&'a dyn Condition>,
+}
 
 /// Facets and nodes of the sides of a mesh.
 pub struct Border<'a> {
@@ -80,7 +100,7 @@ impl<'a> Border<'a> {
     }
 
     /// Facets of the first side of a region that its range along the side can reach, in the order of cells.
-    fn near(&self, region: &Region) -> Vec<Facet> {
+    fn near(&self, region: &Region<'_>) -> Vec<Facet> {
         let side = region
             .sides
             .first()
@@ -104,18 +124,19 @@ impl<'a> Border<'a> {
     }
 
     /// Nodes of a region, sorted.
-    pub fn nodes(&self, region: &Region) -> Vec<usize> {
+    pub fn nodes(&self, region: &Region<'_>) -> Vec<usize> {
         let all = self.bits(region);
+        let holds = |x: &Point| (region.condition).is_none_or(|c| c.holds(x, self.delta));
         let near = self.near(region).into_iter();
         let mut nodes: Vec<usize> = near.flat_map(|f| self.mesh.facet_nodes(f)).collect();
         nodes.sort_unstable();
         nodes.dedup();
-        nodes.retain(|&n| self.on[n] & all == all && region.holds(&self.mesh.nodes[n], self.delta));
+        nodes.retain(|&n| self.on[n] & all == all && holds(&self.mesh.nodes[n]));
         nodes
     }
 
     /// Facets that can lie in a region of one side, or edges where its two sides meet: each belongs to one facet of the first.
-    pub fn parts(&self, region: &Region) -> Vec<BorderPart> {
+    pub fn parts(&self, region: &Region<'_>) -> Vec<BorderPart> {
         let all = self.bits(region);
         let parts = self.near(region).into_iter().flat_map(|f| self.parts_of(f));
         let wanted = |part: &BorderPart| {
@@ -150,7 +171,7 @@ impl<'a> Border<'a> {
     }
 
     /// Sides that a region names, one bit each.
-    pub fn bits(&self, region: &Region) -> u8 {
+    pub fn bits(&self, region: &Region<'_>) -> u8 {
         let sides = region
             .sides
             .iter()
@@ -176,7 +197,10 @@ impl<'a> Border<'a> {
     }
 
     /// What a region holds of a convex piece of the border, and the rest.
-    pub fn split(&self, region: &Region, piece: Vec<Point>) -> [Parts; 2] {
-        region.split(piece, self.delta)
+    pub fn split(&self, region: &Region<'_>, piece: Vec<Point>) -> [Parts; 2] {
+        match region.condition {
+            Some(condition) => condition.split(piece, self.delta),
+            None => [vec![piece], vec![]],
+        }
     }
 }

@@ -2,23 +2,22 @@
 //!
 //! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
 
-use stickslip_xfem::cut::crack::Crack;
-use stickslip_xfem::enrichment::basis::Region;
-use stickslip_xfem::geometry::clip::Side;
-use stickslip_xfem::geometry::{Point, add_scaled, dot};
-use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+use crate::cut::crack::{Crack, Tip};
+use crate::enrichment::basis::Region;
+use crate::geometry::clip::Side;
+use crate::geometry::crack_shape::CrackShape;
+use crate::geometry::{Point, add_scaled, dot};
+use crate::stiffness::cell_matrix::CellIntegrator;
 
-use crate::case::Case;
-
-/// Sides of the first crack of a case, in a mesh.
+/// Sides of the first crack in a mesh.
 pub struct Sides {
     crack: Crack,
     nodes: Vec<Side>,
 }
 
 impl Sides {
-    /// Sides of all nodes; `None` for a body without crack.
-    pub fn new(case: &Case, integrator: &CellIntegrator<'_>) -> Option<Self> {
+    /// Sides of all nodes; `None` for a body without crack. `first`: the first crack as it was asked for.
+    pub fn new(first: Option<(&CrackShape, Tip)>, integrator: &CellIntegrator<'_>) -> Option<Self> {
         let mesh = integrator.mesh;
         if let Some(crack) = integrator.cracks.first() {
             let nodes = (0..mesh.nodes.len()).map(|node| crack.side_of(mesh, node));
@@ -28,8 +27,8 @@ impl Sides {
             });
         }
         // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
-        let spec = case.cracks.first()?;
-        let crack = Crack::new(0, &spec.geometry, spec.tip, mesh, &mesh.lengths());
+        let (shape, tip) = first?;
+        let crack = Crack::new(0, shape, tip, mesh, &mesh.lengths());
         let mut nodes: Vec<Side> = (0..mesh.nodes.len())
             .map(|n| crack.side_of(mesh, n))
             .collect();
