@@ -8,7 +8,6 @@ pub mod field_mesh;
 pub mod fixed_loads;
 pub mod loading;
 pub mod memory;
-pub mod mesh_checks;
 pub mod nodal_forces;
 pub mod quantities;
 pub mod refusals;

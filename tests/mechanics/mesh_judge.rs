@@ -2,8 +2,8 @@
 
 use crate::common::*;
 use stickslip::model::body::Body;
-use stickslip::model::mesh_checks::{UNIFORM, mesh_checks};
 use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::discretisation::mesh_checks::{UNIFORM, mesh_checks};
 use stickslip_xfem::geometry::add_scaled;
 
 /// A slanted crack with a zone of branch functions, crossed by another.
@@ -74,7 +74,7 @@ fn every_planted_fault_is_told() {
         }),
         ("stiffness", |b| {
             let other = body(&CROSSED.replace("0.62]", "0.620001]"));
-            b.stiffness = other.stiffness;
+            b.stiffness = other.discrete.stiffness;
         }),
     ];
     for (name, plant) in faults {

@@ -12,7 +12,7 @@ const PACKAGES: [(&str, &[&str], bool); 3] = [
     ("methods/src", &["error", "algebra", "contract", "condensed", "newton", "splitting", "conic", "combined", "own_laws"], false),
     ("xfem/src", &[
         "geometry", "material", "mesh", "quadrature", "cut", "enrichment", "stiffness", "fields", "contact", "intensity", "exact",
-        "loads",
+        "loads", "discretisation",
     ], false),
     ("src", &["files", "case", "model", "run", "studies", "report", "cli"], true),
 ];

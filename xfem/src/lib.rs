@@ -16,10 +16,12 @@
 //!   intensity   stress intensity factors: Williams' fields, fit of the jump, interaction integral
 //!   exact       closed forms
 //!   loads       supports and loads: prescribed unknowns, nodal forces
+//!   discretisation  a body from all of these, and the judge of its mesh
 //! ```
 
 pub mod contact;
 pub mod cut;
+pub mod discretisation;
 pub mod enrichment;
 pub mod exact;
 pub mod fields;

@@ -42,15 +42,19 @@ pub enum Amount<'a> {
 }
 
 /// Why a support cannot be held, with its number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SupportError {
     /// Its region holds no node.
+    #[error("the support holds nothing")]
     Empty(usize),
     /// It holds a node on a crack and no part of the side beside it, and names no lip.
+    #[error("holds a node on a crack, where two lips part, and no lip")]
     NoLip(usize),
     /// It names a lip where its region tells the lips apart.
+    #[error("the region tells itself what it holds")]
     NeedlessLip(usize),
     /// It holds one lip of a crack where another support holds the other in other components.
+    #[error("another support holds the other lip of a node on a crack in other components")]
     OtherLip(usize),
 }
 

@@ -15,14 +15,14 @@
 
 use std::collections::BTreeSet;
 
+use crate::cut::crack::{Geometry, PathVertex};
+use crate::geometry::curve::Curve;
+use crate::geometry::{Point, add_scaled, dot, norm};
+use crate::material::stress;
+use crate::quadrature::measure;
 use rayon::prelude::*;
-use stickslip_xfem::cut::crack::{Geometry, PathVertex};
-use stickslip_xfem::geometry::curve::Curve;
-use stickslip_xfem::geometry::{Point, add_scaled, dot, norm};
-use stickslip_xfem::material::stress;
-use stickslip_xfem::quadrature::measure;
 
-use crate::model::body::Body;
+use super::Discretisation;
 
 /// A body whose uniform stress is off by more than this is suspect, unless its coordinates hold fewer digits.
 pub const UNIFORM: f64 = 1e-9;
@@ -81,7 +81,7 @@ pub fn swaying(sway: f64) -> Option<String> {
 }
 
 /// Tests a body.
-pub fn mesh_checks(body: &Body) -> MeshChecks {
+pub fn mesh_checks(body: &Discretisation) -> MeshChecks {
     let (mesh, dim, lame) = (&body.mesh, body.mesh.dim(), body.lame);
     let (_, centre) = mesh.extent();
     let enriched = |cell: &usize| !body.enrichment.is_plain(mesh, *cell);
@@ -145,7 +145,7 @@ pub fn mesh_checks(body: &Body) -> MeshChecks {
 }
 
 /// The largest distance between the polyline of a chain and the chain itself: the chords of an arc lie off it.
-fn moved(body: &Body) -> (f64, usize) {
+fn moved(body: &Discretisation) -> (f64, usize) {
     let edge = body.mesh.smallest_edge();
     let chains = (body.cracks.iter())
         .filter(|crack| matches!(crack.geometry, Geometry::Curve(Curve::Chain(_))));
@@ -157,7 +157,7 @@ fn moved(body: &Body) -> (f64, usize) {
 }
 
 /// ∫ [[φ_f]] n dΓ over the facets that carry multipliers, and the area of those where φ_f jumps, by function.
-fn jump_moments(body: &Body) -> Vec<(Point, f64)> {
+fn jump_moments(body: &Discretisation) -> Vec<(Point, f64)> {
     let integrator = body.integrator();
     let mut moments = vec![([0.0; 3], 0.0); body.enrichment.functions.len()];
     let quadrature = body.surface.quadrature.par_iter();
@@ -175,7 +175,7 @@ fn jump_moments(body: &Body) -> Vec<(Point, f64)> {
 
 /// Functions of the cells near cracks that vanish on the border of the body and on cracks along cell facets: in plain cells
 /// uniform stress holds on any mesh.
-fn tested_functions(body: &Body, cells: &[usize]) -> Vec<bool> {
+fn tested_functions(body: &Discretisation, cells: &[usize]) -> Vec<bool> {
     let mesh = &body.mesh;
     let functions = &body.enrichment.functions;
     let mut tested = vec![false; functions.len()];
@@ -197,7 +197,7 @@ fn tested_functions(body: &Body, cells: &[usize]) -> Vec<bool> {
 }
 
 /// Functions that share a cell with a tested one, ascending.
-fn neighbours(body: &Body, tested: &[bool]) -> Vec<usize> {
+fn neighbours(body: &Discretisation, tested: &[bool]) -> Vec<usize> {
     let mut shared = vec![false; tested.len()];
     for cell in 0..body.mesh.cell_count() {
         let functions = body.enrichment.cell(cell);
