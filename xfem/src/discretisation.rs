@@ -2,6 +2,8 @@
 
 mod faces;
 pub mod mesh_checks;
+pub mod norms;
+pub mod tips;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
