@@ -254,14 +254,7 @@ impl<'a> Supports<'a> {
             for a in 0..dim {
                 let own = last(node, a);
                 if let Some(support) = own {
-                    let amount = self.amount(support, a, node);
-                    fixed.insert(
-                        node * dim + a,
-                        Prescribed {
-                            amount,
-                            ..at_rest(support)
-                        },
-                    );
+                    fixed.insert(node * dim + a, self.stated(support, a, node));
                 }
                 for &copy in &copies {
                     let between = held
@@ -283,14 +276,7 @@ impl<'a> Supports<'a> {
                             if by.any(|&other| bits(other) & bits(s) != 0) {
                                 return Err(SupportError::OtherLip(s));
                             }
-                            let amount = self.amount(s, a, node);
-                            fixed.insert(
-                                node * dim + a,
-                                Prescribed {
-                                    amount,
-                                    ..at_rest(s)
-                                },
-                            );
+                            fixed.insert(node * dim + a, self.stated(s, a, node));
                             fixed.insert(copy * dim + a, self.difference(s, s, a, node));
                         }
                         _ => {}
@@ -431,13 +417,19 @@ impl<'a> Supports<'a> {
         }
     }
 
+    /// An unknown that takes what a support states at a node.
+    fn stated(&self, support: usize, component: usize, node: usize) -> Prescribed {
+        Prescribed {
+            support,
+            amount: self.amount(support, component, node),
+            less: None,
+        }
+    }
+
     /// The unknown of a copy that a support holds, another holding the node's own.
     fn difference(&self, support: usize, own: usize, component: usize, node: usize) -> Prescribed {
         match [support, own].map(|s| self.amount(s, component, node)) {
-            [None, None] => Prescribed {
-                amount: None,
-                ..at_rest(support)
-            },
+            [None, None] => self.stated(support, component, node),
             [Some(here), Some(there)] if support != own => Prescribed {
                 support,
                 amount: Some(here / STEP),
