@@ -11,7 +11,7 @@
 //!   cut         cracks in a mesh: level sets, parts of cut cells, where cracks end
 //!   enrichment  functions of nodes and cells, pieces of the body, facets of cracks
 //!   stiffness   stiffness of enriched cells, assembly, the basis of the solver
-//!   fields      points at which solutions are compared over the body, mass
+//!   fields      points at which solutions are compared over the body
 //!   contact     contact spaces and points, traction, samples of the faces
 //!   intensity   stress intensity factors: Williams' fields, fit of the jump, interaction integral
 //!   exact       closed forms
