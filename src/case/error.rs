@@ -2,7 +2,9 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use super::label::{is_visible, visible};
 use toml::Spanned;
@@ -236,9 +238,24 @@ fn printable(c: char) -> char {
     }
 }
 
+/// Stack for the parser of TOML [bytes], taken only as far as it is used: on its way past an error it recurses into every
+/// bracket that is never closed, which in the largest case file are seventy thousand.
+const STACK: usize = 256 << 20;
+
+/// The document of a text.
+pub(crate) fn parsed(text: &str) -> Result<Spanned<DeTable<'_>>, toml::de::Error> {
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().stack_size(STACK);
+        match thread.spawn_scoped(scope, || DeTable::parse(text)) {
+            Ok(parsing) => parsing.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(_) => DeTable::parse(text),
+        }
+    })
+}
+
 /// Dotted name of the innermost key whose name or value covers `span`; empty in text that is not TOML.
 fn key_at(text: &str, span: &Span) -> String {
-    let Ok(root) = DeTable::parse(text) else {
+    let Ok(root) = parsed(text) else {
         return String::new();
     };
     let mut found = Found {

@@ -8,10 +8,9 @@ use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
 use stickslip_xfem::geometry::Point;
 use stickslip_xfem::material::{Dilatation, Lame, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
-use toml::de::DeTable;
 
 use super::crack::{CrackSpec, crack};
-use super::error::{CaseError, Source, Span};
+use super::error::{CaseError, Source, Span, parsed};
 use super::exact::{ExactSpec, exact};
 use super::expect::{Expect, ProbeSpec, Runs};
 use super::label::visible;
@@ -231,7 +230,7 @@ pub(crate) fn document<T>(
     read: impl FnOnce(&Table<'_>) -> Result<T, CaseError>,
 ) -> Result<T, CaseError> {
     let source = Source { file, text };
-    let parsed = DeTable::parse(text).map_err(|e| syntax_error(source, &e))?;
+    let parsed = parsed(text).map_err(|e| syntax_error(source, &e))?;
     read(&Table::root(source, parsed.get_ref(), keys)?)
 }
 

@@ -18,3 +18,4 @@ mod stress;
 mod sweep;
 mod sweep_files;
 mod timings;
+mod together;

@@ -45,7 +45,7 @@ fn exec(path: &Path) -> String {
     format!("exec:{}", path.display())
 }
 
-fn judged(choice: &Choice) -> JudgedIncrement {
+pub fn judged(choice: &Choice) -> JudgedIncrement {
     let posed = local_system(&one_point()).unwrap();
     let system = ContactSystem::new(posed.elastic, posed.friction).unwrap();
     let (rest, start) = (Load::zero(system.elastic()), ContactState::zero(&system));
