@@ -13,12 +13,12 @@ use super::crack::{CrackSpec, crack};
 use super::error::{CaseError, Source, Span, parsed};
 use super::exact::{ExactSpec, exact};
 use super::expect::{Expect, ProbeSpec, Runs};
-use super::label::visible;
 use super::load::{LoadSpec, Scene, SupportSpec, load, support};
 use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
 use super::settings::{self, MethodSpec, PathSpec};
 use crate::files::regular;
+use crate::files::visible::visible;
 
 /// One checked case file.
 #[derive(Debug, Clone)]
@@ -151,7 +151,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
     if len > MAX_BYTES {
         return Err(too_large(path, &format!("{len} bytes")));
     }
-    let bytes = regular::rest(file, len, MAX_BYTES).map_err(unreadable)?;
+    let bytes = regular::rest(file, MAX_BYTES).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(e.as_bytes());

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
-use crate::case::label::visible;
 use crate::case::{self, Case, shipped};
 use crate::files::regular;
+use crate::files::visible::visible;
 use crate::files::written::COMMAND;
 use crate::report::names::file_name;
 use crate::report::table::Description;

@@ -4,7 +4,7 @@ use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::case::label::visible;
+use crate::files::visible::visible;
 use crate::report::table::{Row, readable};
 
 /// Whether some line could not be printed.

@@ -51,10 +51,8 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
             reason: "it does not begin like HDF5".into(),
         });
     }
-    from_bytes(
-        path,
-        regular::rest(file, len, MAX_BYTES).map_err(unreadable)?,
-    )
+    let bytes = regular::rest(file, MAX_BYTES).map_err(unreadable)?;
+    from_bytes(path, bytes)
 }
 
 /// Reads the bytes of a file of either kind; `path` is only for messages.

@@ -6,8 +6,8 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 use stickslip_methods::{ContactState, ContactSystem, Increment, Load, MethodError, Tier};
 
-use crate::case::label::visible;
 use crate::files::interchange::{InterchangeError, Problem, fclib};
+use crate::files::visible::visible;
 use crate::model::body::Setup;
 use crate::run::choice::Choice;
 use crate::run::increment::{JudgedIncrement, Solver};

@@ -17,10 +17,10 @@ use super::cell::{digest, is_id};
 use super::measure::Repeats;
 use super::record::{Origin, Record, SCHEMA};
 use crate::case::error::clip;
-use crate::case::label::{is_label, is_visible};
 use crate::files::bundle::FolderError;
 use crate::files::claim::write_whole;
 use crate::files::regular;
+use crate::files::visible::{is_label, is_visible};
 
 /// Largest file read [bytes]: a list of a hundred thousand ids has a tenth of it.
 const MAX_BYTES: u64 = 64 << 20;
