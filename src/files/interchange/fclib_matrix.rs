@@ -183,10 +183,8 @@ pub(super) fn check_matrix(
     check_size(&format!("{what} (rows)"), matrix.rows(), rows)?;
     check_size(&format!("{what} (columns)"), matrix.cols(), cols)?;
     // FCLIB counts in C's int.
-    match [matrix.rows(), matrix.cols(), matrix.len()]
-        .iter()
-        .all(|&n| i32::try_from(n).is_ok())
-    {
+    let sizes = [matrix.rows(), matrix.cols(), matrix.len()];
+    match sizes.iter().all(|&n| i32::try_from(n).is_ok()) {
         true => Ok(()),
         false => Err(unwritable(format!("{what}: more than 2147483647 entries"))),
     }
