@@ -53,9 +53,9 @@ pub(super) fn read_matrix(
         }
     };
     let expected = [pointers.unwrap_or(most), most, most];
-    for ((array, found), expected) in arrays.iter().zip(found).zip(expected) {
-        if found != expected && found != nz as u64 {
-            return Err(tree.length(array, found, expected.to_string()));
+    for k in 0..3 {
+        if ![expected[k], nz as u64].contains(&found[k]) {
+            return Err(tree.length(&arrays[k], found[k], expected[k].to_string()));
         }
     }
     let [p, i] = [0, 1].map(|k| tree.integers(&arrays[k], found[k] as usize));

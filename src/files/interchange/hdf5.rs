@@ -71,11 +71,7 @@ impl Tree {
 
     /// Whether a group is there.
     pub fn has_group(&self, name: &str) -> Result<bool, InterchangeError> {
-        match self.file.group(name) {
-            Ok(_) => Ok(true),
-            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(false),
-            Err(error) => Err(unreadable(&self.path, name, &error)),
-        }
+        Ok(self.found(name, self.file.group(name))?.is_some())
     }
 
     /// A group, the file itself for `""`.
@@ -96,8 +92,17 @@ impl Tree {
     }
 
     fn dataset(&self, name: &str) -> Result<Option<Dataset>, InterchangeError> {
-        match self.file.dataset(name) {
-            Ok(dataset) => Ok(Some(dataset)),
+        self.found(name, self.file.dataset(name))
+    }
+
+    /// What was looked for, if it is there.
+    fn found<T>(
+        &self,
+        name: &str,
+        looked: Result<T, Error>,
+    ) -> Result<Option<T>, InterchangeError> {
+        match looked {
+            Ok(found) => Ok(Some(found)),
             Err(Error::Format(FormatError::PathNotFound(_))) => Ok(None),
             Err(error) => Err(unreadable(&self.path, name, &error)),
         }
