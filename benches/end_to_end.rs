@@ -9,15 +9,17 @@ use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_meth
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
 use stickslip::run::choice::Choice;
-use stickslip::run::record::Results;
+use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::rows::Results;
 
 const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
     fields: Fields::None,
     starts: 1,
+    why: Why::Nothing,
 };
 
 /// What a user gets: the case as shipped.

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Makes everything anew in results/ and keeps in reports/ what is committed: the paper's tables, summaries, provenance, a figure of
 # every kind and one page. About half an hour on two cores; the machine should do nothing else. An argument names parts to run
-# instead of all: paper accuracy stress robustness sensitivity bench keep.
+# instead of all: paper accuracy stress random sensitivity keep.
 set -euo pipefail
 shopt -s nullglob
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-parts=${*:-paper accuracy stress robustness sensitivity bench keep}
+parts=${*:-paper accuracy stress random sensitivity keep}
 cargo build --locked --release
 stickslip=${CARGO_TARGET_DIR:-target}/release/stickslip
 
@@ -34,10 +34,9 @@ for part in $parts; do
                 manufactured_slip_rotated circular_interface --refine 1,2,4,8 --spaces star,edge-pairs \
                 --tips none,branch,0.2 --out results/accuracy || [[ $? == 1 ]] ;; # 1: a mesh is not solved, which the tables show
         stress) "$stickslip" stress --out results/stress || [[ $? == 1 ]] ;; # 1: a scene fails, which the tables show
-        robustness) "$stickslip" stress methods --problems 200 --out results/robustness ;;
+        random) "$stickslip" study random --untimed --jobs 2 --out results/random ;;
         # 1: some values of some options solve nothing, which the tables show
-        sensitivity) "$stickslip" study benches/sensitivity.toml --untimed --out results/sensitivity || [[ $? == 1 ]] ;;
-        bench) cargo bench --locked ;;
+        sensitivity) "$stickslip" study sensitivity --untimed --out results/sensitivity || [[ $? == 1 ]] ;;
         keep)
             # Written by hand: other programs on the same problems.
             find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
@@ -48,15 +47,13 @@ for part in $parts; do
                 'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg' \
                 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.von-mises.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
-            keep stress stress_causes stress_invariances stress_methods stress_ladders stress_rungs.csv stress_options stress_scenes.csv \
-                stress_options.svg stress_iterations.svg
+            keep stress stress_faults stress_invariances stress_methods stress_ladders stress_scenes.csv
             cp -r results/stress/cases reports/stress/
-            keep robustness robustness atlas stopping failures.csv robustness.svg
-            keep sensitivity safe_windows starts sensitivity.svg
+            keep random success causes stopping why.csv success.svg
+            keep sensitivity safe_windows sensitivity.svg
             keep study ranking scaling success study.csv cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
-            keep bench timings.csv timings.md
-            "$stickslip" page reports ;;
+            "$stickslip" show reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
     esac
 done

@@ -10,7 +10,6 @@ pub(crate) mod error;
 mod exact;
 mod expect;
 mod frame;
-pub mod label;
 mod load;
 mod mesh;
 mod named;

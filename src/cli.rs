@@ -5,17 +5,17 @@ mod check;
 mod conform;
 mod converge;
 mod error;
-mod exchange;
+mod export;
 pub mod method_manual;
 mod output;
-mod page;
 mod paper;
 mod progress;
-mod robustness;
 mod run;
 mod show;
+mod solve;
 mod stress;
-mod sweep;
+mod study;
+mod work;
 
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -50,24 +50,18 @@ enum Verb {
     Stress(stress::Arguments),
     /// Measure errors and observed orders on sequences of meshes, by contact space and tip enrichment
     Converge(converge::Arguments),
-    /// Sweep over cases, meshes, methods and tolerances: work against precision, a record per cell
-    Study(sweep::Arguments),
-    /// Join the records of a sweep that ran in several folders
-    Merge(sweep::MergeArguments),
-    /// Measure the cells that come in on standard input, as `study` starts it
+    /// Sweep over problems, meshes, methods and tolerances: work against precision, success rates, a record per task
+    Study(study::Arguments),
+    /// Measure the tasks that come in on standard input, as `study` starts it
     #[command(hide = true)]
-    Work(sweep::WorkArguments),
-    /// Show a report folder as one page, index.html
-    Page(page::Arguments),
+    Work(work::Arguments),
     /// Write one increment of a case as files for other programs: FCLIB (HDF5)
-    Export(exchange::ExportArgs),
+    Export(export::Arguments),
     /// Solve contact problems from FCLIB files (HDF5)
-    Solve(exchange::SolveArgs),
+    Solve(solve::Arguments),
     /// Test a method, or a program as one, on small problems with known answers
     Conform(conform::Arguments),
-    /// List the methods and the shipped cases
-    List,
-    /// Describe a method or a case, or all `methods`
+    /// List the methods and the shipped cases, describe one of them, or show a folder of reports as one page
     Show(show::Arguments),
     /// Check case files without running them
     Check(check::Arguments),
@@ -114,14 +108,11 @@ pub fn main(cli: Cli, plan: Plan) -> Result<bool, CliError> {
         Verb::Run(arguments) => run::run(arguments, plan),
         Verb::Stress(arguments) => stress::run(arguments, plan),
         Verb::Converge(arguments) => converge::run(arguments, plan),
-        Verb::Study(arguments) => sweep::run(arguments),
-        Verb::Merge(arguments) => sweep::run_merge(arguments),
-        Verb::Work(arguments) => sweep::run_work(&arguments),
-        Verb::Page(arguments) => page::run(arguments),
-        Verb::Export(arguments) => exchange::run_export(arguments),
-        Verb::Solve(arguments) => exchange::run_solve(arguments, plan),
+        Verb::Study(arguments) => study::run(arguments),
+        Verb::Work(arguments) => work::run(&arguments),
+        Verb::Export(arguments) => export::run(arguments),
+        Verb::Solve(arguments) => solve::run(arguments, plan),
         Verb::Conform(arguments) => conform::run(&arguments),
-        Verb::List => show::run_list(),
         Verb::Show(arguments) => show::run(arguments),
         Verb::Check(arguments) => check::check(arguments),
     }

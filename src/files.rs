@@ -4,7 +4,6 @@ pub mod bundle;
 pub mod claim;
 pub mod digest;
 pub mod interchange;
-mod place;
+pub mod nan;
 pub(crate) mod regular;
 pub(crate) mod visible;
-pub mod written;

@@ -1,7 +1,6 @@
 //! A case as a discrete body: unknowns, what acts on it, the quantities read from a solution and their errors.
 
 pub mod body;
-pub mod border;
 pub mod boundary;
 pub mod errors;
 pub mod extent;
@@ -9,10 +8,7 @@ pub mod field_mesh;
 pub mod fixed_loads;
 pub mod loading;
 pub mod memory;
-pub mod mesh_checks;
 pub mod nodal_forces;
-
 pub mod quantities;
 pub mod refusals;
-pub mod sides;
-pub mod work;
+pub mod snapshot;

@@ -1,7 +1,7 @@
 //! Turns the rows and fields of a run into files: CSV, tables, figures, ParaView files, provenance.
 //!
 //! One output kind per module. Every module returns text or bytes; a [`Bundle`] collects them and writes them all or
-//! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::run::record::Results)
+//! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::studies::rows::Results)
 //! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
 
 pub mod convergence;
@@ -12,19 +12,17 @@ pub mod number;
 pub mod page;
 pub mod paper;
 pub mod plot;
-pub mod robustness;
 pub mod schema;
 pub mod standard;
 pub mod stress;
 pub mod sweep;
 pub mod table;
 pub mod tables;
-pub mod timings;
 pub mod vtu;
 
 pub use crate::files::bundle::Bundle;
 pub use crate::files::claim::Claim;
-pub use crate::files::written::{Plan, plan};
+pub use crate::files::claim::{Plan, plan};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
 

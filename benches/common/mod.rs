@@ -11,14 +11,12 @@ use criterion::measurement::WallTime;
 use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode};
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::report::timings::BenchmarkName;
 
 /// Stages before a method starts.
 pub const MESH_TO_SYSTEM: &str = "mesh to system";
 pub const ASSEMBLY: &str = "assembly";
 pub const FACTORISATION: &str = "factorisation";
 pub const CONDENSATION: &str = "condensation";
-pub const STAGES: [&str; 4] = [MESH_TO_SYSTEM, ASSEMBLY, FACTORISATION, CONDENSATION];
 
 /// Stages of a method.
 pub const PREPARE: &str = "prepare";
@@ -28,6 +26,26 @@ pub const ENFORCEMENT: &str = "enforcement";
 pub const EXACT: &str = "hybrid";
 /// All methods of the registry together.
 pub const ALL_METHODS: &str = "all methods";
+
+/// Name of a benchmark.
+pub struct BenchmarkName {
+    /// What is measured on which problem, e.g. `enforcement/plate_mesh1 88x88 mu=0.8`.
+    pub group: String,
+    /// Stage, e.g. `prepare`.
+    pub function: String,
+    /// Method; empty where there is none.
+    pub value: String,
+}
+
+impl BenchmarkName {
+    fn new(group: String, function: &str, value: &str) -> Self {
+        Self {
+            group,
+            function: function.into(),
+            value: value.into(),
+        }
+    }
+}
 
 /// A shipped case on one mesh with one friction coefficient.
 pub struct Problem {
@@ -110,7 +128,7 @@ pub fn runs_all_methods(problem: &Problem) -> bool {
 }
 
 /// Settings of all groups: many short measurements, since a solve takes microseconds to half a second. Criterion's own
-/// statistics are only printed, so they are cheap ones; `timings.csv` is computed from the samples.
+/// statistics are cheap ones.
 pub fn settings() -> Criterion {
     one_thread();
     Criterion::default()

@@ -6,7 +6,7 @@ use std::time::Duration;
 use stickslip::model::body::{Body, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::run::choice::Choice;
-use stickslip::run::increment::Solver;
+use stickslip::run::path::Solver;
 use stickslip::run::registry::method;
 use stickslip::run::verdict::Verdict;
 use stickslip_methods::{

@@ -40,13 +40,48 @@ const OUTSIDE: usize = 1;
 enum Rule {
     Any(Vec<Rule>),
     All(Vec<Rule>),
-    /// sign · (number − x_axis) >= 0, or > 0.
-    Bound {
-        axis: usize,
-        sign: f64,
-        number: f64,
-        strict: bool,
-    },
+    Bound(Bound),
+}
+
+/// sign · (number − x_axis) >= 0, or > 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bound {
+    axis: usize,
+    sign: f64,
+    number: f64,
+    strict: bool,
+}
+
+impl Bound {
+    /// What must be >= 0, or > 0; 0 within δ.
+    fn level(&self, x: &Point, delta: f64) -> f64 {
+        snapped(self.sign * (self.number - x[self.axis]), delta)
+    }
+
+    /// The parts of a convex one inside and outside.
+    fn split(&self, part: Vec<Point>, delta: f64) -> [Parts; 2] {
+        let levels: Vec<f64> = part.iter().map(|x| self.level(x, delta)).collect();
+        let beyond = |side: f64| levels.iter().any(|f| f * side > 0.0);
+        match [beyond(1.0), beyond(-1.0)] {
+            [true, true] => [1.0, -1.0].map(|side| {
+                let mut own = clip(&part, &levels, side);
+                // A segment is cut once, not on the way there and back.
+                own.truncate(if part.len() == 2 { 2 } else { usize::MAX });
+                vec![own]
+            }),
+            [false, true] => [vec![], vec![part]],
+            [false, false] if self.strict => [vec![], vec![part]],
+            _ => [vec![part], vec![]],
+        }
+    }
+
+    fn range(&self, axis: usize) -> [f64; 2] {
+        match (self.axis == axis, self.sign > 0.0) {
+            (true, true) => [f64::NEG_INFINITY, self.number],
+            (true, false) => [self.number, f64::INFINITY],
+            (false, _) => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
 }
 
 /// What is wrong with a condition; `at` is the byte range inside its text.
@@ -117,14 +152,9 @@ impl Rule {
         match self {
             Rule::Any(rules) => rules.iter().any(|r| r.holds(x, delta)),
             Rule::All(rules) => rules.iter().all(|r| r.holds(x, delta)),
-            &Rule::Bound {
-                axis,
-                sign,
-                number,
-                strict,
-            } => {
-                let level = snapped(sign * (number - x[axis]), delta);
-                level > 0.0 || level == 0.0 && !strict
+            Rule::Bound(bound) => {
+                let level = bound.level(x, delta);
+                level > 0.0 || level == 0.0 && !bound.strict
             }
         }
     }
@@ -133,55 +163,20 @@ impl Rule {
         match self {
             Rule::Any(rules) => one_by_one(rules, part, delta, OUTSIDE),
             Rule::All(rules) => one_by_one(rules, part, delta, INSIDE),
-            &Rule::Bound {
-                axis,
-                sign,
-                number,
-                strict,
-            } => {
-                let level = |x: &Point| snapped(sign * (number - x[axis]), delta);
-                let levels: Vec<f64> = part.iter().map(level).collect();
-                let beyond = |side: f64| levels.iter().any(|f| f * side > 0.0);
-                match [beyond(1.0), beyond(-1.0)] {
-                    [true, true] => [1.0, -1.0].map(|side| {
-                        let mut own = clip(&part, &levels, side);
-                        // A segment is cut once, not on the way there and back.
-                        own.truncate(if part.len() == 2 { 2 } else { usize::MAX });
-                        vec![own]
-                    }),
-                    [false, true] => [vec![], vec![part]],
-                    [false, false] if strict => [vec![], vec![part]],
-                    _ => [vec![part], vec![]],
-                }
-            }
+            Rule::Bound(bound) => bound.split(part, delta),
         }
     }
 
     fn range(&self, axis: usize) -> [f64; 2] {
-        let of = |rules: &[Rule], pick: fn(f64, f64) -> f64, end: usize, start: f64| {
-            let ends = rules.iter().map(|r| r.range(axis)[end]);
-            ends.fold(start, pick)
-        };
+        const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
         const ALL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+        let ranges = |rules: &[Rule]| rules.iter().map(|r| r.range(axis)).collect::<Vec<_>>();
         match self {
-            Rule::Any(rules) => [
-                of(rules, f64::min, 0, ALL[1]),
-                of(rules, f64::max, 1, ALL[0]),
-            ],
-            Rule::All(rules) => [
-                of(rules, f64::max, 0, ALL[0]),
-                of(rules, f64::min, 1, ALL[1]),
-            ],
-            Rule::Bound {
-                axis: own,
-                sign,
-                number,
-                ..
-            } => match (*own == axis, *sign > 0.0) {
-                (true, true) => [ALL[0], *number],
-                (true, false) => [*number, ALL[1]],
-                (false, _) => ALL,
-            },
+            Rule::Any(rules) => (ranges(rules).iter())
+                .fold(NONE, |all, own| [all[0].min(own[0]), all[1].max(own[1])]),
+            Rule::All(rules) => (ranges(rules).iter())
+                .fold(ALL, |all, own| [all[0].max(own[0]), all[1].min(own[1])]),
+            Rule::Bound(bound) => bound.range(axis),
         }
     }
 
@@ -190,17 +185,10 @@ impl Rule {
         match self {
             Rule::Any(rules) => Rule::Any(all(rules)),
             Rule::All(rules) => Rule::All(all(rules)),
-            &Rule::Bound {
-                axis,
-                sign,
-                number,
-                strict,
-            } => Rule::Bound {
-                axis,
-                sign,
-                number: number + by[axis],
-                strict,
-            },
+            Rule::Bound(bound) => Rule::Bound(Bound {
+                number: bound.number + by[bound.axis],
+                ..*bound
+            }),
         }
     }
 }
@@ -232,11 +220,7 @@ impl<'a> Parser<'a> {
         while self.accept("or") {
             rules.push(self.all(depth)?);
         }
-        Ok(if rules.len() == 1 {
-            rules.swap_remove(0)
-        } else {
-            Rule::Any(rules)
-        })
+        Ok(Rule::Any(rules))
     }
 
     fn all(&mut self, depth: usize) -> Result<Rule, ConditionError> {
@@ -244,11 +228,7 @@ impl<'a> Parser<'a> {
         while self.accept("and") {
             rules.push(self.term(depth)?);
         }
-        Ok(if rules.len() == 1 {
-            rules.swap_remove(0)
-        } else {
-            Rule::All(rules)
-        })
+        Ok(Rule::All(rules))
     }
 
     fn term(&mut self, depth: usize) -> Result<Rule, ConditionError> {
@@ -257,10 +237,9 @@ impl<'a> Parser<'a> {
         }
         let open = self.at..self.at + 1;
         if depth == MAX_DEPTH {
-            let allowed = format!("at most {MAX_DEPTH} parentheses inside each other");
             return Err(ConditionError {
                 at: open,
-                allowed,
+                allowed: format!("at most {MAX_DEPTH} parentheses inside each other"),
                 message: "parentheses nest too deeply",
             });
         }
@@ -277,14 +256,8 @@ impl<'a> Parser<'a> {
         let name = self.peek();
         let axes = &["x", "y", "z"][..self.dim];
         let Some(axis) = axes.iter().position(|a| *a == name) else {
-            return Err(self.unexpected(
-                name,
-                if self.dim == 3 {
-                    "x, y, z or `(`"
-                } else {
-                    "x, y or `(` (2D)"
-                },
-            ));
+            let allowed = ["x, y or `(` (2D)", "x, y, z or `(`"][usize::from(self.dim == 3)];
+            return Err(self.unexpected(name, allowed));
         };
         self.at += name.len();
         let sign = self.peek();
@@ -303,11 +276,13 @@ impl<'a> Parser<'a> {
             // Rust also reads `inf` and `nan`; those fail the test.
             Ok(number) if number.is_finite() => {
                 self.at += word.len();
-                let bound = |&sign: &f64| Rule::Bound {
-                    axis,
-                    sign,
-                    number,
-                    strict,
+                let bound = |&sign| {
+                    Rule::Bound(Bound {
+                        axis,
+                        sign,
+                        number,
+                        strict,
+                    })
                 };
                 Ok(Rule::All(signs.iter().map(bound).collect()))
             }
@@ -328,17 +303,14 @@ impl<'a> Parser<'a> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
         let rest = &self.text[self.at..];
+        let relation = |c: char| "<>=".contains(c);
+        let ends = |c: char| c.is_whitespace() || "()".contains(c) || relation(c);
         let end = match rest.chars().next() {
-            None => 0,
-            Some(c @ ('(' | ')')) => c.len_utf8(),
-            Some('<' | '>' | '=') => rest
-                .find(|c| !matches!(c, '<' | '>' | '='))
-                .unwrap_or(rest.len()),
-            Some(_) => rest
-                .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | '<' | '>' | '='))
-                .unwrap_or(rest.len()),
+            Some('(' | ')') => Some(1),
+            Some(first) if relation(first) => rest.find(|c| !relation(c)),
+            _ => rest.find(ends),
         };
-        &rest[..end]
+        &rest[..end.unwrap_or(rest.len())]
     }
 
     /// Error at the word just peeked.
@@ -378,12 +350,17 @@ mod tests {
     #[test]
     fn comparisons_forgive_rounding_but_not_more() {
         let third = 1.0 / 3.0 * 3.0 + 1e-15;
-        assert!(holds("z<=1", [0.0, 0.0, third]) && holds("z>=1", [0.0, 0.0, 1.0 - 1e-15]));
-        assert!(holds("z == 1", [0.0, 0.0, third]));
-        assert!(!holds("z < 1", [0.0, 0.0, 1.0 - 1e-15]) && !holds("z > 1", [0.0, 0.0, third]));
-        assert!(
-            !holds("z <= 1", [0.0, 0.0, 1.0 + 2e-9]) && !holds("z == 1", [0.0, 0.0, 1.0 - 2e-9])
-        );
+        for (text, z, expected) in [
+            ("z<=1", third, true),
+            ("z>=1", 1.0 - 1e-15, true),
+            ("z == 1", third, true),
+            ("z < 1", 1.0 - 1e-15, false),
+            ("z > 1", third, false),
+            ("z <= 1", 1.0 + 2e-9, false),
+            ("z == 1", 1.0 - 2e-9, false),
+        ] {
+            assert_eq!(holds(text, [0.0, 0.0, z]), expected, "{text} at {z}");
+        }
     }
 
     /// Boxes that overlap, touch and nest: inside and outside fill the square, and the inside is that of the grid of bounds.
@@ -437,25 +414,25 @@ mod tests {
 
     #[test]
     fn errors_point_at_the_offending_word() {
-        let at = |text: &str, dim| Condition::parse(text, dim).unwrap_err().at;
-        assert_eq!(at("x <= 1 or w > 2", 3), 10..11);
-        assert_eq!(at("x <= 1 or z > 2", 2), 10..11);
-        assert_eq!(at("x <= nan", 3), 5..8);
-        assert_eq!(at("x <= 1e999", 3), 5..10);
-        assert_eq!(at("x = 1", 3), 2..3);
-        assert_eq!(at("x <= 1 y", 3), 7..8);
-        assert_eq!(at("(x <= 1", 3), 7..7);
-        assert_eq!(at("x <= 1)", 3), 6..7);
-        assert_eq!(at("", 3), 0..0);
-        assert_eq!(at("é < 1", 3), 0..2);
-        assert_eq!(at(&"(".repeat(100_000), 3), 32..33);
-    }
-
-    #[test]
-    fn display_returns_the_text() {
-        assert_eq!(
-            Condition::parse("x<=1  or y > 2", 2).unwrap().to_string(),
-            "x<=1  or y > 2"
-        );
+        let deep = "(".repeat(100_000);
+        for (text, dim, place) in [
+            ("x <= 1 or w > 2", 3, 10..11),
+            ("x <= 1 or z > 2", 2, 10..11),
+            ("x <= nan", 3, 5..8),
+            ("x <= 1e999", 3, 5..10),
+            ("x = 1", 3, 2..3),
+            ("x <= 1 y", 3, 7..8),
+            ("(x <= 1", 3, 7..7),
+            ("x <= 1)", 3, 6..7),
+            ("", 3, 0..0),
+            ("é < 1", 3, 0..2),
+            (&deep, 3, 32..33),
+        ] {
+            assert_eq!(
+                Condition::parse(text, dim).unwrap_err().at,
+                place,
+                "{text:.20}"
+            );
+        }
     }
 }

@@ -15,8 +15,10 @@ const MAX_POINTS: usize = 1000;
 /// Sine of the smallest angle between two directions that are told apart, also from a turn of 180 degrees.
 const PARALLEL: f64 = 1e-9;
 
-/// Keys that say where a crack lies.
-const SHAPES: [&str; 5] = ["points_m", "arc", "plane", "disc", "ellipse"];
+/// Keys of a crack, first those that say where it lies.
+const KEYS: [&str; 8] = [
+    "points_m", "arc", "plane", "disc", "ellipse", "friction", "tip", "contact",
+];
 
 /// One crack.
 #[derive(Debug, Clone)]
@@ -44,32 +46,15 @@ pub(super) fn friction(value: Value<'_>) -> Result<f64, CaseError> {
 
 /// `[[crack]]`.
 pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError> {
-    let [points, arc_key, plane_key, disc_key, ellipse_key] = SHAPES;
-    let table = value.table(&[
-        points,
-        arc_key,
-        plane_key,
-        disc_key,
-        ellipse_key,
-        "friction",
-        "tip",
-        "contact",
-    ])?;
-    let (key, geometry) = table.exactly_one(&SHAPES)?;
-    let flat = key == points || key == arc_key;
+    let table = value.table(&KEYS)?;
+    let (key, geometry) = table.exactly_one(&KEYS[..5])?;
+    let flat = ["points_m", "arc"].contains(&key);
     if flat != (dim == 2) {
-        let (allowed, message) = if flat {
-            (
-                "plane, disc or ellipse in a solid",
-                format!("`{key}` needs a 2D model"),
-            )
-        } else {
-            (
-                "points_m or arc in 2D",
-                format!("`{key}` needs model = \"solid\""),
-            )
+        let (allowed, needed) = match flat {
+            true => ("plane, disc or ellipse in a solid", "a 2D model"),
+            false => ("points_m or arc in 2D", "model = \"solid\""),
         };
-        return Err(geometry.refuse(allowed, message));
+        return Err(geometry.refuse(allowed, format_args!("`{key}` needs {needed}")));
     }
     let shape = match key {
         "points_m" => polyline(geometry)?,
@@ -90,7 +75,7 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
         geometry: shape,
         friction: friction(table.required("friction")?)?,
         contact,
-        contact_span: table.get("contact").map_or(table.span(), |v| v.span()),
+        contact_span: table.place("contact"),
     })
 }
 
@@ -107,11 +92,12 @@ fn tip(value: Option<Value<'_>>, shape: &CrackShape) -> Result<Tip, CaseError> {
         let table = value.table(&["branch_radius_m"])?;
         Ok(Tip::Radius(table.positive("branch_radius_m")?))
     } else if value.text().is_some() {
-        value.one_of(&[
+        let names = [
             ("none", Tip::None),
             ("auto", Tip::Auto),
             ("branch", Tip::Branch),
-        ])
+        ];
+        value.one_of(&names)
     } else {
         let allowed = "none, auto, branch or { branch_radius_m = R }";
         Err(value.refuse(allowed, "wrong type"))
@@ -151,27 +137,21 @@ fn polyline(value: Value<'_>) -> Result<CrackShape, CaseError> {
             let d = difference(last, x);
             let length = d[0].hypot(d[1]);
             if length == 0.0 {
-                return Err(entry.refuse(
-                    "a point distinct from the one before",
-                    "crack without length",
-                ));
+                let allowed = "a point distinct from the one before";
+                return Err(entry.refuse(allowed, "crack without length"));
             }
             if let Some(&before) = points.len().checked_sub(2).and_then(|i| points.get(i)) {
                 let e = difference(before, last);
                 let scale = length * e[0].hypot(e[1]);
                 if e[0] * d[0] + e[1] * d[1] < 0.0 && cross(e, d).abs() <= PARALLEL * scale {
-                    return Err(entry.refuse(
-                        "a turn of less than 180 degrees",
-                        "the crack folds back on itself",
-                    ));
+                    let allowed = "a turn of less than 180 degrees";
+                    return Err(entry.refuse(allowed, "the crack folds back on itself"));
                 }
                 // The segment before shares its end with this one and cannot meet it elsewhere.
                 let earlier = points.windows(2).take(points.len() - 2);
                 if earlier.clone().any(|s| meet([s[0], s[1]], [last, x])) {
-                    return Err(entry.refuse(
-                        "a chain of segments that meet at their ends only",
-                        "the crack crosses or touches itself",
-                    ));
+                    let allowed = "a chain of segments that meet at their ends only";
+                    return Err(entry.refuse(allowed, "the crack crosses or touches itself"));
                 }
             }
         }
@@ -202,14 +182,10 @@ fn meet([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
 /// `arc`.
 fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "radius_m", "from_deg", "to_deg"])?;
-    let centre = table.required("centre_m")?.point()?;
+    let centre = table.point("centre_m")?;
     let radius = table.positive("radius_m")?;
-    let angle = |key: &str| {
-        let allowed = format!("-360 <= {key} <= 360");
-        table
-            .required(key)?
-            .number_if(&allowed, |a| a.abs() <= 360.0)
-    };
+    let angle =
+        |key: &str| table.number_if(key, &format!("-360 <= {key} <= 360"), |a| a.abs() <= 360.0);
     let (from, to) = (angle("from_deg")?, angle("to_deg")?);
     if from == to || (to - from).abs() > 360.0 {
         return Err(table.required("to_deg")?.refuse(
@@ -229,7 +205,7 @@ fn arc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["point_m", "normal"])?;
     Ok(CrackShape::Plane {
-        point: table.required("point_m")?.point()?,
+        point: table.point("point_m")?,
         normal: direction(table.required("normal")?)?,
     })
 }
@@ -237,7 +213,7 @@ fn plane(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `disc`: an ellipse with equal half axes, the first one along the body axis least along the normal.
 fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "radius_m"])?;
-    let centre = table.required("centre_m")?.point()?;
+    let centre = table.point("centre_m")?;
     let normal = direction(table.required("normal")?)?;
     let radius = table.positive("radius_m")?;
     // The first of equals, so that a normal along z has its axis along x.
@@ -260,15 +236,13 @@ fn disc(value: Value<'_>) -> Result<CrackShape, CaseError> {
 /// `ellipse`.
 fn ellipse(value: Value<'_>) -> Result<CrackShape, CaseError> {
     let table = value.table(&["centre_m", "normal", "axis", "half_axes_m"])?;
-    let centre = table.required("centre_m")?.point()?;
+    let centre = table.point("centre_m")?;
     let normal = direction(table.required("normal")?)?;
     let given = table.required("axis")?;
     let axis = perpendicular(&direction(given)?, &normal);
     if norm(&axis) <= PARALLEL {
-        return Err(given.refuse(
-            "a direction that is not that of the normal",
-            "axis parallel to the normal",
-        ));
+        let allowed = "a direction that is not that of the normal";
+        return Err(given.refuse(allowed, "axis parallel to the normal"));
     }
     let mut half_axes = [0.0; 2];
     let entries = table.required("half_axes_m")?.list_of(2)?;

@@ -2,11 +2,14 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 
-use super::label::{is_visible, visible};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+use crate::files::visible::{self, visible};
 
 /// Byte range of a key's value in the case file, for error messages.
 pub type Span = Range<usize>;
@@ -136,18 +139,12 @@ impl Source<'_> {
         let end = self.boundary(span.end).max(start);
         let before = &self.text[..start];
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-        let line_text = self.text[line_start..]
-            .split('\n')
-            .next()
-            .unwrap_or_default()
-            .trim_end_matches('\r');
+        let first_line =
+            |from: usize, to: usize| self.text[from..to].lines().next().unwrap_or_default();
+        let line_text = first_line(line_start, self.text.len());
         let column = self.text[line_start..start].chars().count() + 1;
-        let marked = self.text[start..end]
-            .split('\n')
-            .next()
-            .unwrap_or_default()
-            .trim_end_matches('\r');
-        let (source_line, underline) = excerpt(line_text, column, marked.chars().count());
+        let marked = first_line(start, end).chars().count();
+        let (source_line, underline) = underlined(line_text, column, marked);
         CaseError(Box::new(Complaint {
             file: self.file.to_path_buf(),
             line: before.matches('\n').count() + 1,
@@ -156,8 +153,8 @@ impl Source<'_> {
             underline,
             key: clip(&key_at(self.text, span)),
             value: clip(&value.to_string()),
-            allowed: clip_to(&allowed.to_string(), 4 * WIDTH),
-            message: clip_to(&message.to_string(), 4 * WIDTH),
+            allowed: visible::excerpt(&allowed.to_string(), 4 * WIDTH),
+            message: visible::excerpt(&message.to_string(), 4 * WIDTH),
         }))
     }
 
@@ -177,125 +174,98 @@ impl Source<'_> {
     }
 }
 
-/// Escapes control characters and cuts to one printable line.
+/// The beginning of a text, on one line.
 pub(crate) fn clip(text: &str) -> String {
-    clip_to(text, WIDTH)
-}
-
-fn clip_to(text: &str, width: usize) -> String {
-    let mut out = String::new();
-    for (count, c) in text.chars().enumerate() {
-        if count == width {
-            out.push('…');
-            break;
-        }
-        if !is_visible(c) {
-            out.extend(c.escape_default())
-        } else {
-            out.push(c)
-        }
-    }
-    out
+    visible::excerpt(text, WIDTH)
 }
 
 /// The part of a line around a column, and the carets under it.
-fn excerpt(line: &str, column: usize, length: usize) -> (String, String) {
-    let total = line.chars().count();
+fn underlined(line: &str, column: usize, length: usize) -> (String, String) {
     // A third of the width is left for what precedes the value.
-    let first = if total <= WIDTH {
-        0
-    } else {
+    let long = line.chars().count() > WIDTH;
+    let first = if long {
         (column - 1).saturating_sub(WIDTH / 3)
+    } else {
+        0
     };
-    let mut shown: String = line
-        .chars()
-        .skip(first)
-        .take(WIDTH)
-        .map(printable)
-        .collect();
-    let mut offset = column - 1 - first;
-    let carets = length.clamp(1, shown.chars().count().saturating_sub(offset).max(1));
-    if first > 0 {
-        shown.insert(0, '…');
-        offset += 1;
-    }
-    if total > first + WIDTH {
-        shown.push('…');
-    }
-    (
-        shown,
-        format!("{}{}", " ".repeat(offset), "^".repeat(carets)),
-    )
+    let cut = if first > 0 { "…" } else { "" };
+    let rest: String = line.chars().skip(first).collect();
+    let shown = cut.to_owned() + &clip(&rest.replace('\t', " "));
+    let before = column - 1 - first + cut.chars().count();
+    let most = shown.chars().count().saturating_sub(before).max(1);
+    let carets = "^".repeat(length.clamp(1, most));
+    (shown, " ".repeat(before) + &carets)
 }
 
-fn printable(c: char) -> char {
-    match c {
-        '\t' => ' ',
-        c if !is_visible(c) => char::REPLACEMENT_CHARACTER,
-        c => c,
-    }
+/// Stack for the parser of TOML [bytes], taken only as far as it is used: on its way past an error it recurses into every
+/// bracket that is never closed, which in the largest case file are seventy thousand.
+const STACK: usize = 256 << 20;
+
+/// The document of a text.
+pub(crate) fn parsed(text: &str) -> Result<Spanned<DeTable<'_>>, toml::de::Error> {
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().stack_size(STACK);
+        match thread.spawn_scoped(scope, || DeTable::parse(text)) {
+            Ok(parsing) => parsing.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(_) => DeTable::parse(text),
+        }
+    })
 }
 
 /// Dotted name of the innermost key whose name or value covers `span`; empty in text that is not TOML.
 fn key_at(text: &str, span: &Span) -> String {
-    let Ok(root) = DeTable::parse(text) else {
-        return String::new();
-    };
-    let mut found = Found {
-        size: usize::MAX,
-        name: String::new(),
-    };
-    for (key, value) in root.get_ref() {
-        search(key.get_ref(), &key.span(), value, span, 1, &mut found);
+    let mut found = (usize::MAX, String::new());
+    for (key, value) in parsed(text).iter().flat_map(|root| root.get_ref()) {
+        let name = key.get_ref().to_string();
+        search(
+            name,
+            [key.span(), value.span()],
+            value,
+            span,
+            DEPTH,
+            &mut found,
+        );
     }
-    found.name
+    found.1
 }
 
-struct Found {
-    size: usize,
-    name: String,
-}
-
+/// Looks for a shorter place around `span` among those of a name and what is in its value.
 fn search(
-    name: &str,
-    key: &Span,
+    name: String,
+    places: [Span; 2],
     value: &Spanned<DeValue<'_>>,
     span: &Span,
     depth: usize,
-    found: &mut Found,
+    found: &mut (usize, String),
 ) {
-    for place in [key, &value.span()] {
-        if place.start <= span.start && span.end <= place.end && place.len() <= found.size {
-            *found = Found {
-                size: place.len(),
-                name: name.to_string(),
-            };
+    for place in places {
+        if place.start <= span.start && span.end <= place.end && place.len() <= found.0 {
+            *found = (place.len(), name.clone());
         }
     }
-    if depth == DEPTH {
-        return;
-    }
     match value.get_ref() {
-        DeValue::Table(table) => {
+        DeValue::Table(table) if depth > 1 => {
             for (key, value) in table {
+                let name = format!("{name}.{}", key.get_ref());
                 search(
-                    &format!("{name}.{}", key.get_ref()),
-                    &key.span(),
+                    name,
+                    [key.span(), value.span()],
                     value,
                     span,
-                    depth + 1,
+                    depth - 1,
                     found,
                 );
             }
         }
-        DeValue::Array(array) => {
+        DeValue::Array(array) if depth > 1 => {
             for (i, value) in array.iter().enumerate() {
+                let places = [value.span(), value.span()];
                 search(
-                    &format!("{name}[{}]", i + 1),
-                    &value.span(),
+                    format!("{name}[{}]", i + 1),
+                    places,
                     value,
                     span,
-                    depth + 1,
+                    depth - 1,
                     found,
                 );
             }

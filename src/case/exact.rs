@@ -58,10 +58,8 @@ pub(super) fn exact(
         });
     }
     if cracks != 1 {
-        return Err(value.refuse(
-            "a case with exactly one [[crack]]",
-            format_args!("a closed form beside {cracks} cracks"),
-        ));
+        let message = format!("a closed form beside {cracks} cracks");
+        return Err(value.refuse("a case with exactly one [[crack]]", message));
     }
     Ok(Some(ExactSpec {
         span: table.span(),

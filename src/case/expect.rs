@@ -79,6 +79,13 @@ named! {
     }
 }
 
+/// Keys of an expectation.
+#[rustfmt::skip]
+const EXPECT: [&str; 15] = [
+    "quantity", "at", "component", "friction", "refine", "method", "increment", "value", "unit", "relative", "absolute",
+    "kind", "source", "assumptions", "outcome",
+];
+
 /// What the runs of a case offer to an expectation; one that no run can meet would never be tested.
 pub(super) struct Runs {
     frictions: Vec<f64>,
@@ -128,27 +135,12 @@ impl Runs {
 
     /// `[[expect]]`.
     pub(super) fn expect(&self, value: Value<'_>) -> Result<Expect, CaseError> {
-        let table = value.table(&[
-            "quantity",
-            "at",
-            "component",
-            "friction",
-            "refine",
-            "method",
-            "increment",
-            "value",
-            "unit",
-            "relative",
-            "absolute",
-            "kind",
-            "source",
-            "assumptions",
-            "outcome",
-        ])?;
-        let size = "a tolerance > 0";
-        let tolerance = match table.exactly_one(&["relative", "absolute"])? {
-            ("relative", v) => Tolerance::Relative(v.number_if(size, |x| x > 0.0)?),
-            (_, v) => Tolerance::Absolute(v.number_if(size, |x| x > 0.0)?),
+        let table = value.table(&EXPECT)?;
+        let (size, given) = table.exactly_one(&["relative", "absolute"])?;
+        let number = given.number_if("a tolerance > 0", |x| x > 0.0)?;
+        let tolerance = match size {
+            "relative" => Tolerance::Relative(number),
+            _ => Tolerance::Absolute(number),
         };
         let wanted = table.required("value")?;
         let number = wanted.number()?;
@@ -157,19 +149,16 @@ impl Runs {
             return Err(wanted.refuse(allowed, "a relative tolerance of zero is zero"));
         }
         let kinds: Vec<_> = ExpectKind::ALL.iter().map(|k| (k.name(), *k)).collect();
+        let list = |v: Value<'_>| v.list()?.iter().map(Value::label).collect();
+        let outcomes = [("met", false), ("missed", true)];
         Ok(Expect {
             span: table.span(),
             quantity: table.required("quantity")?.label()?,
             at: table.optional("at", |v| self.place(v))?.unwrap_or_default(),
-            component: table
-                .optional("component", component)?
-                .unwrap_or_default()
-                .into(),
-            friction: table.optional("friction", |v| {
-                Self::of_runs(v, friction(v)?, &self.frictions)
-            })?,
+            component: table.optional("component", component)?.unwrap_or("").into(),
+            friction: table.optional("friction", |v| of_runs(v, friction(v)?, &self.frictions))?,
             refine: table.optional("refine", |v| {
-                Self::of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine)
+                of_runs(v, v.integer(1..=MAX_REFINE)?, &self.refine)
             })?,
             method: table.optional("method", |v| v.label())?,
             increment: table.optional("increment", |v| v.integer(1..=self.increments))?,
@@ -178,13 +167,8 @@ impl Runs {
             tolerance,
             kind: table.required("kind")?.one_of(&kinds)?,
             source: table.required("source")?.label()?,
-            assumptions: (table.optional("assumptions", |v| {
-                v.list()?.iter().map(Value::label).collect()
-            })?)
-            .unwrap_or_default(),
-            missed: (table
-                .optional("outcome", |v| v.one_of(&[("met", false), ("missed", true)]))?)
-            .unwrap_or(false),
+            assumptions: table.optional("assumptions", list)?.unwrap_or_default(),
+            missed: (table.optional("outcome", |v| v.one_of(&outcomes))?).unwrap_or(false),
         })
     }
 
@@ -196,20 +180,20 @@ impl Runs {
         }
         Ok(place.to_string())
     }
+}
 
-    /// A value that some run of the case has.
-    fn of_runs<T: PartialEq + ToString>(
-        value: Value<'_>,
-        found: T,
-        runs: &[T],
-    ) -> Result<T, CaseError> {
-        if runs.contains(&found) {
-            return Ok(found);
-        }
-        let known: Vec<String> = runs.iter().map(T::to_string).collect();
-        let allowed = format!("one of {}", known.join(", "));
-        Err(value.refuse(allowed, "no run of this case has this value"))
+/// A value that some run of the case has.
+fn of_runs<T: PartialEq + ToString>(
+    value: Value<'_>,
+    found: T,
+    runs: &[T],
+) -> Result<T, CaseError> {
+    if runs.contains(&found) {
+        return Ok(found);
     }
+    let known: Vec<String> = runs.iter().map(T::to_string).collect();
+    let allowed = format!("one of {}", known.join(", "));
+    Err(value.refuse(allowed, "no run of this case has this value"))
 }
 
 /// An axis of the body or of the contact frame; empty for none.

@@ -163,15 +163,13 @@ fn region(
     } else {
         on.list()?
     };
-    let mut taken = Vec::new();
+    let choices: Vec<_> = sides(dim).into_iter().map(|side| (side.0, side)).collect();
+    let mut taken: Vec<(&str, usize)> = Vec::new();
     for name in &names {
-        let (side, axis) =
-            name.one_of(&sides(dim).iter().map(|s| (s.0, *s)).collect::<Vec<_>>())?;
+        let (side, axis) = name.one_of(&choices)?;
         if taken.iter().any(|(_, other)| *other == axis) {
-            return Err(name.refuse(
-                "sides that meet in an edge or corner",
-                "these sides have no common points",
-            ));
+            let allowed = "sides that meet in an edge or corner";
+            return Err(name.refuse(allowed, "these sides have no common points"));
         }
         taken.push((side, axis));
     }
@@ -185,10 +183,7 @@ fn region(
     }
     Ok(Region {
         span: on.span(),
-        sides: taken
-            .into_iter()
-            .map(|(side, _)| side.to_string())
-            .collect(),
+        sides: taken.iter().map(|(side, _)| side.to_string()).collect(),
         condition: table.optional("where", |v| condition(v, dim))?,
     })
 }
@@ -203,10 +198,7 @@ fn condition(value: Value<'_>, dim: usize) -> Result<Condition, CaseError> {
     if value.text().is_some() {
         return one(&value);
     }
-    let allowed = "a condition, or an array of conditions";
-    let list = value
-        .list()
-        .map_err(|e| value.refuse(allowed, e.message()))?;
+    let list = value.list_or("a condition, or an array of conditions")?;
     if list.is_empty() {
         return Err(value.refuse("at least one condition", "nothing is kept"));
     }
@@ -220,15 +212,14 @@ pub(super) fn history(table: &Table<'_>) -> Result<History, CaseError> {
         return Ok(History::Ramp);
     };
     if value.text().is_some() {
-        return match value.one_of(&[("ramp", true), ("constant", false)])? {
-            true => Ok(History::Ramp),
-            false => Ok(History::Constant),
-        };
+        let ramp = value.one_of(&[("ramp", true), ("constant", false)])?;
+        return Ok(if ramp {
+            History::Ramp
+        } else {
+            History::Constant
+        });
     }
-    let allowed = "ramp, constant, or points [[t, factor], ...]";
-    let list = value
-        .list()
-        .map_err(|e| value.refuse(allowed, e.message()))?;
+    let list = value.list_or("ramp, constant, or points [[t, factor], ...]")?;
     if list.is_empty() {
         return Err(value.refuse("at least one point [t, factor]", "history without points"));
     }
@@ -249,10 +240,10 @@ pub(super) fn history(table: &Table<'_>) -> Result<History, CaseError> {
 fn is_exact(value: &Value<'_>, scene: &Scene) -> Result<bool, CaseError> {
     match value.text() {
         Some("exact") if scene.exact => Ok(true),
-        Some("exact") => Err(value.refuse(
-            "numbers, or \"exact\" in a case with an [exact] table",
-            "no closed form is named",
-        )),
+        Some("exact") => {
+            let allowed = "numbers, or \"exact\" in a case with an [exact] table";
+            Err(value.refuse(allowed, "no closed form is named"))
+        }
         _ => Ok(false),
     }
 }
@@ -286,89 +277,69 @@ pub(super) fn support(value: Value<'_>, scene: &Scene) -> Result<SupportSpec, Ca
         }
         vec![Some(Amount::Exact); dim]
     } else {
-        given
-            .list_of(dim)?
-            .iter()
-            .map(component)
-            .collect::<Result<Vec<_>, _>>()?
+        let entries = given.list_of(dim)?;
+        entries.iter().map(component).collect::<Result<_, _>>()?
     };
     if displacement.iter().all(Option::is_none) {
         return Err(given.refuse("at least one number", "nothing is prescribed"));
     }
     let all_exact = (displacement.iter().flatten()).all(|amount| *amount == Amount::Exact);
     let lip = table.optional("crack_side", |v| crack_side(&v, scene, usize::MAX))?;
+    let history = if all_exact { no_history } else { history };
     Ok(SupportSpec {
         span: table.span(),
         on,
         displacement,
         lip,
-        history: if all_exact {
-            no_history(&table)?
-        } else {
-            history(&table)?
-        },
+        history: history(&table)?,
     })
 }
 
-/// Keys of the kinds of load.
-const KINDS: [&str; 5] = [
+/// Keys of a load, first those that say where and then those of its kinds.
+const LOAD: [&str; 9] = [
+    "on",
+    "where",
     "traction_pa",
     "pressure_pa",
     "line_n_per_m",
     "body_n_per_m3",
     "initial_stress_pa",
+    "crack_side",
+    "history",
 ];
 
 /// `[[load]]`.
 pub(super) fn load(value: Value<'_>, scene: &Scene) -> Result<LoadSpec, CaseError> {
     let dim = scene.dim;
-    let [traction, pressure, line, body, initial] = KINDS;
-    let table = value.table(&[
-        "on",
-        "where",
-        traction,
-        pressure,
-        line,
-        body,
-        initial,
-        "crack_side",
-        "history",
-    ])?;
-    let (key, v) = table.exactly_one(&KINDS)?;
-    if let Some(place) = table.get("crack_side").filter(|_| key != body) {
+    let table = value.table(&LOAD)?;
+    let (key, v) = table.exactly_one(&LOAD[2..7])?;
+    let side = table.get("crack_side");
+    if let Some(place) = side.filter(|_| key != "body_n_per_m3") {
         return Err(place.refuse(
             "crack_side beside body_n_per_m3 only",
             format_args!("`{key}` does not tell the sides of a crack apart"),
         ));
     }
+    let on = |sides: usize| region(&table, dim, sides..=sides);
     let kind = match key {
-        "traction_pa" if is_exact(&v, scene)? => {
-            LoadKind::ExactTraction(region(&table, dim, 1..=1)?)
-        }
+        "traction_pa" if is_exact(&v, scene)? => LoadKind::ExactTraction(on(1)?),
         "traction_pa" => {
             let entries = v.list_of(dim)?;
             let vector = entries.iter().map(|v| density(v, dim));
-            LoadKind::Traction(
-                region(&table, dim, 1..=1)?,
-                vector.collect::<Result<_, _>>()?,
-            )
+            LoadKind::Traction(on(1)?, vector.collect::<Result<_, _>>()?)
         }
-        "pressure_pa" => LoadKind::Pressure(region(&table, dim, 1..=1)?, density(&v, dim)?),
+        "pressure_pa" => LoadKind::Pressure(on(1)?, density(&v, dim)?),
         "line_n_per_m" if dim == 2 => {
-            return Err(v.refuse(
-                "traction_pa or pressure_pa in 2D",
-                "a line load needs model = \"solid\"",
-            ));
+            let message = "a line load needs model = \"solid\"";
+            return Err(v.refuse("traction_pa or pressure_pa in 2D", message));
         }
-        "line_n_per_m" => LoadKind::Line(region(&table, dim, 2..=2)?, v.numbers(dim)?),
+        "line_n_per_m" => LoadKind::Line(on(2)?, v.numbers(dim)?),
         _ => {
             if let Some(place) = table.get("on").or(table.get("where")) {
-                return Err(place.refuse(
-                    "neither `on` nor `where`",
-                    format_args!("`{key}` acts in the whole body"),
-                ));
+                let message = format!("`{key}` acts in the whole body");
+                return Err(place.refuse("neither `on` nor `where`", message));
             }
-            inside(&table, key, v, scene)?
+            inside(key, v, side, scene)?
         }
     };
     let history = match kind {
@@ -384,12 +355,11 @@ pub(super) fn load(value: Value<'_>, scene: &Scene) -> Result<LoadSpec, CaseErro
 
 /// Body forces and initial stresses.
 fn inside(
-    table: &Table<'_>,
     key: &str,
     v: Value<'_>,
+    side: Option<Value<'_>>,
     scene: &Scene,
 ) -> Result<LoadKind, CaseError> {
-    let side = table.get("crack_side");
     if key == "initial_stress_pa" {
         return initial_stress(&v, scene.dim);
     }

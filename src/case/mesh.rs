@@ -77,10 +77,8 @@ pub(super) fn mesh(root: &Table<'_>, dim: usize) -> Result<MeshSpec, CaseError> 
         ("twist", Motion::Twist),
         ("distort", Motion::Distort),
     ];
-    let motion_spans = keys
-        .into_iter()
-        .filter_map(|(key, motion)| Some((motion, table.get(key)?.span())))
-        .collect();
+    let spans = keys.map(|(key, motion)| Some((motion, table.get(key)?.span())));
+    let motion_spans = spans.into_iter().flatten().collect();
     Ok(MeshSpec {
         span: table.span(),
         grid,
@@ -94,9 +92,8 @@ fn twist(value: Value<'_>, dim: usize) -> Result<Twist, CaseError> {
     if dim != 2 {
         return Err(value.refuse("a 2D model", "grid lines are turned in the plane only"));
     }
-    let degrees = table
-        .required("angle_deg")?
-        .number_if("-180 < angle_deg < 180", |a| a.abs() < MAX_TURN)?;
+    let allowed = "-180 < angle_deg < 180";
+    let degrees = table.number_if("angle_deg", allowed, |a| a.abs() < MAX_TURN)?;
     Ok(Twist {
         angle: degrees.to_radians(),
     })
@@ -106,14 +103,11 @@ fn twist(value: Value<'_>, dim: usize) -> Result<Twist, CaseError> {
 fn distort(value: Value<'_>, dim: usize) -> Result<Distort, CaseError> {
     let table = value.table(&["amplitude", "seed"])?;
     if dim != 2 {
-        return Err(value.refuse(
-            "a 2D model",
-            "hexahedra can be cut only while their faces are planar",
-        ));
+        let message = "hexahedra can be cut only while their faces are planar";
+        return Err(value.refuse("a 2D model", message));
     }
-    let amplitude = table
-        .required("amplitude")?
-        .number_if("0 <= amplitude < 0.5", |a| (0.0..0.5).contains(&a))?;
+    let allowed = "0 <= amplitude < 0.5";
+    let amplitude = table.number_if("amplitude", allowed, |a| (0.0..0.5).contains(&a))?;
     let seed = table.optional("seed", |v| v.integer(0..=MAX_SEED))?;
     Ok(Distort {
         amplitude,
@@ -130,17 +124,16 @@ fn box_lines(value: Value<'_>, dim: usize) -> Result<Vec<Vec<f64>>, CaseError> {
         max.push(value.number_if(&format!("more than min_m = {low}"), |high| high > *low)?);
     }
     let given = table.required("cells")?;
-    let cells = given
-        .list_of(dim)?
-        .iter()
+    let cells = given.list_of(dim)?.into_iter();
+    let cells = cells
         .map(|v| v.integer(1..=MAX_CELLS))
         .collect::<Result<Vec<_>, _>>()?;
     count_cells(given, &cells, 1)?;
     let narrow = (0..dim).find(|&i| !wide_enough(min[i], max[i], cells[i]));
     if let Some(axis) = narrow {
-        return Err(given.refuse(
-            "cells that double precision can tell apart",
-            format_args!("axis {} has cells without width", axis + 1),
+        return Err(without_width(
+            given,
+            &format!("axis {} has cells", axis + 1),
         ));
     }
     let line = |i: usize| even_lines(min[i], max[i], cells[i]);
@@ -180,13 +173,16 @@ fn given_lines(value: Value<'_>, dim: usize) -> Result<Vec<Vec<f64>>, CaseError>
 
 fn count_cells(value: Value<'_>, cells: &[usize], factor: usize) -> Result<(), CaseError> {
     let total: f64 = cells.iter().map(|n| *n as f64 * factor as f64).product();
-    if total > MAX_CELLS as f64 {
-        return Err(value.refuse(
-            format_args!("at most {MAX_CELLS} cells"),
-            format_args!("{total:.0} cells in total"),
-        ));
+    if total <= MAX_CELLS as f64 {
+        return Ok(());
     }
-    Ok(())
+    let allowed = format!("at most {MAX_CELLS} cells");
+    Err(value.refuse(allowed, format_args!("{total:.0} cells in total")))
+}
+
+fn without_width(value: Value<'_>, what: &str) -> CaseError {
+    let message = format!("{what} without width");
+    value.refuse("cells that double precision can tell apart", message)
 }
 
 /// Whether an interval can be divided into that many cells. A width that overflows counts as too narrow.
@@ -213,10 +209,8 @@ fn follow(value: Value<'_>, dim: usize, lines: &[Vec<f64>]) -> Result<Follow, Ca
         None => f64::INFINITY,
         Some(v) => {
             let room = before.min(after);
-            v.number_if(
-                &format!("0 < half_length_m < {room}, or leave it out"),
-                |l| 0.0 < l && l < room,
-            )?
+            let allowed = format!("0 < half_length_m < {room}, or leave it out");
+            v.number_if(&allowed, |l| 0.0 < l && l < room)?
         }
     };
     let angle = degrees.to_radians();
@@ -224,28 +218,18 @@ fn follow(value: Value<'_>, dim: usize, lines: &[Vec<f64>]) -> Result<Follow, Ca
     let column = &lines[dim - 1];
     let height = point[dim - 1];
     let (bottom, top) = ends(column);
-    let below = column
-        .iter()
-        .copied()
-        .filter(|y| *y <= height)
-        .fold(bottom, f64::max)
-        - bottom;
-    let above = top
-        - column
-            .iter()
-            .copied()
-            .filter(|y| *y >= height)
-            .fold(top, f64::min);
-    let (fall, rise) = (
-        -before.min(half_length) * angle.tan(),
-        after.min(half_length) * angle.tan(),
-    );
+    let heights = || column.iter().copied();
+    let below = heights().filter(|y| *y <= height).fold(bottom, f64::max) - bottom;
+    let above = top - heights().filter(|y| *y >= height).fold(top, f64::min);
+    let shift = |length: f64| length.min(half_length) * angle.tan();
+    let (fall, rise) = (-shift(before), shift(after));
     let (lowest, highest) = (fall.min(rise), fall.max(rise));
     if below + lowest <= 0.0 || above - highest <= 0.0 {
-        let allowed = format!("shifts between {} and {above} m", -below);
+        let message =
+            format!("the line shifts grid lines by {lowest} to {highest} m, out of the body");
         return Err(angle_value.refuse(
-            allowed,
-            format_args!("the line shifts grid lines by {lowest} to {highest} m, out of the body"),
+            format_args!("shifts between {} and {above} m", -below),
+            message,
         ));
     }
     Ok(Follow {
@@ -256,10 +240,8 @@ fn follow(value: Value<'_>, dim: usize, lines: &[Vec<f64>]) -> Result<Follow, Ca
 }
 
 fn ends(line: &[f64]) -> (f64, f64) {
-    (
-        line.first().copied().unwrap_or_default(),
-        line.last().copied().unwrap_or_default(),
-    )
+    let end = |x: Option<&f64>| x.copied().unwrap_or_default();
+    (end(line.first()), end(line.last()))
 }
 
 /// `[sweep]`.
@@ -275,18 +257,12 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
     let factor = |v: Value<'_>| {
         let factor = v.integer(1..=MAX_REFINE)?;
         count_cells(v, &cells, factor)?;
-        let narrow = mesh
-            .grid
-            .lines
-            .iter()
-            .any(|l| l.windows(2).any(|w| !wide_enough(w[0], w[1], factor)));
-        if narrow {
-            return Err(v.refuse(
-                "cells that double precision can tell apart",
-                "cells without width",
-            ));
+        let mut gaps = mesh.grid.lines.iter().flat_map(|line| line.windows(2));
+        let narrow = gaps.any(|w| !wide_enough(w[0], w[1], factor));
+        match narrow {
+            true => Err(without_width(v, "cells")),
+            false => Ok(factor),
         }
-        Ok(factor)
     };
     let frictions = table.optional("friction", |v| {
         // Adding 0 makes -0 the 0 that it equals.

@@ -8,18 +8,17 @@ use stickslip_xfem::exact::{SOLUTIONS, SolutionSpec};
 use stickslip_xfem::geometry::Point;
 use stickslip_xfem::material::{Dilatation, Lame, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
-use toml::de::DeTable;
 
 use super::crack::{CrackSpec, crack};
-use super::error::{CaseError, Source, Span};
+use super::error::{CaseError, Source, Span, parsed};
 use super::exact::{ExactSpec, exact};
 use super::expect::{Expect, ProbeSpec, Runs};
-use super::label::visible;
 use super::load::{LoadSpec, Scene, SupportSpec, load, support};
 use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
 use super::settings::{self, MethodSpec, PathSpec};
 use crate::files::regular;
+use crate::files::visible::visible;
 
 /// One checked case file.
 #[derive(Debug, Clone)]
@@ -152,7 +151,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
     if len > MAX_BYTES {
         return Err(too_large(path, &format!("{len} bytes")));
     }
-    let bytes = regular::rest(file, len, MAX_BYTES).map_err(unreadable)?;
+    let bytes = regular::rest(file, MAX_BYTES).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(e.as_bytes());
@@ -231,7 +230,7 @@ pub(crate) fn document<T>(
     read: impl FnOnce(&Table<'_>) -> Result<T, CaseError>,
 ) -> Result<T, CaseError> {
     let source = Source { file, text };
-    let parsed = DeTable::parse(text).map_err(|e| syntax_error(source, &e))?;
+    let parsed = parsed(text).map_err(|e| syntax_error(source, &e))?;
     read(&Table::root(source, parsed.get_ref(), keys)?)
 }
 

@@ -1,16 +1,18 @@
 //! Typed access to a parsed TOML document that keeps the place of every value.
 //!
-//! The document is walked by hand instead of through serde: every refusal can then name the exact place, the value as
-//! written and the allowed range, also inside arrays and alternatives.
+//! The document is walked by hand instead of through serde. That gives plain tables the same places, but loses those inside of
+//! what may be a text or a table (`tip`, `history`, `on`, `pressure_pa`, options of methods), takes `1e-400` for 0 and says
+//! `expected f64` where a range is meant.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
+use strsim::levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Source, Span, clip};
-use super::label;
+use crate::files::visible::{LABEL, is_label};
 
 /// Magnitudes of numbers other than 0: fourth powers of forces, (E L u)⁴ in a solid, are the highest products that methods
 /// form, and keep all their digits.
@@ -41,6 +43,12 @@ pub(crate) struct Table<'a> {
     source: Source<'a>,
     span: Span,
     map: &'a DeTable<'a>,
+}
+
+impl<'a> Source<'a> {
+    fn value(self, item: &'a Spanned<DeValue<'a>>) -> Value<'a> {
+        Value { source: self, item }
+    }
 }
 
 impl<'a> Value<'a> {
@@ -101,31 +109,27 @@ impl<'a> Value<'a> {
         allowed: &str,
         test: impl Fn(f64) -> bool,
     ) -> Result<f64, CaseError> {
-        let number = match self.item.get_ref() {
-            DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
-            DeValue::Integer(integer) => u64::from_str_radix(integer.as_str(), integer.radix())
-                .ok()
-                .map(|n| n as f64),
+        let (number, written) = match self.item.get_ref() {
+            DeValue::Float(float) => (float.as_str().parse().ok(), float.as_str()),
+            DeValue::Integer(integer) if integer.radix() == 10 => {
+                (integer.as_str().parse().ok(), "0")
+            }
+            DeValue::Integer(integer) => {
+                let number = u64::from_str_radix(integer.as_str(), integer.radix()).ok();
+                (number.map(|n| n as f64), "0")
+            }
             _ => return Err(self.wrong_type(allowed)),
         };
         match number {
             Some(number) if !f64::is_finite(number) => {
                 Err(self.refuse(allowed, "not a finite number"))
             }
-            Some(number) if test(number) && !self.is_computable(number) => Err(self.refuse(
+            Some(number) if test(number) && !computable(number, written) => Err(self.refuse(
                 format_args!("{allowed}; {MAGNITUDES}"),
                 "too small or too large to compute with",
             )),
             Some(number) if test(number) => Ok(number),
             _ => Err(self.refuse(allowed, "out of range")),
-        }
-    }
-
-    fn is_computable(&self, number: f64) -> bool {
-        match self.item.get_ref() {
-            DeValue::Float(float) => computable(number, float.as_str()),
-            _ => computable(number, "0"),
         }
     }
 
@@ -160,11 +164,16 @@ impl<'a> Value<'a> {
         self.item.get_ref().is_table()
     }
 
+    /// Entries of an array; `allowed` says what else may stand in its place.
+    pub(crate) fn list_or(&self, allowed: &str) -> Result<Vec<Value<'a>>, CaseError> {
+        self.list().map_err(|e| self.refuse(allowed, e.message()))
+    }
+
     /// A text that names something: it ends up on terminals, in tables and in figures.
     pub(crate) fn label(&self) -> Result<String, CaseError> {
         let text = self.string()?;
-        if !label::is_label(text) {
-            return Err(self.refuse(label::ALLOWED, "no label"));
+        if !is_label(text) {
+            return Err(self.refuse(LABEL, "no label"));
         }
         Ok(text.to_string())
     }
@@ -176,28 +185,15 @@ impl<'a> Value<'a> {
         let DeValue::String(text) = self.item.get_ref() else {
             return Err(self.wrong_type(&allowed));
         };
-        choices
-            .iter()
-            .find(|c| c.0 == text)
-            .map(|c| c.1)
-            .ok_or_else(|| {
-                self.refuse(
-                    &allowed,
-                    format_args!("unknown name{}", suggestion(text, &names)),
-                )
-            })
+        let found = choices.iter().find(|c| c.0 == text).map(|c| c.1);
+        let unknown = || format!("unknown name{}", suggestion(text, &names));
+        found.ok_or_else(|| self.refuse(&allowed, unknown()))
     }
 
     /// Entries of an array.
     pub(crate) fn list(&self) -> Result<Vec<Value<'a>>, CaseError> {
         match self.item.get_ref() {
-            DeValue::Array(array) => Ok(array
-                .iter()
-                .map(|item| Value {
-                    source: self.source,
-                    item,
-                })
-                .collect()),
+            DeValue::Array(array) => Ok(array.iter().map(|item| self.source.value(item)).collect()),
             _ => Err(self.wrong_type("an array")),
         }
     }
@@ -205,13 +201,11 @@ impl<'a> Value<'a> {
     /// Array of `length` entries.
     pub(crate) fn list_of(&self, length: usize) -> Result<Vec<Value<'a>>, CaseError> {
         let list = self.list()?;
-        if list.len() != length {
-            return Err(self.refuse(
-                format_args!("{length} entries"),
-                format_args!("{} entries", list.len()),
-            ));
+        let found = format!("{} entries", list.len());
+        match list.len() == length {
+            true => Ok(list),
+            false => Err(self.refuse(format_args!("{length} entries"), found)),
         }
-        Ok(list)
     }
 
     /// Array of `length` finite numbers.
@@ -270,16 +264,14 @@ impl<'a> Table<'a> {
     }
 
     fn only(&self, keys: &[&str]) -> Result<(), CaseError> {
-        let unknown = self
-            .entries()
-            .into_iter()
-            .find(|(key, _, _)| !keys.contains(key));
-        unknown.map_or(Ok(()), |(key, span, _)| {
-            let message = format!("unknown key{}", suggestion(key, keys));
-            Err(self
-                .source
-                .error(&span, clip(key), keys.join(", "), message))
-        })
+        let unknown = |entry: &(&str, Span, Value)| !keys.contains(&entry.0);
+        let Some((key, span, _)) = self.entries().into_iter().find(unknown) else {
+            return Ok(());
+        };
+        let message = format!("unknown key{}", suggestion(key, keys));
+        Err(self
+            .source
+            .error(&span, clip(key), keys.join(", "), message))
     }
 
     /// Place of the table: its header, or its braces.
@@ -289,25 +281,19 @@ impl<'a> Table<'a> {
 
     /// Keys with their places and values, in file order.
     pub(crate) fn entries(&self) -> Vec<(&'a str, Span, Value<'a>)> {
-        let value = |item| Value {
-            source: self.source,
-            item,
-        };
-        let mut entries: Vec<_> = self
-            .map
-            .iter()
-            .map(|(key, item)| (key.get_ref().as_ref(), key.span(), value(item)))
-            .collect();
+        let entries = self.map.iter();
+        let entries = entries.map(|(key, item)| {
+            let name = key.get_ref().as_ref();
+            (name, key.span(), self.source.value(item))
+        });
+        let mut entries: Vec<_> = entries.collect();
         entries.sort_by_key(|e| e.1.start);
         entries
     }
 
     /// Value of a key that may be absent.
     pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
-        self.map.get(key).map(|item| Value {
-            source: self.source,
-            item,
-        })
+        self.map.get(key).map(|item| self.source.value(item))
     }
 
     /// What a key that may be absent says.
@@ -325,10 +311,29 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(&format!("`{key}`")))
     }
 
+    /// A number that must be given and pass a test; `allowed` says which do.
+    pub(crate) fn number_if(
+        &self,
+        key: &str,
+        allowed: &str,
+        test: impl Fn(f64) -> bool,
+    ) -> Result<f64, CaseError> {
+        self.required(key)?.number_if(allowed, test)
+    }
+
     /// A number above 0 that must be given.
     pub(crate) fn positive(&self, key: &str) -> Result<f64, CaseError> {
-        let allowed = format!("{key} > 0");
-        self.required(key)?.number_if(&allowed, |x| x > 0.0)
+        self.number_if(key, &format!("{key} > 0"), |x| x > 0.0)
+    }
+
+    /// A point that must be given.
+    pub(crate) fn point<const N: usize>(&self, key: &str) -> Result<[f64; N], CaseError> {
+        self.required(key)?.point()
+    }
+
+    /// Place of the value of a key, of the table where it is not given.
+    pub(crate) fn place(&self, key: &str) -> Span {
+        self.get(key).map_or(self.span(), |value| value.span())
     }
 
     /// The one key of several that is given, exactly one of which must be.
@@ -336,31 +341,22 @@ impl<'a> Table<'a> {
         &self,
         keys: &[&'k str],
     ) -> Result<(&'k str, Value<'a>), CaseError> {
-        let mut given = keys
-            .iter()
-            .filter_map(|key| self.get(key).map(|value| (*key, value)));
-        let first = given
-            .next()
-            .ok_or_else(|| self.missing(&format!("exactly one of `{}`", keys.join("`, `"))))?;
-        match given.next() {
-            None => Ok(first),
-            Some((key, value)) => Err(self.source.error(
-                &value.span(),
-                format_args!("`{key}` beside `{}`", first.0),
-                format_args!("exactly one of `{}`", keys.join("`, `")),
-                "keys exclude each other",
-            )),
-        }
+        let allowed = format!("exactly one of `{}`", keys.join("`, `"));
+        let given = |key: &&'k str| self.get(key).map(|value| (*key, value));
+        let mut given = keys.iter().filter_map(given);
+        let first = given.next().ok_or_else(|| self.missing(&allowed))?;
+        let Some((key, value)) = given.next() else {
+            return Ok(first);
+        };
+        let both = format!("`{key}` beside `{}`", first.0);
+        let message = "keys exclude each other";
+        Err(self.source.error(&value.span(), both, allowed, message))
     }
 
     /// Error about what is not there, at the table itself.
     pub(crate) fn missing(&self, wanted: &str) -> CaseError {
-        self.source.error(
-            &self.span,
-            "nothing",
-            wanted,
-            format_args!("missing {wanted}"),
-        )
+        let message = format!("missing {wanted}");
+        self.source.error(&self.span, "nothing", wanted, message)
     }
 
     /// Tables of an array of tables; none if the key is absent.
@@ -385,7 +381,7 @@ fn suggestion(found: &str, names: &[&str]) -> String {
     }
     let nearest = names
         .iter()
-        .map(|name| (distance(found, name), *name))
+        .map(|name| (levenshtein(found, name), *name))
         .min();
     match nearest {
         Some((errors, name)) if errors <= 2.max(name.len() / 3) => {
@@ -395,33 +391,9 @@ fn suggestion(found: &str, names: &[&str]) -> String {
     }
 }
 
-/// Levenshtein distance (insertions, deletions, substitutions).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distance_counts_single_letter_errors() {
-        assert_eq!(distance("young_pa", "young_pa"), 0);
-        assert_eq!(distance("yuong_pa", "young_pa"), 2);
-        assert_eq!(distance("poison", "poisson"), 1);
-        assert_eq!(distance("", "abc"), 3);
-    }
 
     #[test]
     fn only_close_names_are_suggested() {

@@ -48,13 +48,11 @@ pub(super) fn quadrature(root: &Table<'_>) -> Result<Quadrature, CaseError> {
     if text == "sub-cells" {
         return Ok(Quadrature::SubCells);
     }
-    let points = text
-        .strip_prefix("gauss-")
-        .and_then(|n| n.parse().ok())
-        .filter(|n| (2..=16).contains(n));
-    points
-        .map(Quadrature::Gauss)
-        .ok_or_else(|| value.refuse(allowed, "unknown quadrature"))
+    let points = text.strip_prefix("gauss-").and_then(|n| n.parse().ok());
+    match points {
+        Some(points @ 2..=16) => Ok(Quadrature::Gauss(points)),
+        _ => Err(value.refuse(allowed, "unknown quadrature")),
+    }
 }
 
 /// `[material]`.
@@ -67,9 +65,9 @@ pub(super) fn material(
         .table(&["young_pa", "poisson", "dilatation"])?;
     let material = Material {
         young: table.positive("young_pa")?,
-        poisson: table
-            .required("poisson")?
-            .number_if("0 <= poisson < 0.5", |nu| (0.0..0.5).contains(&nu))?,
+        poisson: table.number_if("poisson", "0 <= poisson < 0.5", |nu| {
+            (0.0..0.5).contains(&nu)
+        })?,
     };
     let dilatation = table.optional("dilatation", |value| match value.string()? {
         "full" => Ok(Dilatation::Full),

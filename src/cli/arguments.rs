@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
-use crate::case::label::visible;
 use crate::case::{self, Case, shipped};
+use crate::files::claim::COMMAND;
 use crate::files::regular;
-use crate::files::written::COMMAND;
+use crate::files::visible::visible;
 use crate::report::names::file_name;
 use crate::report::table::Description;
 use crate::report::tables::catalogue;
@@ -17,8 +17,8 @@ use crate::run::choice::{Choice, ChoiceError};
 use crate::run::outside::{OUTSIDE, SECONDS};
 use crate::run::provenance::Provenance;
 use crate::run::registry::methods;
-use crate::run::run_case::Settings;
-use crate::studies::sweep::cell::digest_of_bytes;
+use crate::studies::cases::Settings;
+use crate::studies::task::digest_of_bytes;
 
 /// A case by file, or by the name of a shipped one.
 pub fn find_case(name: &str) -> Result<Case, CliError> {
@@ -61,7 +61,13 @@ pub struct Output {
 }
 
 /// Sub-folders of results, and a name in each.
-const BELOW: [&str; 5] = ["figures/a", "fields/a", "cases/a", "cells/a", "solutions/a"];
+const BELOW: [&str; 5] = [
+    "figures/a",
+    "fields/a",
+    "cases/a",
+    "records/a",
+    "solutions/a",
+];
 
 impl Output {
     /// The folder.

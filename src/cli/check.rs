@@ -15,8 +15,9 @@ use crate::model::loading::Loading;
 use crate::model::memory::predicted_gb;
 use crate::report::number::significant;
 use crate::run::choice::choices;
-use crate::run::expect;
-use crate::run::run_case::{RunError, friction_values};
+use crate::studies::axes::friction_values;
+use crate::studies::expect;
+use crate::studies::measure::RunError;
 
 /// Digits shown, and below which part of the largest entry a sum is rounding.
 const DIGITS: usize = 6;

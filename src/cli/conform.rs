@@ -1,12 +1,14 @@
 //! `stickslip conform`: does a method, or a program as one, do what methods are to do?
 
-use stickslip_methods::{MethodError, Tier};
+use stickslip_methods::Tier;
 
 use super::arguments::{ProgramLimit, methods_or_all};
 use super::error::CliError;
 use super::output::{say, show};
+use super::progress::Bar;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::conformance::{Attempt, Mark, attempt, exercises};
+use crate::studies::conformance::{self, Mark, distance, expected, mark};
+use crate::studies::record::Record;
 
 /// Arguments of `conform`.
 #[derive(Debug, clap::Args)]
@@ -24,25 +26,31 @@ pub struct Arguments {
 /// Runs the exercises; false if one failed, or a method solved none.
 pub fn run(arguments: &Arguments) -> Result<bool, CliError> {
     let choices = methods_or_all(&arguments.methods, &arguments.limit)?;
+    let bar = Bar::new();
+    let records = conformance::run(&choices, arguments.tier.tolerance(), &bar)?;
+    bar.finish();
     let mut all_pass = true;
     for choice in &choices {
-        let attempts = exercises()
+        let own = records
             .iter()
-            .map(|exercise| attempt(exercise, choice, arguments.tier.tolerance()))
-            .collect::<Result<Vec<_>, MethodError>>()?;
+            .filter(|own| own.found.method == choice.label);
+        let own: Vec<Attempt> = own.map(|record| Attempt(record.clone())).collect();
         let note = format!(" of {}", choice.label);
-        show(&attempts, &note);
-        let count = |mark| attempts.iter().filter(|own| own.mark == mark).count();
+        show(&own, &note);
+        let count = |as_marked| own.iter().filter(|own| mark(&own.0) == as_marked).count();
         let [passed, declined, failed] = [Mark::Passed, Mark::Declined, Mark::Failed].map(count);
         say(format_args!(
             "{}: {passed} of {} passed, {declined} declined, {failed} failed",
             choice.label,
-            attempts.len()
+            own.len()
         ));
         all_pass &= failed == 0 && passed > 0;
     }
     Ok(all_pass)
 }
+
+/// A record of an exercise, as a row.
+struct Attempt(Record);
 
 impl Row for Attempt {
     const NAME: &'static str = "conformance";
@@ -53,13 +61,13 @@ impl Row for Attempt {
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "exercise" "" .shown() = r.exercise, "what is to be solved";
-            "passed" "" .shown() = r.mark.as_str(), "whether the verdict is the expected one and the reactions are the known ones";
-            "expected" "" .shown() = r.expected, "verdict that passes";
-            "verdict" "" .shown() = &r.verdict, "what the method claims, checked";
-            "violation" "–" .residual().shown() = r.violation, "largest violation of the contact laws, found by the judge";
-            "distance" "–" .residual().shown() = r.distance, "distance of the reactions from the known ones";
-            "iterations" "" .shown() = r.iterations, "iterations of the method";
+            "exercise" "" .shown() = r.0.asked.case.clone(), "what is to be solved";
+            "passed" "" .shown() = mark(&r.0).as_str(), "whether the verdict is the expected one and the reactions are the known ones";
+            "expected" "" .shown() = expected(&r.0), "verdict that passes";
+            "verdict" "" .shown() = &r.0.found.verdict, "what the method claims, checked";
+            "violation" "–" .residual().shown() = r.0.found.violation(), "largest violation of the contact laws, found by the judge";
+            "distance" "–" .residual().shown() = distance(&r.0), "distance of the reactions from the known ones";
+            "iterations" "" .shown() = r.0.found.sum(|step| step.iterations), "iterations of the method";
         }
     }
 }

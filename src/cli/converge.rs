@@ -8,6 +8,7 @@ use crate::case::{ContactSpace, Tip};
 use crate::report::{Plan, Provenance};
 use crate::run::choice::Choice;
 use crate::studies::convergence::{self, ConvergencePlan, orders};
+use crate::studies::tips::tip_named;
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
@@ -37,13 +38,7 @@ fn space(text: &str) -> Result<ContactSpace, String> {
 }
 
 fn tip(text: &str) -> Result<Tip, String> {
-    match (text, text.parse::<f64>()) {
-        ("none", _) => Ok(Tip::None),
-        ("auto", _) => Ok(Tip::Auto),
-        ("branch", _) => Ok(Tip::Branch),
-        (_, Ok(radius)) if radius > 0.0 && radius.is_finite() => Ok(Tip::Radius(radius)),
-        _ => Err("none, auto, branch, or a radius > 0 in m".into()),
-    }
+    tip_named(text).ok_or_else(|| "none, auto, branch, or a radius > 0 in m".into())
 }
 
 /// None of nothing.
@@ -74,12 +69,7 @@ pub fn run(arguments: Arguments, whole: Plan) -> Result<bool, CliError> {
     let bar = Bar::new();
     let mut samples = Vec::new();
     for case in &cases {
-        samples.extend(convergence::run(
-            case,
-            &plan,
-            &convergence::closed_form,
-            &bar,
-        )?);
+        samples.extend(convergence::run(case, &plan, &bar)?);
     }
     bar.finish();
 

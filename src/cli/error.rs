@@ -1,22 +1,17 @@
 //! Why a command ended without an answer.
 
-use stickslip_methods::MethodError;
-
 use crate::case::CaseError;
 use crate::files::bundle::FolderError;
 use crate::report::ReportError;
 use crate::report::page::PageError;
 use crate::run::choice::ChoiceError;
-use crate::run::run_case::RunError;
-use crate::studies::exchange::collection::CollectionError;
 use crate::studies::exchange::export::ExportError;
 use crate::studies::exchange::problem_file::ProblemFileError;
+use crate::studies::lab::LabError;
+use crate::studies::measure::RunError;
 use crate::studies::paper::PaperError;
-use crate::studies::robustness::RobustnessError;
-use crate::studies::stress;
-use crate::studies::sweep::conduct::ConductError;
-use crate::studies::sweep::plan::PlanError;
-use crate::studies::sweep::store::StoreError;
+use crate::studies::records::RecordsError;
+use crate::studies::sources::collection::CollectionError;
 
 /// Why a command ended with exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -24,12 +19,6 @@ pub enum CliError {
     /// A run could not start.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The robustness study.
-    #[error(transparent)]
-    Robustness(#[from] RobustnessError),
-    /// The stress suite.
-    #[error(transparent)]
-    Stress(#[from] stress::conduct::ConductError),
     /// The main job.
     #[error(transparent)]
     Paper(#[from] PaperError),
@@ -77,15 +66,18 @@ pub enum CliError {
         /// The method.
         name: String,
     },
-    /// A sweep file.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
+    /// Methods given beside a sweep.
+    #[error("--method is for cases and folders: a sweep file names its own methods")]
+    MethodOfSweep,
+    /// What cannot be asked.
+    #[error("{0}")]
+    Question(String),
     /// A folder of records.
     #[error(transparent)]
-    Store(#[from] StoreError),
-    /// A sweep that ended early.
+    Records(#[from] RecordsError),
+    /// Not all could be measured.
     #[error(transparent)]
-    Conduct(#[from] ConductError),
+    Lab(#[from] LabError),
     /// This program cannot be found to start it again.
     #[error("cannot find this program to measure cells in a process of its own: {0}")]
     Program(std::io::Error),
@@ -95,9 +87,6 @@ pub enum CliError {
     /// A worker that lost its conductor, or was refused its memory limit.
     #[error("cannot measure cells: {0}")]
     Work(std::io::Error),
-    /// An exercise that makes no system.
-    #[error("an exercise of the conformance kit: {0}")]
-    Exercise(#[from] MethodError),
     /// A method with options.
     #[error(transparent)]
     Choice(#[from] ChoiceError),

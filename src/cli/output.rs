@@ -1,11 +1,14 @@
-//! Output that may close early: `stickslip list | head` is no error.
+//! Output that may close early: `stickslip show | head` is no error.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::case::label::visible;
+use crate::files::visible::visible;
+use crate::report::standard;
 use crate::report::table::{Row, readable};
+use crate::studies::rows::Results;
 
 /// Whether some line could not be printed.
 pub static LOST: AtomicBool = AtomicBool::new(false);
@@ -22,6 +25,23 @@ pub fn say(text: Arguments<'_>) {
 /// Prints a table.
 pub fn show<R: Row>(rows: &[R], note: &str) {
     say(format_args!("{}", readable(rows, note).terminal()));
+}
+
+/// Prints what runs came to and where it lies; true if all is as expected.
+pub fn conclude(results: &Results, dir: &Path) -> bool {
+    show(
+        &standard::last_runs(&results.runs),
+        ": the last increment of each",
+    );
+    if !results.expectations.is_empty() {
+        show(&results.expectations, "");
+    }
+    for remark in &results.remarks {
+        say(format_args!("{remark}"));
+    }
+    let summary = standard::summary(results);
+    say(format_args!("{summary}\nResults: {}", dir.display()));
+    results.as_expected()
 }
 
 /// Prints a line on standard error. Where nobody reads it the exit code still tells.

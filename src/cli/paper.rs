@@ -5,9 +5,9 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Plan, page, paper as report};
-use crate::run::record::Results;
-use crate::run::run_case::{Fields, Settings};
+use crate::studies::cases::{Fields, Settings, Why};
 use crate::studies::paper::{self, Extent};
+use crate::studies::rows::Results;
 
 /// Arguments of `stickslip paper`.
 #[derive(Debug, clap::Args)]
@@ -31,6 +31,7 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
         jobs: usize::from(jobs),
         fields: Fields::First,
         starts: 1,
+        why: Why::Nothing,
     };
     let bar = Bar::new();
     let (table1, table2) = paper::first_tables(settings, &bar)?;

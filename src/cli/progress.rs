@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::warn;
-use crate::run::run_case::Progress;
+use crate::run::progress::Progress;
 
 /// A progress bar with the remaining time on a terminal; in a pipe nothing, or a line per run.
 pub struct Bar {

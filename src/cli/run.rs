@@ -4,13 +4,13 @@ use stickslip_methods::Tier;
 
 use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
-use super::output::{say, show};
+use super::output::conclude;
 use super::progress::Bar;
 use crate::report::{Plan, page, standard};
 use crate::run::choice::choices;
-use crate::run::expect;
-use crate::run::record::Results;
-use crate::run::run_case::{Fields, Settings, run_case};
+use crate::studies::cases::{Fields, Settings, Why, run_case};
+use crate::studies::expect;
+use crate::studies::rows::Results;
 
 /// Arguments of `stickslip run`.
 #[derive(Debug, clap::Args)]
@@ -32,6 +32,9 @@ pub struct Arguments {
     /// Starts from which methods look for further answers: `solved (several)` where two hold; 1 for that of the increment alone
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
+    /// Look for what solves the problem of a run that gave up
+    #[arg(long)]
+    explain: bool,
     /// Runs at the same time; times are recorded for 1 only
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
@@ -58,6 +61,11 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
             FieldsOf::All => Fields::All,
         },
         starts: usize::from(arguments.starts),
+        why: if arguments.explain {
+            Why::Cure
+        } else {
+            Why::Cause
+        },
     };
     let cases = find_cases(&arguments.cases)?;
     let given = arguments
@@ -81,17 +89,5 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let mut bundle = standard::bundle(&results, &provenance_with(settings, &given))?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
-    show(
-        &standard::last_runs(&results.runs),
-        ": the last increment of each",
-    );
-    if !results.expectations.is_empty() {
-        show(&results.expectations, "");
-    }
-    say(format_args!(
-        "{}\nResults: {}",
-        standard::summary(&results),
-        claim.dir().display()
-    ));
-    Ok(results.as_expected())
+    Ok(conclude(&results, claim.dir()))
 }

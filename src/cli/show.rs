@@ -1,4 +1,4 @@
-//! `stickslip list` and `stickslip show`: methods, cases and closed forms.
+//! The verb `show`: methods, cases, closed forms, and folders of reports.
 
 use std::path::Path;
 
@@ -8,26 +8,40 @@ use super::error::CliError;
 use super::method_manual;
 use super::output::say;
 use crate::case::{self, shipped};
-use crate::report::schema;
+use crate::report::{page, schema};
 use crate::run::registry::{method, methods};
 
 /// Arguments of `stickslip show`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Method or case; `methods` and `schema` print the manuals of the methods and of the output files
-    name: String,
+    /// Method or case; `methods` and `schema` print the manuals of the methods and of the output files; a folder of reports is
+    /// shown as one page, index.html. All names by default
+    name: Option<String>,
 }
 
-/// Prints all names.
-pub fn run_list() -> Result<bool, CliError> {
-    say(format_args!("{}", list_text().trim_end()));
-    Ok(true)
-}
-
-/// Prints one method or case, or a manual.
+/// Prints one method or case, a manual, or all names; writes the page of a folder.
 pub fn run(Arguments { name }: Arguments) -> Result<bool, CliError> {
-    say(format_args!("{}", show_text(&name)?.trim_end()));
+    match name {
+        None => say(format_args!("{}", list_text().trim_end())),
+        // Names come first: `./methods` is the folder.
+        Some(name) if Path::new(&name).is_dir() && !is_name(&name) => {
+            let bytes = page::write(Path::new(&name))?;
+            let page = Path::new(&name).join(page::FILE);
+            say(format_args!(
+                "{}: {:.1} MB",
+                page.display(),
+                bytes as f64 / 1e6
+            ));
+        }
+        Some(name) => say(format_args!("{}", show_text(&name)?.trim_end())),
+    }
     Ok(true)
+}
+
+/// Whether this is the name of a manual, a method or a case.
+fn is_name(name: &str) -> bool {
+    let is_case = shipped::CASES.iter().any(|case| case.0 == name);
+    ["methods", "schema"].contains(&name) || is_case || method(name).is_some()
 }
 
 fn list_text() -> String {

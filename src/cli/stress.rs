@@ -1,17 +1,24 @@
-//! The verb `stress`: the suite of random scenes, and the study of all methods on random problems.
+//! The verb `stress`: the suite of random scenes.
 
 use super::arguments::Output;
 use super::error::CliError;
 use super::output::{say, show, warn};
 use super::progress::Bar;
-use super::robustness;
-use super::sweep::{STOP, shard, watch_for_interruption};
-use crate::files::written::COMMAND;
+use super::study::{STOP, shard, watch_for_interruption};
+use crate::files::claim::COMMAND;
 use crate::report::{Bundle, Claim, Plan, Provenance, page, stress as report};
-use crate::studies::stress::conduct::{Conduct, Suite, conduct};
-use crate::studies::stress::examine::{Effort, examine};
-use crate::studies::stress::{Family, ladder, rungs, scene, summary};
-use crate::studies::sweep::conduct::Shard;
+use crate::studies::lab::{Inside, Lab, Shard, Workers};
+use crate::studies::record::{Limits, Record};
+use crate::studies::records::Records;
+use crate::studies::stress::find::{Effort, find};
+use crate::studies::stress::suite::{self, Suite};
+use crate::studies::stress::{Family, places, scene, summary};
+
+/// Limits on a method on a scene.
+const LIMITS: Limits = Limits {
+    seconds: 120.0,
+    memory_mb: Some(8000),
+};
 
 /// Scenes of every family by default, and with `--full`: about 10 minutes, and a night, on two cores.
 const SCENES: [(Family, u64, u64); 5] = [
@@ -24,10 +31,7 @@ const SCENES: [(Family, u64, u64); 5] = [
 
 /// Arguments of the verb.
 #[derive(Debug, clap::Args)]
-#[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
-    #[command(subcommand)]
-    part: Option<Part>,
     /// Seed: the same scenes on every machine
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -53,13 +57,6 @@ pub struct Arguments {
     shard: Option<Shard>,
 }
 
-/// What else there is.
-#[derive(Debug, clap::Subcommand)]
-enum Part {
-    /// Every method on random problems with one crack: how often each succeeds, by friction coefficient
-    Methods(robustness::Arguments),
-}
-
 fn family(text: &str) -> Result<Family, String> {
     let known = Family::ALL.into_iter().find(|f| f.name() == text);
     known.ok_or_else(|| Family::ALL.map(Family::name).join(", "))
@@ -67,9 +64,6 @@ fn family(text: &str) -> Result<Family, String> {
 
 /// Runs the suite; false if the program was wrong, or the default method missed a scene with one answer.
 pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
-    if let Some(Part::Methods(methods)) = arguments.part {
-        return robustness::run(methods, plan);
-    }
     if let (Some(number), Some(&family)) = (arguments.only, arguments.family.first()) {
         return one(&arguments, family, number);
     }
@@ -82,54 +76,59 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         if f.is_random() {
             n
         } else {
-            n.min(ladder::count())
+            n.min(places::count())
         }
     };
     let own = SCENES.into_iter().filter(|(f, ..)| wanted(f));
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
     let suite = Suite {
         seed: arguments.seed,
         scenes: own
             .map(|(f, few, many)| (f, of(f, count(few, many))))
             .collect(),
+        shard: (shard.number as u64, shard.of as u64),
     };
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let shard = arguments.shard.unwrap_or(Shard::ALL);
-    let how = Conduct {
-        program: &program,
-        jobs: arguments.jobs.map_or(cores, usize::from),
-        shard: (shard.number as u64, shard.of as u64),
-        stop: &STOP,
-    };
-    // Not how many scenes: findings are kept, more may follow.
+    // Not how many scenes: records are kept, more may follow.
     plan.retain(|name, _| [COMMAND, "seed"].contains(&name.as_str()));
     let claim = arguments.output.claim("stress", plan)?;
+    claim.mark()?;
     let bar = Bar::with_lines();
-    let findings = conduct(&suite, &claim, arguments.output.force, how, &bar)?;
+    let mut workers = Workers {
+        lab: Lab {
+            program: &program,
+            jobs: arguments.jobs.map_or(cores, usize::from),
+            repeats: None,
+            limits: LIMITS,
+            stop: &STOP,
+        },
+        records: Records::of(claim.dir()),
+        progress: &bar,
+    };
+    let findings = suite::run(&mut workers, &suite)?;
     bar.finish();
-    let provenance = Provenance::collect(how.jobs).with_option("seed", suite.seed.to_string());
-    let mut bundle = report::bundle(&suite, &findings, &provenance)?;
+    let total: u64 = suite.scenes.values().sum();
+    let provenance =
+        Provenance::collect(workers.lab.jobs).with_option("seed", suite.seed.to_string());
+    let mut bundle = report::bundle(suite.seed, &findings, &provenance)?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
-    show(&summary::causes(&findings), "");
+    show(&summary::faults(&findings), "");
     show(&summary::invariances(&findings), "");
     show(&summary::methods(&findings), "");
-    show(&rungs::of_scenes(&findings), "");
-    show(&rungs::of_options(&findings), "");
-    let total: u64 = suite.scenes.values().sum();
+    show(&summary::of_ladders(&findings), "");
     say(format_args!(
         "{} of {total} scenes. Results: {}",
         findings.len(),
         claim.dir().display()
     ));
-    for finding in findings
-        .iter()
-        .filter(|f| f.cause.is_some_and(|c| c.is_fault()))
-    {
-        let (name, number) = (finding.family.name(), finding.number);
-        let cause = finding.cause.map_or("", |c| c.name());
-        warn(format_args!("{cause}: {name} {number}: {}", finding.reason));
+    for finding in &findings {
+        if let Some(fault) = finding.fault.filter(|fault| fault.is_wrong()) {
+            let (name, number) = (finding.scene.family.name(), finding.scene.number);
+            warn(format_args!("{fault}: {name} {number}: {}", finding.reason));
+        }
     }
     Ok(summary::as_expected(&findings))
 }
@@ -146,23 +145,28 @@ fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliEr
     let file = format!("{}-{number}.toml", family.name());
     bundle.add(file.clone(), scene.text.clone())?;
     claim.commit(&bundle)?;
-    let finding = examine(&scene, Effort::All);
-    for trial in &finding.trials {
-        let cause = trial.cause.map_or("", |c| c.name());
-        let (method, verdict) = (&trial.method, trial.verdict.to_string());
+    let findings = find(&mut Inside::default(), &[scene], Effort::All)?;
+    for finding in &findings {
+        for Record { found, .. } in &finding.records {
+            let cause = found
+                .why
+                .as_ref()
+                .map_or("", |why| why.diagnosis.cause.name());
+            let iterations = found.sum(|step| step.iterations);
+            let (method, verdict) = (&found.method, found.verdict.to_string());
+            say(format_args!(
+                "{method:22} {verdict:24} {iterations:6} {cause}"
+            ));
+        }
+        for seen in &finding.seen {
+            say(format_args!("{:34} {seen}", seen.transformation));
+        }
+        let fault = finding.fault.map_or("right", |fault| fault.name());
         say(format_args!(
-            "{method:22} {verdict:24} {:6} {cause}",
-            trial.iterations
+            "{fault} {}\nCase: {}",
+            finding.reason,
+            claim.dir().join(&file).display()
         ));
     }
-    for change in &finding.invariance {
-        say(format_args!("{:34} {change}", change.transformation));
-    }
-    let cause = finding.cause.map_or("right", |c| c.name());
-    say(format_args!(
-        "{cause} {}\nCase: {}",
-        finding.reason,
-        claim.dir().join(file).display()
-    ));
-    Ok(summary::as_expected(&[finding]))
+    Ok(summary::as_expected(&findings))
 }

@@ -2,7 +2,6 @@
 //! go wrong, and names.
 
 use std::collections::BTreeMap;
-use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Component, Path, PathBuf};
 
 /// Failure to write into a folder.
@@ -18,12 +17,6 @@ pub enum FolderError {
         path: PathBuf,
         /// Why.
         source: std::io::Error,
-    },
-    /// Another process writes there.
-    #[error("another run is writing into `{}`: wait for it, or choose another folder", path.display())]
-    Busy {
-        /// The folder.
-        path: PathBuf,
     },
     /// Something that this program did not write stands where it writes, or a link.
     #[error("`{}` is in the way: {why}; move it away, or choose another folder", path.display())]
@@ -144,12 +137,4 @@ pub(super) fn is_inside(path: &str) -> bool {
     let parts = Path::new(path).components();
     let below = parts.filter(|part| matches!(part, Component::Normal(_)));
     !path.is_empty() && below.collect::<PathBuf>().as_os_str() == path
-}
-
-/// A word that no other command uses at the same time, also on other machines and in containers whose processes have the
-/// same numbers.
-pub fn unique() -> String {
-    // The standard library seeds its hash maps at random.
-    let random = RandomState::new().build_hasher().finish();
-    format!("{}-{random:016x}", std::process::id())
 }

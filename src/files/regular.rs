@@ -1,23 +1,19 @@
-//! Reading files that somebody named: at once, bounded, and only what a disk holds.
-//!
-//! A pipe blocks until somebody writes into it, a device such as `/dev/zero` never ends, and a file may grow while it is
-//! read. None of them may take the program along.
+//! Reading files that somebody named: bounded, and only what a disk holds. A pipe may block, and a device never end.
 
-use std::fs::{File, FileType, Metadata};
+use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// Opens a regular file.
+/// Opens a regular file: the file and its length.
 ///
 /// # Errors
-/// Those of the file system, and whatever is no regular file, by name.
+/// Those of the file system, and whatever is no regular file.
 pub fn open(path: &Path) -> Result<(File, u64)> {
     // Before it is opened: opening a pipe waits for its other end.
     regular(&std::fs::metadata(path)?)?;
     let file = File::open(path)?;
-    let described = file.metadata()?;
-    regular(&described)?;
-    Ok((file, described.len()))
+    let len = file.metadata()?.len();
+    Ok((file, len))
 }
 
 /// Reads a regular file of at most `most` bytes.
@@ -25,8 +21,7 @@ pub fn open(path: &Path) -> Result<(File, u64)> {
 /// # Errors
 /// Those of [`open`], and a file that is larger, also because it grows.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let (file, len) = open(path)?;
-    rest(file, len, most)
+    rest(open(path)?.0, most)
 }
 
 /// As [`read`], for text.
@@ -36,64 +31,38 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
 pub fn read_text(path: &Path, most: u64) -> Result<String> {
     String::from_utf8(read(path, most)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        invalid(format!(
-            "byte {at} is 0x{:02X}, no UTF-8 text",
-            e.as_bytes()[at]
-        ))
+        let byte = e.as_bytes()[at];
+        invalid(format!("byte {at} is 0x{byte:02X}, no UTF-8 text"))
     })
 }
 
-/// What is left of an open file that was `len` bytes long.
+/// What is left of an open file.
 ///
 /// # Errors
 /// Those of [`read`].
-pub fn rest(file: File, len: u64, most: u64) -> Result<Vec<u8>> {
-    if len > most {
-        return Err(invalid(format!(
-            "it has {len} bytes, at most {most} are read"
-        )));
-    }
+pub fn rest(file: File, most: u64) -> Result<Vec<u8>> {
+    let len = file.metadata()?.len();
     let mut bytes = Vec::new();
-    let room = usize::try_from(len).map_err(|_| Error::from(ErrorKind::OutOfMemory))?;
-    bytes.try_reserve_exact(room)?;
-    file.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        return Err(invalid(format!(
-            "it grew beyond {most} bytes while it was read"
-        )));
+    if len <= most {
+        // Checked first: the length of a sparse file is no promise that it fits.
+        bytes.try_reserve_exact(len as usize)?;
+        file.take(most + 1).read_to_end(&mut bytes)?;
     }
-    Ok(bytes)
+    match len.max(bytes.len() as u64) {
+        len if len > most => Err(invalid(format!(
+            "it has {len} bytes, at most {most} are read"
+        ))),
+        _ => Ok(bytes),
+    }
 }
 
 fn regular(described: &Metadata) -> Result<()> {
-    let kind = described.file_type();
-    match kind.is_file() {
-        true => Ok(()),
-        false => Err(invalid(format!("{}, not a regular file", named(kind)))),
-    }
-}
-
-#[cfg(unix)]
-fn named(kind: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-    if kind.is_dir() {
-        "a directory"
-    } else if kind.is_fifo() {
-        "a pipe"
-    } else if kind.is_socket() {
-        "a socket"
-    } else {
-        "a device"
-    }
-}
-
-#[cfg(not(unix))]
-fn named(kind: FileType) -> &'static str {
-    if kind.is_dir() {
-        "a directory"
-    } else {
-        "a device"
-    }
+    let kind = match (described.is_file(), described.is_dir()) {
+        (true, _) => return Ok(()),
+        (false, true) => "a directory",
+        (false, false) => "a pipe or device",
+    };
+    Err(invalid(format!("{kind}, not a regular file")))
 }
 
 fn invalid(what: String) -> Error {

@@ -1,39 +1,23 @@
-//! Supports: from the words of a case to prescribed unknowns.
-//!
-//! ```text
-//!   copy p of node j:  ū_j + 2 b_jp,  its own:  ū_j                      cracks part the support of a node into pieces
-//!   own copy held by support o, copy p by s:  ū_j = u_o(x_j),  b_jp = ½ (u_s(x_j) − u_o(x_j))
-//! ```
-//!
-//! A support holds the copies that live on the pieces of its side which its region holds wholly, and of a node on a crack those
-//! that its region touches: one lip where it begins at the crack. A facet of which no region holds anything is held by its nodes,
-//! if all of them are: then what is prescribed there is the interpolation of their displacements.
+//! Parts of the border and supports, from the words of a case to plain values.
 
-use std::collections::{BTreeMap, BTreeSet};
+use stickslip_xfem::geometry::Point;
+use stickslip_xfem::loads::border::{self, Parts};
+use stickslip_xfem::loads::supports::{self, Support};
 
-use stickslip_xfem::contact::free_jumps::FreeJumps;
-use stickslip_xfem::cut::crack::{Crack, HAIR, first_on};
-use stickslip_xfem::enrichment::Enrichment;
-use stickslip_xfem::enrichment::basis::{FunctionKind, Region as CellRegion, STEP};
-use stickslip_xfem::enrichment::cell_facets::pieces;
-use stickslip_xfem::geometry::clip::Side;
-use stickslip_xfem::geometry::{Point, diameter, mean, norm, sub};
-use stickslip_xfem::mesh::Mesh;
-use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
+use crate::case::{Amount, Case, Condition, Region};
 
-use crate::case::{Amount, Case, CaseError, Region, SupportSpec};
-use crate::model::border::{Border, BorderPart};
-use crate::model::refusals::{empty_support, lip_error, lips_error, needless_lip};
+impl border::Condition for Condition {
+    fn holds(&self, x: &Point, delta: f64) -> bool {
+        Condition::holds(self, x, delta)
+    }
 
-/// A prescribed unknown: numbers times the history factors of supports, or the value the closed form gives it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prescribed {
-    /// Support in force: number in the case.
-    pub support: usize,
-    /// Its share [m]; `None`: the closed form.
-    pub amount: Option<f64>,
-    /// Support that holds the node's own copy, where another holds this one, and its share, to be subtracted [m].
-    pub less: Option<(usize, f64)>,
+    fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2] {
+        Condition::split(self, polygon, delta)
+    }
+
+    fn range(&self, axis: usize) -> [f64; 2] {
+        Condition::range(self, axis)
+    }
 }
 
 /// Name of a region in the tables: its sides joined by `+`.
@@ -41,431 +25,27 @@ pub fn region_name(region: &Region) -> String {
     region.sides.join("+")
 }
 
-/// Components, one bit each.
-type Components = u8;
-
-/// The supports of a case on a mesh.
-pub struct Supports<'a> {
-    case: &'a Case,
-    mesh: &'a Mesh,
-    /// Border of the mesh.
-    pub border: Border<'a>,
-    /// Supports of every held node, in file order.
-    of: BTreeMap<usize, Vec<usize>>,
-}
-
-/// What supports hold of copies of nodes; a copy goes by its function, the node's own by the standard one.
-#[derive(Default)]
-struct Held {
-    by: BTreeMap<usize, BTreeSet<usize>>,
-    /// Copies on facets that are held by their nodes.
-    between: BTreeMap<usize, Components>,
-    branches: BTreeMap<usize, Components>,
-    /// Copies of nodes on a crack: the side of it where they live.
-    lips: BTreeMap<usize, Side>,
-}
-
-impl<'a> Supports<'a> {
-    /// Finds the nodes of all supports.
-    ///
-    /// # Errors
-    /// A support that holds none.
-    pub fn new(case: &'a Case, mesh: &'a Mesh) -> Result<Self, CaseError> {
-        let border = Border::new(mesh);
-        let mut of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (number, support) in case.supports.iter().enumerate() {
-            let nodes = border.nodes(&support.on);
-            if nodes.is_empty() {
-                return Err(empty_support(case, support));
-            }
-            if let Some(lip) = &support.lip {
-                let inside = |part| border.split(&support.on, border.corners(&part));
-                if border
-                    .parts(&support.on)
-                    .into_iter()
-                    .any(|part| !inside(part)[0].is_empty())
-                {
-                    return Err(needless_lip(case, lip));
-                }
-            }
-            for node in nodes {
-                of.entry(node).or_default().push(number);
-            }
-        }
-        Ok(Supports {
-            case,
-            mesh,
-            border,
-            of,
-        })
-    }
-
-    fn spec(&self, support: usize) -> &SupportSpec {
-        &self.case.supports[support]
-    }
-
-    fn of(&self, node: usize) -> &[usize] {
-        self.of.get(&node).map_or(&[], Vec::as_slice)
-    }
-
-    fn components(&self, support: usize) -> Components {
-        let components = self.spec(support).displacement.iter().enumerate();
-        let stated = components.filter(|(_, amount)| amount.is_some());
-        stated.fold(0, |bits, (a, _)| bits | 1 << a)
-    }
-
-    /// Supports that hold nodes of a part and whose sides hold all of it.
-    fn acting(&self, part: &BorderPart) -> BTreeSet<usize> {
-        let sides = self.border.sides_of(part);
-        let all = self.border.nodes_of(part).flat_map(|n| self.of(n)).copied();
-        all.filter(|&s| self.border.bits(&self.spec(s).on) & !sides == 0)
-            .collect()
-    }
-
-    /// Components that supports on its side hold at all nodes of a part.
-    fn at_all_nodes(&self, part: &BorderPart) -> Components {
-        let sides = self.border.sides_of(part);
-        let on_side = |&&s: &&usize| self.border.bits(&self.spec(s).on) & sides != 0;
-        let at = |n: usize| {
-            let own = self.of(n).iter().filter(on_side);
-            own.fold(0, |bits, &s| bits | self.components(s))
-        };
-        self.border
-            .nodes_of(part)
-            .fold(Components::MAX, |bits, n| bits & at(n))
-    }
-
-    /// Places beside nodes on a crack, on the side of it where more components are held: there a node's own piece has to be, for
-    /// only what its own copy prescribes can be held on another. None where both sides are alike.
-    pub fn beside(&self, cracks: &[Crack]) -> BTreeMap<u32, Point> {
-        type Found = [(Components, Point); 2];
-        let on_crack = first_on(cracks);
-        let crack_at = |node: usize| on_crack.get(&(node as u32)).map(|&k| &cracks[k]);
-        // By node: what regions hold beside it, and what is held by nodes, below its first crack and above.
-        let mut found: BTreeMap<usize, [Found; 2]> = BTreeMap::new();
-        let near = |cell: usize| {
-            self.mesh
-                .cell(cell)
-                .iter()
-                .any(|&n| crack_at(n as usize).is_some())
-        };
-        for part in self.border.parts_where(near) {
-            let corners = self.border.corners(&part);
-            let middle = mean(&corners);
-            let acting = self.acting(&part);
-            for (node, x) in self.border.nodes_of(&part).zip(&corners) {
-                let Some(crack) = crack_at(node) else {
-                    continue;
-                };
-                let mut put = |kind: usize, bits: Components, place: Point| {
-                    let sides = &mut found.entry(node).or_default()[kind];
-                    let side = &mut sides[usize::from(crack.distance(&place) > 0.0)];
-                    *side = (side.0 | bits, place);
-                };
-                for &s in &acting {
-                    let inside = self.border.split(&self.spec(s).on, corners.clone());
-                    let size = HAIR * diameter(&corners);
-                    let near = |own: &&Vec<Point>| {
-                        diameter(own) > size && own.iter().any(|p| norm(&sub(p, x)) <= size)
-                    };
-                    for own in inside[0].iter().filter(near) {
-                        put(0, self.components(s), mean(own));
-                    }
-                }
-                for &s in self.of(node) {
-                    let lip = self.spec(s).lip.as_ref();
-                    if lip.is_some_and(|lip| lip.side * crack.distance(&middle) > 0.0) {
-                        put(0, self.components(s), middle);
-                    }
-                }
-                put(1, self.at_all_nodes(&part), middle);
-            }
-        }
-        let chosen = |(node, [regions, nodes]): (usize, [Found; 2])| {
-            let held = |[below, above]: &Found| below.0 | above.0 != 0;
-            let [below, above] = if held(&regions) { regions } else { nodes };
-            let place = match below.0.count_ones().cmp(&above.0.count_ones()) {
-                std::cmp::Ordering::Less => above.1,
-                std::cmp::Ordering::Greater => below.1,
-                std::cmp::Ordering::Equal => return None,
-            };
-            Some((node as u32, place))
-        };
-        found.into_iter().filter_map(chosen).collect()
-    }
-
-    /// Prescribed unknowns by number (function-major). A later support wins.
-    ///
-    /// Under the closed form a piece function takes the value that interpolates both sides, and 0 beside a stated number; branch
-    /// functions on what is held are 0, which leaves the interpolation of the standard ones; those whose ramp is zero there are
-    /// free.
-    ///
-    /// # Errors
-    /// A support that does not tell which lip of a crack it holds.
-    pub fn prescribed(
-        &self,
-        integrator: &CellIntegrator<'_>,
-    ) -> Result<BTreeMap<usize, Prescribed>, CaseError> {
-        let dim = self.mesh.dim();
-        let enrichment = integrator.enrichment;
-        let mut held = self.held(integrator);
-        let mut fixed = BTreeMap::new();
-        for (&node, holders) in &self.of {
-            let copies: Vec<usize> = piece_functions(enrichment, node).collect();
-            let parted = !copies.is_empty() && enrichment.jumps_at(node);
-            for &s in holders {
-                self.choose_lip(s, parted.then_some(node), &copies, &mut held)?;
-            }
-            let last = |copy: usize, a: usize| {
-                let states = |s: &usize| self.states(*s, a);
-                if copy == node && !parted {
-                    return holders.iter().copied().rfind(states);
-                }
-                held.by.get(&copy)?.iter().copied().rfind(states)
-            };
-            for a in 0..dim {
-                let own = last(node, a);
-                if let Some(support) = own {
-                    let amount = self.amount(support, a, node);
-                    fixed.insert(
-                        node * dim + a,
-                        Prescribed {
-                            amount,
-                            ..at_rest(support)
-                        },
-                    );
-                }
-                for &copy in &copies {
-                    let between = held
-                        .between
-                        .get(&copy)
-                        .is_some_and(|bits| bits & 1 << a != 0);
-                    match (last(copy, a), own) {
-                        (Some(s), Some(own)) => {
-                            fixed.insert(copy * dim + a, self.difference(s, own, a, node));
-                        }
-                        (None, Some(own)) if between => {
-                            fixed.insert(copy * dim + a, self.difference(own, own, a, node));
-                        }
-                        // No unknown holds one copy alone where the node's own is free. In a corner of the body both are
-                        // held, as without crack.
-                        (Some(s), None) if parted => {
-                            let mut by = held.by.get(&node).into_iter().flatten();
-                            let bits = |s: usize| self.border.bits(&self.spec(s).on);
-                            if by.any(|&other| bits(other) & bits(s) != 0) {
-                                return Err(lips_error(self.case, self.spec(s)));
-                            }
-                            let amount = self.amount(s, a, node);
-                            fixed.insert(
-                                node * dim + a,
-                                Prescribed {
-                                    amount,
-                                    ..at_rest(s)
-                                },
-                            );
-                            fixed.insert(copy * dim + a, self.difference(s, s, a, node));
-                        }
-                        _ => {}
-                    }
-                }
-            }
-        }
-        for (&f, components) in &held.branches {
-            let node = enrichment.functions[f].node as usize;
-            for a in (0..dim).filter(|a| components & 1 << a != 0) {
-                if let Some(&Prescribed { support, .. }) = fixed.get(&(node * dim + a)) {
-                    fixed.insert(f * dim + a, at_rest(support));
-                }
-            }
-        }
-        hold_unguarded(integrator, &mut fixed);
-        Ok(fixed)
-    }
-
-    /// What every support holds beside cracks.
-    fn held(&self, integrator: &CellIntegrator<'_>) -> Held {
-        let (mesh, cracks, enrichment) = (self.mesh, integrator.cracks, integrator.enrichment);
-        let mut held = Held::default();
-        let on_crack = first_on(cracks);
-        // Also where a node's own copy lives: there none of its enriched functions need to.
-        let is_enriched = |&n: &u32| !enrichment.enriched_of(n as usize).is_empty();
-        for part in self
-            .border
-            .parts_where(|cell| mesh.cell(cell).iter().any(is_enriched))
-        {
-            let nodes: Vec<usize> = self.border.nodes_of(&part).collect();
-            let acting = self.acting(&part);
-            if nodes.iter().all(|&n| self.of(n).is_empty()) {
-                continue;
-            }
-            let mut touched = false;
-            // Components held on all pieces.
-            let mut whole = Components::MAX;
-            let pieces = pieces(mesh, cracks, enrichment, part.cell, &part.local);
-            // Within bounds what a crack leaves of a part a hair beside a node is none.
-            let bounded = acting.iter().any(|&s| self.spec(s).on.condition.is_some());
-            let hair = HAIR * diameter(&self.border.corners(&part));
-            for (piece, region) in &pieces {
-                if bounded && diameter(piece) <= hair {
-                    continue;
-                }
-                let mut on_piece = 0;
-                for &s in &acting {
-                    let [inside, outside] = self.border.split(&self.spec(s).on, piece.clone());
-                    touched |= !inside.is_empty();
-                    on_piece |= if outside.is_empty() {
-                        self.components(s)
-                    } else {
-                        0
-                    };
-                    for &n in &nodes {
-                        let near = |x: &Point| norm(&sub(x, &mesh.nodes[n])) <= hair;
-                        let beside = || inside.iter().flatten().any(near);
-                        if outside.is_empty() || beside() {
-                            let copy = copy_at(enrichment, n, part.cell, *region);
-                            held.by.entry(copy).or_default().insert(s);
-                        }
-                    }
-                }
-                whole &= on_piece;
-                for &n in &nodes {
-                    if let Some(&k) = on_crack.get(&(n as u32)) {
-                        let crack = &cracks[k];
-                        let side = crack.distance(&mean(piece)).signum();
-                        held.lips
-                            .insert(copy_at(enrichment, n, part.cell, *region), side);
-                    }
-                }
-            }
-            if !touched {
-                whole = self.at_all_nodes(&part);
-                for (n, (_, region)) in nodes
-                    .iter()
-                    .flat_map(|n| pieces.iter().map(move |p| (n, p)))
-                {
-                    let copy = copy_at(enrichment, *n, part.cell, *region);
-                    *held.between.entry(copy).or_default() |= whole;
-                }
-            }
-            let corners: Vec<u32> = nodes.iter().map(|&n| n as u32).collect();
-            for &f in enrichment.cell(part.cell) {
-                let function = &enrichment.functions[f as usize];
-                // Where its ramp is zero a branch function holds nothing.
-                let rises = |tip: u32| enrichment.ramp(tip as usize, &corners) != 0;
-                let branch =
-                    matches!(function.kind, FunctionKind::Branch { tip, .. } if rises(tip));
-                if branch && nodes.contains(&(function.node as usize)) {
-                    *held.branches.entry(f as usize).or_default() |= whole;
-                }
-            }
-        }
-        held
-    }
-
-    /// Settles which copies of a node on a crack a support holds that touches no side of it: those of the stated lip, or those
-    /// that are held by their nodes. `parted`: the node, if it lies on a crack.
-    fn choose_lip(
-        &self,
-        support: usize,
-        parted: Option<usize>,
-        copies: &[usize],
-        held: &mut Held,
-    ) -> Result<(), CaseError> {
-        let spec = self.spec(support);
-        let all = || parted.iter().chain(copies).copied();
-        let holds = |copy: usize| held.by.get(&copy).is_some_and(|by| by.contains(&support));
-        if parted.is_none() || all().any(holds) {
-            return Ok(());
-        }
-        let chosen: Vec<usize> = match &spec.lip {
-            Some(lip) => all()
-                .filter(|c| held.lips.get(c) == Some(&lip.side))
-                .collect(),
-            None => all()
-                .filter(|c| held.between.get(c).is_some_and(|&bits| bits != 0))
-                .collect(),
-        };
-        if chosen.is_empty() {
-            return Err(lip_error(self.case, spec));
-        }
-        for copy in chosen {
-            held.by.entry(copy).or_default().insert(support);
-        }
-        Ok(())
-    }
-
-    fn states(&self, support: usize, component: usize) -> bool {
-        self.spec(support).displacement[component].is_some()
-    }
-
-    /// What a support states at a node [m]; `None`: the closed form, or nothing.
-    fn amount(&self, support: usize, component: usize, node: usize) -> Option<f64> {
-        match self.spec(support).displacement[component] {
-            Some(Amount::Number(polynomial)) => Some(polynomial.at(&self.mesh.nodes[node])),
-            Some(Amount::Exact) | None => None,
-        }
-    }
-
-    /// The unknown of a copy that a support holds, another holding the node's own.
-    fn difference(&self, support: usize, own: usize, component: usize, node: usize) -> Prescribed {
-        match [support, own].map(|s| self.amount(s, component, node)) {
-            [None, None] => Prescribed {
-                amount: None,
-                ..at_rest(support)
-            },
-            [Some(here), Some(there)] if support != own => Prescribed {
-                support,
-                amount: Some(here / STEP),
-                less: Some((own, there / STEP)),
-            },
-            _ => at_rest(support),
-        }
+/// A region as the border takes it.
+pub fn part(region: &Region) -> border::Region<'_> {
+    let condition = region.condition.as_ref();
+    border::Region {
+        sides: &region.sides,
+        condition: condition.map(|c| c as &dyn border::Condition),
     }
 }
 
-/// An unknown that a support keeps at 0.
-fn at_rest(support: usize) -> Prescribed {
-    Prescribed {
-        support,
-        amount: Some(0.0),
-        less: None,
-    }
-}
-
-/// Piece functions of a node.
-fn piece_functions(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
-    let own = enrichment.enriched_of(node);
-    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
-}
-
-/// The copy of a node that lives in a region of a cell.
-fn copy_at(enrichment: &Enrichment, node: usize, cell: usize, region: CellRegion) -> usize {
-    let mut pieces = piece_functions(enrichment, node);
-    pieces
-        .find(|&f| enrichment.step(cell, region, f) != 0.0)
-        .unwrap_or(node)
-}
-
-/// Holds wholly what supports hold in part and no multiplier can resist.
-fn hold_unguarded(integrator: &CellIntegrator<'_>, fixed: &mut BTreeMap<usize, Prescribed>) {
-    let dim = integrator.mesh.dim();
-    let mut enriched = integrator.mesh.nodes.len()..integrator.enrichment.functions.len();
-    let holder = |fixed: &BTreeMap<usize, Prescribed>, f: usize| {
-        let mut components = (0..dim).map(|a| fixed.get(&(f * dim + a)));
-        components.find_map(|held| held.copied())
+/// The supports of a case, in its order.
+pub fn supports(case: &Case) -> Vec<Support<'_>> {
+    let amount = |amount| match amount {
+        Amount::Number(polynomial) => supports::Amount::Stated(Box::new(move |x| polynomial.at(x))),
+        Amount::Exact => supports::Amount::Exact,
     };
-    let in_part = |f: usize| (0..dim).any(|a| !fixed.contains_key(&(f * dim + a)));
-    if !enriched.any(|f| holder(fixed, f).is_some() && in_part(f)) {
-        return;
-    }
-    for index in 0..integrator.cracks.len() {
-        let free = FreeJumps::new(integrator, index, |i| fixed.contains_key(&i));
-        for f in free.unguarded() {
-            if let Some(held) = holder(fixed, f) {
-                for a in 0..dim {
-                    fixed.entry(f * dim + a).or_insert(at_rest(held.support));
-                }
-            }
-        }
-    }
+    let all = case.supports.iter().map(|support| Support {
+        on: part(&support.on),
+        displacement: (support.displacement.iter())
+            .map(|stated| stated.map(amount))
+            .collect(),
+        lip: support.lip.as_ref().map(|lip| lip.side),
+    });
+    all.collect()
 }

@@ -18,24 +18,22 @@
 //! for intensities (L: length of the crack), the exact elastic energy ½ ∫ σ:C⁻¹:σ for dissipation. Slip and gap share the
 //! scale max |[[u]]|, so that neither the gap of a sliding crack nor the slip of an opening one divides by zero.
 
-mod bulk;
 mod deviation;
 mod front;
 mod stick_boundary;
 mod surface;
 
 use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::discretisation::norms::{RULE, bulk, nodal_displacement};
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
 
 use crate::model::body::Body;
-use crate::model::quantities::Snapshot;
+use crate::model::snapshot::Snapshot;
 
 use deviation::{Scales, norm_row};
 
-pub use bulk::{Bulk, bulk};
-pub use deviation::{Deviation, RULE, fronts};
-pub use front::{tip_fronts, tip_intensities};
+pub use deviation::Deviation;
 
 /// Errors of a state against the exact field at the same time. `surface`: quadrature points of all crack surfaces; without
 /// any there are no rows for `traction`, `slip`, `gap`, the stick boundary and the intensities.
@@ -70,7 +68,7 @@ pub fn errors(
             bulk.displacement.sqrt(),
         ),
     ];
-    let nodes = bulk::nodal_displacement(body, field, &now.u);
+    let nodes = nodal_displacement(body, field, &now.u);
     rows.push(norm_row("displacement_rms", nodes, scales.displacement));
     rows.extend(surface::rows(body, surface, field, now, &scales));
     rows.extend(stick_boundary::row(body, surface, field, now));

@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 
 use stickslip_xfem::geometry::polygon::space_area;
 use stickslip_xfem::geometry::{Point, norm, sub};
+use stickslip_xfem::loads::border::Border;
+use stickslip_xfem::loads::nodal_forces::no_force;
 
 use crate::case::{Case, LoadKind, Polynomial, Region};
 use crate::model::body::{Body, BodyError};
-use crate::model::border::Border;
-use crate::model::boundary::region_name;
+use crate::model::boundary::{part, region_name};
 use crate::model::loading::Loading;
-use crate::model::nodal_forces::{add_exact_forces, add_fixed_forces, no_force};
+use crate::model::nodal_forces::Loaded;
 use crate::model::refusals::load_error;
-use crate::model::sides::Sides;
 
 /// Resultant of a load.
 #[derive(Debug, Clone)]
@@ -53,17 +53,13 @@ pub struct SupportExtent {
 pub fn load_extents(case: &Case, loading: &Loading<'_>) -> Result<Vec<LoadExtent>, BodyError> {
     let body = loading.body();
     let (integrator, dim) = (body.integrator(), body.mesh.dim());
-    let border = Border::new(&body.mesh);
-    let sides = Sides::new(case, &integrator);
+    let loaded = Loaded::new(case, &integrator);
     let field = loading.exact(loading.increments());
     let mut force = no_force(&integrator);
     // Standard functions sum to one. What a load left is cleared where it can have acted.
     let mut sum = |kind: &LoadKind, region: Option<&Region>| -> Result<Vec<f64>, _> {
-        add_fixed_forces(&integrator, &border, sides.as_ref(), kind, &mut force)?;
-        if let (Some(sides), Some(field)) = (&sides, field) {
-            add_exact_forces(&integrator, &border, sides, kind, field, &mut force)?;
-        }
-        let functions: BTreeSet<u32> = match region.map(|on| border.parts(on)) {
+        loaded.add(kind, field, &mut force)?;
+        let functions: BTreeSet<u32> = match region.map(|on| loaded.border().parts(&part(on))) {
             Some(parts) => {
                 let cells = parts
                     .iter()
@@ -85,36 +81,20 @@ pub fn load_extents(case: &Case, loading: &Loading<'_>) -> Result<Vec<LoadExtent
     let mut found = Vec::new();
     for (index, load) in case.loads.iter().enumerate() {
         let unit = || vec![1.0; dim];
+        let spread = |on: &Region| LoadKind::Traction(on.clone(), vec![Polynomial::from(1.0); dim]);
+        let whole = || LoadKind::Body(unit(), None);
         let (name, region, power, alike) = match &load.kind {
             LoadKind::Traction(on, _) | LoadKind::ExactTraction(on) => {
-                let one = vec![Polynomial::from(1.0); dim];
-                (
-                    "traction",
-                    Some(on),
-                    dim - 1,
-                    LoadKind::Traction(on.clone(), one),
-                )
+                ("traction", Some(on), dim - 1, spread(on))
             }
-            LoadKind::Pressure(on, _) => {
-                let one = vec![Polynomial::from(1.0); dim];
-                (
-                    "pressure",
-                    Some(on),
-                    dim - 1,
-                    LoadKind::Traction(on.clone(), one),
-                )
-            }
+            LoadKind::Pressure(on, _) => ("pressure", Some(on), dim - 1, spread(on)),
             LoadKind::Line(on, _) => ("line load", Some(on), 1, LoadKind::Line(on.clone(), unit())),
-            LoadKind::Body(_, side) => (
-                "body force",
-                None,
-                dim,
-                LoadKind::Body(unit(), side.clone()),
-            ),
-            LoadKind::ExactBody => ("body force", None, dim, LoadKind::Body(unit(), None)),
-            LoadKind::InitialStress(_) => {
-                ("initial stress", None, dim, LoadKind::Body(unit(), None))
+            LoadKind::Body(_, side) => {
+                let alike = LoadKind::Body(unit(), side.clone());
+                ("body force", None, dim, alike)
             }
+            LoadKind::ExactBody => ("body force", None, dim, whole()),
+            LoadKind::InitialStress(_) => ("initial stress", None, dim, whole()),
         };
         let failed = |e| load_error(case, &load.kind, &load.span, e);
         found.push(LoadExtent {
@@ -133,8 +113,8 @@ pub fn support_extents(case: &Case, body: &Body) -> Vec<SupportExtent> {
     let dim = body.mesh.dim();
     let border = Border::new(&body.mesh);
     let of = |on: &Region| {
-        let nodes = border.nodes(on);
-        let mut parts = border.parts(on);
+        let nodes = border.nodes(&part(on));
+        let mut parts = border.parts(&part(on));
         parts.retain(|part| {
             border
                 .nodes_of(part)

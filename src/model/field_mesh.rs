@@ -12,7 +12,7 @@ use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, mean, norm, polygo
 use stickslip_xfem::mesh::cell::{CellKind, CellMap};
 
 use crate::model::body::Body;
-use crate::model::quantities::{Snapshot, tangential};
+use crate::model::snapshot::{Snapshot, tangential};
 
 /// A mesh with fields for pictures: cut cells are split and nodes on the faces are doubled, so the jump is visible.
 #[derive(Debug, Clone, Default)]

@@ -3,29 +3,21 @@
 //! ```text
 //!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
 //!   f = f_ext − K u_prescribed   at the free unknowns,      offset = B u_prescribed
-//!   prescribed by the closed form:  ū_j = u(x_j, s_j),  b_j = ½ (u⁻(x_j) − u(x_j, s_j))
-//!   u⁻(x) = 2 u(x', −s) − u(2 x' − x, −s)   u of the other side, continued to x: x' foot of x on the crack
 //! ```
-//!
-//! Closed forms tell the sides apart by the place of a point, but on the crack itself. So the other side's field is
-//! continued linearly, with the order of the interpolation it enters.
 //!
 //! The closed form depends on friction, so there is one [`Loading`] per friction coefficient; the body, its stiffness and
 //! all that is derived from it do not, and serve all of them.
 
-use rayon::prelude::*;
 use stickslip_methods::Load;
-use stickslip_xfem::enrichment::basis::{FunctionKind, STEP};
 use stickslip_xfem::exact::{Field, Setting};
-use stickslip_xfem::geometry::{add_scaled, sub};
+use stickslip_xfem::loads::exact_values::exact_values;
+use stickslip_xfem::loads::nodal_forces::no_force;
 
 use crate::case::{Case, CaseError, ExactSpec, History, LoadKind};
 use crate::model::body::{Body, BodyError};
-use crate::model::border::Border;
 use crate::model::fixed_loads::FixedLoad;
-use crate::model::nodal_forces::{add_exact_forces, no_force};
+use crate::model::nodal_forces::Loaded;
 use crate::model::refusals::load_error;
-use crate::model::sides::Sides;
 
 /// The closed form at time 0 or at the end of an increment, on the body.
 struct ExactStep {
@@ -218,10 +210,10 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
     let solution = (spec.solution.build)(&setting, &spec.values).map_err(refuse)?;
     let factors = spec.factors(&case.path);
     let integrator = body.integrator();
-    let Some(sides) = Sides::new(case, &integrator) else {
+    let loaded = Loaded::new(case, &integrator);
+    let Some(sides) = loaded.sides() else {
         return Ok(Vec::new());
     };
-    let border = Border::new(&body.mesh);
     let mut steps = Vec::new();
     for increment in 0..factors.len() {
         let field = solution.at(&factors[..=increment]).map_err(|message| {
@@ -234,12 +226,19 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
         for load in &case.loads {
             if matches!(load.kind, LoadKind::ExactTraction(_) | LoadKind::ExactBody) {
                 force.resize(body.numbers.len(), 0.0);
-                let field = field.as_ref();
-                add_exact_forces(&integrator, &border, &sides, &load.kind, field, &mut force)
-                    .map_err(|e| load_error(case, &load.kind, &load.span, e))?;
+                let added = loaded.add(&load.kind, Some(field.as_ref()), &mut force);
+                added.map_err(|e| load_error(case, &load.kind, &load.span, e))?;
             }
         }
-        let displacement = exact_displacement(body, &sides, field.as_ref());
+        let taken = (body.prescribed.iter()).filter(|(_, fixed)| fixed.amount.is_none());
+        let unknowns = taken.map(|(&i, _)| i);
+        let displacement = exact_values(
+            &body.mesh,
+            &body.enrichment,
+            sides,
+            field.as_ref(),
+            unknowns,
+        );
         steps.push(ExactStep {
             field,
             displacement,
@@ -247,41 +246,6 @@ fn exact_steps(body: &Body, case: &Case, friction: f64) -> Result<Vec<ExactStep>
         });
     }
     Ok(steps)
-}
-
-/// Values of the unknowns that the closed form prescribes; evaluated once per node.
-fn exact_displacement(body: &Body, sides: &Sides, field: &dyn Field) -> Vec<(usize, f64)> {
-    let dim = body.mesh.dim();
-    let mut unknowns: Vec<(usize, usize)> = (body.prescribed.iter())
-        .filter(|(_, fixed)| fixed.amount.is_none())
-        .map(|(&i, _)| (body.enrichment.functions[i / dim].node as usize, i))
-        .collect();
-    unknowns.sort_unstable();
-    let of_node = |list: &[(usize, usize)]| -> Vec<(usize, f64)> {
-        let node = list[0].0;
-        let (x, side) = (&body.mesh.nodes[node], sides.of_node(node));
-        let own = field.displacement(x, side);
-        let jumps = |&(_, i): &(usize, usize)| {
-            body.enrichment.functions[i / dim].kind != FunctionKind::Standard
-        };
-        let jump = if list.iter().any(jumps) {
-            let foot = sides.foot(x);
-            let mirrored = add_scaled(&foot, 1.0, &sub(&foot, x));
-            let (near, far) = (
-                field.displacement(&foot, -side),
-                field.displacement(&mirrored, -side),
-            );
-            [0, 1, 2].map(|a| (2.0 * near[a] - far[a] - own[a]) / STEP)
-        } else {
-            [0.0; 3]
-        };
-        let value = |entry| if jumps(entry) { jump } else { own };
-        list.iter()
-            .map(|entry| (entry.1, value(entry)[entry.1 % dim]))
-            .collect()
-    };
-    let nodes: Vec<&[(usize, usize)]> = unknowns.chunk_by(|a, b| a.0 == b.0).collect();
-    nodes.into_par_iter().flat_map_iter(of_node).collect()
 }
 
 /// A closed form that does not hold, at its table.

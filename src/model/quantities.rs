@@ -1,17 +1,17 @@
 //! Quantities of interest of one increment: reactions, displacements, contact resultants, energies.
 
-use stickslip_methods::{ContactState, PointStatus};
-use stickslip_xfem::contact::surface_point::max_penetration;
+use serde::{Deserialize, Serialize};
+use stickslip_methods::PointStatus;
 use stickslip_xfem::enrichment::basis::STEP;
 
 use crate::case::Case;
+use crate::files::nan;
 use crate::model::body::Body;
 use crate::model::boundary::region_name;
-use crate::model::loading::Loading;
-use crate::model::work::Work;
+use crate::model::snapshot::{Snapshot, tangential};
 
 /// One quantity of interest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
     /// One of those that [`unit`] knows.
     pub name: String,
@@ -20,6 +20,7 @@ pub struct Quantity {
     /// x, y, z, n, a, b, or empty.
     pub component: String,
     /// Value, SI.
+    #[serde(with = "nan")]
     pub value: f64,
     /// Unit of the value.
     pub unit: String,
@@ -60,137 +61,6 @@ pub struct PointState {
     pub status: String,
 }
 
-/// The mechanics at the end of an increment, over all unknowns and points.
-#[derive(Debug, Clone)]
-pub struct Snapshot {
-    /// Time.
-    pub time: f64,
-    /// All unknowns [m].
-    pub u: Vec<f64>,
-    /// Jump at the points in local frames, `dim` each [m].
-    pub jump: Vec<f64>,
-    /// Contact forces on side 1, `dim` each.
-    pub p: Vec<f64>,
-    /// Factors of the traction rows in Nitsche's consistency term; empty for other methods.
-    pub consistency: Vec<f64>,
-    /// External forces plus reactions over all unknowns: K u − Bᵀ P, less the consistency term of Nitsche's method.
-    pub force: Vec<f64>,
-    /// External forces over all unknowns.
-    pub external: Vec<f64>,
-    /// Open, stick or slip of every point.
-    pub status: Vec<PointStatus>,
-    /// ½ u·K u: that of the strain, without the initial stress [J, in 2D J/m]; 0 if it is rounding.
-    pub strain_energy: f64,
-    /// ε ½ Σ K_ii u_i²: what rounding makes of it where the body moves without strain.
-    pub rounding: f64,
-    /// Work since time 0.
-    pub work: Work,
-    /// Deepest overlap of the faces of every crack of the case, between its contact points too [m].
-    pub overlap: Vec<f64>,
-}
-
-impl Snapshot {
-    /// The unloaded body.
-    pub fn virgin(body: &Body) -> Self {
-        let (n, m) = (body.numbers.len(), body.points.len() * body.mesh.dim());
-        Snapshot {
-            time: 0.0,
-            u: vec![0.0; n],
-            jump: vec![0.0; m],
-            p: vec![0.0; m],
-            consistency: Vec::new(),
-            force: vec![0.0; n],
-            external: vec![0.0; n],
-            status: vec![PointStatus::Open; body.points.len()],
-            strain_energy: 0.0,
-            rounding: 0.0,
-            work: Work::none(body.integrated.len()),
-            overlap: vec![0.0; body.integrated.len()],
-        }
-    }
-
-    /// Deepest overlap of the faces of all cracks [m].
-    pub fn deepest_overlap(&self) -> f64 {
-        self.overlap.iter().copied().fold(0.0, f64::max)
-    }
-
-    /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks,
-    /// `friction`: coefficient of every point.
-    pub fn new(
-        loading: &Loading<'_>,
-        increment: usize,
-        state: &ContactState,
-        consistency: Option<&[f64]>,
-        status: Vec<PointStatus>,
-        friction: &[f64],
-        before: &Snapshot,
-    ) -> Self {
-        let body = loading.body();
-        let u = loading.all_unknowns(increment, &state.u);
-        let jump = body.jump(&u);
-        let internal = body.stiffness.mul(&u);
-        let energy = 0.5 * u.iter().zip(&internal).map(|(u, f)| u * f).sum::<f64>();
-        let diagonal = body.stiffness.diagonal().into_iter().zip(&u);
-        let rounding = 0.5 * f64::EPSILON * diagonal.map(|(k, u)| k * u * u).sum::<f64>();
-        let mut force = internal;
-        let contact = body.jump_rows.iter().zip(&state.p);
-        let further = body.traction_rows.iter().zip(consistency.unwrap_or(&[]));
-        for (row, p) in contact.chain(further) {
-            for &(i, coefficient) in row {
-                force[i] -= coefficient * p;
-            }
-        }
-        let mut now = Snapshot {
-            external: loading.external_force(increment),
-            time: loading.time(increment),
-            overlap: sampled_penetration(body, &u, &jump),
-            jump,
-            p: state.p.clone(),
-            consistency: consistency.unwrap_or_default().to_vec(),
-            force,
-            status,
-            strain_energy: if energy > rounding { energy } else { 0.0 },
-            rounding,
-            work: Work::none(0),
-            u,
-        };
-        now.work = Work::after(loading, increment, friction, before, &now);
-        now
-    }
-}
-
-impl Snapshot {
-    /// What of it is no finite number, if anything: then there is no answer, whatever the residuals say.
-    pub fn not_finite(&self) -> Option<&'static str> {
-        let Work {
-            external,
-            initial_stress,
-            faces,
-            identity,
-            ..
-        } = self.work;
-        let friction = self.work.dissipation();
-        let energies = [
-            self.strain_energy,
-            external,
-            initial_stress,
-            faces,
-            friction,
-            identity,
-        ];
-        let parts: [(&str, &[f64]); 5] = [
-            ("displacements", &self.u),
-            ("jumps", &self.jump),
-            ("contact forces", &self.p),
-            ("nodal forces", &self.force),
-            ("energies", &energies),
-        ];
-        let broken = |values: &[f64]| !values.iter().all(|x| x.is_finite());
-        let found = parts.iter().find(|(_, values)| broken(values));
-        found.map(|(name, _)| *name)
-    }
-}
-
 /// Components in space.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 /// Components at a crack: normal and tangential.
@@ -215,12 +85,6 @@ pub fn unit(name: &str, dim: usize) -> Option<&'static str> {
         },
         _ => return None,
     })
-}
-
-/// Length of the tangential part of a vector at a contact point.
-pub(crate) fn tangential(values: &[f64], dim: usize, point: usize) -> f64 {
-    let own = &values[point * dim + 1..(point + 1) * dim];
-    own.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 /// All quantities of interest.
@@ -299,22 +163,6 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     push("path_error", "", "", now.work.path_error());
     push("energy_identity", "", "", now.work.identity);
     rows
-}
-
-/// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
-/// linear between its points, which then hold its extremes.
-fn sampled_penetration(body: &Body, u: &[f64], jump: &[f64]) -> Vec<f64> {
-    let (dim, integrator) = (body.mesh.dim(), body.integrator());
-    let deepest = |crack: usize| {
-        if body.cracks.iter().any(|c| c.number == crack) {
-            let own = body.samples.iter().filter(|s| s.crack == crack);
-            return max_penetration(&integrator, own, u);
-        }
-        let points = body.points.iter().zip(jump.chunks_exact(dim));
-        let own = points.filter(|(point, _)| point.crack == crack);
-        own.map(|(_, jump)| -jump[0]).fold(0.0, f64::max)
-    };
-    (0..body.integrated.len()).map(deepest).collect()
 }
 
 /// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place

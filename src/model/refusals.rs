@@ -1,17 +1,15 @@
 //! What only the discretisation finds wrong with a case, said at the place in its file.
 
 use stickslip_methods::MethodError;
-use stickslip_xfem::contact::pairs::CrackSurface;
-use stickslip_xfem::cut::crack::Crack;
-use stickslip_xfem::enrichment::pieces::MotionError;
+use stickslip_xfem::discretisation::DiscretisationError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
-use stickslip_xfem::geometry::norm;
+use stickslip_xfem::loads::nodal_forces::LoadError;
+use stickslip_xfem::loads::supports::SupportError;
 use stickslip_xfem::mesh::Mesh;
-use stickslip_xfem::stiffness::cell_matrix::{CellError, CellIntegrator};
+use stickslip_xfem::stiffness::cell_matrix::CellError;
 
-use crate::case::{Case, CaseError, CrackSide, LoadKind, Span, SupportSpec};
-use crate::model::nodal_forces::LoadError;
+use crate::case::{Case, CaseError, ContactSpace, CrackSpec, LoadKind, Span};
 
 /// Why a case cannot be discretised.
 #[derive(Debug, thiserror::Error)]
@@ -27,36 +25,70 @@ pub enum BodyError {
     Method(#[from] MethodError),
 }
 
-/// The error of a support whose region holds no node.
-pub fn empty_support(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed = "a region with at least one node";
-    case.error(
-        &support.on.span,
-        "no node",
-        allowed,
-        "the support holds nothing",
-    )
+/// What the discretisation refuses, at its place in the file; `label` of the mesh.
+pub fn refused(case: &Case, label: &str, error: DiscretisationError) -> BodyError {
+    match error {
+        DiscretisationError::Folded(mut fold) => {
+            fold.centre = case.place(&fold.centre);
+            let allowed = "a motion of the grid points that keeps all cells convex";
+            let span = case.mesh.motion_span(fold.motion);
+            case.error(span, label, allowed, &fold).into()
+        }
+        DiscretisationError::Support(error) => support_error(case, error).into(),
+        DiscretisationError::Crack(error) => crack_error(case, &error).into(),
+        DiscretisationError::Cell(error, crack) => cell_error(case, crack, error),
+        DiscretisationError::Moves(error) => {
+            let (span, allowed) = match case.supports.first() {
+                Some(support) => (&support.span, "supports that hold every rigid motion"),
+                None => (&case.mesh.span, "at least one [[support]]"),
+            };
+            case.refuse(span, allowed, error).into()
+        }
+    }
 }
 
-/// The error of a support that holds a node on a crack and no part of the side beside it.
-pub fn lip_error(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed = "crack_side = 1 or 2, or a region with a part of the side beside the crack";
-    let message = "holds a node on a crack, where two lips part, and no lip";
-    case.refuse(&support.on.span, allowed, message)
+/// Refuses node pairs beside other cracks.
+pub fn check_pairs(case: &Case) -> Result<(), CaseError> {
+    let pairs = |spec: &&CrackSpec| spec.contact == ContactSpace::NodePairs;
+    match case.cracks.iter().find(pairs) {
+        Some(spec) if case.cracks.len() > 1 => {
+            let allowed = "edge-pairs or star beside other cracks";
+            let message = "node pairs stand for a crack that is alone in its body";
+            Err(case.refuse(&spec.contact_span, allowed, message))
+        }
+        _ => Ok(()),
+    }
 }
 
-/// The error of a support that holds one lip of a crack where another holds the other in other components.
-pub fn lips_error(case: &Case, support: &SupportSpec) -> CaseError {
-    let allowed =
-        "on one lip all components that are held on the other, or a mesh without a node there";
-    let message = "another support holds the other lip of a node on a crack in other components";
-    case.refuse(&support.on.span, allowed, message)
-}
-
-/// The error of a `crack_side` where the region tells the lips apart.
-pub fn needless_lip(case: &Case, lip: &CrackSide) -> CaseError {
-    let allowed = "no crack_side beside a region that holds a part of the side";
-    case.refuse(&lip.span, allowed, "the region tells itself what it holds")
+/// The error of a support, at its region or its lip.
+fn support_error(case: &Case, error: SupportError) -> CaseError {
+    let (SupportError::Empty(number)
+    | SupportError::NoLip(number)
+    | SupportError::NeedlessLip(number)
+    | SupportError::OtherLip(number)) = error;
+    let support = &case.supports[number];
+    let region = &support.on.span;
+    let (span, allowed) = match error {
+        SupportError::Empty(_) => {
+            let allowed = "a region with at least one node";
+            return case.error(region, "no node", allowed, error);
+        }
+        SupportError::NoLip(_) => {
+            let allowed =
+                "crack_side = 1 or 2, or a region with a part of the side beside the crack";
+            (region, allowed)
+        }
+        SupportError::NeedlessLip(_) => {
+            let span = support.lip.as_ref().map_or(region, |lip| &lip.span);
+            let allowed = "no crack_side beside a region that holds a part of the side";
+            (span, allowed)
+        }
+        SupportError::OtherLip(_) => {
+            let allowed = "on one lip all components that are held on the other, or a mesh without a node there";
+            (region, allowed)
+        }
+    };
+    case.refuse(span, allowed, error)
 }
 
 /// Refuses a probe that is at no node, or on a crack, where the displacement has two values.
@@ -132,14 +164,12 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
 }
 
 /// The error of a cell, at the crack nearest to it.
-pub fn cell_error(case: &Case, cracks: &[Crack], error: CellError) -> BodyError {
-    let away = |crack: &&Crack| crack.distance(&error.at).abs();
-    let nearest = cracks.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+pub fn cell_error(case: &Case, nearest: Option<usize>, error: CellError) -> BodyError {
     let error = in_file(case, error);
     match nearest {
         Some(crack) => {
             let allowed = "another number of cells, or a crack moved by a hundredth of a cell";
-            let span = &case.cracks[crack.number].geometry_span;
+            let span = &case.cracks[crack].geometry_span;
             case.refuse(span, allowed, error).into()
         }
         None => error.into(),
@@ -168,30 +198,6 @@ fn fitting_cell(shape: &CrackShape) -> Option<f64> {
         CrackShape::Ellipse(ellipse) => third(2.0 * ellipse.half_axes[0].min(ellipse.half_axes[1])),
         CrackShape::Plane { .. } => None,
     }
-}
-
-/// The error of a body that can move, at the crack that these motions open or at the supports.
-pub fn motion_error(
-    case: &Case,
-    integrator: &CellIntegrator<'_>,
-    surface: &CrackSurface,
-    error: &MotionError,
-) -> CaseError {
-    /// Motions are of order one.
-    const OPEN: f64 = 1e-6;
-    let opened = |motion: &Vec<f64>| {
-        let mut points = surface.quadrature.iter();
-        let open = points.find(|q| norm(&q.jump(integrator, motion)) > OPEN);
-        open.map(|q| q.crack)
-    };
-    if let Some(crack) = error.motions.iter().find_map(opened) {
-        return crack_error(case, &EnrichmentError::Loose(crack));
-    }
-    let (span, allowed) = match case.supports.first() {
-        Some(support) => (&support.span, "supports that hold every rigid motion"),
-        None => (&case.mesh.span, "at least one [[support]]"),
-    };
-    case.refuse(span, allowed, error)
 }
 
 /// The error of a load, at its region.

@@ -11,16 +11,15 @@ pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
 mod kind;
-pub mod ladders;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
 pub mod residual;
-pub mod robustness;
 mod runs;
 pub mod scaling;
 pub mod sensitivity;
 pub mod stages;
+pub mod success;
 pub mod table1;
 pub mod time_to_accuracy;
 pub mod work_precision;
@@ -29,11 +28,12 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 22] = [
+pub static CATALOGUE: [(Chapter, &Kind); 20] = [
     (Chapter::Paper, &table1::KIND),
     (Chapter::Paper, &converged::KIND),
     (Chapter::Methods, &cost::KIND),
     (Chapter::Study, &fastest::KIND),
+    (Chapter::Study, &success::KIND),
     (Chapter::Study, &scaling::CLASSES),
     (Chapter::Study, &scaling::TIME),
     (Chapter::Study, &scaling::ITERATIONS),
@@ -42,9 +42,6 @@ pub static CATALOGUE: [(Chapter, &Kind); 22] = [
     (Chapter::Study, &time_to_accuracy::KIND),
     (Chapter::Study, &performance::KIND),
     (Chapter::Study, &stages::KIND),
-    (Chapter::Stress, &ladders::OPTIONS),
-    (Chapter::Stress, &ladders::ITERATIONS),
-    (Chapter::Robustness, &robustness::KIND),
     (Chapter::Accuracy, &error::KIND),
     (Chapter::Runs, &fields::CONTACT),
     (Chapter::Runs, &fields::DISPLACEMENT),

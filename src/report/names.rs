@@ -2,7 +2,7 @@
 
 use super::number::value;
 pub use crate::files::bundle::file_name;
-use crate::run::record::RunKey;
+use crate::studies::rows::RunKey;
 
 /// File name part for a run without its increment: `case.mesh.space.method.mu-0.1`, other characters than letters,
 /// digits, `.`, `-`, `_` and `=` replaced by `-`.

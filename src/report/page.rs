@@ -24,7 +24,8 @@ use super::figures;
 use super::table::Description;
 use super::tables::{Chapter, catalogue};
 use super::{Bundle, Claim, Plan};
-use html::{Block, Grid, Link, Section};
+use folder::Link;
+use html::{Block, Grid, Section};
 
 /// Name of the page in its folder.
 pub const FILE: &str = "index.html";

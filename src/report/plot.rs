@@ -11,6 +11,7 @@
 mod axis;
 mod bands;
 mod canvas;
+mod colour;
 mod contact;
 mod contour;
 mod figure;
@@ -24,9 +25,10 @@ mod style;
 
 pub use axis::{Axis, prefixed};
 pub use canvas::{italic, plain, subscript};
+pub use colour::Rgb;
 pub use contact::contact_status;
 pub use contour::{displacement, von_mises};
 pub use figure::Figure;
 pub use heatmap::{Cell, HeatMap};
 pub use series::{Draw, Guide, Panel, Series};
-pub use style::{Marker, Rgb, Style, base, is_exact, looks, rank, status_marker};
+pub use style::{Marker, Style, base, is_exact, looks, rank, status_marker};

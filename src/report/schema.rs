@@ -2,7 +2,6 @@
 
 use super::figures;
 use super::tables::{Chapter, catalogue};
-use crate::run::record::SCHEMA;
 
 /// The text around the catalogues.
 const TEMPLATE: &str = include_str!("schema.md");
@@ -24,7 +23,6 @@ pub fn manual() -> String {
     };
     let figures: String = figures::CATALOGUE.iter().map(row).collect();
     TEMPLATE
-        .replace("{version}", &SCHEMA.to_string())
         .replace("{tables}\n", &tables)
         .replace("{figures}\n", &(figures + "\n"))
 }

@@ -7,8 +7,8 @@ use super::names::stem;
 use super::number::value;
 use super::tables::runs::ExpectSummary;
 use super::{Bundle, Provenance, ReportError, figures, table, vtu};
-use crate::run::record::{Results, RunFields, RunKey, RunRow};
 use crate::run::verdict::VerdictKind;
+use crate::studies::rows::{Results, RunFields, RunKey, RunRow};
 use std::collections::BTreeMap;
 
 /// Everything that one command writes, apart from the tables of the paper.
@@ -65,7 +65,7 @@ pub fn summary(results: &Results) -> String {
         results
             .runs
             .iter()
-            .filter(|r| r.verdict.kind() == kind)
+            .filter(|r| r.step.verdict.kind() == kind)
             .count()
     };
     let stated = results.expectations.iter().filter(|e| e.as_stated());

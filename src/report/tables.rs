@@ -1,33 +1,39 @@
 //! Every table that a command writes: its row type with its columns, and the chapter it belongs to.
 
+pub mod causes;
 pub mod convergence;
 pub mod paper;
+pub mod peers;
 pub mod problems;
 pub mod ranks;
-pub mod robustness;
 pub mod runs;
 pub mod sensitivity;
 pub mod stress;
 pub mod sweep;
-pub mod timings;
 mod words;
 
-use super::table::Description;
-use crate::run::record::{ExactRow, ExpectRow, HistoryRow, PointRow, QuantityRow, RunRow};
+use causes::WhyRow;
+use problems::ProblemRow;
+use ranks::{AccuracyRow, PointRow, ProfileRow, RankingRow};
+use sensitivity::{SensitivityRow, WindowRow};
+use sweep::{CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow};
+
+use super::table::{self, Description, Row};
+use super::{Bundle, ReportError};
+use crate::studies::analysis::accuracy::refinements;
+use crate::studies::analysis::causes::{AtlasRow, StoppingRow, atlas, stopping};
+use crate::studies::analysis::scaling::{Growth, growth};
+use crate::studies::analysis::sensitivity::sweeps;
+use crate::studies::analysis::success::{SuccessRow, success};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
-use crate::studies::exchange::collection::{FamilyRow, ProblemRow};
 use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::paper::variants::VariantRow;
-use crate::studies::robustness::atlas::{AtlasRow, StoppingRow};
-use crate::studies::robustness::summary::{FailureRow, RobustnessRow};
-use crate::studies::stress::rungs::{LadderRow, OptionRow, RungRow};
-use crate::studies::stress::summary::{CauseRow, InvarianceRow, MethodRow, SceneRow};
-use crate::studies::sweep::analysis::scaling::Growth;
-use crate::studies::sweep::analysis::sensitivity::Starts;
-use crate::studies::sweep::analysis::success::SuccessRow;
+use crate::studies::record::Record;
+use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, QuantityRow, RunRow};
+use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, MethodRow, SceneRow};
 
 /// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -40,8 +46,6 @@ pub enum Chapter {
     Study,
     /// Random scenes: what fails, and why.
     Stress,
-    /// Random problems.
-    Robustness,
     /// Errors of meshes.
     Accuracy,
     /// Benchmarks and other programs.
@@ -54,12 +58,11 @@ pub enum Chapter {
 
 impl Chapter {
     /// All, in the order of the page.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 8] = [
         Self::Paper,
         Self::Methods,
         Self::Study,
         Self::Stress,
-        Self::Robustness,
         Self::Accuracy,
         Self::Benchmarks,
         Self::Expected,
@@ -73,7 +76,6 @@ impl Chapter {
             Self::Methods => "methods",
             Self::Study => "study",
             Self::Stress => "stress",
-            Self::Robustness => "robustness",
             Self::Accuracy => "accuracy",
             Self::Benchmarks => "benchmarks",
             Self::Expected => "expected",
@@ -88,9 +90,8 @@ impl Chapter {
             Self::Methods => "Methods on all cases",
             Self::Study => "Run time against error",
             Self::Stress => "Numerical stability",
-            Self::Robustness => "Robustness",
             Self::Accuracy => "Accuracy of the discretisation",
-            Self::Benchmarks => "Benchmarks and other programs",
+            Self::Benchmarks => "Other programs",
             Self::Expected => "Expected numbers",
             Self::Runs => "Runs",
         }
@@ -116,10 +117,6 @@ impl Chapter {
                  each other, at distances from 1e-14 of a cell. Every one is run by every method, judged, and run again in other \
                  units, elsewhere and with other names of sides and faces (`stickslip stress`)."
             }
-            Self::Robustness => {
-                "The same seeded random problems for every method (`stickslip stress methods`). Exact methods succeed where they \
-                 solved the contact laws, approximate ones where they kept their claim."
-            }
             Self::Accuracy => {
                 "Errors and observed orders on sequences of meshes, against closed forms where there are any (`stickslip \
                  converge`)."
@@ -134,6 +131,69 @@ impl Chapter {
             }
         }
     }
+}
+
+/// A table that a study makes of its records.
+pub struct OfStudy {
+    /// What it is.
+    pub about: Description,
+    /// Adds it.
+    pub add: Add,
+}
+
+/// Adds a table; of nothing there is none.
+fn add<R: Row>(bundle: &mut Bundle, rows: &[R], caveat: &str) -> Result<(), ReportError> {
+    match rows {
+        [] => Ok(()),
+        _ => table::add(bundle, rows, caveat),
+    }
+}
+
+/// Adds what is made of records, with a caveat for the heading.
+type Add = fn(&mut Bundle, &[Record], &str) -> Result<(), ReportError>;
+
+fn table<R: Row>(add: Add) -> OfStudy {
+    let about = Description::of::<R>();
+    OfStudy { about, add }
+}
+
+/// The tables of a study, in the order of the page: a new one is its file and a line here.
+pub fn of_study() -> Vec<OfStudy> {
+    vec![
+        table::<RankingRow>(|to, of, caveat| add(to, &ranks::rankings(of), caveat)),
+        table::<Growth>(|to, of, caveat| add(to, &growth(of), caveat)),
+        table::<SuccessRow>(|to, of, caveat| add(to, &success(of), caveat)),
+        table::<AtlasRow>(|to, of, caveat| add(to, &atlas(of), caveat)),
+        table::<WhyRow>(|to, of, caveat| add(to, &WhyRow::all(of), caveat)),
+        table::<StoppingRow>(|to, of, caveat| add(to, &stopping(of), caveat)),
+        table::<WindowRow>(|to, of, caveat| add(to, &WindowRow::of(&sweeps(of)), caveat)),
+        table::<SensitivityRow>(|to, of, caveat| {
+            let sweeps = sweeps(of);
+            let rows: Vec<SensitivityRow> = sweeps.iter().flat_map(SensitivityRow::of).collect();
+            add(to, &rows, caveat)
+        }),
+        table::<SummaryRow>(|to, of, _| add(to, &sweep::numbers(of), "")),
+        table::<ProfileRow>(|to, of, _| add(to, &ranks::profiles(of), "")),
+        table::<PointRow>(|to, of, _| add(to, &ranks::curves(of), "")),
+        table::<AccuracyRow>(|to, of, _| {
+            let meshes = refinements(of);
+            let errors = meshes
+                .iter()
+                .flat_map(|one| one.errors.iter().map(AccuracyRow));
+            add(to, &errors.collect::<Vec<_>>(), "")
+        }),
+        table::<CellRow>(|to, of, _| add(to, &of.iter().map(CellRow).collect::<Vec<_>>(), "")),
+        table::<IncrementRow>(|to, of, _| {
+            let rows = of.iter().flat_map(IncrementRow::of);
+            add(to, &rows.collect::<Vec<_>>(), "")
+        }),
+        table::<DeviationRow>(|to, of, _| add(to, &DeviationRow::all(of), "")),
+        table::<TimeRow>(|to, of, _| {
+            let rows = of.iter().filter_map(TimeRow::of);
+            add(to, &rows.collect::<Vec<_>>(), "")
+        }),
+        table::<ProblemRow>(|to, of, caveat| add(to, &problems::of_files(of), caveat)),
+    ]
 }
 
 /// Every table with its chapter, those of a chapter in the order of the page.
@@ -152,42 +212,16 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<ComparisonRow>(),
         Description::of::<VariantRow>(),
     ];
-    let study = vec![
-        Description::of::<ranks::RankingRow>(),
-        Description::of::<Growth>(),
-        Description::of::<SuccessRow>(),
-        Description::of::<sensitivity::WindowRow<'_>>(),
-        Description::of::<sensitivity::SensitivityRow<'_>>(),
-        Description::of::<Starts>(),
-        Description::of::<sweep::SummaryRow>(),
-        Description::of::<ranks::ProfileRow>(),
-        Description::of::<ranks::PointRow<'_>>(),
-        Description::of::<ranks::AccuracyRow<'_>>(),
-        Description::of::<sweep::CellRow<'_>>(),
-        Description::of::<sweep::IncrementRow<'_>>(),
-        Description::of::<sweep::DeviationRow<'_>>(),
-        Description::of::<sweep::TimeRow<'_>>(),
-    ];
+    let study = of_study().into_iter().map(|table| table.about).collect();
     let stress = vec![
-        Description::of::<CauseRow>(),
+        Description::of::<FaultRow>(),
         Description::of::<InvarianceRow>(),
         Description::of::<MethodRow>(),
         Description::of::<LadderRow>(),
-        Description::of::<OptionRow>(),
-        Description::of::<RungRow>(),
         Description::of::<SceneRow>(),
     ];
-    let robustness = vec![
-        Description::of::<RobustnessRow>(),
-        Description::of::<FailureRow>(),
-        Description::of::<AtlasRow>(),
-        Description::of::<StoppingRow>(),
-    ];
     let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
-    let benchmarks = vec![
-        Description::of::<super::timings::TimingRow>(),
-        timings::peers(),
-    ];
+    let benchmarks = vec![peers::peers()];
     let expected = vec![
         Description::of::<runs::ExpectSummary>(),
         Description::of::<ExpectRow>(),
@@ -196,16 +230,13 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<RunRow>(),
         Description::of::<QuantityRow>(),
         Description::of::<HistoryRow>(),
-        Description::of::<PointRow>(),
+        Description::of::<rows::PointRow>(),
         Description::of::<ExactRow>(),
-        Description::of::<ProblemRow>(),
-        Description::of::<FamilyRow>(),
     ];
     of(Chapter::Paper, paper)
         .chain(of(Chapter::Methods, methods))
         .chain(of(Chapter::Study, study))
         .chain(of(Chapter::Stress, stress))
-        .chain(of(Chapter::Robustness, robustness))
         .chain(of(Chapter::Accuracy, accuracy))
         .chain(of(Chapter::Benchmarks, benchmarks))
         .chain(of(Chapter::Expected, expected))

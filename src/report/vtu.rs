@@ -6,7 +6,7 @@
 
 use super::{Bundle, ReportError};
 use crate::model::field_mesh::{CellShape, FieldMesh};
-use crate::run::record::RunFields;
+use crate::studies::rows::RunFields;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;

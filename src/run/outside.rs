@@ -23,11 +23,10 @@ use stickslip_methods::{
     Status,
 };
 
-use crate::case::label::is_label;
 use crate::files::digest::sha256;
 use crate::files::interchange::{Info, LocalProblem, Problem, Solution};
 use crate::files::regular;
-use crate::files::visible::excerpt;
+use crate::files::visible::{excerpt, is_label};
 use crate::run::local_problem::{local_velocity, unsolved};
 use answer::{Said, reactions, said};
 use guard::Guarded;

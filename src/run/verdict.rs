@@ -67,7 +67,7 @@ impl fmt::Display for Accuracy {
 pub enum Verdict {
     /// Claimed the contact laws and the judge agrees.
     Solved,
-    /// The same, and another answer to the same problem holds as well: see [`mark_several`](super::several::mark_several).
+    /// The same, and another answer to the same problem holds as well: see [`mark_several`](crate::studies::several::mark_several).
     Several,
     /// Solved its own laws, as the judge agrees; it found the contact laws held to this tier, or to none.
     Approximate(Option<Tier>),

@@ -1,22 +1,26 @@
 //! Does a method do what methods are to do? Small problems with known answers, each asked twice.
-//!
-//! The answers are not computed: reactions r and local velocities u that fulfil the contact laws are chosen first, and
-//! q = u − W r − V λ makes them the solution. W = I + A Aᵀ/m with entries of A in [−1, 1] is conditioned well enough for
-//! it to be the only one at these friction coefficients.
-
-mod problems;
-
-pub use problems::{Exercise, Known, exercises};
-
-use stickslip_methods::{ContactState, ContactSystem, Increment, Load, MethodError};
 
 use crate::run::choice::Choice;
-use crate::run::increment::{JudgedIncrement, Solver};
-use crate::run::verdict::Verdict;
-use crate::studies::exchange::local_system;
+use crate::run::progress::Progress;
+use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::axes::{Axes, named};
+use crate::studies::measure::RunError;
+use crate::studies::measure::here;
+use crate::studies::measure::{Bench, MeasureError, Repeats};
+use crate::studies::record::Record;
+use crate::studies::sources::exercises::{WITHOUT_ANSWER, exercises};
+use crate::studies::task::Looks;
 
 /// Distance of the reactions from the known ones that is passed, in multiples of the tolerance.
 const DISTANCE: f64 = 1e3;
+
+/// Twice: other bits are an error of the method, as where it is timed.
+const TWICE: Repeats = Repeats {
+    least: 2,
+    most: 2,
+    seconds: 0.0,
+    patience_s: f64::INFINITY,
+};
 
 /// What became of an exercise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,118 +44,77 @@ impl Mark {
     }
 }
 
-/// One exercise by one method.
-#[derive(Debug, Clone)]
-pub struct Attempt {
-    /// Name of the exercise.
-    pub exercise: &'static str,
-    /// Label of the method.
-    pub method: String,
-    /// What was to come out.
-    pub expected: &'static str,
-    /// What came out.
-    pub verdict: Verdict,
-    /// |r − r*| / max(|r*|, ρ |q|); NaN where there is none.
-    pub distance: f64,
-    /// Violation found by the judge; NaN where there is none.
-    pub violation: f64,
-    /// Iterations of the method.
-    pub iterations: usize,
-    /// What it is worth.
-    pub mark: Mark,
-}
-
-/// Has a method do an exercise, to a violation of `tolerance`.
+/// Has methods do all exercises, to a violation of `tolerance`: records by exercise, then method.
 ///
 /// # Errors
 /// An exercise that makes no system.
-pub fn attempt(
-    exercise: &Exercise,
-    choice: &Choice,
+pub fn run(
+    choices: &[Choice],
     tolerance: f64,
-) -> Result<Attempt, MethodError> {
-    let posed = local_system(&exercise.problem)?;
-    let system = ContactSystem::new(posed.elastic, posed.friction)?;
-    let (rest, start) = (Load::zero(system.elastic()), ContactState::zero(&system));
-    let increment = Increment {
-        system: &system,
-        load: &posed.load,
-        start_load: &rest,
-        start: &start,
-        guess: None,
-        index: 0,
-        tolerance,
+    progress: &dyn Progress,
+) -> Result<Vec<Record>, RunError> {
+    let (mut bench, mut records) = (Bench::default(), Vec::new());
+    let looks = Looks {
+        truth: true,
+        ..Looks::default()
     };
-    let done = solved_twice(choice, &increment);
-    let judged = done.judged.as_ref();
-    let distance = match (judged, &exercise.known) {
-        (Some(judged), Known::Reactions(r)) => distance(&judged.outcome.state.p, r, exercise),
-        _ => f64::NAN,
-    };
-    let right = match (&done.verdict, &exercise.known) {
-        (Verdict::Solved, Known::Reactions(_)) => distance <= DISTANCE * tolerance,
+    for exercise in exercises() {
+        let subject = exercise.subject();
+        let subject = subject.map_err(|e| MeasureError::File(e.to_string()))?;
+        let axes = Axes::of_file(&exercise.problem.mu[..1]);
+        let accuracy = Accuracy::exactly(tolerance);
+        let tasks = subject.tasks(&axes, &named(choices), &[accuracy], looks);
+        let answers = here(
+            &mut bench,
+            &tasks,
+            choices,
+            1,
+            Some(TWICE),
+            progress,
+            &mut |_, _| (),
+        )?;
+        records.extend(answers.into_iter().map(|own| own.record));
+    }
+    Ok(records)
+}
+
+/// Verdict that passes.
+pub fn expected(record: &Record) -> &'static str {
+    match record.class.as_str() {
+        WITHOUT_ANSWER => "gave-up",
+        _ => "solved",
+    }
+}
+
+/// Distance of the reactions from the known ones; NaN where there is none.
+pub fn distance(record: &Record) -> f64 {
+    let mut own = record.found.deviations.iter().map(|own| own.error);
+    own.next().unwrap_or(f64::NAN)
+}
+
+/// What a record of an exercise is worth.
+pub fn mark(record: &Record) -> Mark {
+    let known = record.class != WITHOUT_ANSWER;
+    let right = match &record.found.verdict {
+        Verdict::Refused(_) => return Mark::Declined,
+        Verdict::Solved => known && distance(record) <= DISTANCE * record.asked.tolerance,
         // Laws of its own, as it says.
-        (Verdict::Approximate(_), Known::Reactions(_)) => true,
-        (Verdict::GaveUp(_), Known::Nothing) => true,
+        Verdict::Approximate(_) => known,
+        Verdict::GaveUp(_) => !known,
         _ => false,
     };
-    let mark = match done.verdict {
-        Verdict::Refused(_) => Mark::Declined,
-        _ if right => Mark::Passed,
-        _ => Mark::Failed,
-    };
-    Ok(Attempt {
-        exercise: exercise.name,
-        method: choice.label.clone(),
-        expected: match exercise.known {
-            Known::Reactions(_) => "solved",
-            Known::Nothing => "gave-up",
-        },
-        distance,
-        violation: judged.map_or(f64::NAN, |judged| judged.found.violation),
-        iterations: judged.map_or(0, |judged| judged.outcome.counters.iterations),
-        verdict: done.verdict,
-        mark,
-    })
-}
-
-/// The increment solved twice: other bits are an error of the method, as where it is timed.
-fn solved_twice(choice: &Choice, increment: &Increment<'_>) -> JudgedIncrement {
-    let accepted = increment.tolerance;
-    let solve = || Solver::new(choice, increment.system).map(|mut s| s.judge(increment, accepted));
-    let once = |tried: Result<JudgedIncrement, Verdict>| {
-        tried.unwrap_or_else(JudgedIncrement::not_started)
-    };
-    let mut first = once(solve());
-    if let Some(judged) = &first.judged {
-        let again = once(solve());
-        let same = |other: &JudgedIncrement| {
-            let other = other.judged.as_ref();
-            other.is_some_and(|other| other.outcome.state == judged.outcome.state)
-        };
-        if !same(&again) {
-            let message = "the same increment gave other bits when it was solved again";
-            first.verdict = Verdict::Crashed(message.into());
-        }
-    }
-    first
-}
-
-/// Relative to what forces are compared with.
-fn distance(found: &[f64], known: &[f64], exercise: &Exercise) -> f64 {
-    let norm = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>().sqrt();
-    let problem = &exercise.problem;
-    let rows = problem.q.len();
-    let trace: f64 = (0..rows).map(|k| problem.w.get(k, k)).sum();
-    let free = rows as f64 / trace * norm(&mut problem.q.iter().copied());
-    let scale = norm(&mut known.iter().copied()).max(free);
-    norm(&mut found.iter().zip(known).map(|(r, known)| r - known)) / scale
+    if right { Mark::Passed } else { Mark::Failed }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip_methods::{ContactState, Tier, residuals};
+    use crate::run::progress::Quiet;
+    use crate::studies::exchange::local_system;
+    use crate::studies::sources::exercises::Known;
+    use stickslip_methods::{
+        ContactState, ContactSystem, Increment, Load, Tier, conic::no_equilibrium, residuals,
+    };
 
     /// Goal: the known answers are answers, found without a method.
     #[test]
@@ -171,7 +134,7 @@ mod tests {
                 tolerance: 1e-9,
             };
             let Known::Reactions(r) = &exercise.known else {
-                assert!(stickslip_methods::conic::no_equilibrium(&increment).unwrap());
+                assert!(no_equilibrium(&increment).unwrap());
                 continue;
             };
             let state: ContactState = increment.state_of(r, &exercise.amplitudes()).unwrap();
@@ -183,27 +146,33 @@ mod tests {
         assert!(solvable >= 12);
     }
 
+    fn marks(method: &str) -> Vec<(Record, Mark)> {
+        let choice = Choice::parse(method).unwrap();
+        let records = run(&[choice], Tier::High.tolerance(), &Quiet).unwrap();
+        records
+            .into_iter()
+            .map(|own| (own.clone(), mark(&own)))
+            .collect()
+    }
+
     #[test]
     fn an_exact_method_passes_and_one_with_laws_of_its_own_is_not_held_to_the_contact_laws() {
         for (method, all) in [("hybrid", true), ("penalty", false)] {
-            let choice = Choice::parse(method).unwrap();
-            for exercise in exercises() {
-                let found = attempt(&exercise, &choice, Tier::High.tolerance()).unwrap();
-                assert_eq!(found.mark, Mark::Passed, "{found:?}");
-                assert!(!all || found.distance.is_nan() || found.distance < 1e-6);
+            for (record, mark) in marks(method) {
+                assert_eq!(mark, Mark::Passed, "{record:?}");
+                let distance = distance(&record);
+                assert!(!all || distance < 1e-6 || record.class == WITHOUT_ANSWER);
             }
         }
     }
 
     #[test]
     fn one_that_gives_up_fails() {
-        let choice = Choice::parse("nsgs:max_iterations=1").unwrap();
-        let marks = exercises().into_iter().map(|exercise| {
-            let found = attempt(&exercise, &choice, 1e-9).unwrap();
-            (exercise.name, found.mark)
-        });
-        let marks: Vec<_> = marks.collect();
-        assert!(marks.contains(&("open-2d", Mark::Passed)));
-        assert!(marks.contains(&("mixed-3d", Mark::Failed)));
+        let marks = marks("nsgs:max_iterations=1");
+        let of = |name: &str| marks.iter().find(|own| own.0.asked.case == name).unwrap().1;
+        assert_eq!(
+            (of("open-2d"), of("mixed-3d")),
+            (Mark::Passed, Mark::Failed)
+        );
     }
 }

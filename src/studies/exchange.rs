@@ -1,6 +1,5 @@
 //! Between an increment and the problems of interchange files.
 
-pub mod collection;
 pub mod export;
 pub mod problem_file;
 

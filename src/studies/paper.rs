@@ -13,8 +13,9 @@ pub mod variants;
 pub use lookup::{PaperError, as_printed};
 
 use crate::case::shipped;
-use crate::run::record::Results;
-use crate::run::run_case::{Fields, Progress, Settings, run_case};
+use crate::run::progress::Progress;
+use crate::studies::cases::{Fields, Settings, run_case};
+use crate::studies::rows::Results;
 
 use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
 use lookup::{case, choice};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Complex;
 use stickslip::case::{Material, Model};
 use stickslip::model::body::{Body, Needs};
-use stickslip::model::quantities::Snapshot;
+use stickslip::model::snapshot::Snapshot;
 use stickslip::run::registry::method;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, Silent, Status, point_status,
@@ -181,6 +181,7 @@ pub fn plate(field: &Griffith, cells: usize, tip: &str) -> String {
 
 /// Sets the prescribed displacements of all standard functions to an exact field; those of enriched ones stay 0.
 pub fn hold(body: &mut Body, field: &dyn Field) {
+    let body = &mut body.discrete;
     let dim = body.mesh.dim();
     for (&unknown, prescribed) in &mut body.prescribed {
         let function = body.enrichment.functions[unknown / dim];

@@ -15,12 +15,14 @@ use stickslip::case::{self, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
 use stickslip::run::choice::Choice;
-use stickslip::run::record::Results;
+use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::rows::Results;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status,
 };
+use stickslip_xfem::loads::sides::Sides;
 
 /// A method whose limit are the contact laws and that ends in round-off: the default where the method does not matter.
 pub const METHOD: &str = "b-newton";
@@ -123,6 +125,12 @@ pub fn loading<'a>(body: &'a Body, case: &'a Case) -> Loading<'a> {
     Loading::new(body, case, friction).unwrap_or_else(|e| panic!("{e}\n{}", case.source))
 }
 
+/// Sides of the first crack of a case in its body.
+pub fn sides(case: &Case, body: &Body) -> Option<Sides> {
+    let first = case.cracks.first().map(|spec| (&spec.geometry, spec.tip));
+    Sides::new(first, &body.integrator())
+}
+
 /// The load of a body nothing acts on.
 pub fn no_load(body: &Body) -> Load {
     Load::zero(&body.elastic)
@@ -180,6 +188,7 @@ pub fn run(case: &Case, methods: &[&str]) -> Results {
         jobs: 1,
         fields: Fields::None,
         starts: 1,
+        why: Why::Nothing,
     };
     run_case(case, &choices(methods), settings, &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -193,7 +202,7 @@ pub fn choices(methods: &[&str]) -> Vec<Choice> {
 /// The only value of a quantity in the rows that fulfil a condition.
 pub fn value(
     results: &Results,
-    keep: impl Fn(&stickslip::run::record::RunKey) -> bool,
+    keep: impl Fn(&stickslip::studies::rows::RunKey) -> bool,
     [quantity, at, component]: [&str; 3],
 ) -> f64 {
     let found: Vec<f64> = results

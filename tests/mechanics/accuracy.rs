@@ -4,7 +4,7 @@ use crate::common::*;
 use stickslip::case::{Case, ContactSpace, CrackShape, Tip, shipped};
 use stickslip::model::errors::Deviation;
 use stickslip::run::choice::Choice;
-use stickslip::run::run_case::Quiet;
+use stickslip::run::progress::Quiet;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::convergence;
 use stickslip::studies::convergence::{ConvergencePlan, Measured, slope};
@@ -22,7 +22,7 @@ impl Errors {
             tips: tip.map(|tip| vec![tip]),
             choice: Choice::new(stickslip::run::registry::method("hybrid").unwrap(), &[]).unwrap(),
         };
-        let samples = convergence::run(case, &study, &convergence::closed_form, &Quiet).unwrap();
+        let samples = convergence::run(case, &study, &Quiet).unwrap();
         let rows = samples.into_iter().map(|sample| {
             let Measured::Exact(deviations) = sample.measured else {
                 panic!("{}: {}", sample.mesh, sample.verdict)
@@ -197,7 +197,12 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     case.expects.clear();
     case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
-    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
+    assert!(
+        results
+            .runs
+            .iter()
+            .all(|r| r.step.verdict == Verdict::Solved)
+    );
     let rows = results.quantities.iter();
     rows.filter(|q| q.quantity.name == "dissipation" && q.quantity.at.is_empty())
         .filter(|q| q.key.increment > 0)
@@ -289,7 +294,7 @@ fn a_circular_interface_has_its_pressures_and_orders() {
     case.sweep.refine = vec![4];
     let results = run(&case, &[METHOD]);
     let pressure = |angle: f64| {
-        let away = |p: &&stickslip::run::record::PointRow| {
+        let away = |p: &&stickslip::studies::rows::PointRow| {
             (p.point.y_m.atan2(p.point.x_m) - angle.to_radians()).abs()
         };
         let points = results.points.iter();

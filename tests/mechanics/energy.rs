@@ -2,12 +2,17 @@
 
 use crate::common::*;
 use stickslip::case::{Case, shipped};
-use stickslip::run::record::Results;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::rows::Results;
 
 /// A quantity of the whole body by increment.
 fn history(results: &Results, quantity: &str) -> Vec<f64> {
-    assert!(results.runs.iter().all(|r| r.verdict == Verdict::Solved));
+    assert!(
+        results
+            .runs
+            .iter()
+            .all(|r| r.step.verdict == Verdict::Solved)
+    );
     let rows = results.quantities.iter().map(|row| &row.quantity);
     rows.filter(|q| q.name == quantity && q.at.is_empty())
         .map(|q| q.value)
@@ -45,7 +50,7 @@ fn friction_takes_what_the_supports_do_and_the_body_does_not_store() {
             "{dissipation} {lost}"
         );
         assert!(of("path_error") < 1e-8 && of("initial_stress_work") == 0.0);
-        let at_end = |k: &stickslip::run::record::RunKey| k.increment == increments;
+        let at_end = |k: &stickslip::studies::rows::RunKey| k.increment == increments;
         let own = value(&results, at_end, ["dissipation", "crack-1", ""]);
         assert_eq!(own, dissipation);
         found.push(dissipation);

@@ -5,9 +5,10 @@ use std::f64::consts::TAU;
 use crate::common::fields::*;
 use crate::common::*;
 use stickslip::model::body::Body;
-use stickslip::model::errors::{Bulk, Deviation, RULE, bulk, errors};
-use stickslip::model::quantities::Snapshot;
+use stickslip::model::errors::{Deviation, errors};
+use stickslip::model::snapshot::Snapshot;
 use stickslip_xfem::contact::surface_point::{SurfacePoint, max_penetration};
+use stickslip_xfem::discretisation::norms::{Bulk, RULE, bulk};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::geometry::{Point, add_scaled};
 

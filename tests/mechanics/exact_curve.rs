@@ -3,7 +3,7 @@
 use crate::common::run;
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::run::record::{ExactRow, Results};
+use stickslip::studies::rows::{ExactRow, Results};
 
 fn case(name: &str) -> Case {
     shipped::find(name).unwrap().unwrap()

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::common::*;
 use stickslip::model::body::Body;
 use stickslip::model::errors::{Deviation, errors};
-use stickslip::model::quantities::Snapshot;
+use stickslip::model::snapshot::Snapshot;
 use stickslip::run::registry::method;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, Silent, Status, point_status,

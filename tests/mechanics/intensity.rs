@@ -3,10 +3,10 @@
 use crate::common::fields::*;
 use crate::common::*;
 use stickslip::model::body::Body;
-use stickslip::model::errors::{fronts, tip_fronts, tip_intensities};
-use stickslip::model::quantities::Snapshot;
+use stickslip::model::snapshot::Snapshot;
 use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
 use stickslip_xfem::cut::placement::cells_at;
+use stickslip_xfem::discretisation::tips::{fronts, tip_fronts, tip_intensities};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::fields::sampling::ComparisonPoint;
@@ -281,7 +281,8 @@ fn errors(field: &Griffith, cells: usize, tractions: Tractions, stress: &str) ->
     let mut worst = [0.0f64; 2];
     for (at, tip) in tip_fronts(&body) {
         let exact = field.intensity(&tip.position).unwrap();
-        let found = tip_intensities(&body, &surface, &tip, &now, &|_, _| [0.0; 3]).unwrap();
+        let found =
+            tip_intensities(&body, &surface, &tip, [&now.u, &now.p], &|_, _| [0.0; 3]).unwrap();
         let (jump, integral) = (found.jump.unwrap(), found.interaction.unwrap());
         let size = exact[0].hypot(exact[1]);
         for (worst, k) in worst.iter_mut().zip([[jump[0], jump[1]], integral]) {

@@ -3,8 +3,9 @@
 use crate::common::*;
 use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
-use stickslip::run::record::{Results, RunRow};
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::run::progress::Quiet;
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::rows::{Results, RunRow};
 
 /// Rounding times the conditioning of a plate of a few hundred unknowns.
 const EQUAL: f64 = 1e-10;
@@ -266,6 +267,7 @@ fn jobs_change_nothing_but_the_times() {
             jobs,
             fields: Fields::None,
             starts: 1,
+            why: Why::Nothing,
         };
         run_case(&case, &methods, settings, &Quiet).unwrap()
     });
@@ -311,11 +313,12 @@ fn a_body_far_from_zero_gives_the_same_bits() {
             jobs: 1,
             fields: Fields::All,
             starts: 1,
+            why: Why::Nothing,
         };
         run_case(&case(by), &choices(&["hybrid"]), settings, &Quiet).unwrap()
     };
     let (near, away) = (results([0.0; 2]), results(far));
-    assert_eq!(near.runs[0].verdict.to_string(), "solved");
+    assert_eq!(near.runs[0].step.verdict.to_string(), "solved");
     assert!(near.points.len() > 10);
     for (p, q) in near.points.iter().zip(&away.points) {
         let forces = |r: &stickslip::model::quantities::PointState| {

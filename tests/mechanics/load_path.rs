@@ -5,10 +5,10 @@ use std::sync::Arc;
 use crate::common::*;
 use stickslip::case::{Case, shipped};
 use stickslip::model::body::{Body, Needs};
-use stickslip::model::quantities::Snapshot;
-use stickslip::run::record::Results;
+use stickslip::model::snapshot::Snapshot;
 use stickslip::run::registry::methods;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::rows::Results;
 use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
 
 /// One body, one method, increments by hand.
@@ -197,7 +197,7 @@ fn every_2d_case_has_what_it_expects_its_energy_balances_and_friction_only_dissi
         let results = run(&case, &exact);
         assert!(results.as_expected(), "{name}: {:?}", results.expectations);
         for row in &results.runs {
-            assert_eq!(row.verdict, Verdict::Solved, "{:?}", row.key);
+            assert_eq!(row.step.verdict, Verdict::Solved, "{:?}", row.key);
         }
         for (run, values) in histories(&results, "energy_identity") {
             let at_time_0 = results.runs[0].key.increment == 0;

@@ -3,7 +3,6 @@
 use crate::common::*;
 use stickslip::case::Case;
 use stickslip::model::body::{Body, Needs};
-use stickslip::model::sides::Sides;
 use stickslip_xfem::enrichment::basis::FunctionKind;
 
 /// Forces of supports and loads over all unknowns: K u − Bᵀ P, and the loads alone.
@@ -228,7 +227,7 @@ fn an_initial_stress_does_work_on_the_strain_of_each_side() {
         let (case, body) = bodies(&text);
         let dim = body.mesh.dim();
         let force = loading(&body, &case).external_force(1);
-        let sides = Sides::new(&case, &body.integrator()).unwrap();
+        let sides = sides(&case, &body).unwrap();
         let mut found = 0.0;
         for (f, function) in body.enrichment.functions.iter().enumerate() {
             let (node, x) = (

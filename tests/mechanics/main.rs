@@ -19,6 +19,7 @@ mod invariance;
 mod junctions;
 mod load_path;
 mod loads;
+mod mass;
 mod mesh_judge;
 mod nitsche;
 mod parts_of_sides;

@@ -2,8 +2,8 @@
 
 use crate::common::*;
 use stickslip::model::body::Body;
-use stickslip::model::mesh_checks::{UNIFORM, mesh_checks};
 use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::discretisation::mesh_checks::{UNIFORM, mesh_checks};
 use stickslip_xfem::geometry::add_scaled;
 
 /// A slanted crack with a zone of branch functions, crossed by another.
@@ -74,7 +74,7 @@ fn every_planted_fault_is_told() {
         }),
         ("stiffness", |b| {
             let other = body(&CROSSED.replace("0.62]", "0.620001]"));
-            b.stiffness = other.stiffness;
+            b.stiffness = other.discrete.stiffness;
         }),
     ];
     for (name, plant) in faults {
@@ -144,11 +144,14 @@ fn a_layer_that_holds_too_few_digits_is_suspect() {
         results.runs.last().expect("a run").clone()
     };
     let (thin, thick) = (between(5e-7), between(1e-2));
-    let told = thin.verdict.to_string();
-    println!("{told}; sway {:.1e} and {:.1e}", thin.sway, thick.sway);
+    let told = thin.step.verdict.to_string();
+    println!(
+        "{told}; sway {:.1e} and {:.1e}",
+        thin.step.judge.sway, thick.step.judge.sway
+    );
     assert!(told.starts_with("suspect mesh: slender parts"), "{told}");
-    assert_eq!(thick.verdict.to_string(), "solved");
-    assert!(thick.sway < 1e-4 * thin.sway);
+    assert_eq!(thick.step.verdict.to_string(), "solved");
+    assert!(thick.step.judge.sway < 1e-4 * thin.step.judge.sway);
 }
 
 /// Goal: a piece that its crack cuts off with too few contact points is refused at the crack, not at the supports.

@@ -4,10 +4,11 @@ use crate::common::*;
 use stickslip::case::{Case, Expect, Tolerance, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::choice::Choice;
-use stickslip::run::record::{Results, RunKey};
+use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::rows::{Results, RunKey};
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
 };
@@ -17,6 +18,7 @@ const SETTINGS: Settings = Settings {
     jobs: 1,
     fields: Fields::None,
     starts: 1,
+    why: Why::Nothing,
 };
 
 const TRACTION: Needs = Needs {
@@ -84,7 +86,7 @@ fn the_sliding_block_is_solved_exactly() {
         let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
         let mut checked = 0;
         for run in &results.runs {
-            assert_eq!(run.verdict, Verdict::Solved, "{:?}", run.key);
+            assert_eq!(run.step.verdict, Verdict::Solved, "{:?}", run.key);
             for expect in case.expects.iter().filter(|e| applies(e, &case, &run.key)) {
                 let at = [&expect.quantity, &expect.at, &expect.component];
                 let value = found(&results, &run.key, at.map(|s| s.as_str()));
@@ -126,7 +128,7 @@ fn the_plate_agrees_with_the_multipliers_on_every_mesh() {
         let results = run_case(&case, &list, SETTINGS, &Quiet).unwrap();
         for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
             assert!(
-                matches!(run.verdict, Verdict::Approximate(_)),
+                matches!(run.step.verdict, Verdict::Approximate(_)),
                 "{:?}",
                 run.key
             );
@@ -165,7 +167,7 @@ fn the_beam_agrees_with_the_multipliers() {
     let mut worst: f64 = 0.0;
     for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
         assert!(
-            matches!(run.verdict, Verdict::Approximate(_)),
+            matches!(run.step.verdict, Verdict::Approximate(_)),
             "{:?}",
             run.key
         );
@@ -363,10 +365,10 @@ fn reactions_balance_the_load_where_the_crack_meets_a_support() {
     let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
     for run in &results.runs {
         assert!(
-            matches!(run.verdict, Verdict::Approximate(_)),
+            matches!(run.step.verdict, Verdict::Approximate(_)),
             "{:?}: {}",
             run.key,
-            run.verdict
+            run.step.verdict
         );
         for (component, exact) in [("x", 1e-3), ("y", -2e-4)] {
             let reaction = found(&results, &run.key, ["reaction", "left", component]);
@@ -407,8 +409,11 @@ fn a_consistency_term_is_never_taken_for_equilibrium() {
     let results = run_case(&case, &choices(&["nitsche"]), settings, &Quiet).unwrap();
     assert!(!results.runs.is_empty());
     for run in &results.runs {
-        let graded = run.verdict == Verdict::Approximate(Some(Tier::Low));
-        assert!(graded && run.claimed_equilibrium <= 1e-12, "{run:?}");
-        assert!(run.equilibrium > 1e-9, "{run:?}");
+        let graded = run.step.verdict == Verdict::Approximate(Some(Tier::Low));
+        assert!(
+            graded && run.step.judge.claimed_equilibrium <= 1e-12,
+            "{run:?}"
+        );
+        assert!(run.step.judge.equilibrium > 1e-9, "{run:?}");
     }
 }

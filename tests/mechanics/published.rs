@@ -2,8 +2,8 @@
 
 use crate::common::*;
 use stickslip::case::shipped;
-use stickslip::run::record::Results;
 use stickslip::run::registry::methods;
+use stickslip::studies::rows::Results;
 
 fn exact() -> Vec<&'static str> {
     let methods = methods().iter().filter(|m| m.exact);
@@ -38,7 +38,7 @@ fn table_1_mesh_1_is_reproduced_by_every_exact_method() {
         let (friction, reaction) = (numbers[0], numbers[1]);
         let of = |method: &str| {
             let key =
-                |k: &stickslip::run::record::RunKey| k.friction == friction && k.method == method;
+                |k: &stickslip::studies::rows::RunKey| k.friction == friction && k.method == method;
             -value(&results, key, ["reaction", "top", "y"]) / 1e6
         };
         let reference = of(METHOD);
@@ -55,7 +55,7 @@ fn table_1_mesh_1_is_reproduced_by_every_exact_method() {
 
 /// u of P1 … P7 for one component [m].
 fn probes(results: &Results, friction: f64, method: &str, component: &str) -> Vec<f64> {
-    let key = |k: &stickslip::run::record::RunKey| k.friction == friction && k.method == method;
+    let key = |k: &stickslip::studies::rows::RunKey| k.friction == friction && k.method == method;
     (1..=7)
         .map(|i| value(results, key, ["displacement", &format!("P{i}"), component]))
         .collect()

@@ -1,15 +1,21 @@
 //! Bodies and supports that once went wrong: slender bodies, floating blocks on a slope, supports that overlap.
 
 use crate::common::*;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::run::progress::Quiet;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
 
 fn assert_solved(text: &str) {
     let results = run(&parse(text), &EXACT);
     for row in &results.runs {
-        assert_eq!(row.verdict, Verdict::Solved, "{}: {row:?}", row.key.method);
+        assert_eq!(
+            row.step.verdict,
+            Verdict::Solved,
+            "{}: {row:?}",
+            row.key.method
+        );
     }
     assert_eq!(results.runs.len(), EXACT.len());
 }
@@ -118,9 +124,14 @@ fn who_finds_different_answers_is_told_so() {
             jobs: 1,
             fields: Fields::None,
             starts,
+            why: Why::Nothing,
         };
         let results = run_case(&parse(&body(mu)), &choices(methods), settings, &Quiet).unwrap();
-        results.runs.into_iter().map(|row| row.verdict).collect()
+        results
+            .runs
+            .into_iter()
+            .map(|row| row.step.verdict)
+            .collect()
     };
     let steep = [3.760629542764099, 3.36346893277615, 3.3810203294188796];
     let two = ["hybrid", "b-newton"];

@@ -34,8 +34,13 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
         let results = run(&case, &[method.name]);
         assert_eq!(results.runs.len(), 1);
         let row = &results.runs[0];
-        assert_eq!(row.verdict, Verdict::Solved, "{}", method.name);
-        assert_eq!((row.solves, row.iterations), (1, 0), "{}", method.name);
+        assert_eq!(row.step.verdict, Verdict::Solved, "{}", method.name);
+        assert_eq!(
+            (row.step.solves, row.step.iterations),
+            (1, 0),
+            "{}",
+            method.name
+        );
         assert_eq!(row.condensation_s, 0.0, "{}", method.name);
     }
     let found = solve(&case.source);
@@ -49,14 +54,17 @@ fn a_frictionless_crack_has_one_unknown_per_point() {
     let case = shipped::find("frictionless").unwrap().unwrap();
     let results = run(&case, &names(false));
     for row in &results.runs {
-        assert_eq!(row.unknowns, row.points, "{:?}", row.key);
-        assert!(row.points > 0);
+        assert_eq!(row.size.unknowns, row.size.points, "{:?}", row.key);
+        assert!(row.size.points > 0);
     }
     let mut case = shipped::find("plate_mesh1").unwrap().unwrap();
     case.sweep.friction = vec![0.0, 0.1];
     let results = run(&case, &["b-newton"]);
-    assert_eq!(results.runs[0].unknowns, results.runs[0].points);
-    assert_eq!(results.runs[1].unknowns, 2 * results.runs[1].points);
+    assert_eq!(results.runs[0].size.unknowns, results.runs[0].size.points);
+    assert_eq!(
+        results.runs[1].size.unknowns,
+        2 * results.runs[1].size.points
+    );
     let rest = support("\"bottom\"", "[0, 0, 0]") + &support("\"top\"", "[1e-3, 0, -1e-3]");
     for (mu, components) in [(0.0, 1), (0.2, 3)] {
         let planes = [([0.0, 0.0, 0.5], [0.0, 0.0, 1.0], mu)];
@@ -65,8 +73,8 @@ fn a_frictionless_crack_has_one_unknown_per_point() {
             &["b-newton"],
         );
         assert_eq!(
-            results.runs[0].unknowns,
-            components * results.runs[0].points
+            results.runs[0].size.unknowns,
+            components * results.runs[0].size.points
         );
     }
 }

@@ -13,10 +13,11 @@ use stickslip::case::shipped;
 use stickslip::report::tables::catalogue;
 use stickslip::report::tables::runs::ExpectSummary;
 use stickslip::report::{standard, table};
-use stickslip::run::record::Results;
+use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
 use stickslip::studies::paper::comparison::comparison;
+use stickslip::studies::rows::Results;
 
 /// Columns printed with two to four digits.
 const FEW_DIGITS: [&str; 14] = [
@@ -201,6 +202,7 @@ fn fresh_tables() -> BTreeMap<String, Vec<u8>> {
         jobs: 1,
         fields: Fields::None,
         starts: 1,
+        why: Why::Nothing,
     };
     let mut results = Results::default();
     for name in QUICK {

@@ -4,8 +4,8 @@ use crate::report_data::figures::{comparison_of_methods, figures, load_path, of_
 use crate::report_data::{beam, beam_step, key, plate, results};
 use stickslip::report::figures::CATALOGUE;
 use stickslip::report::plot;
-use stickslip::run::record::{HistoryRow, Results, RunFields};
 use stickslip::run::registry::methods;
+use stickslip::studies::rows::{HistoryRow, Results, RunFields};
 
 /// Values of an attribute of all elements of a name.
 fn attributes<'a>(svg: &'a str, element: &str, name: &str) -> Vec<&'a str> {

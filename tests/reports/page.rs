@@ -155,7 +155,6 @@ fn the_committed_report_makes_one_page() {
         "methods",
         "study",
         "stress",
-        "robustness",
         "accuracy",
         "benchmarks",
         "expected",
@@ -354,14 +353,14 @@ fn the_verb_writes_the_page_or_names_what_is_wrong() {
             .output()
             .expect("it runs")
     };
-    let output = run(&["page", "out"]);
+    let output = run(&["show", "out"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("out/index.html: "));
     check(&fs::read_to_string(dir.path().join("out/index.html")).expect("the page"));
     fs::write(dir.path().join("out/penalty.csv"), "friction\n0.1,2\n").expect("a file");
-    let output = run(&["page", "out"]);
+    let output = run(&["show", "out"]);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(message.contains("out/penalty.csv:2: 2 cells"), "{message}");
-    assert_eq!(run(&["page", "nowhere"]).status.code(), Some(2));
+    assert_eq!(run(&["show", "nowhere"]).status.code(), Some(2));
 }

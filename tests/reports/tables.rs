@@ -210,7 +210,7 @@ fn wrong_answers_have_no_profile_and_no_time() {
         .iter_mut()
         .filter(|row| row.key.method == "latin")
     {
-        row.verdict = Verdict::FalseClaim;
+        row.step.verdict = Verdict::FalseClaim;
     }
     let bundle = standard::bundle(&results, &Provenance::collect(1)).expect("a bundle");
     let profile = text(

@@ -6,21 +6,27 @@ use std::path::Path;
 use crate::report_data::results;
 use stickslip::case;
 use stickslip::report::table::{self, Row, readable};
-use stickslip::report::timings::{BenchmarkName, TimingRow};
+use stickslip::report::tables::causes::WhyRow;
+use stickslip::report::tables::sweep::CellRow;
 use stickslip::report::{Bundle, Claim, Provenance, page, plan, standard};
 use stickslip::run::choice::Choice;
-use stickslip::run::record::{Results, RunRow};
-use stickslip::run::run_case::{Fields, Quiet, Settings, run_case};
-use stickslip::run::verdict::{Verdict, VerdictKind};
+use stickslip::run::progress::Quiet;
+use stickslip::run::verdict::{Accuracy, Verdict, VerdictKind};
+use stickslip::studies::axes::{Axes, Subject, named};
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
 use stickslip::studies::convergence::orders::{self, ErrorRow};
-use stickslip::studies::convergence::{Measured, Regularity, Sample, Seconds, Variant};
+use stickslip::studies::convergence::{Measured, Sample, Variant};
 use stickslip::studies::paper::comparison::comparison;
 use stickslip::studies::paper::converged_reactions::SequenceRow;
 use stickslip::studies::paper::penalty::PenaltyRow;
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::paper::variants::VariantRow;
-use stickslip::studies::robustness::summary::FailureRow;
-use stickslip::studies::sweep::statistics::Timing;
+use stickslip::studies::record::{Found, Record};
+use stickslip::studies::rows::{Results, RunRow};
+use stickslip::studies::task::Looks;
+use stickslip::studies::tips::Regularity;
+use stickslip::studies::why::Explanation;
+use stickslip::studies::why::cause::{Cause, Diagnosis};
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Status,
     Tier,
@@ -46,10 +52,37 @@ fn runs() -> Vec<RunRow> {
     let run = |kind: &VerdictKind| {
         let mut row = results().runs.swap_remove(0);
         row.key.case = format!("case-{}", kind.name());
-        row.verdict = of_kind(*kind);
+        row.step.verdict = of_kind(*kind);
         row
     };
     VerdictKind::ALL.iter().map(run).collect()
+}
+
+/// A record of a task that ended so, and was asked why.
+fn of_a_task(verdict: &Verdict) -> Record {
+    let case = case::parse("pressed.toml", pressed(3)).unwrap();
+    let choice = Choice::parse("latin").unwrap();
+    let accuracy = Accuracy::exactly(1e-9);
+    let tasks = Subject::of(&case).tasks(
+        &Axes::of(&case),
+        &named(&[choice]),
+        &[accuracy],
+        Looks::default(),
+    );
+    let mut found = Found::only(verdict.clone(), "latin".into(), true);
+    found.why = Some(Explanation {
+        diagnosis: Diagnosis {
+            cause: Cause::Slow,
+            period: None,
+            flips: Vec::new(),
+            measure: f64::NAN,
+            rate: None,
+            more: None,
+        },
+        solutions: 0,
+        cure: None,
+    });
+    Record::here(&tasks[0], found, None)
 }
 
 /// What a file says in a column, read back as a reader would; the form for reading says the same.
@@ -60,7 +93,7 @@ fn read_back<R: Row>(row: R, column: &str) -> Verdict {
     let place = reader.headers().unwrap().iter().position(|c| c == column);
     let record = reader.records().next().unwrap().unwrap();
     let text = record[place.unwrap()].to_owned();
-    if column == "verdict" {
+    if column == "verdict" && R::READABLE {
         assert!(readable(&rows, "").rows[0].contains(&text), "{text}");
     }
     text.parse().unwrap()
@@ -74,7 +107,7 @@ fn says_not_run<R: Row>(row: R) {
 #[test]
 fn every_kind_stands_in_every_table() {
     for run in runs() {
-        let (verdict, key) = (run.verdict.clone(), run.key.clone());
+        let (verdict, key) = (run.step.verdict.clone(), run.key.clone());
         let variant = |verdict| VariantRow {
             case: key.case.clone(),
             friction: 0.1,
@@ -103,23 +136,7 @@ fn every_kind_stands_in_every_table() {
             natural_map: f64::NAN,
             verdict,
         };
-        let timing = || TimingRow {
-            name: BenchmarkName::new("g", "solve", "latin"),
-            verdict: Some(verdict.clone()),
-            timing: Timing::of(&[1.0, 1.0]).unwrap(),
-        };
-        let failure = FailureRow {
-            seed: 1,
-            dimension: 2,
-            problem: 0,
-            friction: 0.1,
-            method: key.method.clone(),
-            verdict: verdict.clone(),
-            natural_map: f64::NAN,
-            unique: true,
-            points: 1,
-            explanation: None,
-        };
+        let record = of_a_task(&verdict);
         let error = || -> ErrorRow {
             let sample = Sample {
                 variant: Variant {
@@ -137,7 +154,7 @@ fn every_kind_stands_in_every_table() {
                 dofs: 2,
                 points: 1,
                 verdict: verdict.clone(),
-                seconds: Seconds::NONE,
+                seconds: [f64::NAN; 6],
                 measured: Measured::Nothing,
             };
             orders::rows(&[sample]).0.swap_remove(0)
@@ -157,8 +174,11 @@ fn every_kind_stands_in_every_table() {
             read_back(penalty(known()), "verdict"),
             read_back(sequence(), "verdict"),
             read_back(error(), "verdict"),
-            read_back(timing(), "verdict"),
-            read_back(failure, "verdict"),
+            read_back(CellRow(&record), "verdict"),
+            read_back(
+                WhyRow::all(std::slice::from_ref(&record)).swap_remove(0),
+                "verdict",
+            ),
         ] {
             assert_eq!(found, verdict);
         }
@@ -217,11 +237,11 @@ fn every_kind_is_counted_once_on_the_page() {
 #[test]
 fn every_failure_is_one_in_the_exit_code() {
     for run in runs() {
-        let expected = match run.verdict.kind() {
+        let expected = match run.step.verdict.kind() {
             VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::Refused => 0,
             _ => 1,
         };
-        let name = run.verdict.to_string();
+        let name = run.step.verdict.to_string();
         let results = Results {
             runs: vec![run],
             ..Results::default()
@@ -294,12 +314,13 @@ fn an_error_of_memory_is_told_by_its_type_and_fails_the_run() {
         jobs: 1,
         fields: Fields::None,
         starts: 1,
+        why: Why::Nothing,
     };
     for method in [&AT_ONCE, &LATER] {
         let choice = Choice::new(method, &[]).unwrap();
         let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
         assert_eq!(results.runs.len(), 1);
-        assert_eq!(results.runs[0].verdict, Verdict::OutOfMemory);
+        assert_eq!(results.runs[0].step.verdict, Verdict::OutOfMemory);
         assert!(!results.as_expected());
         let dir = tempfile::tempdir().unwrap();
         let bundle = standard::bundle(&results, &Provenance::collect(1)).unwrap();

@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use stickslip::run::choice::Choice;
-use stickslip::run::increment::Solver;
+use stickslip::run::path::Solver;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::atlas::answers::Answers;
-use stickslip::studies::atlas::cause::{Cause, Diagnosis, Evidence};
-use stickslip::studies::atlas::stopping::evaluate;
-use stickslip::studies::atlas::watch::{Seen, Watch};
-use stickslip::studies::atlas::{Explanation, explain, stops};
+use stickslip::studies::why::answers::Answers;
+use stickslip::studies::why::cause::{Cause, Diagnosis, Evidence};
+use stickslip::studies::why::stopping::evaluate;
+use stickslip::studies::why::watch::{Seen, Watch};
+use stickslip::studies::why::{Explanation, explain, stops};
 use stickslip_methods::{
     ContactState, ContactSystem, Elastic, Gauge, Increment, Load, SquareMatrix, Status,
 };
@@ -100,7 +100,7 @@ fn explained(f: &Fixture) -> (Verdict, Explanation) {
         let mut solver = Solver::new(&choice, system).unwrap();
         let verdict = solver.judge(increment, f.tolerance).verdict;
         let answers = Answers::of(increment).unwrap();
-        let own = explain(&choice, &mut solver, increment, &verdict, &answers).unwrap();
+        let own = explain(&choice, &mut solver, increment, &verdict, &answers, true).unwrap();
         (verdict, own)
     })
 }

@@ -1,8 +1,10 @@
-//! Folders of problem files: solved family by family, studied, and solved by packings of many redundant points.
+//! Folders of problem files: solved, studied by class, and solved by packings of many redundant points.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::interchange::{shipped_file, vector, verdict};
+use super::pipeline::measured;
 use crate::common::*;
 use stickslip::run::registry::methods;
 
@@ -15,7 +17,9 @@ fn collection(dir: &Path, files: &[&str]) {
     }
 }
 
-fn rows(path: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
+type Row = BTreeMap<String, String>;
+
+fn rows(path: &Path) -> Vec<Row> {
     csv_rows(&std::fs::read_to_string(path).unwrap())
 }
 
@@ -102,20 +106,16 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
         vector(&found.into_iter().find(own).unwrap())
     };
     assert_eq!(solution("table-3d"), solution("table-3d-libfclib"));
-    let families = rows(&dir.path().join("results/families.csv"));
-    let own = |row: &&std::collections::BTreeMap<String, String>| {
-        row["family"] == "rotating" && row["method"] == "socp"
-    };
-    let socp = families.iter().find(own).unwrap();
-    assert_eq!(
-        [&socp["problems"], &socp["refused"], &socp["honest"]],
-        ["5", "5", "0"]
-    );
+    let rates = rows(&dir.path().join("results/success.csv"));
+    let own = |row: &&Row| row["class"] == "rotating" && row["method"] == "socp";
+    let socp = rates.iter().find(own).unwrap();
+    let counts = ["cells", "refused", "correct"].map(|column| &*socp[column]);
+    assert_eq!(counts, ["5", "5", "0"]);
 }
 
-/// A study of problem files goes on where it ended, and a file that changed meanwhile is another problem.
+/// A study of problem files is told by class, and a file that changed meanwhile is another problem.
 #[test]
-fn a_study_of_files_is_resumed_and_told_by_family() {
+fn a_study_of_files_is_told_by_class() {
     let dir = tempfile::tempdir().unwrap();
     collection(
         dir.path(),
@@ -127,39 +127,25 @@ fn a_study_of_files_is_resumed_and_told_by_family() {
     );
     let sweep = "title = \"Files\"\n\n[[cells]]\nfiles = [\"collection\"]\nmethods = [\"newton-ac\", \"socp\"]\ntolerances = [1e-9]\n";
     std::fs::write(dir.path().join("files.toml"), sweep).unwrap();
-    let study = ["study", "files.toml", "--untimed"];
-    let (shown, _) = ends_with(0, &study, dir.path());
-    assert!(
-        shown.contains("6 cells: 0 measured before, 6 now, 0 left"),
-        "{shown}"
-    );
-    let (shown, _) = ends_with(0, &study, dir.path());
-    assert!(
-        shown.contains("6 cells: 6 measured before, 0 now, 0 left"),
-        "{shown}"
-    );
+    let study = "files.toml --untimed";
+    assert_eq!([(); 2].map(|()| measured(dir.path(), study)), [6, 0]);
     let results = dir.path().join("results/files");
     let problems = rows(&results.join("problems.csv"));
-    let found: Vec<[&str; 3]> = (problems.iter())
-        .map(|row| [&*row["problem"], &*row["family"], &*row["rank"]])
+    let found: Vec<[&str; 2]> = (problems.iter())
+        .map(|row| [&*row["problem"], &*row["rank"]])
         .collect();
     let expected = [
-        ["disks.full-2d", "disks", "12"],
-        ["rolling.local-2d", "rolling", "NaN"],
-        ["rotating.table-2d", "rotating", "24"],
+        ["disks.full-2d", "12"],
+        ["rolling.local-2d", "NaN"],
+        ["rotating.table-2d", "24"],
     ];
     assert_eq!(found, expected);
     assert!(problems[1]["refused"].contains("rolling-friction problem"));
-    let families = rows(&results.join("families.csv"));
-    let found: Vec<[&str; 4]> = (families.iter())
-        .map(|row| {
-            [
-                &*row["family"],
-                &*row["method"],
-                &*row["honest"],
-                &*row["refused"],
-            ]
-        })
+    let mut rates = rows(&results.join("success.csv"));
+    rates.retain(|row| !row["class"].is_empty());
+    let columns = ["class", "method", "correct", "refused"];
+    let found: Vec<[&str; 4]> = (rates.iter())
+        .map(|row| columns.map(|column| &*row[column]))
         .collect();
     let expected = [
         ["disks", "newton-ac", "1", "0"],
@@ -173,8 +159,7 @@ fn a_study_of_files_is_resumed_and_told_by_family() {
 
     let other = shipped_file("collection/disks/packing-2d.hdf5");
     std::fs::copy(other, dir.path().join("collection/disks/full-2d.hdf5")).unwrap();
-    let (_, error) = ends_with(2, &study, dir.path());
-    assert!(error.contains("holds another sweep"), "{error}");
+    assert_eq!(measured(dir.path(), study), 2);
     // A folder alone is a study of all methods.
     let (shown, _) = ends_with(0, &["study", "collection", "--list"], dir.path());
     assert_eq!(shown.lines().count(), 3 * 3 * methods().len());

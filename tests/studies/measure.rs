@@ -1,16 +1,15 @@
-//! One cell, measured: a liar is found out and gets no time, a method with a memory is caught, errors are what they say.
+//! One task, measured: a liar is found out and gets no time, a method with a memory is caught, errors are what they say.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip::case::shipped;
 use stickslip::report::{Provenance, sweep};
 use stickslip::run::choice::Choice;
-use stickslip::run::run_case::friction_values;
-use stickslip::run::verdict::Verdict;
-use stickslip::studies::sweep::cell::{Cell, digest};
-use stickslip::studies::sweep::measure::Bench;
-use stickslip::studies::sweep::measure::{Repeats, in_turn, measure};
-use stickslip::studies::sweep::record::Record;
+use stickslip::run::verdict::{Accuracy, Verdict};
+use stickslip::studies::axes::{Axes, Subject, friction_values};
+use stickslip::studies::measure::{Bench, Repeats, in_turn, measure};
+use stickslip::studies::record::Record;
+use stickslip::studies::task::{Looks, Named, Task};
 use stickslip_methods::{
     ContactSystem, Enforcement, Increment, Method, MethodError, Monitor, Options, Outcome, Silent,
     Status,
@@ -23,37 +22,50 @@ const REPEATS: Repeats = Repeats {
     patience_s: 60.0,
 };
 
-fn cell(case: &str, friction: usize, method: &str, tolerance: f64) -> (Cell, String) {
+/// A shipped case at its first friction coefficient.
+fn task(case: &str, method: &str, tolerance: f64) -> Task {
     let case = shipped::find(case).unwrap().unwrap();
-    let cell = Cell {
-        case: case.name.clone(),
-        digest: digest(&case.source),
-        refine: 1,
-        space: None,
-        friction: friction_values(&case)[friction].clone(),
-        increments: 1,
-        cold: false,
-        method: method.into(),
-        tolerance,
+    let axes = Axes {
+        refine: vec![1],
+        friction: friction_values(&case)[..1].to_vec(),
+        ..Axes::of(&case)
+    };
+    let looks = Looks {
+        truth: true,
+        error: true,
+        ..Looks::default()
+    };
+    let named = Named {
+        argument: method.into(),
         program: None,
     };
-    (cell, case.source)
+    let accuracy = Accuracy::exactly(tolerance);
+    let tasks = Subject::of(&case).tasks(&axes, &[named], &[accuracy], looks);
+    tasks.into_iter().next().unwrap()
 }
 
+/// A task of a method that the registry knows.
+fn found(bench: &mut Bench, task: &Task) -> Record {
+    let choice = Choice::parse(&task.asked.method).unwrap();
+    measure(&bench.scene(task).unwrap(), task, &choice)
+        .unwrap()
+        .record
+}
+
+/// A task with its times.
 fn measured(bench: &mut Bench, case: &str, method: &str, tolerance: f64) -> Record {
-    let (cell, text) = cell(case, 0, method, tolerance);
     let choice = Choice::parse(method).unwrap();
-    timed(bench, &cell, &text, choice)
+    timed(bench, &task(case, method, tolerance), choice)
 }
 
-/// A cell, and its times if it has an honest answer.
-fn timed(bench: &mut Bench, cell: &Cell, text: &str, choice: Choice) -> Record {
-    let record = measure(bench, cell, text, &choice).unwrap();
+/// A task, and its times if it has an honest answer.
+fn timed(bench: &mut Bench, task: &Task, choice: Choice) -> Record {
+    let scene = bench.scene(task).unwrap();
+    let record = measure(&scene, task, &choice).unwrap().record;
     if !record.found.verdict.is_honest() {
         return record;
     }
-    let own = std::slice::from_ref(cell);
-    let times = in_turn(bench, own, &[choice], text, REPEATS).unwrap();
+    let times = in_turn(&scene, task, &[choice], REPEATS);
     record.retimed(times.into_iter().next().unwrap())
 }
 
@@ -124,11 +136,10 @@ static FORGETFUL: Method = spoiled("forgetful", |_| {
 fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
     let mut bench = Bench::default();
     let choice = Choice::new(&LIAR, &[]).unwrap();
-    let (cell, text) = cell("plate_mesh1", 0, "liar", 1e-3);
-    let mut lie = timed(&mut bench, &cell, &text, choice);
+    let mut lie = timed(&mut bench, &task("plate_mesh1", "liar", 1e-3), choice);
     assert_eq!(lie.found.verdict, Verdict::FalseClaim);
     assert_eq!(lie.found.increments[0].verdict, Verdict::FalseClaim);
-    assert_eq!((&lie.spent, &lie.found.solver_error), (&None, &None));
+    assert_eq!(lie.found.solver_error, None);
     assert!(lie.found.deviations.is_empty() && lie.found.values.is_empty());
 
     // Even where a record had a time, nothing made from it shows one.
@@ -154,8 +165,8 @@ fn a_method_that_lies_is_a_false_claim_and_no_time_of_it_is_printed() {
 #[test]
 fn a_method_that_answers_differently_when_asked_again_is_caught() {
     let choice = Choice::new(&FORGETFUL, &[]).unwrap();
-    let (cell, text) = cell("plate_mesh1", 0, "forgetful", 1e-6);
-    let record = timed(&mut Bench::default(), &cell, &text, choice);
+    let task = task("plate_mesh1", "forgetful", 1e-6);
+    let record = timed(&mut Bench::default(), &task, choice);
     let verdict = &record.found.verdict;
     assert!(
         matches!(verdict, Verdict::Crashed(why) if why.contains("other bits")),
@@ -202,7 +213,7 @@ fn what_was_found_is_the_same_whoever_was_measured_before() {
     measured(&mut bench, "plate_mesh1", "nsgs", 1e-3);
     let after = measured(&mut bench, "cyclic", "b-newton", 1e-6);
     let alone = measured(&mut Bench::default(), "cyclic", "b-newton", 1e-6);
-    assert_eq!(after.found, alone.found);
+    assert!(after.found.same_bits(&alone.found));
     assert_eq!(after.found.increments.len(), 1 + 16);
     assert!(after.found.sum(|i| i.state_changes) > 0);
     let spent = after.spent.unwrap();
@@ -216,26 +227,21 @@ fn what_was_found_is_the_same_whoever_was_measured_before() {
 /// forgets contact forces alone: at time 0 there are none to begin from, and the answers are those of a warm one.
 #[test]
 fn increments_have_a_converged_solution_of_their_own_and_starts_share_it() {
-    let (plain, text) = cell("cyclic", 0, "nsgs", 1e-6);
-    let choice = Choice::parse("nsgs").unwrap();
+    let plain = task("cyclic", "nsgs", 1e-6);
     let mut bench = Bench::default();
     let mut of = |increments: usize, cold: bool| {
-        let own = Cell {
-            increments,
-            cold,
-            ..plain.clone()
-        };
-        let after = measure(&mut bench, &own, &text, &choice).unwrap().found;
-        let alone = measure(&mut Bench::default(), &own, &text, &choice).unwrap();
-        assert_eq!(after, alone.found);
+        let mut own = plain.clone();
+        (own.asked.increments, own.asked.cold) = (increments, cold);
+        let after = found(&mut bench, &own).found;
+        assert!(after.same_bits(&found(&mut Bench::default(), &own).found));
         assert_eq!(after.increments.len(), 1 + 16 * increments);
         let error = after.solver_error.as_ref().unwrap();
         assert!(error.energy < 1e-5, "{increments} {cold}: {error:?}");
         after
     };
     let [whole, thirds, cold] = [(1, false), (3, false), (3, true)].map(|(n, cold)| of(n, cold));
-    assert_eq!(of(1, false), whole);
-    assert_eq!(cold.increments[0], thirds.increments[0]);
+    assert!(of(1, false).same_bits(&whole));
+    assert_eq!(cold.increments[0].judge, thirds.increments[0].judge);
     let counts = [&thirds, &cold].map(|found| found.sum(|i| i.iterations));
     assert!(counts[0] < counts[1], "{counts:?}");
 }
@@ -243,16 +249,11 @@ fn increments_have_a_converged_solution_of_their_own_and_starts_share_it() {
 /// Goal: in turn, one method that answers differently the second time leaves the times of the others alone.
 #[test]
 fn methods_are_timed_in_turn() {
-    let (mut cells, mut text) = (Vec::new(), String::new());
-    for name in ["hybrid", "forgetful", "nsgs"] {
-        let (own, case) = cell("plate_mesh1", 0, name, 1e-6);
-        cells.push(own);
-        text = case;
-    }
     let own = |name| Choice::parse(name).unwrap();
     let forgetful = Choice::new(&FORGETFUL, &[]).unwrap();
     let choices = [own("hybrid"), forgetful, own("nsgs")];
-    let times = in_turn(&mut Bench::default(), &cells, &choices, &text, REPEATS).unwrap();
+    let (mut bench, task) = (Bench::default(), task("plate_mesh1", "hybrid", 1e-6));
+    let times = in_turn(&bench.scene(&task).unwrap(), &task, &choices, REPEATS);
     let samples: Vec<Option<usize>> = times
         .iter()
         .map(|own| own.as_ref().ok().map(|times| times.enforcement.samples))
@@ -273,9 +274,7 @@ fn a_wrong_scale_costs_hybrid_a_few_steps() {
     ] {
         for r in ["1e-3", "1e2", "1e3"] {
             let method = format!("hybrid:r={r}");
-            let (cell, text) = cell(case, 0, &method, 1e-6);
-            let choice = Choice::parse(&method).unwrap();
-            let found = measure(&mut bench, &cell, &text, &choice).unwrap().found;
+            let found = found(&mut bench, &task(case, &method, 1e-6)).found;
             assert_eq!(found.verdict, Verdict::Solved, "{case} {r}");
             let most = found.increments.iter().map(|i| i.iterations).max();
             assert!(most.is_some_and(|n| n <= 30), "{case} {r}: {most:?}");

@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
+use crate::common::csv_rows;
 use stickslip::files::interchange::{Info, LocalProblem, Problem, SparseMatrix, fclib};
 use stickslip::run::choice::Choice;
-use stickslip::run::increment::{JudgedIncrement, Solver};
+use stickslip::run::judged::JudgedIncrement;
+use stickslip::run::path::Solver;
 use stickslip::studies::exchange::local_system;
-use stickslip::studies::sweep::record::Record;
+use stickslip::studies::record::Record;
 use stickslip_methods::{ContactState, ContactSystem, Increment, Load};
 use tempfile::TempDir;
 
@@ -45,7 +47,7 @@ fn exec(path: &Path) -> String {
     format!("exec:{}", path.display())
 }
 
-fn judged(choice: &Choice) -> JudgedIncrement {
+pub fn judged(choice: &Choice) -> JudgedIncrement {
     let posed = local_system(&one_point()).unwrap();
     let system = ContactSystem::new(posed.elastic, posed.friction).unwrap();
     let (rest, start) = (Load::zero(system.elastic()), ContactState::zero(&system));
@@ -66,7 +68,8 @@ fn judged(choice: &Choice) -> JudgedIncrement {
 #[test]
 fn whatever_a_program_does_is_a_verdict() {
     let dir = tempfile::tempdir().unwrap();
-    for (name, verdict) in [
+    #[rustfmt::skip]
+    let ends = [
         ("honest", "solved"),
         ("boastful", "solved"),
         ("arguments", "solved"),
@@ -74,47 +77,24 @@ fn whatever_a_program_does_is_a_verdict() {
         ("crash", "crashed: exit status: 1: last words"),
         ("killed", "crashed: signal: 9 (SIGKILL)"),
         ("hungry", "out-of-memory"),
-        (
-            "short",
-            "crashed: 1 numbers for reactions, expected 2: 2 per point",
-        ),
-        (
-            "long",
-            "crashed: 3 numbers for reactions, expected 2: 2 per point",
-        ),
-        (
-            "nan",
-            "crashed: line 2 of the reactions: `nan` is no finite number",
-        ),
-        (
-            "garbage",
-            "crashed: no reactions: byte 0 is 0xFF, no UTF-8 text",
-        ),
-        (
-            "words",
-            "crashed: line 1 of the reactions: `four` is no finite number",
-        ),
-        (
-            "mute",
-            "crashed: no reactions: No such file or directory (os error 2)",
-        ),
-        (
-            "folder",
-            "crashed: no reactions: a directory, not a regular file",
-        ),
+        ("short", "crashed: 1 numbers for reactions, expected 2: 2 per point"),
+        ("long", "crashed: 3 numbers for reactions, expected 2: 2 per point"),
+        ("nan", "crashed: line 2 of the reactions: `nan` is no finite number"),
+        ("garbage", "crashed: no reactions: byte 0 is 0xFF, no UTF-8 text"),
+        ("words", "crashed: line 1 of the reactions: `four` is no finite number"),
+        ("mute", "crashed: no reactions: No such file or directory (os error 2)"),
+        ("folder", "crashed: no reactions: a directory, not a regular file"),
         ("lots", "crashed: it printed `iterations = lots`"),
         ("endless", "crashed: it printed `iterations = 1000000001`"),
-        (
-            "chatty",
-            "crashed: standard output has more than 67108864 bytes",
-        ),
+        ("chatty", "crashed: standard output has more than 67108864 bytes"),
         ("lavish", "crashed: REACTION has more than 1048704 bytes"),
         ("pipes", "gave-up: unexplained"),
         ("vanishes", "gave-up: unexplained"),
         ("gives-up", "gave-up: unexplained"),
         ("stalls", "gave-up: stalled"),
         ("declines", "refused: ./problem.hdf5 is not for me"),
-    ] {
+    ];
+    for (name, verdict) in ends {
         let choice = Choice::parse(&exec(&called(dir.path(), name))).unwrap();
         assert_eq!(choice.label, format!("exec:{name}"));
         let found = judged(&choice);
@@ -229,16 +209,10 @@ fn it_is_tabulated_like_the_methods_here() {
         shown.contains("exec:honest") && shown.contains("exec:liar"),
         "{shown}"
     );
-    let mut runs = csv::Reader::from_path(dir.path().join("results/runs.csv")).unwrap();
-    let header = runs.headers().unwrap().clone();
-    let rows: Vec<csv::StringRecord> = runs.records().map(Result::unwrap).collect();
+    let rows = csv_rows(&fs::read_to_string(dir.path().join("results/runs.csv")).unwrap());
     let of = |method: &str, column: &str| {
-        let at = |name: &str| header.iter().position(|h| h == name).unwrap();
-        let row = rows
-            .iter()
-            .find(|row| &row[at("method")] == method)
-            .unwrap();
-        row[at(column)].to_owned()
+        let row = rows.iter().find(|row| row["method"] == method);
+        row.unwrap()[column].clone()
     };
     assert_eq!(of("exec:honest", "verdict"), "solved");
     assert_eq!(of("exec:liar", "verdict"), "false-claim");
@@ -292,14 +266,8 @@ fn the_conformance_kit_finds_who_does_not_conform() {
 fn a_study_outlives_its_programs_and_sees_when_they_change() {
     let dir = folder();
     let path = dir.path();
-    let export = [
-        "export",
-        "plate_mesh1",
-        "--friction",
-        "0.1",
-        "--out",
-        "problems",
-    ];
+    let export = "export plate_mesh1 --friction 0.1 --out problems";
+    let export: Vec<&str> = export.split(' ').collect();
     assert_eq!(stickslip(path, &export).0, Some(0));
     let local = (fs::read_dir(path.join("problems")).unwrap())
         .map(|entry| entry.unwrap().path())
@@ -326,26 +294,20 @@ fn a_study_outlives_its_programs_and_sees_when_they_change() {
                  methods = [\"b-newton\", \"exec:knows\", \"exec:halves\", \"exec:forever\", \"exec:crash\"]\n";
     fs::write(path.join("sweep.toml"), sweep).unwrap();
     let study = || {
-        stickslip(
-            path,
-            &["study", "sweep.toml", "--time-limit", "1", "--out", "out"],
-        )
+        let arguments = ["study", "sweep.toml", "--time-limit", "1", "--out", "out"];
+        stickslip(path, &arguments)
     };
     let record = |method: &str| -> Record {
-        let all = fs::read_dir(path.join("out/cells")).unwrap();
-        let read = |entry: fs::DirEntry| fs::read_to_string(entry.path()).unwrap();
-        let all = all.map(|entry| serde_json::from_str(&read(entry.unwrap())).unwrap());
-        all.into_iter()
-            .find(|r: &Record| r.found.method == method)
-            .unwrap()
+        let mut files = fs::read_dir(path.join("out/records")).unwrap();
+        let text = fs::read_to_string(files.next().unwrap().unwrap().path()).unwrap();
+        let all = text.lines().map(|line| serde_json::from_str(line).unwrap());
+        let mut own = all.filter(|own: &Record| own.found.method == method);
+        own.next_back().unwrap()
     };
 
     let (code, shown, complaints) = study();
     assert_eq!(code, Some(1), "{complaints}");
-    assert!(
-        shown.contains("5 cells: 0 measured before, 5 now, 0 left"),
-        "{shown}"
-    );
+    assert!(shown.contains("5 tasks: 5 measured now, 0 left"), "{shown}");
     let knows = record("exec:knows");
     assert_eq!(knows.found.verdict.to_string(), "solved");
     let spent = knows.spent.unwrap();
@@ -364,10 +326,7 @@ fn a_study_outlives_its_programs_and_sees_when_they_change() {
 
     program("halves", &format!("{answer}\nexit 3"));
     let (_, shown, _) = study();
-    assert!(
-        shown.contains("5 cells: 4 measured before, 1 now, 0 left"),
-        "{shown}"
-    );
+    assert!(shown.contains("5 tasks: 1 measured now, 0 left"), "{shown}");
     assert_eq!(
         record("exec:halves").found.verdict.to_string(),
         "gave-up: unexplained"

@@ -4,17 +4,24 @@ use std::collections::BTreeMap;
 
 use crate::common::*;
 use stickslip::model::body::BodyError;
-use stickslip::run::record::Results;
+use stickslip::run::choice::Choice;
+use stickslip::run::progress::Quiet;
 use stickslip::run::registry::methods;
-use stickslip::run::run_case::{Fields, Quiet, RunError, Settings, run_case};
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::robustness::random::{Kind, Specimen, Stream};
+use stickslip::studies::analysis::success::success;
+use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::measure::{Bench, MeasureError, RunError, here};
+use stickslip::studies::plan::Plan;
+use stickslip::studies::record::Record;
+use stickslip::studies::rows::Results;
+use stickslip::studies::sources::random::{Kind, Specimen, Stream, problems};
 
 const SETTINGS: Settings = Settings {
     tier: None,
     jobs: 1,
     fields: Fields::None,
     starts: 1,
+    why: Why::Nothing,
 };
 
 /// Increments of 100 that every exact method must solve, what is missing gave up and said so. Measured on these bodies:
@@ -59,13 +66,13 @@ impl Answer {
 /// Answers of the exact methods that solved the last increment.
 fn answers(results: &Results, dim: usize) -> Vec<Answer> {
     let rows = results.runs.iter();
-    rows.filter(|r| r.verdict == Verdict::Solved && r.key.increment == 2)
+    rows.filter(|r| r.step.verdict == Verdict::Solved && r.key.increment == 2)
         .filter_map(|r| {
             let of = |c: &&str| value(results, |k| *k == r.key, ["reaction", "top", c]);
             Some(Answer {
                 method: exact().find(|name| *name == r.key.method)?,
                 reaction: ["x", "y", "z"][..dim].iter().map(of).collect(),
-                natural_map: r.natural_map,
+                natural_map: r.step.judge.natural_map,
             })
         })
         .collect()
@@ -101,23 +108,23 @@ fn run_random(seed: u64, count: usize, kind: &Kind) -> BTreeMap<String, usize> {
         let text = random_case(kind, &mut stream);
         let results = match run_case(&parse(&text), &choices(&methods), SETTINGS, &Quiet) {
             Ok(results) => results,
-            Err(RunError::Body(BodyError::Case(_))) => continue,
+            Err(RunError::Measure(MeasureError::Body(BodyError::Case(_)))) => continue,
             Err(other) => panic!("no position: {other}\n{text}"),
         };
         accepted += 1;
         for row in &results.runs {
-            let gave_up = matches!(row.verdict, Verdict::GaveUp(_));
+            let gave_up = matches!(row.step.verdict, Verdict::GaveUp(_));
             assert!(
-                gave_up || row.verdict.is_honest(),
+                gave_up || row.step.verdict.is_honest(),
                 "{}: {}\n{text}",
                 row.key.method,
-                row.verdict
+                row.step.verdict
             );
             if gave_up {
-                println!("{}: {}\n{text}", row.key.method, row.verdict);
+                println!("{}: {}\n{text}", row.key.method, row.step.verdict);
             }
             *verdicts
-                .entry(format!("{} {}", row.key.method, row.verdict))
+                .entry(format!("{} {}", row.key.method, row.step.verdict))
                 .or_default() += 1;
         }
         let found = answers(&results, kind.dim);
@@ -164,4 +171,76 @@ fn exact_methods_agree_on_random_blocks_and_nobody_claims_too_much() {
     };
     let verdicts = run_random(7, 40, &kind);
     assert_solved(&verdicts, 40);
+}
+
+/// Goal: over all friction coefficients no method claims what does not hold, every run is counted once, and every problem is
+/// found again by its name alone, by `stickslip run`.
+#[test]
+fn every_run_on_random_problems_is_counted_and_no_claim_is_false() {
+    let text = "title = \"t\"\n[[cells]]\nrandom = { dimension = 2, seed = 7, problems = 6 }\nfriction = [0.0, 0.6, 5.0]\n\
+                tolerances = [1e-9]\n[[cells]]\nrandom = { dimension = 3, seed = 7, problems = 6 }\n\
+                friction = [0.0, 0.6, 5.0]\ntolerances = [1e-9]\n";
+    let tasks = Plan::parse("random.toml".as_ref(), text).unwrap().tasks;
+    let choices = Choice::all().unwrap();
+    assert_eq!(tasks.len(), 2 * 6 * 3 * choices.len());
+    let bench = &mut Bench::default();
+    let answers = here(bench, &tasks, &choices, 2, None, &Quiet, &mut |_, _| ()).unwrap();
+    let records: Vec<Record> = answers.into_iter().map(|own| own.record).collect();
+    for record in &records {
+        assert!(!record.found.verdict.is_wrong(), "{record:?}");
+    }
+    for row in success(&records) {
+        let count = if row.class.is_empty() { 36 } else { 18 };
+        let ends = row.correct + row.failures.iter().sum::<usize>();
+        assert_eq!((row.cells, ends), (count, count), "{row:?}");
+        assert!(row.method != METHOD || row.kept()[0] > 0.5, "{row:?}");
+    }
+    // The problems must be worth solving: closed and open points, stick and slip.
+    let of = |own: &&Record| own.asked.method == METHOD && own.asked.mu() == 0.6;
+    let mixed = records
+        .iter()
+        .filter(of)
+        .fold([0; 3], |sum: [usize; 3], own| {
+            std::array::from_fn(|k| sum[k] + own.found.increments[0].states[k])
+        });
+    assert!(
+        mixed.iter().all(|&n| 20 * n > mixed.iter().sum()),
+        "{mixed:?}"
+    );
+    for dim in [2, 3] {
+        let alone = problems(dim, 7, 6).unwrap().swap_remove(5);
+        let results = run(&alone, &["b-newton", "penalty", "nitsche"]);
+        assert_eq!(
+            results
+                .runs
+                .iter()
+                .filter(|row| row.key.increment == 0)
+                .count(),
+            3
+        );
+        for row in results.runs.iter().filter(|row| row.key.increment == 0) {
+            let own = |r: &&Record| {
+                r.asked.case == alone.name
+                    && r.found.method == row.key.method
+                    && r.asked.mu() == row.key.friction
+            };
+            let Some(record) = records.iter().find(own) else {
+                continue;
+            };
+            let step = &record.found.increments[0];
+            let found = (
+                step.judge.natural_map.to_bits(),
+                step.iterations,
+                &step.verdict,
+            );
+            assert_eq!(
+                found,
+                (
+                    row.step.judge.natural_map.to_bits(),
+                    row.step.iterations,
+                    &row.step.verdict
+                )
+            );
+        }
+    }
 }

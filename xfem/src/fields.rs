@@ -1,6 +1,5 @@
-//! Integrals of fields over the body: points at which solutions are compared, mass.
+//! Integrals of fields over the body: points at which solutions are compared.
 
-pub mod mass;
 pub mod sampling;
 
 #[cfg(test)]

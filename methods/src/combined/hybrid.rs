@@ -37,7 +37,7 @@
 //!
 //! # Guarantees
 //! Those of the sweeps: convergence without friction. Near a regular solution, quadratic. With friction there is no proof,
-//! only several methods that would all have to fail on the same problem. `stickslip stress methods` with seed 1, 200 problems for
+//! only several methods that would all have to fail on the same problem. `stickslip study random` with seed 1, 200 problems for
 //! each of seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 2 to 7 iterations in the median.
 //!
 //! # Failure modes

@@ -32,7 +32,7 @@
 //! # Failure modes
 //! With friction near 0 the two entries of y are of different size, g/μ and |d|, which costs steps on the way to the right
 //! states; for large μ the merit has minima that are no solutions, and local and global stages (as in LATIN) move the
-//! iterate on after 15 steps without progress. On random problems (`stickslip stress methods`, 200 per entry, tier high)
+//! iterate on after 15 steps without progress. On random problems (`stickslip study random`, 200 per entry, tier high)
 //! median steps and how many gave up:
 //!
 //! | μ                | 0  | 0.1 | 0.3 | 0.6 | 1  | 2  | 5     |

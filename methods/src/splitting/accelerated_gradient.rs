@@ -25,7 +25,7 @@
 //!
 //! # Failure modes
 //! Large μ: shifts then overshoot, and each convex problem has to be solved the better. At μ = 50 it stalls where
-//! `projection`, with a new shift in every step, does not. On random problems (`stickslip stress methods`; 60 per entry,
+//! `projection`, with a new shift in every step, does not. On random problems (`stickslip study random`; 60 per entry,
 //! `projection`: 100) median iterations and how many gave up:
 //!
 //! | μ                | 0   | 0.3    | 1       | 2       | 5         |

@@ -26,7 +26,7 @@
 //! gaps elsewhere), and to the scale 1 : 1/ρ of the natural map (misled by the condition of W). `over_relaxation`: α,
 //! dropped to 1 once 25 iterations in a row bring no progress. `max_iterations`.
 //! `anderson`: differences kept by the acceleration of (y, ξ) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken back
-//! where the natural map doubles, begun anew when k moves. On random problems (`stickslip stress methods`, 100 per entry)
+//! where the natural map doubles, begun anew when k moves. On random problems (`stickslip study random`, 100 per entry)
 //! median iterations and how many gave up:
 //!
 //! | μ                | 0       | 0.3     | 1       | 2       | 5       |

@@ -18,7 +18,7 @@
 //! w|/(1 + k₀ w) over the eigenvalues w of W. w_min and w_max come from 60 Lanczos steps; eigenvalues below 1e-4 w_max
 //! (redundant contact points) do not count. `relaxation`: ω; 1/2 is Douglas–Rachford, 1 Peaceman–Rachford. `max_iterations`.
 //! `anderson`: differences kept by the acceleration of (P, k₀ v) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken
-//! back where the natural map doubles. On random problems (`stickslip stress methods`, 100 per entry) median iterations and
+//! back where the natural map doubles. On random problems (`stickslip study random`, 100 per entry) median iterations and
 //! how many gave up:
 //!
 //! | μ                | 0       | 0.3     | 1       | 2       | 5       |

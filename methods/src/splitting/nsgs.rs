@@ -17,7 +17,7 @@
 //! `relaxation`: ω to begin with. Every 300 sweeps in a row without progress halve it, at most four times: cycles at large
 //! μ often end so. `max_iterations`: sweeps. `anderson`: differences kept by the acceleration of
 //! (P, γ/κ) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715), taken back where the natural map doubles. On random problems
-//! (`stickslip stress methods`, 100 per entry) median sweeps and how many gave up:
+//! (`stickslip study random`, 100 per entry) median sweeps and how many gave up:
 //!
 //! | μ                | 0       | 0.3     | 1       | 2       | 5       |
 //! |------------------|---------|---------|---------|---------|---------|

@@ -14,46 +14,13 @@ pub enum InterchangeError {
         /// Why.
         source: std::io::Error,
     },
-    /// The bytes are not HDF5, or a part of it that cannot be decoded.
-    #[error("`{}`{}: not readable as HDF5: {reason}", path.display(), at(dataset))]
-    Hdf5 {
-        /// Which file.
-        path: PathBuf,
-        /// Group or dataset; empty for the whole file.
-        dataset: String,
-        /// What was found.
-        reason: String,
-    },
-    /// A part that is not what the layout has there: a dataset of another type or length, a matrix of another shape.
-    #[error("`{}`: {found}, expected {allowed}", path.display())]
-    Unexpected {
-        /// Which file.
-        path: PathBuf,
-        /// The part, and what it is.
-        found: String,
-        /// What it may be.
-        allowed: String,
-    },
-    /// A number out of range.
-    #[error("`{}`: {dataset}[{index}] = {value}, allowed: {allowed}", path.display())]
-    Value {
-        /// Which file.
-        path: PathBuf,
-        /// Which dataset.
-        dataset: String,
-        /// Entry, from 0.
-        index: usize,
-        /// Value found.
-        value: String,
-        /// What is allowed there.
-        allowed: String,
-    },
-    /// A file that lacks a part, or asks for something not solved here.
-    #[error("`{}`: {what}", path.display())]
+    /// A file that is not HDF5, lacks a part, has another one than the layout or a number out of range, or asks for something
+    /// not solved here.
+    #[error("`{}`{what}", path.display())]
     Refused {
         /// Which file.
         path: PathBuf,
-        /// Why.
+        /// Where in it and why.
         what: String,
     },
     /// A problem whose parts do not fit, so that no file of it would be readable.
@@ -64,29 +31,22 @@ pub enum InterchangeError {
     },
 }
 
-fn at(dataset: &str) -> String {
-    if dataset.is_empty() {
-        String::new()
-    } else {
-        format!(", {dataset}")
-    }
-}
-
 impl InterchangeError {
-    /// A part that is not what the layout has there.
-    pub fn unexpected(path: &Path, found: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Self::Unexpected {
+    /// A file that lacks a part, or asks for something not solved here.
+    pub fn refused(path: &Path, what: impl AsRef<str>) -> Self {
+        let what = format!(": {}", what.as_ref());
+        Self::Refused {
             path: path.into(),
-            found: found.into(),
-            allowed: allowed.into(),
+            what,
         }
     }
 
-    /// A file that lacks a part, or asks for something not solved here.
-    pub fn refused(path: &Path, what: impl Into<String>) -> Self {
+    /// Bytes that are not HDF5, or a group or dataset that cannot be decoded; `""` for the whole file.
+    pub(super) fn unreadable(path: &Path, dataset: &str, reason: &str) -> Self {
+        let at = if dataset.is_empty() { "" } else { ", " };
         Self::Refused {
             path: path.into(),
-            what: what.into(),
+            what: format!("{at}{dataset}: not readable as HDF5: {reason}"),
         }
     }
 }
@@ -101,10 +61,10 @@ pub(super) fn check_size(
     found: usize,
     expected: usize,
 ) -> Result<(), InterchangeError> {
-    if found == expected {
-        return Ok(());
+    match found == expected {
+        true => Ok(()),
+        false => Err(unwritable(format!(
+            "{what}: {found} entries, expected {expected}"
+        ))),
     }
-    Err(unwritable(format!(
-        "{what}: {found} entries, expected {expected}"
-    )))
 }

@@ -45,16 +45,11 @@ pub fn read(path: &Path) -> Result<Problem, InterchangeError> {
     let (mut file, len) = regular::open(path).map_err(unreadable)?;
     // A large file of something else is not worth the memory.
     if !is_signed(&mut file, len).map_err(unreadable)? {
-        return Err(InterchangeError::Hdf5 {
-            path: path.into(),
-            dataset: String::new(),
-            reason: "it does not begin like HDF5".into(),
-        });
+        let reason = "it does not begin like HDF5";
+        return Err(InterchangeError::unreadable(path, "", reason));
     }
-    from_bytes(
-        path,
-        regular::rest(file, len, MAX_BYTES).map_err(unreadable)?,
-    )
+    let bytes = regular::rest(file, MAX_BYTES).map_err(unreadable)?;
+    from_bytes(path, bytes)
 }
 
 /// Reads the bytes of a file of either kind; `path` is only for messages.
@@ -83,19 +78,16 @@ fn decode(path: &Path, bytes: Vec<u8>) -> Result<Problem, InterchangeError> {
         );
         return Err(InterchangeError::refused(path, what));
     }
-    let none = |found| {
-        let allowed = "one of the groups /fclib_local and /fclib_global";
-        InterchangeError::unexpected(path, found, allowed)
+    let has = |group| tree.has_group(group);
+    let found = match (has("fclib_local")?, has("fclib_global")?) {
+        (true, false) => return LocalProblem::read(&tree).map(Problem::Local),
+        (false, true) => return GlobalProblem::read(&tree).map(Problem::Global),
+        (true, true) => "two problems",
+        (false, false) => "no problem",
     };
-    match (
-        tree.has_group("fclib_local")?,
-        tree.has_group("fclib_global")?,
-    ) {
-        (true, false) => LocalProblem::read(&tree).map(Problem::Local),
-        (false, true) => GlobalProblem::read(&tree).map(Problem::Global),
-        (true, true) => Err(none("it holds two problems")),
-        (false, false) => Err(none("it holds no problem")),
-    }
+    let what =
+        format!("it holds {found}, expected one of the groups /fclib_local and /fclib_global");
+    Err(InterchangeError::refused(path, what))
 }
 
 /// By what a file shows that its contacts resist rolling, with a moment beside the force at every contact: a group of its own,

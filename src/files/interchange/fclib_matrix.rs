@@ -53,9 +53,9 @@ pub(super) fn read_matrix(
         }
     };
     let expected = [pointers.unwrap_or(most), most, most];
-    for ((array, found), expected) in arrays.iter().zip(found).zip(expected) {
-        if found != expected && found != nz as u64 {
-            return Err(tree.length(array, found, expected.to_string()));
+    for k in 0..3 {
+        if ![expected[k], nz as u64].contains(&found[k]) {
+            return Err(tree.length(&arrays[k], found[k], expected[k].to_string()));
         }
     }
     let [p, i] = [0, 1].map(|k| tree.integers(&arrays[k], found[k] as usize));
@@ -183,10 +183,8 @@ pub(super) fn check_matrix(
     check_size(&format!("{what} (rows)"), matrix.rows(), rows)?;
     check_size(&format!("{what} (columns)"), matrix.cols(), cols)?;
     // FCLIB counts in C's int.
-    match [matrix.rows(), matrix.cols(), matrix.len()]
-        .iter()
-        .all(|&n| i32::try_from(n).is_ok())
-    {
+    let sizes = [matrix.rows(), matrix.cols(), matrix.len()];
+    match sizes.iter().all(|&n| i32::try_from(n).is_ok()) {
         true => Ok(()),
         false => Err(unwritable(format!("{what}: more than 2147483647 entries"))),
     }

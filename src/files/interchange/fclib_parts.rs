@@ -31,6 +31,18 @@ pub struct Solution {
     pub l: Vec<f64>,
 }
 
+impl Solution {
+    /// Its parts by their names in files.
+    fn parts(&self) -> [(&'static str, &[f64]); 4] {
+        [
+            ("v", &self.v),
+            ("u", &self.u),
+            ("r", &self.r),
+            ("l", &self.l),
+        ]
+    }
+}
+
 /// Lengths of v, u = r, and l.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lengths {
@@ -140,10 +152,9 @@ impl Layout<'_> {
         }
         let Lengths { v, r, l } = self.lengths;
         for solution in self.solution.into_iter().chain(self.guesses) {
-            check_size("solution v", solution.v.len(), v)?;
-            check_size("solution u", solution.u.len(), r)?;
-            check_size("solution r", solution.r.len(), r)?;
-            check_size("solution l", solution.l.len(), l)?;
+            for ((name, values), len) in solution.parts().into_iter().zip([v, r, r, l]) {
+                check_size(&format!("solution {name}"), values.len(), len)?;
+            }
         }
         Ok(())
     }
@@ -191,16 +202,9 @@ fn put_info(group: &mut GroupBuilder, info: &Info) {
 }
 
 fn put_solution(group: &mut GroupBuilder, solution: &Solution) {
-    let parts = [
-        ("v", &solution.v),
-        ("u", &solution.u),
-        ("r", &solution.r),
-        ("l", &solution.l),
-    ];
-    for (name, values) in parts {
-        if !values.is_empty() {
-            put_reals(group, name, values);
-        }
+    let parts = solution.parts().into_iter();
+    for (name, values) in parts.filter(|part| !part.1.is_empty()) {
+        put_reals(group, name, values);
     }
 }
 

@@ -71,11 +71,7 @@ impl Tree {
 
     /// Whether a group is there.
     pub fn has_group(&self, name: &str) -> Result<bool, InterchangeError> {
-        match self.file.group(name) {
-            Ok(_) => Ok(true),
-            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(false),
-            Err(error) => Err(unreadable(&self.path, name, &error)),
-        }
+        Ok(self.found(name, self.file.group(name))?.is_some())
     }
 
     /// A group, the file itself for `""`.
@@ -96,8 +92,17 @@ impl Tree {
     }
 
     fn dataset(&self, name: &str) -> Result<Option<Dataset>, InterchangeError> {
-        match self.file.dataset(name) {
-            Ok(dataset) => Ok(Some(dataset)),
+        self.found(name, self.file.dataset(name))
+    }
+
+    /// What was looked for, if it is there.
+    fn found<T>(
+        &self,
+        name: &str,
+        looked: Result<T, Error>,
+    ) -> Result<Option<T>, InterchangeError> {
+        match looked {
+            Ok(found) => Ok(Some(found)),
             Err(Error::Format(FormatError::PathNotFound(_))) => Ok(None),
             Err(error) => Err(unreadable(&self.path, name, &error)),
         }
@@ -115,7 +120,10 @@ impl Tree {
 
     /// Error about the length of a dataset.
     pub fn length(&self, name: &str, found: u64, allowed: impl Into<String>) -> InterchangeError {
-        InterchangeError::unexpected(&self.path, format!("{name} has {found} entries"), allowed)
+        self.refused(
+            name,
+            &format!("has {found} entries, expected {}", allowed.into()),
+        )
     }
 
     /// Error about one number of a dataset.
@@ -126,13 +134,9 @@ impl Tree {
         value: impl ToString,
         allowed: impl Into<String>,
     ) -> InterchangeError {
-        InterchangeError::Value {
-            path: self.path.clone(),
-            dataset: name.into(),
-            index,
-            value: value.to_string(),
-            allowed: allowed.into(),
-        }
+        let (value, allowed) = (value.to_string(), allowed.into());
+        let what = format!("{name}[{index}] = {value}, allowed: {allowed}");
+        InterchangeError::refused(&self.path, what)
     }
 
     /// Number of elements of a dataset. Nothing is read for it.
@@ -202,8 +206,8 @@ impl Tree {
             found,
             F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64
         ) {
-            let found = format!("{name} holds {}", excerpt(&found.to_string(), SHOWN));
-            return Err(InterchangeError::unexpected(&self.path, found, "numbers"));
+            let found = excerpt(&found.to_string(), SHOWN);
+            return Err(self.refused(name, &format!("holds {found}, expected numbers")));
         }
         self.charge(name, &dataset, extent)?;
         Ok((dataset, found))
@@ -261,11 +265,7 @@ fn unreadable(path: &Path, dataset: &str, error: &Error) -> InterchangeError {
         reason += "; files in the newest HDF5 format can be rewritten by `h5repack --high=2 in out` \
                    or by h5py with libver=('earliest', 'v110')";
     }
-    InterchangeError::Hdf5 {
-        path: path.into(),
-        dataset: dataset.into(),
-        reason,
-    }
+    InterchangeError::unreadable(path, dataset, &reason)
 }
 
 /// A file being written: HDF5 1.8 format, datasets of rank 1 in the native types of FCLIB.

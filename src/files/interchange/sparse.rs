@@ -1,19 +1,22 @@
 //! A sparse matrix between file and solver.
 
+use faer::sparse::{SparseColMat, Triplet};
 use stickslip_methods::{JumpOperator, MethodError, SquareMatrix};
 
-/// Sparse matrix in compressed columns, rows sorted within a column, no position stored twice.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SparseMatrix {
-    rows: usize,
-    cols: usize,
-    col_ptr: Vec<usize>,
-    row_idx: Vec<usize>,
-    values: Vec<f64>,
+/// Sparse matrix in compressed columns, rows sorted within a column, no position stored twice; zeros may be stored.
+#[derive(Debug, Clone)]
+pub struct SparseMatrix(SparseColMat<usize, f64>);
+
+impl PartialEq for SparseMatrix {
+    /// Of one size, with the same entries stored.
+    fn eq(&self, other: &Self) -> bool {
+        let sizes = |m: &Self| (m.rows(), m.cols());
+        sizes(self) == sizes(other) && self.entries().eq(other.entries())
+    }
 }
 
 impl SparseMatrix {
-    /// Sorts triplets (row, column, value); values at one position are added in the order given.
+    /// Takes triplets (row, column, value) in any order; values at one position are added.
     ///
     /// `None` if a position lies outside the matrix.
     pub fn from_triplets(
@@ -21,63 +24,49 @@ impl SparseMatrix {
         cols: usize,
         triplets: impl IntoIterator<Item = (usize, usize, f64)>,
     ) -> Option<Self> {
-        let triplets: Vec<(usize, usize, f64)> = triplets.into_iter().collect();
-        let inside = triplets.iter().all(|&(i, j, _)| i < rows && j < cols);
-        inside.then(|| Self::sorted(rows, cols, triplets))
+        let triplets = triplets.into_iter();
+        let triplets: Vec<_> = triplets.map(|(i, j, v)| Triplet::new(i, j, v)).collect();
+        let inside = triplets.iter().all(|t| t.row < rows && t.col < cols);
+        let matrix = || SparseColMat::try_new_from_triplets(rows, cols, &triplets).ok();
+        inside.then(matrix).flatten().map(Self)
     }
 
     /// The same for positions known to lie inside.
-    fn sorted(rows: usize, cols: usize, triplets: Vec<(usize, usize, f64)>) -> Self {
-        let sorted = counted(cols, counted(rows, triplets, |t| t.0), |t| t.1);
-        let mut matrix = Self {
-            rows,
-            cols,
-            col_ptr: vec![0; cols + 1],
-            row_idx: Vec::with_capacity(sorted.len()),
-            values: Vec::with_capacity(sorted.len()),
-        };
-        let mut last = None;
-        for (i, j, value) in sorted {
-            if last == Some((i, j)) {
-                if let Some(sum) = matrix.values.last_mut() {
-                    *sum += value;
-                }
-                continue;
-            }
-            last = Some((i, j));
-            matrix.row_idx.push(i);
-            matrix.values.push(value);
-            matrix.col_ptr[j + 1] = matrix.values.len();
-        }
-        for j in 0..cols {
-            matrix.col_ptr[j + 1] = matrix.col_ptr[j + 1].max(matrix.col_ptr[j]);
-        }
-        matrix
+    fn of(
+        rows: usize,
+        cols: usize,
+        triplets: impl IntoIterator<Item = (usize, usize, f64)>,
+    ) -> Self {
+        Self::from_triplets(rows, cols, triplets).unwrap_or_else(|| unreachable!("outside"))
     }
 
     /// All of a matrix, of a symmetric one both triangles.
     pub fn from_square(a: &SquareMatrix) -> Self {
-        let mut triplets = Vec::with_capacity(2 * a.values().len());
-        for j in 0..a.size() {
-            for (i, value) in a.column(j) {
-                triplets.push((i, j, value));
-                if a.is_symmetric() && i != j {
-                    triplets.push((j, i, value));
-                }
-            }
+        let n = a.size();
+        let column = |j| a.column(j).map(move |(i, value)| (i, j, value));
+        let stored = Self::of(n, n, (0..n).flat_map(column));
+        match a.is_symmetric() {
+            true => stored.mirrored(),
+            false => stored,
         }
-        Self::sorted(a.size(), a.size(), triplets)
     }
 
     /// The jump operator B.
     pub fn from_rows(b: &JumpOperator) -> Self {
         let row = |i| b.row(i).map(move |(j, value)| (i, j, value));
-        Self::sorted(b.rows(), b.cols(), (0..b.rows()).flat_map(row).collect())
+        Self::of(b.rows(), b.cols(), (0..b.rows()).flat_map(row))
     }
 
     /// Dense columns of equal length.
     pub fn from_dense_columns(rows: usize, columns: &[Vec<f64>]) -> Self {
         Self::from_dense(rows, columns.len(), |i, j| columns[j][i])
+    }
+
+    /// All entries of a dense matrix that are not zero, and its diagonal.
+    pub fn from_dense(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let places = (0..cols).flat_map(|j| (0..rows).map(move |i| (i, j)));
+        let entries = places.map(|(i, j)| (i, j, entry(i, j)));
+        Self::of(rows, cols, entries.filter(|&(i, j, v)| v != 0.0 || i == j))
     }
 
     /// Whether it has entries above and below its diagonal.
@@ -92,13 +81,13 @@ impl SparseMatrix {
     pub fn mirrored(&self) -> Self {
         let beside = self.entries().filter(|(i, j, _)| i != j);
         let beside = beside.map(|(i, j, value)| (j, i, value));
-        Self::sorted(self.rows, self.cols, self.entries().chain(beside).collect())
+        Self::of(self.rows(), self.cols(), self.entries().chain(beside))
     }
 
     /// The transpose.
     pub fn transposed(&self) -> Self {
         let mirrored = self.entries().map(|(i, j, value)| (j, i, value));
-        Self::sorted(self.cols, self.rows, mirrored.collect())
+        Self::of(self.cols(), self.rows(), mirrored)
     }
 
     /// The lower triangle of (A + Aᵀ)/2, every diagonal entry stored.
@@ -106,16 +95,16 @@ impl SparseMatrix {
     /// # Errors
     /// A matrix that is not square.
     pub fn symmetric_part(&self) -> Result<SquareMatrix, MethodError> {
-        let lower = self
-            .entries()
-            .map(|(i, j, value)| (i.max(j), i.min(j), 0.5 * value));
-        let mut triplets: Vec<_> = lower.collect();
-        triplets.extend((0..self.cols).map(|j| (j, j, 0.0)));
-        // Halves of an exactly symmetric matrix add up to its entries again, but a diagonal entry comes once.
-        let diagonal = self.entries().filter(|e| e.0 == e.1);
-        triplets.extend(diagonal.map(|(i, j, value)| (i, j, 0.5 * value)));
-        let lower = Self::sorted(self.rows, self.cols, triplets);
-        SquareMatrix::symmetric(self.cols, lower.col_ptr, lower.row_idx, lower.values)
+        let (n, least) = (self.rows().max(self.cols()), self.rows().min(self.cols()));
+        // Halves of an exactly symmetric matrix add up to its entries again; a diagonal entry comes once, and whole.
+        let entries = self.entries().map(|(i, j, value)| match i == j {
+            true => (i, j, value),
+            false => (i.max(j), i.min(j), 0.5 * value),
+        });
+        let lower = Self::of(n, n, entries.chain((0..n).map(|j| (j, j, 0.0))));
+        let (ends, rows, values) = lower.parts();
+        // Of a matrix that is not square there are more columns than it is told.
+        SquareMatrix::symmetric(least, ends, rows, values)
     }
 
     /// The matrix as it stands, where it is square.
@@ -123,8 +112,8 @@ impl SparseMatrix {
     /// # Errors
     /// A matrix that is not square, non-finite values.
     pub fn as_square(&self) -> Result<SquareMatrix, MethodError> {
-        let (ends, rows) = (self.col_ptr.clone(), self.row_idx.clone());
-        SquareMatrix::general(self.rows, ends, rows, self.values.clone())
+        let (ends, rows, values) = self.parts();
+        SquareMatrix::general(self.rows(), ends, rows, values)
     }
 
     /// The matrix as jump operator.
@@ -132,103 +121,53 @@ impl SparseMatrix {
     /// # Errors
     /// Non-finite values.
     pub fn as_rows(&self) -> Result<JumpOperator, MethodError> {
-        let Self {
-            col_ptr,
-            row_idx,
-            values,
-            ..
-        } = self.transposed();
-        JumpOperator::new(self.rows, self.cols, col_ptr, row_idx, values)
+        let (ends, cols, values) = self.transposed().parts();
+        JumpOperator::new(self.rows(), self.cols(), ends, cols, values)
+    }
+
+    /// Ends of the columns, rows and values.
+    fn parts(&self) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+        let (ends, rows) = (self.0.col_ptr(), self.0.row_idx());
+        (ends.to_vec(), rows.to_vec(), self.0.val().to_vec())
     }
 
     /// Column `j`, dense.
     pub fn column(&self, j: usize) -> Vec<f64> {
-        let mut column = vec![0.0; self.rows];
-        for k in self.col_ptr[j]..self.col_ptr[j + 1] {
-            column[self.row_idx[k]] = self.values[k];
-        }
+        let mut column = vec![0.0; self.rows()];
+        let stored = self.0.row_idx_of_col(j).zip(self.0.val_of_col(j));
+        stored.for_each(|(i, value)| column[i] = *value);
         column
-    }
-
-    /// All entries of a dense matrix that are not zero, and its diagonal.
-    pub fn from_dense(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let mut matrix = Self {
-            rows,
-            cols,
-            col_ptr: vec![0],
-            row_idx: Vec::new(),
-            values: Vec::new(),
-        };
-        for j in 0..cols {
-            for i in 0..rows {
-                let value = entry(i, j);
-                if value != 0.0 || i == j {
-                    matrix.row_idx.push(i);
-                    matrix.values.push(value);
-                }
-            }
-            matrix.col_ptr.push(matrix.values.len());
-        }
-        matrix
     }
 
     /// Number of rows.
     pub fn rows(&self) -> usize {
-        self.rows
+        self.0.nrows()
     }
 
     /// Number of columns.
     pub fn cols(&self) -> usize {
-        self.cols
+        self.0.ncols()
     }
 
     /// Number of stored entries.
     pub fn len(&self) -> usize {
-        self.values.len()
+        self.0.val().len()
     }
 
     /// True if nothing is stored.
     pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
+        self.len() == 0
     }
 
     /// Stored entries (row, column, value), column by column, rows increasing.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        (0..self.cols).flat_map(move |j| {
-            (self.col_ptr[j]..self.col_ptr[j + 1])
-                .map(move |k| (self.row_idx[k], j, self.values[k]))
-        })
+        self.0.triplet_iter().map(|t| (t.row, t.col, *t.val))
     }
 
     /// Entry (i, j); 0 where nothing is stored.
     pub fn get(&self, i: usize, j: usize) -> f64 {
-        let column = self.col_ptr[j]..self.col_ptr[j + 1];
-        match self.row_idx[column.clone()].binary_search(&i) {
-            Ok(position) => self.values[column.start + position],
-            Err(_) => 0.0,
-        }
+        self.0.get(i, j).copied().unwrap_or(0.0)
     }
-}
-
-/// Triplets in the order of one of their indices, and of several with the same in the order given, so that sums have one
-/// order. Counting takes time with their number; the full W of a large body has 10⁷ and more.
-fn counted(
-    size: usize,
-    triplets: Vec<(usize, usize, f64)>,
-    index: fn(&(usize, usize, f64)) -> usize,
-) -> Vec<(usize, usize, f64)> {
-    let mut next = vec![0; size + 1];
-    triplets.iter().for_each(|t| next[index(t) + 1] += 1);
-    for k in 0..size {
-        next[k + 1] += next[k];
-    }
-    let mut sorted = vec![(0, 0, 0.0); triplets.len()];
-    for triplet in triplets {
-        let place = &mut next[index(&triplet)];
-        sorted[*place] = triplet;
-        *place += 1;
-    }
-    sorted
 }
 
 #[cfg(test)]

@@ -1,14 +1,6 @@
 //! One quantity, found and exact, and what the errors of all of them are measured with.
 
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_xfem::cut::placement;
-use stickslip_xfem::geometry::tip_frame::TipFrame;
-use stickslip_xfem::geometry::{Point, dot, sub};
-
-use crate::model::body::Body;
-
-/// Points per direction of the rule for the bulk: doubling it changes the errors by less than 1e-3 of themselves.
-pub const RULE: usize = 4;
 
 /// An exact value below this, in units of its natural scale, is zero.
 pub const ZERO: f64 = 1e-9;
@@ -82,23 +74,4 @@ pub fn norm_row(quantity: &str, squares: [f64; 3], scale: f64) -> Deviation {
         exact,
         scale,
     )
-}
-
-/// Side of the crack that a point off the crack lies on; 1 in a body without cracks. A closed form belongs to one crack.
-pub fn side_of(body: &Body, x: &Point) -> f64 {
-    let distance = match (body.cracks.first(), body.points.first()) {
-        (Some(crack), _) => crack.distance(x),
-        // A crack along cell edges has no level set, but points.
-        (None, Some(point)) => dot(&point.frame[0], &sub(x, &point.x)),
-        (None, None) => 0.0,
-    };
-    if distance < 0.0 { -1.0 } else { 1.0 }
-}
-
-/// Tips of all cracks, whether they carry branch functions or not.
-pub fn fronts(body: &Body) -> Vec<TipFrame> {
-    let cracks = body.cracks.iter().enumerate();
-    cracks
-        .flat_map(|(index, crack)| placement::fronts(&body.mesh, index, crack))
-        .collect()
 }

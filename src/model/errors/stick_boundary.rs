@@ -16,7 +16,7 @@ use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::exact::Field;
 
 use crate::model::body::Body;
-use crate::model::quantities::Snapshot;
+use crate::model::snapshot::Snapshot;
 
 use super::deviation::Deviation;
 

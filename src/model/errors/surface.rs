@@ -13,7 +13,7 @@ use stickslip_xfem::exact::Field;
 use stickslip_xfem::geometry::{Point, add_scaled};
 
 use crate::model::body::Body;
-use crate::model::quantities::Snapshot;
+use crate::model::snapshot::Snapshot;
 
 use super::deviation::{Deviation, Scales, ZERO, norm_row};
 

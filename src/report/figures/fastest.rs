@@ -5,9 +5,9 @@ use super::performance::heading;
 use super::runs::distinct;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::costs::Costs;
-use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, ranking};
-use crate::studies::sweep::analysis::test_set::TestSet;
+use crate::studies::analysis::costs::Costs;
+use crate::studies::analysis::ranking::{PENALTY, Ranking, ranking};
+use crate::studies::analysis::test_set::TestSet;
 use stickslip_methods::Tier;
 
 /// What it is.

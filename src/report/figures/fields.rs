@@ -5,7 +5,7 @@ use super::runs::problem;
 use crate::report::names::stem;
 use crate::report::plot::{contact_status, displacement, plain, von_mises};
 use crate::report::{Bundle, ReportError};
-use crate::run::record::RunFields;
+use crate::studies::rows::RunFields;
 
 /// Displacement of plane bodies.
 pub static DISPLACEMENT: Kind = Kind {

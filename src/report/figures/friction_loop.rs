@@ -8,7 +8,7 @@ use crate::report::number::significant;
 use crate::report::plot::subscript;
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, italic, plain, prefixed, rank};
 use crate::report::{Bundle, ReportError};
-use crate::run::record::{QuantityRow, Results, RunKey};
+use crate::studies::rows::{QuantityRow, Results, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What it is.

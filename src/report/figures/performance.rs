@@ -5,9 +5,9 @@ use super::runs::least;
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::costs::Costs;
-use crate::studies::sweep::analysis::profile::performance;
-use crate::studies::sweep::analysis::test_set::TestSet;
+use crate::studies::analysis::costs::Costs;
+use crate::studies::analysis::profile::performance;
+use crate::studies::analysis::test_set::TestSet;
 use stickslip_methods::Tier;
 
 /// What it is.

@@ -8,7 +8,7 @@ use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
 use crate::report::{Bundle, ReportError};
-use crate::run::record::{ExactRow, PointRow, Results, RunKey, RunRow};
+use crate::studies::rows::{ExactRow, PointRow, Results, RunKey, RunRow};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_methods::Tier;
 
@@ -60,7 +60,10 @@ fn closed(row: &ExactRow, quantity: usize) -> f64 {
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    let honest = results.runs.iter().filter(|row| row.verdict.is_honest());
+    let honest = results
+        .runs
+        .iter()
+        .filter(|row| row.step.verdict.is_honest());
     let honest: Vec<&RunKey> = honest.map(|row| &row.key).collect();
     // By body, crack and method.
     type Sweeps<'a> = BTreeMap<(String, usize, usize, &'a str), Vec<Run<'a, PointRow>>>;
@@ -114,7 +117,10 @@ struct Profile<'a> {
 fn left_by_tolerance(row: &RunRow) -> [f64; 2] {
     let tier: Option<Tier> = row.tier.parse().ok();
     let tolerance = tier.map(Tier::tolerance).or_else(|| row.tier.parse().ok());
-    let left = [row.reference_force, row.reference_jump_m];
+    let left = [
+        row.step.judge.reference_force,
+        row.step.judge.reference_jump_m,
+    ];
     left.map(|size| (tolerance.unwrap_or(0.0) * size).max(0.0))
 }
 

@@ -4,7 +4,7 @@ use super::kind::Kind;
 use super::runs::{Run, by_problem, counted, distinct, problem};
 use crate::report::plot::{Axis, Figure, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
-use crate::run::record::{HistoryRow, Results, RunRow};
+use crate::studies::rows::{HistoryRow, Results, RunRow};
 use stickslip_methods::Tier;
 
 /// What it is.
@@ -34,11 +34,11 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 /// The figure of one problem; `found`: what became of its runs.
 fn figure(runs: &[Run<'_, HistoryRow>], found: &[&RunRow]) -> Figure {
     let mut solved = found.to_vec();
-    solved.retain(|row| row.verdict.is_solved());
-    solved.sort_by_key(|row| row.iterations);
+    solved.retain(|row| row.step.verdict.is_solved());
+    solved.sort_by_key(|row| row.step.iterations);
     let ends = [solved.first(), solved.last()].into_iter().flatten();
     let ends: Vec<(&str, usize)> = ends
-        .map(|row| (row.key.method.as_str(), row.iterations))
+        .map(|row| (row.key.method.as_str(), row.step.iterations))
         .collect();
     let title = match ends[..] {
         [(a, few), (b, many)] if few < many => {

@@ -3,8 +3,8 @@
 use crate::report::names::problem_name;
 use crate::report::number::value;
 use crate::report::plot::{italic, plain, rank};
-use crate::run::record::RunKey;
-use crate::studies::sweep::record::Record;
+use crate::studies::record::Record;
+use crate::studies::rows::RunKey;
 use std::collections::BTreeMap;
 
 /// A run with its rows, in one increment.

@@ -5,11 +5,11 @@ use super::runs::distinct;
 use crate::report::number::{fixed, significant};
 use crate::report::plot::{Axis, Cell, Figure, Guide, HeatMap, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::scaling::{
+use crate::studies::analysis::scaling::{
     Quantity, Sample, common_friction, exponent, medians, samples,
 };
-use crate::studies::sweep::record::Record;
-use crate::studies::sweep::statistics::median;
+use crate::studies::record::Record;
+use crate::studies::statistics::median;
 
 /// Time.
 pub static TIME: Kind = Kind {

@@ -6,7 +6,7 @@ use crate::report::number::fixed;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, base, looks, plain};
 use crate::report::tables::sensitivity::WindowRow;
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::sensitivity::{Step, Sweep};
+use crate::studies::analysis::sensitivity::{Step, Sweep};
 
 /// What it is.
 pub static KIND: Kind = Kind {

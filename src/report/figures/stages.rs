@@ -6,11 +6,11 @@ use crate::report::names::file_name;
 use crate::report::number::{fixed, significant, value};
 use crate::report::plot::{Axis, Draw, Figure, Panel, Rgb, Series, Style, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::{
+use crate::studies::analysis::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, method_time,
     published_times,
 };
-use crate::studies::sweep::record::{Record, Spent};
+use crate::studies::record::{Record, Spent};
 
 /// What it is.
 pub static KIND: Kind = Kind {
@@ -38,27 +38,27 @@ const STAGES: [(&str, Rgb); 8] = [
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
-    let solved = |r: &&Record| r.found.verdict.is_solved() && has_defaults(&r.cell);
+    let solved = |r: &&Record| r.found.verdict.is_solved() && has_defaults(&r.asked);
     let timed = records.iter().filter(solved);
     let mut own: Vec<Timed> = timed
         .filter_map(|r| Some((r, published_times(r)?)))
         .collect();
-    let problem = |row: &Timed| row.0.cell.problem().without_mesh();
+    let problem = |row: &Timed| row.0.asked.problem().without_mesh();
     own.sort_by(|a, b| {
         compare_problems(&problem(a), &problem(b))
-            .then(a.0.cell.refine.cmp(&b.0.cell.refine))
-            .then_with(|| compare_methods(&a.0.cell.method, &b.0.cell.method))
+            .then(a.0.asked.refine.cmp(&b.0.asked.refine))
+            .then_with(|| compare_methods(&a.0.asked.method, &b.0.asked.method))
     });
     let mut names: Vec<String> = Vec::new();
     for group in own.chunk_by(|a, b| problem(a) == problem(b)) {
-        let of_mesh = |rows: &[Timed]| rows.iter().map(|r| r.0.cell.tolerance).collect();
+        let of_mesh = |rows: &[Timed]| rows.iter().map(|r| r.0.asked.tolerance).collect();
         let tolerances: Vec<Vec<f64>> = group.chunk_by(same_mesh).map(of_mesh).collect();
         let tolerance = common_tolerance(&tolerances);
         let mut group = group.to_vec();
-        group.retain(|row| Some(row.0.cell.tolerance) == tolerance);
+        group.retain(|row| Some(row.0.asked.tolerance) == tolerance);
         let Some(cell) = group
             .first()
-            .map(|row| &row.0.cell)
+            .map(|row| &row.0.asked)
             .filter(|_| tolerances.len() > 1)
         else {
             continue;
@@ -78,7 +78,7 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
 type Timed<'a> = (&'a Record, &'a Spent);
 
 fn same_mesh(a: &Timed<'_>, b: &Timed<'_>) -> bool {
-    a.0.cell.refine == b.0.cell.refine
+    a.0.asked.refine == b.0.asked.refine
 }
 
 fn figure(group: &[Timed<'_>], records: &[Record], caveat: &str) -> Figure {
@@ -100,12 +100,12 @@ fn figure(group: &[Timed<'_>], records: &[Record], caveat: &str) -> Figure {
         format!("On the finest mesh, {stage} takes {share} % of the time ({label})")
     });
     let record = group[0].0;
-    let (space, mu) = (made_with(record).1, friction(record.cell.mu()));
+    let (space, mu) = (made_with(record).1, friction(record.asked.mu()));
     let reached = format!(
         "solved to a natural map of {}",
-        value(record.cell.tolerance)
+        value(record.asked.tolerance)
     );
-    let caption = format!("{}, {space}, {mu}, {reached}{caveat}", record.cell.case);
+    let caption = format!("{}, {space}, {mu}, {reached}{caveat}", record.asked.case);
     let headings = [
         "each mesh, least median of all methods",
         "finest mesh, each method",

@@ -5,11 +5,11 @@ use super::runs::{distinct, friction, least};
 use crate::report::number::{significant, value};
 use crate::report::plot::{Axis, Figure, Guide, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
+use crate::studies::analysis::accuracy::{Refinement, refinements};
+use crate::studies::analysis::problem_names;
 use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
-use crate::studies::sweep::analysis::accuracy::{Refinement, refinements};
-use crate::studies::sweep::analysis::problem_names;
-use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::record::Record;
+use crate::studies::record::Record;
+use crate::studies::task::Problem;
 
 /// What it is.
 pub static KIND: super::kind::Kind = super::kind::Kind {
@@ -46,7 +46,7 @@ fn figure(one: &Refinement, caveat: &str) -> Figure {
     let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
     let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
-    let total = |row: &ErrorRow| row.seconds.total();
+    let total = |row: &ErrorRow| row.seconds.iter().sum::<f64>();
     let timed = |row: &&&ErrorRow| Some(row.refine) == finest && total(row) > 0.0;
     let best = least(shown.iter().filter(timed), |row| total(row));
     let further: Vec<&str> = best.iter().map(|row| row.variant.method.as_str()).collect();

@@ -5,11 +5,11 @@ use super::runs::{friction, least, made_with};
 use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::sweep::analysis::series::{Point, Series as Sequence, Swept, series};
-use crate::studies::sweep::analysis::{problem_names, problems};
-use crate::studies::sweep::cell::Problem;
-use crate::studies::sweep::record::Record;
-use crate::studies::sweep::statistics::Timing;
+use crate::studies::analysis::series::{Point, Series as Sequence, Swept, series};
+use crate::studies::analysis::{problem_names, problems};
+use crate::studies::record::Record;
+use crate::studies::statistics::Timing;
+use crate::studies::task::Problem;
 
 /// What it is.
 pub static KIND: Kind = Kind {

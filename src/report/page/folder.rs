@@ -7,11 +7,20 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::html::Link;
 use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
 use crate::report::Bundle;
-use crate::report::figures::{Kind, fastest, robustness, table1, work_precision};
+use crate::report::figures::{Kind, fastest, success, table1, work_precision};
+
+/// A link to a file.
+pub struct Link {
+    /// Text.
+    pub text: String,
+    /// File, relative to the page, not encoded.
+    pub path: String,
+    /// Further text behind the link; may be empty.
+    pub note: String,
+}
 
 /// Folders inside folders that are looked into: `accuracy/figures`, one more for what users arrange.
 const DEPTH: usize = 3;
@@ -27,7 +36,7 @@ const HEADLINES: [&Kind; 4] = [
     &table1::KIND,
     &fastest::KIND,
     &work_precision::KIND,
-    &robustness::KIND,
+    &success::KIND,
 ];
 
 /// A report folder.

@@ -2,11 +2,11 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::folder::{Figure, Figures, Origin, split};
+use super::folder::{Figure, Figures, Link, Origin, split};
 use super::{Folder, PageError, Sheet};
 use crate::report::table::{About, Description};
-use crate::run::record::{MET, MISSED_AS_DOCUMENTED};
 use crate::run::verdict::{NOT_RUN, Verdict, VerdictKind};
+use crate::studies::rows::{MET, MISSED_AS_DOCUMENTED};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -54,16 +54,6 @@ pub struct Fact {
     pub label: String,
     /// Section that tells more.
     pub section: &'static str,
-}
-
-/// A link to a file.
-pub struct Link {
-    /// Text.
-    pub text: String,
-    /// File, relative to the page, not encoded.
-    pub path: String,
-    /// Further text behind the link; may be empty.
-    pub note: String,
 }
 
 /// A table: cells as in the CSV file, shown with the digits of their column.

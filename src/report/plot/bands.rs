@@ -6,7 +6,8 @@
 
 use super::axis::{multiples, number};
 use super::canvas::{Anchor, Canvas, LABEL_PT, Pixel, SMALL_PT};
-use super::style::{self, BLACK, Rgb};
+use super::colour::{BLACK, Rgb};
+use super::style;
 use crate::report::number::significant;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,7 +3,7 @@
 //! The library draws on whole pixels and writes the size in pixels. So there are [`PX_PER_MM`] of them per millimetre, and
 //! the finished text gets its size in millimetres, a title, and subscripts, which the library does not have.
 
-use super::style::{BLACK, GREY, Rgb, WHITE};
+use super::colour::{BLACK, GREY, Rgb, WHITE};
 use crate::report::ReportError;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

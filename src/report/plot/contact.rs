@@ -6,9 +6,11 @@
 use super::axis::prefixed;
 use super::bands::Region;
 use super::canvas::*;
-use super::mesh::{Box2, DISPLACEMENT, fail, point_vector, sides, stroke};
-use super::solid::{OpenedSolid, Plane, dot, normal, project, sum};
-use super::style::{BLACK, GREY, MARKER_MM, Rgb, draw_marker, status_marker};
+use super::colour::{BLACK, GREY, Rgb};
+use super::mesh::{Box2, DISPLACEMENT, dot, fail, point_vector, sides, stroke};
+
+use super::solid::{OpenedSolid, Plane, normal, project, sum};
+use super::style::{MARKER_MM, draw_marker, status_marker};
 use crate::model::field_mesh::{CellShape, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::{fixed, significant};

@@ -3,11 +3,11 @@
 use super::axis::{Axis, prefixed, range};
 use super::bands::{self, Levels, Triangle};
 use super::canvas::*;
+use super::colour::{BLACK, MIDDLE};
 use super::figure::{draw_labels, room_for_labels};
 use super::mesh::{Box2, DISPLACEMENT, conforming, deformed, fail, outline, point_vector, stroke};
 use super::panel::{Place, draw_panel};
 use super::series::Panel;
-use super::style::{BLACK, MIDDLE};
 use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
 use crate::report::number::significant;

@@ -5,10 +5,10 @@
 
 use super::axis::{Axis, range};
 use super::canvas::*;
+use super::colour::BLACK;
 use super::legend::Legend;
 use super::panel::{Place, Triangle, draw_panel};
 use super::series::Panel;
-use super::style::BLACK;
 use crate::report::ReportError;
 
 /// Room for the tick labels and the label of an x axis, and below a panel without them [mm].

@@ -1,7 +1,8 @@
 //! The one heat map: a number and a text per row and column, tinted on a logarithmic or linear scale.
 
 use super::canvas::*;
-use super::style::{BLACK, LIGHT, Rgb, WHITE, between};
+use super::colour::{BLACK, LIGHT, Rgb, WHITE};
+use super::style::between;
 use crate::report::ReportError;
 
 /// The darkest tint: on paper it still lets black text be read.

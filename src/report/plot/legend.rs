@@ -1,8 +1,9 @@
 //! Legends: samples and labels in rows below a figure.
 
 use super::canvas::{Anchor, Canvas, TICK_PT, text_width, wrapped};
+use super::colour::BLACK;
 use super::series::{Draw, Panel, Series};
-use super::style::{BLACK, draw_marker};
+use super::style::draw_marker;
 
 const ROW_MM: f64 = 3.6;
 /// Room for the sample before a label, and between columns [mm].

@@ -6,8 +6,7 @@
 use super::axis::{nice_step, range};
 use super::bands::chains;
 use super::canvas::{Canvas, Pixel};
-use super::solid::dot;
-use super::style::Rgb;
+use super::colour::Rgb;
 use crate::model::field_mesh::FieldMesh;
 use crate::report::ReportError;
 use std::collections::{BTreeMap, BTreeSet};
@@ -270,6 +269,10 @@ impl Box2 {
     pub fn height(&self) -> f64 {
         self.high[1] - self.low[1]
     }
+}
+
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|c| a[c] * b[c]).sum()
 }
 
 #[cfg(test)]

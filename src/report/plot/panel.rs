@@ -2,8 +2,9 @@
 
 use super::axis::range;
 use super::canvas::{Anchor, Canvas, SMALL_PT, text_width};
+use super::colour::{BLACK, GREY, LIGHT, Rgb, WHITE};
 use super::series::{Draw, Panel, Series};
-use super::style::{BLACK, GREY, LIGHT, Rgb, Style, WHITE, draw_marker};
+use super::style::{Style, draw_marker};
 use crate::report::number::significant;
 
 const FRAME_MM: f64 = 0.2;

@@ -2,7 +2,7 @@
 //!
 //! The view is isometric, along the diagonal of the axes: x points to the lower left, y to the lower right, z up.
 
-use super::mesh::{deformed, fail, sides};
+use super::mesh::{deformed, dot, fail, sides};
 use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
 use std::collections::BTreeMap;
@@ -31,10 +31,6 @@ const TETRA: [&[usize]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
 /// Isometric projection: right and up on the paper [m].
 pub fn project([x, y, z]: Vec3) -> [f64; 2] {
     [(y - x) / 2f64.sqrt(), (2.0 * z - x - y) / 6f64.sqrt()]
-}
-
-pub fn dot(a: Vec3, b: Vec3) -> f64 {
-    (0..3).map(|c| a[c] * b[c]).sum()
 }
 
 /// a + s b.

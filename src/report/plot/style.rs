@@ -1,21 +1,10 @@
 //! How things look: colours, dashes, markers, and which methods stand out.
 
 use super::canvas::{Canvas, plain};
+use super::colour::{BLACK, GREY, MIDDLE, Rgb, WHITE};
 use crate::run::choice::is_outside;
 use crate::run::registry::methods;
 use stickslip_methods::Method;
-
-/// Red, green, blue.
-pub type Rgb = [u8; 3];
-
-pub const BLACK: Rgb = [0, 0, 0];
-pub const WHITE: Rgb = [255, 255, 255];
-/// Captions and reference lines.
-pub const GREY: Rgb = [96, 96, 96];
-/// What stands behind: bands of agreeing methods, methods that do not stand out.
-pub const MIDDLE: Rgb = [165, 165, 165];
-/// Grid lines, undeformed outlines.
-pub const LIGHT: Rgb = [215, 215, 215];
 
 /// Okabe and Ito (2008) without the yellow, which vanishes on white paper.
 const CURVES: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];

@@ -1,6 +1,5 @@
 //! A column: described once, shown in every form.
 
-use crate::case::label::cell;
 use crate::report::number::{self, fixed, significant};
 use crate::run::verdict::Verdict;
 
@@ -253,10 +252,10 @@ pub struct Column<R> {
 }
 
 impl<R> Column<R> {
-    /// Cell of a CSV file; no text there is a formula.
+    /// Cell of a CSV file.
     pub fn csv(&self, row: &R) -> String {
         match (self.get)(row) {
-            Value::Text(text) => cell(&text).into_owned(),
+            Value::Text(text) => text,
             Value::Whole(count) => count.to_string(),
             Value::Real(x) => self.about.digits.write(x),
             Value::Empty => String::new(),

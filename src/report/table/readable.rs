@@ -1,7 +1,5 @@
 //! A table for reading: cells as text; Markdown and terminal.
 
-use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
-
 use super::{Digits, Value};
 
 /// Alignment of a column.
@@ -79,42 +77,31 @@ impl Readable {
     /// The title and the table for a terminal, never wrapped; no trailing line end.
     pub fn terminal(&self) -> String {
         const FIGURE_SPACE: &str = "\u{2007}";
-        let mut table = comfy_table::Table::new();
-        // Two spaces between columns and no vertical lines, since Table 2 is wide.
-        table.load_style(TableStyle::new());
-        table.set_content_arrangement(ContentArrangement::Disabled);
-        table.set_header(self.columns.iter().map(Heading::text));
-        for row in &self.rows {
-            table.add_row(row.iter().enumerate().map(|(column, cell)| {
+        let heads = self.columns.iter().map(Heading::text).collect();
+        let mut lines: Vec<Vec<String>> = vec![heads];
+        lines.extend(self.rows.iter().map(|row| {
+            let padded = row.iter().enumerate().map(|(column, cell)| {
                 cell.clone() + &FIGURE_SPACE.repeat(self.padding(column, cell))
-            }));
-        }
-        for (index, column) in self.columns.iter().enumerate() {
-            if let Some(target) = table.column_mut(index) {
-                target.set_padding((0, 2));
-                target.set_cell_alignment(match column.align {
-                    Align::Left => CellAlignment::Left,
-                    Align::Right | Align::Decimal => CellAlignment::Right,
-                });
-            }
-        }
-        let lines: Vec<String> = table
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect();
+            });
+            padded.collect()
+        }));
+        let size = |cell: &String| cell.chars().count();
+        let widest = |column| lines.iter().map(|row| size(&row[column])).max();
+        let widths: Vec<usize> = (0..self.columns.len()).filter_map(widest).collect();
+        // Two spaces between columns and no vertical lines, since Table 2 is wide.
+        let line = |row: &Vec<String>| {
+            let cells = row.iter().zip(&self.columns).zip(&widths);
+            let cells = cells.map(|((cell, column), &width)| match column.align {
+                Align::Left => format!("{cell:<width$}"),
+                Align::Right | Align::Decimal => format!("{cell:>width$}"),
+            });
+            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+        };
+        let mut lines: Vec<String> = lines.iter().map(line).collect();
         // Three rules as in booktabs.
-        let width = lines.iter().map(|line| line.chars().count()).max();
-        let rule = "─".repeat(width.unwrap_or(0));
-        let mut text = format!("{}\n{rule}\n", self.title);
-        for (index, line) in lines.iter().enumerate() {
-            text += line;
-            text.push('\n');
-            if index == 0 {
-                text += &rule;
-                text.push('\n');
-            }
-        }
-        text + &rule
+        let rule = "─".repeat(lines.iter().map(size).max().unwrap_or(0));
+        lines.insert(1, rule.clone());
+        format!("{}\n{rule}\n{}\n{rule}", self.title, lines.join("\n"))
     }
 
     /// Characters to add to a cell so that it has as many decimals as the longest of its column.

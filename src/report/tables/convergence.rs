@@ -70,13 +70,13 @@ pub fn of_error<R: OfError>() -> Vec<Column<R>> {
         "error" "" .significant(4).power(3) = above_round_off(r.error().error), "against a closed form as the quantity defines it; otherwise the distance from the reference, relative to the length of the reaction vector at its place or to the size of the quantity, on the finest mesh; `0` below 1e-12, which is round-off; `NaN` on the finest mesh, which is the reference";
         "kind" "" .shown() = r.error().kind.map_or("", Kind::name), "reference: `exact` (closed form) or `finest` (the value on the finest mesh)";
         "order" "–" .significant(4).fixed(2) = r.error().order, "observed order in h over the last two halvings, on this mesh and the two before: against a closed form the slope of the errors by least squares, otherwise that of the steps between the values; no error bar relies on it; `NaN` where errors are below 1e-12, or values differ by less than the tolerance of the runs or approach no limit";
-        "total_s" "s" .time().digits(2) = r.error().seconds.total(), "sum of the six that follow: what this run alone would have taken; one run each, after one that is not counted";
-        "setup_s" "s" .time() = r.error().seconds.0[0], SETUP_S;
-        "assembly_s" "s" .time() = r.error().seconds.0[1], ASSEMBLY_S;
-        "factorisation_s" "s" .time() = r.error().seconds.0[2], FACTORISATION_S;
-        "condensation_s" "s" .time() = r.error().seconds.0[3], CONDENSATION_S;
-        "prepare_s" "s" .time() = r.error().seconds.0[4], PREPARE_S;
-        "solve_s" "s" .time() = r.error().seconds.0[5], "solution of all increments";
+        "total_s" "s" .time().digits(2) = r.error().seconds.iter().sum::<f64>(), "sum of the six that follow: what this run alone would have taken; one run each, after one that is not counted";
+        "setup_s" "s" .time() = r.error().seconds[0], SETUP_S;
+        "assembly_s" "s" .time() = r.error().seconds[1], ASSEMBLY_S;
+        "factorisation_s" "s" .time() = r.error().seconds[2], FACTORISATION_S;
+        "condensation_s" "s" .time() = r.error().seconds[3], CONDENSATION_S;
+        "prepare_s" "s" .time() = r.error().seconds[4], PREPARE_S;
+        "solve_s" "s" .time() = r.error().seconds[5], "solution of all increments";
     })
 }
 

@@ -7,14 +7,18 @@ use stickslip_methods::Tier;
 use super::convergence::{OfError, of_error};
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
+use crate::studies::analysis::compare_methods;
+use crate::studies::analysis::costs::Costs;
+use crate::studies::analysis::profile::performance;
+use crate::studies::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
+use crate::studies::analysis::scaling::Growth;
+use crate::studies::analysis::series::{Point, Series, Swept, series};
+use crate::studies::analysis::success::SuccessRow;
+use crate::studies::analysis::test_set::TestSet;
+use crate::studies::analysis::{problem_names, problems};
 use crate::studies::convergence::orders::ErrorRow;
-use crate::studies::sweep::analysis::compare_methods;
-use crate::studies::sweep::analysis::ranking::{PENALTY, Ranking, Standing};
-use crate::studies::sweep::analysis::scaling::Growth;
-use crate::studies::sweep::analysis::series::{Point, Swept};
-use crate::studies::sweep::analysis::success::SuccessRow;
-use crate::studies::sweep::record::IncrementFound;
-use crate::studies::sweep::statistics::Timing;
+use crate::studies::record::{Record, Step};
+use crate::studies::statistics::Timing;
 
 /// Order of tiers, from coarse to fine.
 fn compare_tiers(a: Tier, b: Tier) -> Ordering {
@@ -27,12 +31,15 @@ impl Row for SuccessRow {
     const QUESTION: &'static str = "Which method is right how often, and how does it fail?";
     const NOTES: &'static str = "Every problem counts, refused ones as not solved.";
     const ORDER: Order<Self> = Order::By(|a, b| {
-        compare_methods(&a.method, &b.method).then_with(|| compare_tiers(a.tier, b.tier))
+        (a.class.cmp(&b.class))
+            .then_with(|| compare_methods(&a.method, &b.method))
+            .then_with(|| compare_tiers(a.tier, b.tier))
     });
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "method" "" .shown() = r.method.clone(), METHOD;
+            "class" "" .key() = r.class.clone(), "class of the problems, as their source names it; empty: all problems";
+            "method" "" .key() = r.method.clone(), METHOD;
             "exact" "" = r.exact, "whether its limit are the contact laws";
             "defaults" "" = r.defaults, "whether all options have their default";
             "tier" "" .shown() = r.tier.to_string(), "accuracy asked for";
@@ -61,6 +68,9 @@ impl Row for SuccessRow {
             "crashed" "" .shown() = r.failures[12], "failed with an error";
             "timed_out" "" = r.failures[13], "stopped at the time limit";
             "out_of_memory" "" = r.failures[14], "denied memory, by the limit or by the system";
+            "iterations_median" "" .named("iterations, median") = r.iterations[0], "median of the iterations of the runs that did what they claim";
+            "iterations_p90" "" = r.iterations[1], "90 % of these need no more";
+            "iterations_max" "" = r.iterations[2], "largest number";
         }
     }
 }
@@ -205,7 +215,7 @@ pub struct PointRow<'a> {
 }
 
 impl PointRow<'_> {
-    fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
+    fn sum(&self, counter: fn(&Step) -> usize) -> usize {
         self.point.record.found.sum(counter)
     }
 
@@ -268,4 +278,54 @@ impl Row for AccuracyRow<'_> {
         columns.retain(|column| column.about.name != "tip");
         columns
     }
+}
+
+/// What is compared at every tier.
+pub fn sets(records: &[Record]) -> [TestSet<'_>; 3] {
+    Tier::ALL.map(|tier| TestSet::new(records, tier))
+}
+
+/// Steps of the performance profiles, tier after tier.
+pub fn profiles(records: &[Record]) -> Vec<ProfileRow> {
+    let mut rows = Vec::new();
+    for set in &sets(records) {
+        let costs = Costs::new(set);
+        for curve in performance(&costs) {
+            rows.extend(curve.steps.iter().map(|step| ProfileRow {
+                tier: set.tier,
+                method: curve.method.to_owned(),
+                step: *step,
+                problems: costs.problems(),
+            }));
+        }
+    }
+    rows
+}
+
+/// Methods by mean time, tier after tier.
+pub fn rankings(records: &[Record]) -> Vec<RankingRow> {
+    let sets = sets(records);
+    let of = |set| Some((set, ranking(&Costs::new(set))?));
+    let all = sets.iter().filter_map(of);
+    all.flat_map(|(set, own): (&TestSet<'_>, _)| RankingRow::of(set.tier, &own))
+        .collect()
+}
+
+/// Points of all curves of solver error against work.
+pub fn curves(records: &[Record]) -> Vec<PointRow<'_>> {
+    let all = problems(records);
+    let mut rows = Vec::new();
+    for (problem, name) in all.iter().zip(problem_names(&all)) {
+        for own in series(records, problem) {
+            let Series { label, swept, .. } = own;
+            rows.extend(own.points.into_iter().map(|point| PointRow {
+                problem: name.clone(),
+                label: label.clone(),
+                swept: swept.clone(),
+                exact: own.exact,
+                point,
+            }));
+        }
+    }
+    rows
 }

@@ -2,7 +2,7 @@
 
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::run::record::{
+use crate::studies::rows::{
     ExactRow, ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, QuantityRow, RunKey,
     RunRow,
 };
@@ -45,14 +45,14 @@ impl Row for RunRow {
     fn columns() -> Vec<Column<Self>> {
         keyed(columns! { r: Self,
             "tier" "" .key() = r.tier.clone(), TIER;
-            "verdict" "" .shown() = &r.verdict, VERDICT;
-            "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
-            "iterations" "" .shown() = r.iterations, ITERATIONS;
+            "verdict" "" .shown() = &r.step.verdict, VERDICT;
+            "natural_map" "–" .residual().power(2) = r.step.judge.natural_map, NATURAL_MAP;
+            "iterations" "" .shown() = r.step.iterations, ITERATIONS;
             "factorisations" "" = r.factorisations, "factorisations of K for this mesh up to this row, shared by all methods, friction values and increments";
-            "solves" "" .shown() = r.solves, "solves with the factor of K in this increment";
-            "unknowns" "" = r.unknowns, "contact unknowns";
-            "points" "" .shown() = r.points, POINTS;
-            "dofs" "" = r.dofs, DOFS;
+            "solves" "" .shown() = r.step.solves, "solves with the factor of K in this increment";
+            "unknowns" "" = r.size.unknowns, "contact unknowns";
+            "points" "" .shown() = r.size.points, POINTS;
+            "dofs" "" = r.size.dofs, DOFS;
             "setup_s" "s" .time() = r.setup_s, SETUP_S;
             "assembly_s" "s" .time() = r.assembly_s, ASSEMBLY_S;
             "factorisation_s" "s" .time() = r.factorisation_s, FACTORISATION_S;
@@ -61,28 +61,27 @@ impl Row for RunRow {
             "solve_s" "s" .time().digits(3) = r.solve_s, "solution of this increment";
             "enforcement_s" "s" .time().digits(3) = r.enforcement_s, ENFORCEMENT_S;
             "reported_s" "s" .time() = r.reported_s, REPORTED_S;
-            "equilibrium" "–" .residual() = r.equilibrium, "backward error of equilibrium, found by the judge";
-            "claimed_equilibrium" "–" .residual() = r.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
-            "claimed" "–" .residual() = r.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";
-            "violation" "–" .residual() = r.violation, "largest of `natural_map` and the next four columns: what tiers and verdicts refer to";
-            "penetration" "–" .residual() = r.penetration, "deepest overlap of the faces at a contact point relative to u_ref, found by the judge; no friction coefficient enters its scale";
-            "adhesion" "–" .residual() = r.adhesion, "largest tension at a contact point relative to P_ref, found by the judge";
-            "complementarity" "–" .residual() = r.complementarity, "largest product of gap and pressure at a contact point relative to u_ref and the larger of P_ref and its pressure, found by the judge";
-            "cone" "–" .residual() = r.cone, "largest excess over the friction bound at a contact point relative to P_ref, found by the judge";
-            "sway" "–" .significant(2) = r.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e7 the mesh is suspect";
-            "uniform_stress" "–" .residual() = r.uniform_stress, "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
-            "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
-            "reference_force" "N or N/m" = r.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or as those at the start of the increment if that is more; 0 where no point closes";
-            "reference_jump_m" "m" = r.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
-            "tangent_factorisations" "–" .named("dense factorisations") = r.tangent_factorisations, TANGENTS;
-            "global_factorisations" "–" = r.global_factorisations, GLOBALS;
-            "local_solves" "–" = r.local_solves, LOCALS;
-            "schema" "" = r.schema, "version of this page";
+            "equilibrium" "–" .residual() = r.step.judge.equilibrium, "backward error of equilibrium, found by the judge";
+            "claimed_equilibrium" "–" .residual() = r.step.judge.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
+            "claimed" "–" .residual() = r.step.judge.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";
+            "violation" "–" .residual() = r.step.judge.violation, "largest of `natural_map` and the next four columns: what tiers and verdicts refer to";
+            "penetration" "–" .residual() = r.step.judge.penetration, "deepest overlap of the faces at a contact point relative to u_ref, found by the judge; no friction coefficient enters its scale";
+            "adhesion" "–" .residual() = r.step.judge.adhesion, "largest tension at a contact point relative to P_ref, found by the judge";
+            "complementarity" "–" .residual() = r.step.judge.complementarity, "largest product of gap and pressure at a contact point relative to u_ref and the larger of P_ref and its pressure, found by the judge";
+            "cone" "–" .residual() = r.step.judge.cone, "largest excess over the friction bound at a contact point relative to P_ref, found by the judge";
+            "sway" "–" .significant(2) = r.step.judge.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e7 the mesh is suspect";
+            "uniform_stress" "–" .residual() = r.size.uniform_stress, "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
+            "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.step.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
+            "reference_force" "N or N/m" = r.step.judge.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or as those at the start of the increment if that is more; 0 where no point closes";
+            "reference_jump_m" "m" = r.step.judge.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
+            "tangent_factorisations" "–" .named("dense factorisations") = r.step.tangent_factorisations, TANGENTS;
+            "global_factorisations" "–" = r.step.global_factorisations, GLOBALS;
+            "local_solves" "–" = r.step.local_solves, LOCALS;
         })
     }
 
     fn is_honest(&self) -> bool {
-        self.verdict.is_honest()
+        self.step.verdict.is_honest()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::words::METHOD;
 use crate::report::number;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::sweep::analysis::sensitivity::{FAST, Starts, Step, Sweep, Windows};
+use crate::studies::analysis::sensitivity::{FAST, Step, Sweep, Windows};
 
 /// A value as it is read: powers of ten where digits would have to be counted.
 fn value(x: f64) -> String {
@@ -72,57 +72,6 @@ impl Row for SensitivityRow<'_> {
             "most_ratio" "–" .significant(4).named("most").digits(3) = r.step.ratio[1], "largest such ratio";
             "spent" "" = r.step.spent, "iterations on the problems not solved, median; `NaN` without any";
             "violation" "–" .residual() = r.step.violation, "largest violation of the contact laws on a problem solved";
-        }
-    }
-}
-
-impl Starts {
-    /// Of warm starts, 0, or cold ones, 1.
-    fn of(&self, cold: usize, value: impl Fn(&Step) -> f64) -> f64 {
-        let steps = &self.sweep.steps;
-        let step = steps.iter().find(|step| step.value == cold as f64);
-        step.map_or(f64::NAN, value)
-    }
-
-    fn solved(&self, cold: usize) -> f64 {
-        self.of(cold, |step| step.solved as f64)
-    }
-
-    fn iterations(&self, cold: usize) -> f64 {
-        self.of(cold, |step| step.iterations)
-    }
-
-    fn each(&self, cold: usize) -> f64 {
-        self.iterations(cold) / self.increments as f64
-    }
-}
-
-impl Row for Starts {
-    const NAME: &'static str = "starts";
-    const TITLE: &'static str = "Iterations over the whole load path, every increment begun from the contact forces of the last one (warm) or from none (cold), in more and more increments";
-    const QUESTION: &'static str =
-        "What do a warm start and smaller increments save, in iterations, per method?";
-    const NOTES: &'static str = "Methods that were given cold starts, or increments of the case in equal parts. Slip is measured from the end of the last increment \
-         either way; a floating piece begins with the forces of least norm that balance its load. With friction the answer may \
-         depend on the number of increments.";
-    // They come by class, method and number of increments.
-    const ORDER: Order<Self> = Order::Given;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "class" "" .named("problems of") = class(&r.sweep), CLASS;
-            "method" "" .shown() = r.sweep.method.clone(), METHOD;
-            "tolerance" "–" .shown() = r.sweep.tolerance, TOLERANCE;
-            "parts" "" = r.parts, "equal increments that each of the case's is divided in";
-            "increments" "" .shown() = r.increments, "increments of the path";
-            "problems" "" = r.sweep.problems, "problems that were given every start";
-            "solved_warm" "" = r.solved(0), "problems solved from warm starts";
-            "solved_cold" "" = r.solved(1), "problems solved from cold starts; `NaN` where there are none, like the columns of cold starts that follow";
-            "warm" "" .named("warm").digits(6) = r.iterations(0), "iterations of the whole path from warm starts, median over the problems solved";
-            "cold" "" .named("cold").digits(6) = r.iterations(1), "from cold starts";
-            "cold_over_warm" "–" .significant(4).named("cold/warm").digits(3) = r.of(1, |step| step.ratio[0]), "cold over warm, median over the problems solved from both";
-            "warm_each" "" .significant(4).named("warm, each").digits(3) = r.each(0), "iterations per increment from warm starts";
-            "cold_each" "" .significant(4).named("cold, each").digits(3) = r.each(1), "from cold starts";
         }
     }
 }
@@ -246,9 +195,9 @@ impl Row for WindowRow<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::sweep::analysis::sensitivity::sweeps;
-    use crate::studies::sweep::analysis::support::{end_with, record};
-    use crate::studies::sweep::record::Record;
+    use crate::studies::analysis::sensitivity::sweeps;
+    use crate::studies::analysis::support::{end_with, record};
+    use crate::studies::record::Record;
 
     fn cell(method: &str, iterations: usize, solved: bool) -> Record {
         let mut cell = record("plate", method, 1e-6);

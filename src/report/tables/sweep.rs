@@ -5,12 +5,14 @@ use std::cmp::Ordering;
 use super::words::*;
 use crate::model::errors::Deviation;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::convergence::Value;
-use crate::studies::sweep::analysis::{
-    compare_methods, compare_problems, method_time, published_times,
-};
-use crate::studies::sweep::record::{IncrementFound, ProblemSize, Record, SolverError, Spent};
-use crate::studies::sweep::statistics::Timing;
+use crate::report::tables::ranks::sets;
+use crate::studies::analysis::accuracy::sequences;
+use crate::studies::analysis::problems;
+use crate::studies::analysis::{compare_methods, compare_problems, method_time, published_times};
+use crate::studies::followed::Value;
+use crate::studies::record::{ProblemSize, Record, SolverError, Spent, Step};
+use crate::studies::statistics::Timing;
+use crate::studies::task::Problem;
 
 /// A row about a cell.
 trait OfCell {
@@ -21,15 +23,15 @@ trait OfCell {
 fn of_cell<R: OfCell>(own: Vec<Column<R>>) -> Vec<Column<R>> {
     let mut columns = columns! { r: R,
         "id" "" = r.record().id.clone(), "stable name of the cell; joins the files of a study";
-        "case" "" .shown() = r.record().cell.case.clone(), "case: a shipped one, a file, or a random problem";
-        "refine" "" = r.record().cell.refine, "refinement factor of the mesh";
+        "case" "" .shown() = r.record().asked.case.clone(), "case: a shipped one, a file, or a random problem";
+        "refine" "" = r.record().asked.refine, "refinement factor of the mesh";
         "mesh" "" .shown() = size(r.record()).map_or("", |size| &size.mesh), "mesh label; empty where the cell ended before it had a mesh";
-        "space" "" .shown() = size(r.record()).map_or(r.record().cell.space.as_deref().unwrap_or("own"), |size| &size.space), SPACE;
-        "friction" "–" .named("μ") = r.record().cell.mu(), FRICTION;
-        "parts" "" = r.record().cell.increments, "equal increments that each of the case's is divided in";
-        "start" "" = if r.record().cell.cold { "cold" } else { "warm" }, "where methods begin an increment: from the contact forces at the end of the last one (`warm`), or from none (`cold`)";
+        "space" "" .shown() = size(r.record()).map_or(r.record().asked.space.as_deref().unwrap_or("own"), |size| &size.space), SPACE;
+        "friction" "–" .named("μ") = r.record().asked.mu(), FRICTION;
+        "parts" "" = r.record().asked.increments, "equal increments that each of the case's is divided in";
+        "start" "" = if r.record().asked.cold { "cold" } else { "warm" }, "where methods begin an increment: from the contact forces at the end of the last one (`warm`), or from none (`cold`)";
         "method" "" .shown() = r.record().found.method.clone(), METHOD;
-        "tolerance" "–" .shown() = r.record().cell.tolerance, "violation of the contact laws asked of the method and accepted by the judge";
+        "tolerance" "–" .shown() = r.record().asked.tolerance, "violation of the contact laws asked of the method and accepted by the judge";
     };
     columns.extend(own);
     columns
@@ -41,9 +43,9 @@ fn size(record: &Record) -> Option<&ProblemSize> {
 
 /// Order of cells: problem, method, tolerance from coarse to fine.
 pub fn compare_cells(a: &Record, b: &Record) -> Ordering {
-    compare_problems(&a.cell.problem(), &b.cell.problem())
+    compare_problems(&a.asked.problem(), &b.asked.problem())
         .then_with(|| compare_methods(&a.found.method, &b.found.method))
-        .then(b.cell.tolerance.total_cmp(&a.cell.tolerance))
+        .then(b.asked.tolerance.total_cmp(&a.asked.tolerance))
         .then_with(|| a.id.cmp(&b.id))
 }
 
@@ -66,7 +68,7 @@ impl CellRow<'_> {
         self.0.found.solver_error.as_ref()
     }
 
-    fn sum(&self, counter: fn(&IncrementFound) -> usize) -> usize {
+    fn sum(&self, counter: fn(&Step) -> usize) -> usize {
         self.0.found.sum(counter)
     }
 
@@ -98,7 +100,7 @@ impl Row for CellRow<'_> {
 
     fn columns() -> Vec<Column<Self>> {
         of_cell(columns! { r: Self,
-            "digest" "" = r.0.cell.digest.clone(), "SHA-256 of the case file, 16 digits";
+            "digest" "" = r.0.asked.digest.clone(), "SHA-256 of the case file, 16 digits";
             "exact" "" = r.0.found.exact, "whether the limit of the method are the contact laws";
             "verdict" "" .shown() = &r.0.found.verdict, "as in `runs.csv`; of the last increment, which is the first that is not honest";
             "natural_map" "–" .residual().power(2) = r.natural_map(), "residual of the contact conditions found by the judge, the largest over the increments";
@@ -121,7 +123,6 @@ impl Row for CellRow<'_> {
             "local_solves" "" = r.sum(|i| i.local_solves), LOCALS;
             "state_changes" "" = r.sum(|i| i.state_changes), STATE_CHANGES;
             "final_changes" "" = r.sum(|i| i.final_changes), FINAL_CHANGES;
-            "schema" "" = r.0.schema, "version of the records";
         })
     }
 }
@@ -130,7 +131,7 @@ impl Row for CellRow<'_> {
 pub struct IncrementRow<'a> {
     record: &'a Record,
     number: usize,
-    found: &'a IncrementFound,
+    found: &'a Step,
 }
 
 impl<'a> IncrementRow<'a> {
@@ -163,7 +164,7 @@ impl Row for IncrementRow<'_> {
         of_cell(columns! { r: Self,
             "increment" "" = r.number, "place of the increment in the path, from 1; the state at time 0 takes the first where something acts then";
             "verdict" "" = &r.found.verdict, "its verdict";
-            "natural_map" "–" .residual() = r.found.natural_map.unwrap_or(f64::NAN), "its residual";
+            "natural_map" "–" .residual() = r.found.judge.natural_map, "its residual";
             "iterations" "" = r.found.iterations, ITERATIONS;
             "solves" "" = r.found.solves, SOLVES;
             "tangent_factorisations" "" = r.found.tangent_factorisations, TANGENTS;
@@ -204,6 +205,18 @@ impl<'a> DeviationRow<'a> {
             Ok(d) => [&d.quantity, &d.at],
             Err(v) => [&v.quantity, &v.at],
         }
+    }
+}
+
+impl<'a> DeviationRow<'a> {
+    /// All; a quantity without exact value says something only beside that of another mesh.
+    pub fn all(records: &'a [Record]) -> Vec<Self> {
+        let refined: Vec<Problem> = sequences(records).into_iter().flatten().collect();
+        let own = records.iter().flat_map(|record| {
+            let several = refined.contains(&record.asked.problem());
+            Self::of(record).filter(move |row| several || row.is_exact())
+        });
+        own.collect()
     }
 }
 
@@ -254,7 +267,7 @@ impl Row for SummaryRow {
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "quantity" "" .key() = r.quantity.clone(), "`cells` with a record, `cells_of_the_sweep`, `problems`, `schema`; per tier `problems_compared_…` and `problems_left_out_…`, those that some method was not given";
+            "quantity" "" .key() = r.quantity.clone(), "`cells` with a record, `problems`; per tier `problems_compared_…` and `problems_left_out_…`, those that some method was not given";
             "value" "" .shown() = r.value, "number";
         }
     }
@@ -358,4 +371,19 @@ impl Row for TimeRow<'_> {
             "profile" "" = r.record.origin.profile.clone(), "build profile";
         })
     }
+}
+
+/// The study in numbers.
+pub fn numbers(records: &[Record]) -> Vec<SummaryRow> {
+    let row = |quantity: String, value| SummaryRow { quantity, value };
+    let mut rows = vec![
+        row("cells".into(), records.len()),
+        row("problems".into(), problems(records).len()),
+    ];
+    for set in sets(records) {
+        let tier = set.tier;
+        rows.push(row(format!("problems_compared_{tier}"), set.problems.len()));
+        rows.push(row(format!("problems_left_out_{tier}"), set.left_out));
+    }
+    rows
 }

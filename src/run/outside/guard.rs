@@ -1,11 +1,10 @@
 //! A folder for a call and a guardian over both: whatever becomes of this process, what the call began is ended and the
 //! folder removed.
 
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-
-use crate::files::bundle::unique;
 
 /// The guardian is a shell that reads its standard input to the end, which the system closes however this process ends, by
 /// SIGKILL too. It learns a group when a program started in it, and forgets it with the next line, when the group has ended:
@@ -85,4 +84,11 @@ fn private(path: &Path) -> io::Result<()> {
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
     builder.create(path)
+}
+
+/// A word that no other command uses at the same time, also in containers whose processes have the same numbers.
+fn unique() -> String {
+    // The standard library seeds its hash maps at random.
+    let random = RandomState::new().build_hasher().finish();
+    format!("{}-{random:016x}", std::process::id())
 }

@@ -12,9 +12,9 @@
 //! is not taken within a fixed radius. Measured against closed forms and conforming meshes, the bars hold the truth in 98 of
 //! 100 cases: docs/accuracy.md.
 
-use super::Regularity;
 use crate::case::named;
-use crate::studies::sweep::statistics::median;
+use crate::studies::statistics::median;
+use crate::studies::tips::Regularity;
 
 /// Factor where order 1 or better is within reach of the discretisation.
 const FACTOR: f64 = 1.5;

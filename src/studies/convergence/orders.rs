@@ -9,9 +9,11 @@ use std::collections::BTreeMap;
 
 use super::error_bar::{Course, NoBar, error_bars};
 use super::power_law::{order_of_steps, slope};
-use super::{Measured, Regularity, Sample, Seconds, Value, Variant};
+use super::{Measured, Sample, Variant};
 use crate::case::named;
 use crate::run::verdict::Verdict;
+use crate::studies::followed::Value;
+use crate::studies::tips::Regularity;
 
 /// Differences of a quantity below this fraction of its size are the tolerance of the runs, not the discretisation.
 const RESOLVED: f64 = 1e-8;
@@ -67,7 +69,7 @@ pub struct ErrorRow {
     /// closed form where they do not differ by more than the tolerance of the runs.
     pub order: f64,
     /// Times.
-    pub seconds: Seconds,
+    pub seconds: [f64; 6],
 }
 
 /// One quantity of one sequence.
@@ -267,8 +269,8 @@ fn unmeasured_row(sample: &Sample) -> ErrorRow {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Deviation;
     use super::*;
+    use crate::model::errors::Deviation;
     use stickslip_methods::Status;
 
     fn sample(refine: usize, regularity: Regularity, measured: Measured) -> Sample {
@@ -291,7 +293,7 @@ mod tests {
                 Measured::Nothing => Verdict::GaveUp(Status::Stalled),
                 _ => Verdict::Solved,
             },
-            seconds: Seconds::NONE,
+            seconds: [f64::NAN; 6],
             measured,
         }
     }

@@ -1,59 +1,11 @@
 //! What one mesh of a sequence leaves behind.
 
-use serde::{Deserialize, Serialize};
-
-use super::tips::Regularity;
+use crate::case::Case;
 use crate::model::errors::Deviation;
-use crate::run::record::RunRow;
 use crate::run::verdict::Verdict;
-
-/// Times of a run [s]: mesh with cracks, sparsity pattern and elimination order; assembly of K; its factorisation;
-/// condensation to the contact points; preparation of the method; all increments together. The first four are shared by
-/// all friction coefficients on a mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seconds(pub [f64; 6]);
-
-impl Seconds {
-    /// No times.
-    pub const NONE: Self = Self([f64::NAN; 6]);
-
-    /// What the run alone would have taken.
-    pub fn total(&self) -> f64 {
-        self.0.iter().sum()
-    }
-
-    /// Times of the rows of one run, increment by increment.
-    pub fn of(rows: &[RunRow]) -> Self {
-        let Some(last) = rows.last() else {
-            return Self::NONE;
-        };
-        let sum = |time: fn(&RunRow) -> f64| rows.iter().map(time).sum();
-        let once = [
-            last.setup_s,
-            last.assembly_s,
-            last.factorisation_s,
-            last.condensation_s,
-        ];
-        let [setup, assembly, factorisation, condensation] = once;
-        let (prepare, solve) = (sum(|row| row.prepare_s), sum(|row| row.solve_s));
-        Self([setup, assembly, factorisation, condensation, prepare, solve])
-    }
-}
-
-/// One followed quantity of interest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Value {
-    /// Quantity, as in `quantities.csv`.
-    pub quantity: String,
-    /// Place and component, e.g. `top y`; empty: the whole body.
-    pub at: String,
-    /// Value, SI.
-    pub value: f64,
-    /// What errors are relative to: the length of the vector that the value is a component of, |value| of others.
-    pub norm: f64,
-    /// Largest number of the same kind in the body; beside it the value may be rounding.
-    pub scale: f64,
-}
+use crate::studies::followed::Value;
+use crate::studies::record::{Record, Spent};
+use crate::studies::tips::{Regularity, label, regularity};
 
 /// What an honest run is measured by.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,8 +54,54 @@ pub struct Sample {
     pub points: usize,
     /// The worst thing that happened on the path: its last increment's.
     pub verdict: Verdict,
-    /// Times; none unless the verdict is honest.
-    pub seconds: Seconds,
+    /// Times of a run [s]: mesh with cracks, sparsity pattern and elimination order; assembly of K; its factorisation;
+    /// condensation to the contact points; preparation of the method; all increments together. The first four are shared by
+    /// all friction coefficients on a mesh. NaN unless the verdict is honest.
+    pub seconds: [f64; 6],
     /// What was found.
     pub measured: Measured,
+}
+
+impl Sample {
+    /// A record, and its case with the tips of the task; none where the body was never discretised.
+    pub fn of(record: &Record, case: &Case) -> Option<Self> {
+        let found = &record.found;
+        let size = found.problem.as_ref()?;
+        let times = |spent: &Spent| {
+            let once = [
+                spent.setup_s,
+                spent.assembly_s,
+                spent.factorisation_s,
+                spent.condensation_s,
+            ];
+            let [setup, assembly, factorisation, condensation] = once;
+            let (prepare, solve) = (spent.prepare.median_s, spent.solve.median_s);
+            [setup, assembly, factorisation, condensation, prepare, solve]
+        };
+        let honest = found.verdict.is_honest();
+        let spent = record.spent.as_ref().filter(|_| honest);
+        Some(Self {
+            variant: Variant {
+                case: case.name.clone(),
+                space: size.space.clone(),
+                tip: label(case),
+                method: found.method.clone(),
+                friction: record.asked.mu(),
+            },
+            regularity: regularity(case),
+            mesh: size.mesh.clone(),
+            refine: record.asked.refine,
+            h: size.h_m,
+            dim: size.dim,
+            dofs: size.dofs,
+            points: size.points,
+            verdict: found.verdict.clone(),
+            seconds: spent.map_or([f64::NAN; 6], times),
+            measured: match (found.deviations.is_empty(), found.values.is_empty()) {
+                (false, _) => Measured::Exact(found.deviations.clone()),
+                (true, false) => Measured::Values(found.values.clone()),
+                (true, true) => Measured::Nothing,
+            },
+        })
+    }
 }

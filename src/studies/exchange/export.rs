@@ -1,16 +1,18 @@
 //! One increment of a case as interchange files.
 
-use stickslip_methods::{ContactState, Increment, Tier};
+use stickslip_methods::{ContactState, ContactSystem, Increment, Tier};
 
 use crate::case::Case;
 use crate::files::interchange::{Info, InterchangeError};
 use crate::model::body::{Body, BodyError, Needs};
+use crate::model::loading::Loading;
 use crate::run::choice::Choice;
-use crate::run::load_path::Posed;
-use crate::run::record::RunKey;
-use crate::run::run_case::{RunError, friction_values};
+use crate::run::loads::{Loads, Posed};
+use crate::run::path::{Guess, Run};
 use crate::run::verdict::{Accuracy, Verdict};
+use crate::studies::axes::friction_values;
 use crate::studies::exchange::{global_problem, local_problem};
+use crate::studies::rows::RunKey;
 
 /// Which increment.
 #[derive(Debug, Clone)]
@@ -38,7 +40,7 @@ pub struct ExportedIncrement {
 pub enum ExportError {
     /// The case or its discretisation.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Body(#[from] BodyError),
     /// Writing.
     #[error(transparent)]
     Interchange(#[from] InterchangeError),
@@ -77,40 +79,60 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
         traction: request.choice.needs_traction(),
     };
     let friction = friction(case, request.friction)?;
-    let body = Body::new(case, refine.unwrap_or(1), needs).map_err(RunError::from)?;
-    let posed = Posed::new(&body, case, &friction).map_err(RunError::from)?;
-    let path = posed.run(&request.choice, Accuracy::of(case, Tier::High));
-    let mut state = ContactState::zero(&posed.system);
+    let body = Body::new(case, refine.unwrap_or(1), needs)?;
+    let of_point = body.points.iter().map(|p| friction[p.crack]);
+    let system = ContactSystem::new(body.elastic.clone(), of_point.collect());
+    let system = system.map_err(BodyError::from)?;
+    let mu = friction.first().copied().unwrap_or(0.0);
+    let loading = Loading::new(&body, case, mu)?;
+    let run = Run {
+        posed: Posed {
+            system: &system,
+            loads: Loads::Body(&loading),
+        },
+        choice: &request.choice,
+        accuracy: Accuracy::of(case, Tier::High),
+        guess: Guess::Before,
+    };
+    let mut state = ContactState::zero(&system);
     let mut start = state.clone();
     let mut unsolved = None;
-    let end = path.follow_to(wanted, &mut |key, increment, _| match &increment.judged {
-        Some(judged) if increment.verdict.is_solved() => {
+    run.follow_to(wanted, &mut |moment| match &moment.solved.judged {
+        Some(judged) if moment.solved.verdict.is_solved() => {
             start = std::mem::replace(&mut state, judged.outcome.state.clone());
         }
         _ => {
-            unsolved.get_or_insert((key.increment, increment.verdict.clone()));
+            unsolved.get_or_insert((moment.number, moment.solved.verdict.clone()));
         }
     });
     if let Some((increment, verdict)) = unsolved {
         return Err(ExportError::Unsolved {
             increment,
-            method: end.key.method,
+            method: request.choice.label.clone(),
             verdict,
         });
     }
     let increment = Increment {
-        system: &posed.system,
-        load: &posed.loading.at(wanted),
-        start_load: &posed.loading.before(wanted),
+        system: &system,
+        load: &loading.at(wanted),
+        start_load: &loading.before(wanted),
         start: &start,
         guess: None,
-        index: wanted - posed.loading.first(),
-        tolerance: path.accuracy.asked,
+        index: wanted - loading.first(),
+        tolerance: run.accuracy.asked,
     };
-    let info = info(case, &end.key, &increment);
+    let key = RunKey {
+        case: case.name.clone(),
+        mesh: body.label.clone(),
+        space: body.space.clone(),
+        method: request.choice.label.clone(),
+        friction: mu,
+        increment: wanted,
+    };
+    let info = info(case, &key, &increment);
     Ok(ExportedIncrement {
         files: files(&increment, &state, info)?,
-        key: end.key,
+        key,
     })
 }
 
@@ -166,8 +188,7 @@ fn files(
     solution: &ContactState,
     info: Info,
 ) -> Result<Vec<(&'static str, Vec<u8>)>, ExportError> {
-    let form = increment.local_form().map_err(BodyError::from);
-    let form = form.map_err(RunError::from)?;
+    let form = increment.local_form().map_err(BodyError::from)?;
     let local = local_problem(increment, &form, solution, info.clone());
     let mut files = vec![("local.hdf5", local.to_bytes()?)];
     if let Some(global) = global_problem(increment, solution, info) {

@@ -4,18 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use stickslip_methods::{ContactState, ContactSystem, Increment, Load, MethodError, Tier};
+use stickslip_methods::{ContactSystem, Load, MethodError};
 
-use crate::case::label::visible;
-use crate::files::interchange::{InterchangeError, Problem, fclib};
+use crate::files::interchange::{InterchangeError, LocalProblem, Problem, fclib};
+use crate::files::visible::visible;
 use crate::model::body::Setup;
-use crate::run::choice::Choice;
-use crate::run::increment::{JudgedIncrement, Solver};
-use crate::run::local_problem::local_velocity;
-use crate::run::record::{Results, RunKey};
-use crate::run::run_case::Progress;
-use crate::run::several::mark_several;
-use crate::run::verdict::Accuracy;
+use crate::model::errors::Deviation;
 use crate::studies::exchange::{System, global_system, local_system};
 
 /// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
@@ -45,53 +39,20 @@ pub struct OperatorSize {
     pub rank: Option<usize>,
 }
 
-/// Dimension, contact points and operator of a problem.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Size {
-    /// Components per contact point.
-    pub dim: usize,
-    /// Contact points.
-    pub points: usize,
-    /// The operator.
-    pub operator: OperatorSize,
-}
-
 /// A problem read and turned into a system.
 pub struct ProblemFile {
-    /// File name without `.hdf5`, or the name in its collection: the case of its runs.
-    pub name: String,
     /// `local` or `global`.
     pub kind: &'static str,
     /// The body with its friction coefficients.
     pub system: ContactSystem,
-    /// What acts on it.
-    pub load: Load,
-    /// Nothing.
-    pub rest: Load,
-    start: ContactState,
+    /// Nothing, and what acts on it.
+    pub loads: [Load; 2],
     /// Time for reading.
     pub setup: Setup,
     /// Stored entries of W or M, and how far it is from symmetric in the file.
     stored: (usize, f64),
-}
-
-/// What methods made of a problem.
-#[derive(Default)]
-pub struct Solved {
-    /// Rows of the tables.
-    pub results: Results,
-    /// Of the methods that solved it.
-    pub solutions: Vec<ProblemSolution>,
-}
-
-/// A solution in the words of the file.
-pub struct ProblemSolution {
-    /// Which run.
-    pub key: RunKey,
-    /// r.
-    pub reaction: Vec<f64>,
-    /// Local velocity u.
-    pub velocity: Vec<f64>,
+    /// Reactions that the file says are the solution, and what their distance is measured in.
+    solution: Option<(Vec<f64>, f64)>,
 }
 
 /// Why a file cannot be run.
@@ -142,14 +103,18 @@ impl ProblemFile {
     /// # Errors
     /// [`ProblemFileError`], naming the file.
     pub fn read(path: &Path) -> Result<Self, ProblemFileError> {
-        Self::read_as(path, file_name(path))
+        Self::of(path, &file_name(path), fclib::read(path)?)
     }
 
-    /// Reads a file under a name of its own.
+    /// The bytes of a file, for a problem of that name.
     ///
     /// # Errors
     /// [`ProblemFileError`], naming the file.
-    pub fn read_as(path: &Path, name: String) -> Result<Self, ProblemFileError> {
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>, name: &str) -> Result<Self, ProblemFileError> {
+        Self::of(path, name, fclib::from_bytes(path, bytes)?)
+    }
+
+    fn of(path: &Path, name: &str, problem: Problem) -> Result<Self, ProblemFileError> {
         let clock = Instant::now();
         if name.len() > MAX_NAME {
             let what = format!(
@@ -158,7 +123,6 @@ impl ProblemFile {
             );
             return Err(InterchangeError::refused(path, what).into());
         }
-        let problem = fclib::read(path)?;
         refuse_unsupported(path, &problem)?;
         let failed = |source| match source {
             MethodError::NotPositiveDefinite { unknown, size } => ProblemFileError::Singular {
@@ -177,6 +141,13 @@ impl ProblemFile {
         };
         let asymmetry = operator.as_square().map_err(failed)?.asymmetry();
         let stored = (operator.len(), asymmetry);
+        let solution = match &problem {
+            Problem::Local(own) => own
+                .solution
+                .as_ref()
+                .map(|s| (s.r.clone(), force_scale(own, &s.r))),
+            Problem::Global(_) => None,
+        };
         let (kind, system) = match &problem {
             Problem::Local(problem) => ("local", local_system(problem)),
             Problem::Global(problem) => ("global", global_system(problem)),
@@ -192,13 +163,11 @@ impl ProblemFile {
         let shared = system.elastic().timings();
         let factor_s = shared.analysis_s + shared.factorisation_s;
         Ok(Self {
-            name,
             kind,
-            rest: Load::zero(system.elastic()),
-            start: ContactState::zero(&system),
+            loads: [Load::zero(system.elastic()), load],
             system,
-            load,
             stored,
+            solution,
             setup: Setup {
                 setup_s: (clock.elapsed().as_secs_f64() - factor_s).max(0.0),
                 assembly_s: 0.0,
@@ -207,21 +176,13 @@ impl ProblemFile {
         })
     }
 
-    /// The problem in numbers; W is formed for its rank.
+    /// The operator in numbers; W is formed for its rank.
     ///
     /// # Errors
     /// Those of the condensation.
-    pub fn size(&self) -> Result<Size, MethodError> {
-        Ok(Size {
-            dim: self.system.dim(),
-            points: self.system.points(),
-            operator: self.operator()?,
-        })
-    }
-
-    fn operator(&self) -> Result<OperatorSize, MethodError> {
+    pub fn operator(&self) -> Result<OperatorSize, MethodError> {
         let elastic = self.system.elastic();
-        let rows = self.load.offset.len();
+        let rows = self.loads[1].offset.len();
         let ranked = (rows <= MOST_RANKED).then(|| elastic.rank());
         let (entries, asymmetry) = self.stored;
         Ok(OperatorSize {
@@ -234,71 +195,38 @@ impl ProblemFile {
         })
     }
 
-    /// The problem as an increment from rest.
-    pub fn increment(&self, tolerance: f64) -> Increment<'_> {
-        Increment {
-            system: &self.system,
-            load: &self.load,
-            start_load: &self.rest,
-            start: &self.start,
-            guess: None,
-            index: 0,
-            tolerance,
-        }
-    }
-
-    /// One method on the problem, from rest, judged; the time is that of the fastest of `repeats` solutions.
-    pub fn try_method(
-        &self,
-        choice: &Choice,
-        accuracy: Accuracy,
-        repeats: usize,
-    ) -> (JudgedIncrement, RunKey) {
-        let key = RunKey {
-            case: self.name.clone(),
-            mesh: self.kind.into(),
-            space: "fclib".into(),
-            method: choice.label.clone(),
-            friction: self.system.friction().first().copied().unwrap_or(0.0),
-            increment: 1,
+    /// Distance of reactions from those that the file says are the solution, |r − r*| / max(|r*|, ρ |q|); nothing where it has none.
+    pub fn deviations(&self, reactions: &[f64]) -> Vec<Deviation> {
+        let Some((known, scale)) = &self.solution else {
+            return Vec::new();
         };
-        let increment = self.increment(accuracy.asked);
-        let tried = match Solver::new(choice, &self.system) {
-            Ok(mut solver) => solver.judge_fastest(&increment, accuracy.accepted, repeats),
-            Err(verdict) => JudgedIncrement::not_started(verdict),
-        };
-        (tried, key)
+        let apart: Vec<f64> = reactions
+            .iter()
+            .zip(known)
+            .map(|(r, known)| r - known)
+            .collect();
+        vec![Deviation {
+            quantity: REACTIONS.to_owned(),
+            at: String::new(),
+            found: norm(reactions),
+            exact: norm(known),
+            error: norm(&apart) / scale,
+        }]
     }
+}
 
-    /// Runs methods on the problem, from rest; times are those of the fastest of `repeats` solutions.
-    pub fn run(
-        &self,
-        choices: &[Choice],
-        tier: Tier,
-        repeats: usize,
-        progress: &dyn Progress,
-    ) -> Solved {
-        let mut solved = Solved::default();
-        let accuracy = Accuracy::exactly(tier.tolerance());
-        let increment = self.increment(accuracy.asked);
-        for choice in choices {
-            let (tried, key) = self.try_method(choice, accuracy, repeats);
-            progress.done(&format!("{} {}", self.name, choice.label));
-            let row = tried.run_row(&key, &self.system, self.setup, accuracy);
-            solved.results.runs.push(row);
-            solved.results.history.extend(tried.history_rows(&key));
-            solved.results.answers.extend(tried.answer(key.problem()));
-            if let Some(judged) = tried.honest() {
-                solved.solutions.push(ProblemSolution {
-                    velocity: local_velocity(&increment, &judged.outcome.state),
-                    reaction: judged.outcome.state.p.clone(),
-                    key,
-                });
-            }
-        }
-        mark_several(&mut solved.results);
-        solved
-    }
+/// Name of the deviation of reactions.
+pub const REACTIONS: &str = "reactions";
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// What forces are compared with: the known ones, or those that the free velocity would take.
+fn force_scale(problem: &LocalProblem, known: &[f64]) -> f64 {
+    let rows = problem.q.len();
+    let trace: f64 = (0..rows).map(|k| problem.w.get(k, k)).sum();
+    norm(known).max(rows as f64 / trace * norm(&problem.q))
 }
 
 /// File name without the extensions HDF5 files have.
@@ -353,7 +281,7 @@ fn refuse_unsupported(path: &Path, problem: &Problem) -> Result<(), InterchangeE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::interchange::{Info, LocalEquality, LocalProblem, SparseMatrix};
+    use crate::files::interchange::{Info, LocalEquality, SparseMatrix};
 
     #[test]
     fn more_rigid_motions_than_bodies_have_are_refused_before_they_are_expanded() {

@@ -3,9 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use crate::run::record::RunRow;
 use crate::run::verdict::Verdict;
-use crate::studies::sweep::statistics::larger;
+use crate::studies::rows::RunRow;
+use crate::studies::statistics::larger;
 
 /// One method on one case: all meshes, friction coefficients and increments together.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,16 +44,19 @@ pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
         groups.entry(key).or_default().push(run);
     }
     let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
-        let honest = group.iter().all(|r| r.verdict.is_honest());
+        let honest = group.iter().all(|r| r.step.verdict.is_honest());
         Some(ComparisonRow {
             case: case.into(),
             method: method.into(),
             increments: group.len(),
-            verdict: worst(group.iter().map(|r| &r.verdict))?.clone(),
-            natural_map: group.iter().map(|r| r.natural_map).fold(0.0, larger),
-            iterations: group.iter().map(|r| r.iterations).sum(),
-            tangent_factorisations: group.iter().map(|r| r.tangent_factorisations).sum(),
-            local_solves: group.iter().map(|r| r.local_solves).sum(),
+            verdict: worst(group.iter().map(|r| &r.step.verdict))?.clone(),
+            natural_map: group
+                .iter()
+                .map(|r| r.step.judge.natural_map)
+                .fold(0.0, larger),
+            iterations: group.iter().map(|r| r.step.iterations).sum(),
+            tangent_factorisations: group.iter().map(|r| r.step.tangent_factorisations).sum(),
+            local_solves: group.iter().map(|r| r.step.local_solves).sum(),
             solve_s: if honest {
                 group.iter().map(|r| r.solve_s).sum()
             } else {

@@ -14,13 +14,12 @@
 //! Williams, J. Appl. Mech. 19 (1952) 526. Their third mesh is Mesh I turned by 20 degrees at its centre: the crack crosses its
 //! cells in every way.
 
-use stickslip_xfem::mesh::grid_motion::Twist;
-
-use crate::case::{Case, ContactSpace, Tip};
-use crate::run::run_case::Progress;
+use crate::case::{self, Case, ContactSpace, Tip};
+use crate::run::progress::Progress;
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
 use crate::studies::convergence::{self, ConvergencePlan};
-use crate::studies::paper::lookup::{PaperError, as_printed, case, choice};
+use crate::studies::paper::lookup;
+use crate::studies::paper::lookup::{PaperError, as_printed, choice};
 use crate::studies::paper::printed_tables::Table1Row;
 
 /// Radius of the tip enrichment of stable multipliers [m].
@@ -110,7 +109,7 @@ pub fn converged_reactions(
             tips,
             choice: choice(METHOD, &[])?,
         };
-        let samples = convergence::run(&plate, &plan, &convergence::closed_form, progress)?;
+        let samples = convergence::run(&plate, &plan, progress)?;
         let (errors, orders) = orders::rows(&samples);
         // A mesh that is not solved has a row without quantity.
         let wanted = |quantity: &str, at: &str| (quantity, at) == ("reaction", "top y");
@@ -139,12 +138,12 @@ pub fn converged_reactions(
 
 /// The plate on one of the meshes.
 fn plate(name: &str, turned: bool) -> Result<Case, PaperError> {
-    let mut plate = case(name)?;
+    let mut plate = lookup::case(name)?;
     plate.expects.clear();
     if turned {
-        plate.mesh.grid.twist = Some(Twist {
-            angle: TURN.to_radians(),
-        });
+        let text = format!("{}\n[mesh.twist]\nangle_deg = {TURN}\n", plate.source);
+        plate = case::parse(&plate.file, text)?;
+        plate.expects.clear();
     }
     Ok(plate)
 }

@@ -2,10 +2,10 @@
 
 use crate::case::{Case, CaseError, shipped};
 use crate::run::choice::Choice;
-use crate::run::record::{Results, RunKey, RunRow};
 use crate::run::registry::method;
-use crate::run::run_case::RunError;
 use crate::run::verdict::Verdict;
+use crate::studies::measure::RunError;
+use crate::studies::rows::{Results, RunKey, RunRow};
 
 /// Method that the others are compared with.
 pub const REFERENCE_METHOD: &str = "b-newton";
@@ -109,6 +109,6 @@ impl<'a> Run<'a> {
 
     /// Verdict of the last increment.
     pub fn verdict(&self) -> Option<Verdict> {
-        self.last().map(|row| row.verdict.clone())
+        self.last().map(|row| row.step.verdict.clone())
     }
 }

@@ -1,11 +1,12 @@
 //! The plate over the penalty stiffness.
 
-use crate::run::record::Results;
-use crate::run::run_case::{Progress, Settings, run_case};
+use crate::run::progress::Progress;
 use crate::run::verdict::Verdict;
+use crate::studies::cases::{Settings, run_case};
 use crate::studies::paper::lookup::{
     PaperError, REACTION, REFERENCE_METHOD, Run, as_printed, case, choice,
 };
+use crate::studies::rows::Results;
 
 /// Multiples of the natural scale that the penalty stiffness is swept over.
 const PENALTIES: [f64; 7] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
@@ -59,7 +60,7 @@ pub fn penalty_rows(
                     _ => f64::NAN,
                 },
                 max_penetration_m: deepest.unwrap_or(f64::NAN),
-                natural_map: row.map_or(f64::NAN, |r| r.natural_map),
+                natural_map: row.map_or(f64::NAN, |r| r.step.judge.natural_map),
                 verdict: run.verdict(),
             });
         }

@@ -3,11 +3,11 @@
 //! Table 1: vertical reaction at the top of the plate. Table 2: displacement of seven points of the beam. Lines with the
 //! method [`PRINTED`] carry the printed numbers.
 
-use crate::run::record::Results;
 use crate::run::registry::methods;
 use crate::run::verdict::Verdict;
 use crate::studies::paper::lookup::{PaperError, REACTION, Run, as_printed};
-use crate::studies::sweep::statistics::larger;
+use crate::studies::rows::Results;
+use crate::studies::statistics::larger;
 
 /// Printed numbers.
 const TABLE1: &str = include_str!("../../../cases/reference/plate_table1.csv");

@@ -3,12 +3,13 @@
 use crate::run::registry::methods;
 
 use crate::run::choice::Choice;
-use crate::run::record::{Results, RunRow};
-use crate::run::run_case::{Progress, Settings, run_case};
+use crate::run::progress::Progress;
 use crate::run::verdict::Verdict;
+use crate::studies::cases::{Settings, run_case};
 use crate::studies::paper::lookup::{
     Compared, PaperError, REACTION, REFERENCE_METHOD, Run, case, choice,
 };
+use crate::studies::rows::{Results, RunRow};
 
 /// Case, friction coefficients, and what is compared: (quantity, at, component).
 const PROBLEMS: [(&str, &[f64], Compared); 2] = [
@@ -105,10 +106,10 @@ fn row(run: Run<'_>, compared: Compared, reference: f64) -> VariantRow {
         quantity: compared.join(" "),
         value,
         deviation: ((value - reference) / reference).abs(),
-        natural_map: last.map_or(f64::NAN, |r| r.natural_map),
-        iterations: count(|r| r.iterations),
-        tangent_factorisations: count(|r| r.tangent_factorisations),
-        global_factorisations: count(|r| r.global_factorisations),
+        natural_map: last.map_or(f64::NAN, |r| r.step.judge.natural_map),
+        iterations: count(|r| r.step.iterations),
+        tangent_factorisations: count(|r| r.step.tangent_factorisations),
+        global_factorisations: count(|r| r.step.global_factorisations),
         solve_s: last.map_or(f64::NAN, |r| r.solve_s),
     }
 }

@@ -1,18 +1,15 @@
-//! What became of a scene: the record of the suite.
+//! What became of a scene.
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
-#[cfg(doc)]
-use stickslip_methods::SWAYING;
-
-use super::scene::Family;
+use super::scene::Scene;
 use crate::run::verdict::Verdict;
+use crate::studies::record::Record;
+use crate::studies::stress::twin::Change;
 
-/// Why a scene, or a method on a scene, did not end as it should; by severity, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Cause {
+/// Why a scene did not end as it should; by severity, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fault {
     /// The program panicked.
     Panic,
     /// It ran out of memory.
@@ -33,6 +30,8 @@ pub enum Cause {
     Factorisation,
     /// The judge of the mesh doubts the body.
     SuspectMesh,
+    /// The default method found no answer where there is one.
+    Missed,
     /// The case was refused at a place in its file.
     Refused,
     /// Refused, and by construction more than a mesh of such cells can carry.
@@ -43,28 +42,11 @@ pub enum Cause {
     FrictionLimit,
     /// Two exact methods found different answers that both hold: there are several.
     SeveralSolutions,
-    /// A matrix of the method cannot be factored: its tangent is singular.
-    SingularTangent,
-    /// The iterates repeat.
-    Cycling,
-    /// The numbers grew without bound.
-    Diverged,
-    /// Violation of the contact laws came to rest within a thousand times the tolerance, which is near rounding.
+    /// Solved, with an error that is the rounding of the arithmetic.
     Floor,
-    /// It converges, too slowly for the limit of iterations.
-    Slow,
-    /// It stopped on a body whose slender parts sway more than [`SWAYING`] times as far as cells deform: W is as badly
-    /// conditioned, and answers are held to within 100 times of the stiffest unknowns.
-    Swaying,
-    /// Its iterates neither settle nor repeat.
-    Wandering,
-    /// It came to rest far from a solution, without any of the causes above.
-    Stalled,
-    /// The method declines such a system.
-    Declined,
 }
 
-impl Cause {
+impl Fault {
     /// As tables name it.
     pub fn name(self) -> &'static str {
         match self {
@@ -78,114 +60,108 @@ impl Cause {
             Self::NoPlace => "error without a place",
             Self::Factorisation => "factorisation",
             Self::SuspectMesh => "suspect mesh",
+            Self::Missed => "missed",
             Self::Refused => "refused",
             Self::Beyond => "beyond the mesh",
             Self::NoEquilibrium => "no equilibrium",
             Self::FrictionLimit => "limit of friction",
             Self::SeveralSolutions => "several solutions",
-            Self::SingularTangent => "singular tangent",
-            Self::Cycling => "cycling",
-            Self::Diverged => "diverged",
             Self::Floor => "floor of the arithmetic",
-            Self::Slow => "slow",
-            Self::Swaying => "swaying",
-            Self::Wandering => "wandering",
-            Self::Stalled => "stalled",
-            Self::Declined => "declined",
         }
     }
 
     /// Whether the program is wrong: never to be seen.
-    pub fn is_fault(self) -> bool {
+    pub fn is_wrong(self) -> bool {
         self <= Self::Factorisation
     }
 }
 
-impl fmt::Display for Cause {
+impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-/// One method on a scene.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
-    /// Label.
-    pub method: String,
-    /// Whether the method's limit are the contact laws.
-    pub exact: bool,
-    /// Claim × check.
-    pub verdict: Verdict,
-    /// Iterations.
-    pub iterations: usize,
-    /// Largest violation of the contact laws [-]; none without an answer.
-    pub violation: Option<f64>,
-    /// Why it did not do what it is for; none if it did.
-    pub cause: Option<Cause>,
-}
-
-/// What a transformation changed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Change {
-    /// Which one.
+/// What seeing a scene another way changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// Which way.
     pub transformation: String,
     /// Whether it rounds nothing and gives nothing another name.
     pub exact: bool,
-    /// The verdict or error it ends with, where that is not `solved`.
-    pub verdict: Option<String>,
-    /// Largest change of contact forces, over the largest force [-]; none where the contact points are others.
-    pub force: Option<f64>,
-    /// Change of strain energy and dissipation, over their sum [-]; 1 where the verdict is another.
-    pub energy: f64,
+    /// The verdict that it ends with.
+    pub verdict: Verdict,
+    /// What changed; none where that is not `solved`.
+    pub change: Option<Change>,
 }
 
-impl fmt::Display for Change {
+impl Seen {
+    /// Change of energy; another verdict is the largest change there is.
+    pub fn energy(&self) -> f64 {
+        self.change.map_or(1.0, |change| change.energy)
+    }
+}
+
+impl fmt::Display for Seen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.verdict, self.force) {
-            (Some(verdict), _) => f.write_str(verdict),
-            (None, Some(force)) => write!(f, "forces {force:.1e}, energy {:.1e}", self.energy),
-            (None, None) => write!(f, "other points, energy {:.1e}", self.energy),
+        match self.change {
+            None => self.verdict.fmt(f),
+            Some(Change { force, energy }) => match force {
+                Some(force) => write!(f, "forces {force:.1e}, energy {energy:.1e}"),
+                None => write!(f, "other points, energy {energy:.1e}"),
+            },
         }
     }
 }
 
 /// A scene and what was found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Finding {
-    /// Family of the scene.
-    pub family: Family,
-    /// Number in the family.
-    pub number: u64,
-    /// How its cracks lie; of a ladder its name.
-    pub category: String,
-    /// Space dimension.
-    pub dimension: usize,
+    /// The scene.
+    pub scene: Scene,
     /// The worst that was found; none if all is right.
-    pub cause: Option<Cause>,
+    pub fault: Option<Fault>,
     /// In one line.
     pub reason: String,
-    /// Largest error of the default method against the closed form, or of the energy identity where there is none [-].
-    pub error: Option<f64>,
-    /// Cells.
-    pub cells: usize,
-    /// Contact points.
-    pub points: usize,
-    /// Largest μ.
-    pub friction: f64,
-    /// Condition: see `runs.csv`.
-    pub sway: Option<f64>,
-    /// Residual of uniform stress on the mesh [-].
-    pub uniform_stress: Option<f64>,
-    /// Deepest overlap over the largest jump or displacement [-].
-    pub overlap: Option<f64>,
     /// Largest difference of contact forces between exact methods, over the largest force [-].
     pub disagreement: Option<f64>,
-    /// Transformations that leave the answer as it is, and what they changed.
-    pub invariance: Vec<Change>,
-    /// All methods.
-    pub trials: Vec<Trial>,
-    /// Time of all [s].
-    pub seconds: f64,
-    /// Smallest case found with the same cause; none where nothing is wrong.
+    /// Ways to see it that leave the answer as it is.
+    pub seen: Vec<Seen>,
+    /// All methods, the default one first; none where the case cannot be read.
+    pub records: Vec<Record>,
+    /// Smallest case found with the same fault; none where nothing is wrong.
     pub minimal: Option<String>,
+}
+
+impl Finding {
+    /// A scene without an answer.
+    pub fn ended(scene: &Scene, fault: Fault, reason: &str) -> Self {
+        let line = reason.lines().next().unwrap_or_default();
+        Self {
+            scene: scene.clone(),
+            fault: Some(fault),
+            reason: line.chars().take(300).collect(),
+            disagreement: None,
+            seen: Vec::new(),
+            records: Vec::new(),
+            minimal: None,
+        }
+    }
+
+    /// Largest error of the default method against the closed form, or of the energy identity where there is none; NaN without
+    /// an answer.
+    pub fn error(&self) -> f64 {
+        let main = self.records.first();
+        let check = main.and_then(|main| main.found.check.as_ref());
+        check.map_or(f64::NAN, |check| check.error)
+    }
+}
+
+/// Whether a method did what it is for: an exact one the contact laws, another one the laws it claims.
+pub fn is_done(record: &Record) -> bool {
+    match &record.found.verdict {
+        Verdict::Solved | Verdict::Several | Verdict::Suspect(_) => true,
+        Verdict::Approximate(_) => !record.found.exact,
+        _ => false,
+    }
 }

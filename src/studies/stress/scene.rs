@@ -13,8 +13,7 @@ use stickslip_xfem::mesh::stream::Stream;
 use self::flat::Flat;
 use self::grid::{Grid, decades, list};
 use self::solid::Flaw;
-use super::ladder;
-use super::truth::Truth;
+use super::places;
 use super::uniform::{Uniform, sides};
 use crate::case::CrackShape;
 
@@ -68,7 +67,7 @@ pub enum Family {
     Slip2d,
     /// Solids, the same.
     Slip3d,
-    /// One parameter at a time through its decades; see [`ladder`](super::ladder).
+    /// One parameter at a time through its decades; see [`places`](super::places).
     Ladder,
 }
 
@@ -112,11 +111,6 @@ pub struct Scene {
     pub dim: usize,
     /// The case, as TOML.
     pub text: String,
-    /// What its answer is held to.
-    pub truth: Truth,
-    /// Methods with options as on the command line; all with their defaults if there are none. The default method runs first
-    /// in any case.
-    pub methods: Vec<String>,
     /// Whether no mesh of such cells can carry it: two cracks within 1e-6 of a cell along each other, or a crack without tip
     /// functions that is shorter than two cells.
     pub beyond: bool,
@@ -124,29 +118,26 @@ pub struct Scene {
 
 /// The rung of a ladder, by its number.
 fn rung(number: u64) -> Scene {
-    let (ladder, content) = ladder::case(number);
+    let (ladder, _, text) = places::rung(number);
     Scene {
         family: Family::Ladder,
         number,
         category: ladder.name.clone(),
-        dim: content.dim,
-        text: content.text.clone(),
-        truth: content.truth.clone(),
-        methods: content.method.clone().into_iter().collect(),
+        dim: ladder.dim,
+        text: text.to_owned(),
         beyond: false,
     }
 }
 
 /// The scene with a number among those of a family and a seed.
 pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
-    let (dim, truth) = match family {
-        Family::Patch2d => (2, Truth::Uniform),
-        Family::Patch3d => (3, Truth::Uniform),
-        Family::Slip2d => (2, Truth::Energy),
-        Family::Slip3d => (3, Truth::Energy),
+    let (dim, sticks) = match family {
+        Family::Patch2d => (2, true),
+        Family::Patch3d => (3, true),
+        Family::Slip2d => (2, false),
+        Family::Slip3d => (3, false),
         Family::Ladder => return rung(number),
     };
-    let sticks = truth == Truth::Uniform;
     let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);
     let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
     let kind = (number % kinds.len() as u64) as usize;
@@ -242,8 +233,6 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
         category: category.into(),
         dim,
         text,
-        truth,
-        methods: Vec::new(),
         beyond,
     }
 }

@@ -2,12 +2,14 @@
 //!
 //! They act on the text, so that everything the program does with it is under test.
 
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::uniform::{lines, number, numbers, set_lines, sides};
 
 /// A change of a case.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Transform {
     /// Every place moved along the diagonal by so many sizes of the body.
     Shift(f64),
@@ -139,19 +141,6 @@ impl Transform {
             _ => 1.0,
         }
     }
-}
-
-/// The case with every cell halved along every axis.
-pub fn finer(text: &str) -> Option<String> {
-    let mut case: Table = text.parse().ok()?;
-    let mesh = case.get_mut("mesh")?.as_table_mut()?;
-    let mut lines = lines(mesh)?;
-    for axis in &mut lines {
-        let halves = axis.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]);
-        *axis = halves.chain(axis.last().copied()).collect();
-    }
-    set_lines(mesh, lines);
-    toml::to_string(&case).ok()
 }
 
 fn times(factor: f64) -> String {

@@ -218,3 +218,55 @@ fn comments_line_endings_and_a_byte_order_mark_change_nothing() {
     assert_eq!((error.line(), error.column()), (11, 12), "{error}");
     assert_eq!(error.source_line(), "friction = -1");
 }
+
+#[test]
+fn an_error_shows_the_line_with_the_value_underlined() {
+    let shown = refused(&PLANE.replace("poisson = 0.3", "poisson = 0.75 # rubber")).to_string();
+    let wanted = [
+        "bad.toml:8:11: material.poisson: out of range: got 0.75, allowed: 0 <= poisson < 0.5",
+        "    poisson = 0.75 # rubber",
+        "              ^^^^",
+    ];
+    assert_eq!(shown, wanted.join("\n"));
+}
+
+#[test]
+fn columns_count_characters() {
+    let error = refused(&PLANE.replace("\"plane strain\"", "\"Häuser, ü\", 3"));
+    assert_eq!(error.column(), 29, "{error}");
+    let caret = format!("\n    {}^", " ".repeat(28));
+    assert!(error.to_string().ends_with(&caret), "{error}");
+}
+
+#[test]
+fn errors_found_after_parsing_point_into_the_file() {
+    let case = accepted(PLANE);
+    let span = &case.cracks[0].geometry_span;
+    let error = case.error(
+        span,
+        "x from 40 to 48",
+        "points in the box",
+        "crack wholly outside",
+    );
+    let at = PLANE.find("[[-4, -4]").unwrap();
+    assert_eq!((error.line(), error.column()), place(PLANE, at));
+    assert_eq!(error.key(), "crack[1].points_m");
+    let wanted = "plate.toml:21:12: crack[1].points_m: crack wholly outside: got x from 40 to 48, allowed: points in the box\n";
+    assert!(error.to_string().starts_with(wanted), "{error}");
+}
+
+#[test]
+fn motions_of_the_grid_arrive() {
+    let mesh = |tables: &str| {
+        let cells = "cells = [22, 23]";
+        accepted(&PLANE.replace(cells, &format!("{cells}\n\n{tables}")))
+            .mesh
+            .grid
+    };
+    let both = mesh("[mesh.twist]\nangle_deg = -30\n\n[mesh.distort]\namplitude = 0.25\nseed = 7");
+    assert_eq!(both.twist.unwrap().angle, -30f64.to_radians());
+    let distort = both.distort.unwrap();
+    assert_eq!((distort.amplitude, distort.seed), (0.25, 7));
+    let one = mesh("[mesh.distort]\namplitude = 0.25");
+    assert!(one.twist.is_none() && one.distort.unwrap().seed == 1);
+}

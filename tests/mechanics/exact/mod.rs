@@ -8,7 +8,6 @@ use stickslip::case;
 use stickslip::case::{Amount, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
 use stickslip::model::loading::Loading;
-use stickslip::model::sides::Sides;
 use stickslip::run::verdict::Verdict;
 use stickslip_methods::Load;
 use stickslip_xfem::enrichment::cell_facets::region_at;
@@ -52,7 +51,7 @@ fn prescribed_sides_follow_the_closed_form_on_both_faces() {
         let body = Body::new(&case, 1, Needs::default()).unwrap();
         let loading = loading(&body, &case);
         let integrator = body.integrator();
-        let sides = Sides::new(&case, &integrator).unwrap();
+        let sides = sides(&case, &body).unwrap();
         let mut seen = [0, 0];
         for increment in 1..=3 {
             let factor = increment as f64 / 3.0;
@@ -135,7 +134,10 @@ fn exact_values_belong_to_the_friction_of_the_run_and_share_one_factorisation() 
     // Pressed and sheared at time 0, without slip.
     assert_eq!(results.runs.len(), 2 * 6);
     for row in &results.runs {
-        assert_eq!((row.factorisations, &row.verdict), (1, &Verdict::Solved));
+        assert_eq!(
+            (row.factorisations, &row.step.verdict),
+            (1, &Verdict::Solved)
+        );
     }
     for point in &results.points {
         let ratio = -point.point.p_a / point.point.p_n;

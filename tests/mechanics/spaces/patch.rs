@@ -11,17 +11,16 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{choices, parse};
+use crate::common::{choices, friction, loading, parse, sides};
 use rayon::prelude::*;
 use stickslip::case::{Case, ContactSpace};
-use stickslip::model::body::Body;
-use stickslip::model::quantities::Snapshot;
-use stickslip::model::sides::Sides;
-use stickslip::run::load_path::Posed;
-use stickslip::run::run_case::needs;
+use stickslip::model::body::{Body, Needs};
+use stickslip::model::snapshot::Snapshot;
+use stickslip::run::loads::{Loads, Posed};
+use stickslip::run::path::{Guess, Run};
 use stickslip::run::verdict::{Accuracy, Verdict};
-use stickslip::studies::sweep::statistics::larger;
-use stickslip_methods::Tier;
+use stickslip::studies::statistics::larger;
+use stickslip_methods::{ContactSystem, Tier};
 use stickslip_xfem::exact::{Field, Setting, solution};
 use stickslip_xfem::geometry::{dot, norm, sub};
 
@@ -87,18 +86,30 @@ fn run(patch: &Patch, case: &Case, space: ContactSpace) -> PatchRow {
         displacement: f64::NAN,
     };
     let choices = choices(&["hybrid"]);
-    let friction: Vec<f64> = case.cracks.iter().map(|c| c.friction).collect();
-    let body = match Body::new(case, 1, needs(std::slice::from_ref(&friction), &choices)) {
+    let needs = Needs {
+        frictionless: case.cracks.iter().all(|c| c.friction == 0.0),
+        traction: choices[0].needs_traction(),
+    };
+    let body = match Body::new(case, 1, needs) {
         Ok(body) => body,
         Err(refused) => return row(space.name(), Verdict::Refused(refused.to_string())),
     };
-    let posed = Posed::new(&body, case, &friction).unwrap();
-    let path = posed.run(&choices[0], Accuracy::of(case, Tier::High));
-    let end = path.follow(&mut |_, _, _| ());
+    let system = ContactSystem::new(body.elastic.clone(), friction(case, &body)).unwrap();
+    let loading = loading(&body, case);
+    let run = Run {
+        posed: Posed {
+            system: &system,
+            loads: Loads::Body(&loading),
+        },
+        choice: &choices[0],
+        accuracy: Accuracy::of(case, Tier::High),
+        guess: Guess::Before,
+    };
+    let end = run.follow(&mut |_| ());
     let mut row = row(&body.space, end.verdict);
     let Some(now) = end.now else { return row };
     let hydrostatic;
-    let field = match posed.loading.exact(case.path.increments) {
+    let field = match loading.exact(case.path.increments) {
         Some(field) => field,
         None => {
             hydrostatic = pressed(case);
@@ -148,7 +159,7 @@ fn traction_error(body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
 fn displacement_error(case: &Case, body: &Body, field: &dyn Field, now: &Snapshot) -> f64 {
     let dim = body.mesh.dim();
     let integrator = body.integrator();
-    let sides = Sides::new(case, &integrator);
+    let sides = sides(case, body);
     let (mut worst, mut size) = (0.0, 0.0);
     for (node, x) in body.mesh.nodes.iter().enumerate() {
         let side = sides.as_ref().map_or(1.0, |s| s.of_node(node));

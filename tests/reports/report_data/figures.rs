@@ -2,9 +2,9 @@
 
 use super::{beam_step, cycle, exact, key, rates, results, results_of_all_methods};
 use stickslip::report::{Bundle, Provenance, figures, standard};
-use stickslip::run::record::{Results, RunFields};
 use stickslip::studies::paper::comparison::comparison;
 use stickslip::studies::paper::printed_tables::Table1Row;
+use stickslip::studies::rows::{Results, RunFields};
 
 /// The figures of a bundle by name, without their folder.
 pub fn of(bundle: &Bundle) -> Vec<(String, String)> {
@@ -52,7 +52,7 @@ pub fn figures() -> Vec<(String, String)> {
     let all = comparison_of_methods();
     let mut bundle = Bundle::new();
     figures::cost::add(&mut bundle, &comparison(&all.runs)).expect("cost");
-    figures::robustness::add(&mut bundle, &rates()).expect("rates");
+    figures::success::add(&mut bundle, &rates(), "").expect("rates");
     let fields = RunFields {
         key: key("hybrid", 0.3),
         steps: vec![beam_step()],

@@ -1,16 +1,20 @@
 //! FCLIB files: those of other writers are read, ours come back to the bit, and no bytes bring the reader down.
 
-mod any;
+pub mod any;
 mod raw;
 
 use std::path::{Path, PathBuf};
+use std::thread;
 
-use hdf5_pure::FileBuilder;
+use hdf5_pure::{Datatype, FileBuilder};
 use proptest::prelude::*;
 use raw::Raw;
 use stickslip::files::interchange::{
-    GlobalEquality, GlobalProblem, Info, LocalProblem, Problem, Solution, SparseMatrix, fclib,
+    GlobalEquality, GlobalProblem, Info, LocalEquality, LocalProblem, Problem, Solution,
+    SparseMatrix, fclib,
 };
+
+use crate::common::{METHOD, ends_with};
 
 const W: [(usize, usize, f64); 10] = [
     (0, 0, 4.0),
@@ -263,42 +267,79 @@ proptest! {
     }
 }
 
-/// Files to spoil: one of ours and three of other writers.
-fn victims() -> Vec<Vec<u8>> {
-    let mut ours = two_points();
-    ours.info.title = Some("title".into());
-    let mut all = vec![ours.to_bytes().unwrap()];
-    for name in ["local_csr.hdf5", "local_gzip.hdf5", "global.hdf5"] {
-        all.push(std::fs::read(shipped(name)).unwrap());
-    }
-    all
+/// A file whose first dataset holds sequences of sequences of …
+fn nested(depth: usize) -> Vec<u8> {
+    let build = move || {
+        let mut datatype = hdf5_pure::make_f64_type();
+        for _ in 0..depth {
+            datatype = Datatype::VariableLength {
+                is_string: false,
+                padding: None,
+                charset: None,
+                base_type: Box::new(datatype),
+            };
+        }
+        let mut file = FileBuilder::new();
+        let mut root = file.create_group("fclib_local");
+        let dataset = root.create_dataset("spacedim");
+        dataset.with_raw_data(datatype, vec![0; 16], 1);
+        file.add_group(root.finish());
+        file.finish().unwrap()
+    };
+    // The library that writes it recurses as well.
+    let thread = thread::Builder::new().stack_size(1 << 30);
+    thread.spawn(build).unwrap().join().unwrap()
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
-
-    #[test]
-    fn spoilt_bytes_are_refused_or_read(
-        victim in 0..4usize,
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..9),
-        keep in prop_oneof![3 => Just(1.0), 1 => 0.0..1.0_f64],
-    ) {
-        let mut bytes = victims().swap_remove(victim);
-        for (index, byte) in changes {
-            let at = index.index(bytes.len());
-            bytes[at] = byte;
-        }
-        bytes.truncate((bytes.len() as f64 * keep) as usize);
-        // Whatever it says, it must say it.
-        if let Ok(Problem::Local(problem)) = read_bytes(bytes) {
-            prop_assert!(problem.q.iter().chain(&problem.mu).all(|x| x.is_finite()));
-        }
+/// The library that reads HDF5 recurses into them without a bound, and a stack that overflows ends the program.
+#[test]
+fn types_nested_as_deeply_as_a_header_holds_are_refused() {
+    for depth in [1, 100, 8000] {
+        let error = read_bytes(nested(depth)).unwrap_err();
+        assert!(
+            error.starts_with("`p.hdf5`") && error.len() < 1500,
+            "{error}"
+        );
     }
+}
 
-    #[test]
-    fn garbage_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..4000), signed in any::<bool>()) {
-        let mut all = if signed { b"\x89HDF\r\n\x1a\n".to_vec() } else { Vec::new() };
-        all.extend(bytes);
-        prop_assert!(read_bytes(all).is_err());
-    }
+/// A V without columns took the solution of no equations for one, which the library of matrices does not.
+#[test]
+fn a_problem_with_no_rigid_motions_in_its_v_is_solved() {
+    let dir = tempfile::tempdir().unwrap();
+    let empty = |rows| SparseMatrix::from_triplets(rows, 0, []).unwrap();
+    let problem = LocalProblem {
+        equality: Some(LocalEquality {
+            v: empty(4),
+            r: empty(0),
+            s: Vec::new(),
+        }),
+        ..two_points()
+    };
+    std::fs::write(dir.path().join("p.hdf5"), problem.to_bytes().unwrap()).unwrap();
+    ends_with(0, &["solve", "p.hdf5", "-m", METHOD], dir.path());
+}
+
+#[test]
+fn guesses_that_are_not_there_cost_nothing() {
+    let mut file = FileBuilder::new();
+    let mut guesses = file.create_group("guesses");
+    guesses
+        .create_dataset("number_of_guesses")
+        .with_i32_data(&[i32::MAX]);
+    file.add_group(guesses.finish());
+    let read = Raw::triplets().read_into(file).unwrap();
+    assert_eq!(local(read), two_points());
+}
+
+/// Texts that all are the same bytes of the file would take as much memory as there are of them.
+#[test]
+fn a_title_of_several_texts_is_not_read() {
+    let mut file = FileBuilder::new();
+    let mut root = file.create_group("fclib_local");
+    let mut info = root.create_group("info");
+    info.create_dataset("title").with_vlen_strings(&["a", "b"]);
+    root.add_group(info.finish());
+    let read = Raw::triplets().read_within(file, root).unwrap();
+    assert_eq!(local(read).info.title, None);
 }

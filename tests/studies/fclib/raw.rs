@@ -1,6 +1,6 @@
 //! FCLIB files put together dataset by dataset, right or wrong.
 
-use hdf5_pure::FileBuilder;
+use hdf5_pure::{FileBuilder, GroupBuilder};
 use stickslip::files::interchange::Problem;
 
 use super::{W, read_bytes};
@@ -64,8 +64,21 @@ impl Raw {
     }
 
     pub fn read(&self) -> Result<Problem, String> {
-        let mut file = FileBuilder::new();
-        let mut root = file.create_group("fclib_local");
+        self.read_into(FileBuilder::new())
+    }
+
+    /// As [`Self::read`], with what a file holds already.
+    pub fn read_into(&self, mut file: FileBuilder) -> Result<Problem, String> {
+        let root = file.create_group("fclib_local");
+        self.read_within(file, root)
+    }
+
+    /// As [`Self::read_into`], with what the group of the problem holds already.
+    pub fn read_within(
+        &self,
+        mut file: FileBuilder,
+        mut root: GroupBuilder,
+    ) -> Result<Problem, String> {
         for group in ["W", "V", "R", "vectors"] {
             let own = |name: &'static str| name.strip_prefix(group)?.strip_prefix('/');
             if !self.reals.iter().any(|e| own(e.0).is_some()) {

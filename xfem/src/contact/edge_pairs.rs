@@ -61,11 +61,10 @@ pub fn edge_pairs(
         keyed.extend(point.filter(acts).map(|p| (corner, p)));
     }
     let faces = facets.facets.iter().map(|f| f.corners.clone()).collect();
-    let mut numbers: Vec<usize> = (0..keyed.len()).collect();
-    numbers.sort_by(|&i, &j| keyed[i].1.compare(&keyed[j].1));
+    keyed.sort_by(|(_, p), (_, q)| p.compare(q));
     let mut number_of = vec![None; facets.corners.len()];
-    for (number, &i) in numbers.iter().enumerate() {
-        number_of[keyed[i].0] = Some(number as u32);
+    for (number, (corner, _)) in keyed.iter().enumerate() {
+        number_of[*corner] = Some(number as u32);
     }
     let quadrature = surface_points(integrator, index, &facets, &pair_space(&facets, &number_of))?;
     let mut surface = ContactSurface::new(keyed, faces);

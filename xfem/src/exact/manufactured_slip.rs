@@ -1,7 +1,7 @@
 //! Manufactured solutions: straight crack or plane through the whole body, pressure, friction and slip that vary over it, no tips.
 //!
 //! In the frame of the crack (x₁ along a, x₂ along b from the point of the plane, y across it, + for side 1) with the unit
-//! direction e of slip in the plane, D = e·∇, Δ = ∂₁² + ∂₂², k = 2π/L, H(θ) = max(0, sin θ)³, M = λ + 2G:
+//! direction e of slip in the plane, D = e·∇, k = 2π/L, H(θ) = max(0, sin θ)³, M = λ + 2G:
 //!
 //! ```text
 //!   p = p₀ + p₁ cos kx₁ cos kx₂      pressure, |p₁| < p₀
@@ -9,11 +9,7 @@
 //!   h = 1 − c H(kx₁ + π), 0 < c < 2   used share of friction, 1 where the faces slip, |h| < 1 where they stick
 //!   g = μ p h,   w = ± s/2 + y g/G,   l = p ± λ Ds/2
 //!
-//!   u_α = e_α w                       u_y = −y l/M
-//!   σ_αβ = λ (Dw − l/M) δ_αβ + G (e_α ∂_β w + e_β ∂_α w)
-//!   σ_yα = g e_α − G y ∂_α l/M        σ_yy = λ y Dg/G − p
-//!   f_α = −(λ+G) ∂_α Dw − G e_α Δw + (λ+G) ∂_α l/M
-//!   f_y = −(1 + λ/G) Dg + G y Δl/M
+//!   u_α = e_α w,   u_y = −y l/M       σ by Hooke's law, f = −(λ+G) ∇ div u − G Δu
 //! ```
 //!
 //! On both faces σ_yy = −p, σ_yα = μ p h e_α, the jump is s e: Coulomb's law holds for an increment from zero slip. In the
@@ -27,38 +23,43 @@ use std::f64::consts::{PI, TAU};
 use crate::geometry::clip::{clip, crossing};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::{Point, add_scaled, combine, dot, norm, rotated, sub};
-use crate::material::{Lame, Model};
+use crate::material::{Lame, Model, stress};
 use crate::quadrature::gauss;
 
 use super::parts::jet::{Jet, Separable, cosine, hump, product, times};
 use super::parts::line_crack::LineCrack;
 use super::solution::{
-    Field, Setting, Solution, SolutionSpec, exactly, growing, needed, optional, plane, required,
+    Field, ParameterSpec, Setting, Solution, SolutionSpec, exactly, growing, needed, optional,
+    plane, required,
 };
 
 /// A point closer to the plane than this, in diagonals of the body, lies on it: its side is the one asked for.
 const ON_PLANE: f64 = 1e-10;
+
+const PRESSURE: ParameterSpec = required("pressure_pa", "mean pressure p₀ > 0");
+const WAVE: ParameterSpec = required(
+    "pressure_wave_pa",
+    "amplitude p₁ of its variation, |p₁| < p₀",
+);
+const DIP: ParameterSpec = optional(
+    "stick_dip",
+    "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
+    1.0,
+);
 
 /// Registry entry of the plane.
 pub const FLAT: SolutionSpec = SolutionSpec {
     name: "manufactured-slip",
     summary: "2D body cut by a straight crack: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        required("pressure_pa", "mean pressure p₀ > 0"),
-        required(
-            "pressure_wave_pa",
-            "amplitude p₁ of its variation, |p₁| < p₀",
-        ),
+        PRESSURE,
+        WAVE,
         required("slip_m", "largest slip s₀ >= 0"),
         required(
             "wave_length_m",
             "length L of a slipping and a sticking half wave, which meet at the midpoint of the crack",
         ),
-        optional(
-            "stick_dip",
-            "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
-            1.0,
-        ),
+        DIP,
     ],
     build: flat,
 };
@@ -68,11 +69,8 @@ pub const SOLID: SolutionSpec = SolutionSpec {
     name: "manufactured-slip-3d",
     summary: "solid cut by a plane: alternating slip and stick under varying pressure, with a body force; load factor may only grow",
     parameters: &[
-        required("pressure_pa", "mean pressure p₀ > 0"),
-        required(
-            "pressure_wave_pa",
-            "amplitude p₁ of its variation, |p₁| < p₀",
-        ),
+        PRESSURE,
+        WAVE,
         required("slip_m", "slip s₀ >= 0 of a half wave's middle"),
         required(
             "wave_length_m",
@@ -88,11 +86,7 @@ pub const SOLID: SolutionSpec = SolutionSpec {
             "direction of slip, from the local axis a towards b",
             30.0,
         ),
-        optional(
-            "stick_dip",
-            "c, 0 < c < 2: share of friction not used in the middle of a sticking half wave",
-            1.0,
-        ),
+        DIP,
     ],
     build: solid,
 };
@@ -192,6 +186,7 @@ struct ManufacturedSlip {
     dissipation: f64,
 }
 
+const AXES: [usize; 3] = [0, 1, 2];
 const ONE: Jet = [1.0, 0.0, 0.0, 0.0];
 const NONE: (Jet, Jet) = ([0.0; 4], [0.0; 4]);
 
@@ -235,6 +230,22 @@ impl ManufacturedSlip {
             y,
             sign: 1.0_f64.copysign(y),
         }
+    }
+
+    /// Derivative of the component `a` of the displacement along axes of the frame, at most two; index 2 is y.
+    fn derivative(&self, place: &Place, a: usize, along: &[usize]) -> f64 {
+        let Place { p, s, g, y, sign } = place;
+        let Lame { lambda, mu, .. } = self.lame;
+        let [i, j, k] = AXES.map(|b| along.iter().filter(|c| **c == b).count());
+        // Of a function of x₁, x₂ and of one that y multiplies.
+        let constant = if k == 0 { 1.0 } else { 0.0 };
+        let linear = [*y, 1.0, 0.0][k];
+        if a < 2 {
+            let w = 0.5 * sign * constant * s.d(i, j) + linear * g.d(i, j) / mu;
+            return self.direction[a] * w;
+        }
+        let l = p.d(i, j) + 0.5 * sign * lambda * s.along(self.direction, i, j);
+        -linear * l / (lambda + 2.0 * mu)
     }
 
     /// ∫ μ p s dA over the crack inside a box, which it must leave everywhere: exact along x₂, Gauss along x₁ between
@@ -332,61 +343,31 @@ impl Solution for ManufacturedSlip {
 
 impl Field for ManufacturedSlip {
     fn displacement(&self, x: &Point, side: f64) -> Point {
-        let Place { p, s, g, y, sign } = self.place(x, side);
-        let Lame { lambda, mu, .. } = self.lame;
-        let e = self.direction;
-        let w = 0.5 * sign * s.d(0, 0) + y * g.d(0, 0) / mu;
-        let l = p.d(0, 0) + 0.5 * sign * lambda * s.along(e, 0, 0);
-        combine(
-            &self.frame,
-            [e[0] * w, e[1] * w, -y * l / (lambda + 2.0 * mu)],
-        )
+        let place = self.place(x, side);
+        combine(&self.frame, AXES.map(|a| self.derivative(&place, a, &[])))
     }
 
     fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
-        let Place { p, s, g, y, sign } = self.place(x, side);
-        let Lame { lambda, mu, .. } = self.lame;
-        let m = lambda + 2.0 * mu;
-        let e = self.direction;
-        let w = [(1, 0), (0, 1)].map(|(i, j)| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu);
-        let l = [(0, 0), (1, 0), (0, 1)]
-            .map(|(i, j)| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j));
-        let spherical = lambda * (e[0] * w[0] + e[1] * w[1] - l[0] / m);
-        let plane = |i: usize, j: usize| mu * (e[i] * w[j] + e[j] * w[i]);
-        let across = [0, 1].map(|i| g.d(0, 0) * e[i] - mu * y * l[i + 1] / m);
-        let normal = lambda * y * g.along(e, 0, 0) / mu - p.d(0, 0);
-        let along = match self.flat {
-            true => 0.0,
-            false => spherical + plane(1, 1),
-        };
-        let local = [
-            [spherical + plane(0, 0), plane(0, 1), across[0]],
-            [plane(1, 0), along, across[1]],
-            [across[0], across[1], normal],
-        ];
+        let place = self.place(x, side);
+        let gradient = AXES.map(|a| AXES.map(|b| self.derivative(&place, a, &[b])));
+        let mut local = stress(self.lame, 3, &gradient);
+        if self.flat {
+            local[1][1] = 0.0;
+        }
         rotated(&self.frame, &local)
     }
 
     fn body_force(&self, x: &Point, side: f64) -> Point {
-        let Place { p, s, g, y, sign } = self.place(x, side);
+        let place = self.place(x, side);
+        let second = |a: usize, b: usize, c: usize| self.derivative(&place, a, &[b, c]);
         let Lame { lambda, mu, .. } = self.lame;
-        let m = lambda + 2.0 * mu;
-        let e = self.direction;
-        let w = |i: usize, j: usize| 0.5 * sign * s.d(i, j) + y * g.d(i, j) / mu;
-        let along = |i: usize, j: usize| 0.5 * sign * s.along(e, i, j) + y * g.along(e, i, j) / mu;
-        let l = |i: usize, j: usize| p.d(i, j) + 0.5 * sign * lambda * s.along(e, i, j);
-        let laplace = w(2, 0) + w(0, 2);
-        let in_plane = |a: usize, i: usize, j: usize| {
-            (lambda + mu) * (l(i, j) / m - along(i, j)) - mu * e[a] * laplace
-        };
-        combine(
-            &self.frame,
-            [
-                in_plane(0, 1, 0),
-                in_plane(1, 0, 1),
-                -(1.0 + lambda / mu) * g.along(e, 0, 0) + mu * y * (l(2, 0) + l(0, 2)) / m,
-            ],
-        )
+        let force = AXES.map(|a| {
+            let [dilatation, laplace] = AXES.iter().fold([0.0; 2], |[d, l], &b| {
+                [d + second(b, b, a), l + second(a, b, b)]
+            });
+            -(lambda + mu) * dilatation - mu * laplace
+        });
+        combine(&self.frame, force)
     }
 
     fn traction(&self, x: &Point) -> [f64; 3] {

@@ -1,10 +1,8 @@
-//! Rules for comparison with exact fields, and mass, over cut bodies.
+//! Rules for comparison with exact fields over cut bodies.
 
 use crate::cut::crack::{Crack, Tip};
 use crate::cut::placement;
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::FunctionKind;
-use crate::fields::mass::mass;
 use crate::fields::sampling::{ComparisonPoint, comparison_points};
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::tip_frame::TipFrame;
@@ -121,82 +119,4 @@ fn halved_tetrahedra_resolve_a_front() {
     let [coarse, fine] = [error(4), error(8)];
     println!("1/r about a front: {coarse:.1e}, {fine:.1e}");
     assert!(coarse < 2e-3 && fine < 1e-3, "{coarse:e} {fine:e}");
-}
-
-/// u·M u of u = (1, 2[, 3]) s on side 1 and 0 on side 2, s = 1 or x.
-fn found(body: &Body, linear: bool) -> f64 {
-    let dim = body.mesh.dim();
-    let (crack, enrichment) = (&body.cracks[0], &body.enrichment);
-    let mut u = vec![0.0; enrichment.functions.len() * dim];
-    for (f, function) in enrichment.functions.iter().enumerate() {
-        let x = &body.mesh.nodes[function.node as usize];
-        let size = if linear { x[0] } else { 1.0 };
-        // 1 on side 1: N_i of the nodes there, and the pieces of the others that lie there
-        let amount = match function.kind {
-            FunctionKind::Piece { .. } if crack.distance(x) >= 0.0 => -0.5,
-            FunctionKind::Piece { .. } => 0.5,
-            _ if crack.distance(x) >= 0.0 => 1.0,
-            _ => 0.0,
-        };
-        for a in 0..dim {
-            u[f * dim + a] = amount * size * (a + 1) as f64;
-        }
-    }
-    let m = mass(&body.integrator()).unwrap();
-    m.mul(&u).iter().zip(&u).map(|(a, b)| a * b).sum()
-}
-
-/// Source: ∫ over the upper part of a body cut by a plane, in closed form. Goal: the mass matrix integrates constant and
-/// linear displacements of one side to rounding, slivers included.
-#[test]
-fn one_side_of_a_cut_body_has_its_own_mass() {
-    let shape = line([-1.0, 0.4], [2.0, 0.7]);
-    let square = Body::new(&[1.0; 2], &[3; 2], &shape, Tip::None);
-    // The line y = 0.5 + x/10: 1 − y above.
-    let [constant, linear] = [0.5 - 0.05, 0.5 / 3.0 - 0.1 / 4.0].map(|v| 5.0 * v);
-    for (linear, exact) in [(false, constant), (true, linear)] {
-        let error = found(&square, linear) / exact - 1.0;
-        assert!(error.abs() < 1e-12, "2D, {linear}: {error:e}");
-    }
-    let shape = CrackShape::plane([0.0, 0.0, 0.667], [0.0, 0.0, 1.0]);
-    let cube = Body::new(&[1.0; 3], &[3; 3], &shape, Tip::None);
-    let height = 1.0 - 0.667;
-    for (linear, exact) in [(false, 14.0 * height), (true, 14.0 / 3.0 * height)] {
-        let error = found(&cube, linear) / exact - 1.0;
-        assert!(error.abs() < 1e-12, "3D, {linear}: {error:e}");
-    }
-}
-
-/// Goal: branch functions, too: u·M u of one of them is ∫ N² (g − g_k)² found with 16 points per direction.
-#[test]
-fn branch_functions_are_integrated_to_six_digits() {
-    let shape = line([0.31, 0.42], [0.69, 0.58]);
-    let body = Body::new(&[1.0; 2], &[5; 2], &shape, Tip::Branch);
-    let integrator = body.integrator();
-    let m = mass(&integrator).unwrap();
-    let mut worst: f64 = 0.0;
-    for (f, function) in body.enrichment.functions.iter().enumerate() {
-        if !matches!(function.kind, FunctionKind::Branch { .. }) {
-            continue;
-        }
-        let mut unit = vec![0.0; body.enrichment.functions.len() * 2];
-        unit[2 * f] = 1.0;
-        let mut fine = 0.0;
-        for cell in 0..body.mesh.cell_count() {
-            let functions = integrator.enrichment.cell(cell);
-            let Some(i) = functions.iter().position(|&g| g as usize == f) else {
-                continue;
-            };
-            for p in comparison_points(&integrator, cell, &body.enrichment.tips, 16).unwrap() {
-                let p = p.point;
-                let mut functions = integrator.functions(cell);
-                functions.evaluate(&p.xi, &p.x, p.region);
-                let v = functions.values[i];
-                fine += p.weight * v * v;
-            }
-        }
-        let error = m.mul(&unit)[2 * f] / fine - 1.0;
-        worst = worst.max(error.abs());
-    }
-    assert!(worst > 0.0 && worst < 1e-6, "{worst:e}");
 }

@@ -1,0 +1,127 @@
+//! Cases as they say themselves: their meshes, friction values, methods and accuracy, with all tables of a run.
+
+use stickslip_methods::Tier;
+
+use crate::case::Case;
+use crate::run::choice::{Choice, choices};
+use crate::run::progress::Progress;
+use crate::run::verdict::Accuracy;
+use crate::studies::axes::{Axes, Subject, named};
+use crate::studies::exact_curve::exact_rows;
+use crate::studies::expect::{self, expectation_rows};
+use crate::studies::measure::{Answer, Bench, RunError, here};
+use crate::studies::results::add;
+use crate::studies::rows::{Results, RunRow};
+use crate::studies::several::mark_several;
+use crate::studies::task::Looks;
+
+/// How to run cases.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// Tier asked for; `None`: the case's own.
+    pub tier: Option<Tier>,
+    /// Runs at the same time; times are recorded for one only.
+    pub jobs: usize,
+    /// Whose fields are kept for pictures.
+    pub fields: Fields,
+    /// Starts from which every exact method looks for answers; 1: that of the increment alone, whose runs are kept.
+    pub starts: usize,
+    /// What is asked of a run that gave up.
+    pub why: Why,
+}
+
+/// What is asked of a run that gave up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Why {
+    /// Nothing.
+    Nothing,
+    /// Why.
+    Cause,
+    /// Why, and what solves the problem instead.
+    Cure,
+}
+
+/// Methods whose fields are kept: pictures cost more than solving, and exact methods agree to many digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fields {
+    /// Nobody's.
+    None,
+    /// The first exact method's of every problem, or the first method's if none is exact.
+    First,
+    /// Everybody's.
+    All,
+}
+
+/// Runs a case for some methods and gathers everything it produced.
+///
+/// # Errors
+/// [`RunError`]; what a method does wrong is a verdict.
+pub fn run_case(
+    case: &Case,
+    given: &[Choice],
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Results, RunError> {
+    let choices = choices(case, given)?;
+    expect::check(case)?;
+    let accuracy = Accuracy::of(case, settings.tier.unwrap_or(case.tier));
+    let first = choices.iter().position(Choice::exact).unwrap_or(0);
+    let looks = Looks {
+        quantities: true,
+        curves: true,
+        starts: settings.starts.saturating_sub(1),
+        why: settings.why != Why::Nothing,
+        cure: settings.why == Why::Cure,
+        ..Looks::default()
+    };
+    let mut tasks =
+        Subject::given(case).tasks(&Axes::of(case), &named(&choices), &[accuracy], looks);
+    for (k, task) in tasks.iter_mut().enumerate() {
+        task.looks.fields = match settings.fields {
+            Fields::None => false,
+            Fields::First => k % choices.len() == first,
+            Fields::All => true,
+        };
+    }
+    let (mut results, mut bench) = (Results::default(), Bench::default());
+    let jobs = settings.jobs;
+    let answers = here(
+        &mut bench,
+        &tasks,
+        &choices,
+        jobs,
+        None,
+        progress,
+        &mut |scene, task| {
+            // The same on every mesh.
+            if let Some((case, loading)) = scene.body()
+                && Some(&task.asked.refine) == case.sweep.refine.first()
+            {
+                let own = exact_rows(case, loading, task.asked.mu());
+                results.exact.extend(own);
+            }
+        },
+    )?;
+    for (answer, choice) in answers.into_iter().zip(choices.iter().cycle()) {
+        results.append(with_expectations(case, choice, answer));
+    }
+    mark_several(&mut results);
+    if settings.jobs > 1 {
+        results.runs.iter_mut().for_each(RunRow::forget_times);
+    }
+    Ok(results)
+}
+
+/// The rows of a run.
+fn with_expectations(case: &Case, choice: &Choice, answer: Answer) -> Results {
+    let refine = answer.record.asked.refine;
+    let mut own = Results::default();
+    let started = answer.record.spent.is_some();
+    add(&mut own, answer);
+    // A run that could not start is held to nothing.
+    if let (true, Some(last)) = (started, own.runs.last()) {
+        let key = last.key.clone();
+        own.expectations = expectation_rows(case, choice, refine, &key, &own);
+    }
+    own
+}

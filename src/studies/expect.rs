@@ -1,0 +1,138 @@
+//! Expected numbers of a case against what its runs found.
+
+use crate::case::{Case, CaseError, Expect, Tolerance};
+use crate::model::boundary::region_name;
+use crate::model::quantities::{AXES, LOCAL, unit};
+use crate::run::choice::Choice;
+use crate::studies::rows::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Results, RunKey};
+
+/// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
+///
+/// # Errors
+/// The first such expectation, at its place in the file.
+pub fn check(case: &Case) -> Result<(), CaseError> {
+    let dim = case.model.dim();
+    let cracks = || (1..=case.cracks.len()).map(|i| format!("crack-{i}"));
+    let anywhere = || std::iter::once(String::new()).chain(cracks()).collect();
+    for expect in &case.expects {
+        let name = expect.quantity.as_str();
+        let Some(unit) = unit(name, dim) else {
+            let allowed = "a quantity of quantities.csv, see docs/schema.md";
+            return Err(case.error(&expect.span, name, allowed, "unknown quantity"));
+        };
+        let (places, components): (Vec<String>, &[&str]) = match name {
+            "reaction" => {
+                let places = case.supports.iter().map(|s| region_name(&s.on));
+                (places.collect(), &AXES[..dim])
+            }
+            "displacement" => {
+                let places = case.probes.iter().map(|p| p.name.clone());
+                (places.collect(), &AXES[..dim])
+            }
+            "contact_force" => (cracks().collect(), &LOCAL[..dim]),
+            "mean_slip" => (cracks().collect(), &LOCAL[1..dim]),
+            "strain_energy"
+            | "external_work"
+            | "initial_stress_work"
+            | "path_error"
+            | "energy_identity" => (vec![String::new()], &[""]),
+            _ => (anywhere(), &[""]),
+        };
+        let quote = |list: &[&str]| {
+            list.iter()
+                .map(|x| format!("{x:?}"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let names: Vec<&str> = places.iter().map(String::as_str).collect();
+        for (what, found, allowed) in [
+            ("at", expect.at.as_str(), names.as_slice()),
+            ("component", expect.component.as_str(), components),
+            ("unit", expect.unit.as_str(), &[unit]),
+        ] {
+            if !allowed.contains(&found) {
+                let message = format!("no run has a `{}` with this `{what}`", expect.quantity);
+                return Err(case.error(
+                    &expect.span,
+                    format!("{found:?}"),
+                    quote(allowed),
+                    message,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Rows of `expectations.csv` for one run, last increment `key`.
+pub fn expectation_rows(
+    case: &Case,
+    choice: &Choice,
+    refine: usize,
+    key: &RunKey,
+    results: &Results,
+) -> Vec<ExpectRow> {
+    case.expects
+        .iter()
+        .filter(|e| applies(e, choice, refine, key.friction))
+        .map(|e| {
+            let increment = e.increment.unwrap_or(case.path.increments);
+            let key = RunKey {
+                increment,
+                ..key.clone()
+            };
+            compare(e, key, &results.quantities)
+        })
+        .collect()
+}
+
+/// An expectation without a method speaks of the exact ones.
+fn applies(expect: &Expect, choice: &Choice, refine: usize, friction: f64) -> bool {
+    let method = match &expect.method {
+        Some(name) => name == choice.name(),
+        None => choice.exact(),
+    };
+    method
+        && expect.friction.is_none_or(|mu| mu == friction)
+        && expect.refine.is_none_or(|factor| factor == refine)
+}
+
+fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
+    let found = rows
+        .iter()
+        .find(|row| {
+            row.key.increment == key.increment
+                && row.quantity.name == expect.quantity
+                && row.quantity.at == expect.at
+                && row.quantity.component == expect.component
+                && row.quantity.unit == expect.unit
+        })
+        .map_or(f64::NAN, |row| row.quantity.value);
+    let allowed = match expect.tolerance {
+        Tolerance::Relative(t) => t * expect.value.abs(),
+        Tolerance::Absolute(t) => t,
+    };
+    // NaN (the run has no such number) is never within the tolerance.
+    let met = (found - expect.value).abs() <= allowed;
+    let verdict = match (met, expect.missed) {
+        (true, false) => MET,
+        (false, false) => "missed",
+        // A documented miss still needs a number: a run without one has failed.
+        (false, true) if found.is_finite() => MISSED_AS_DOCUMENTED,
+        (false, true) => "missed",
+        (true, true) => "met against the documentation",
+    };
+    ExpectRow {
+        key,
+        quantity: expect.quantity.clone(),
+        at: expect.at.clone(),
+        component: expect.component.clone(),
+        expected: expect.value,
+        found,
+        allowed,
+        unit: expect.unit.clone(),
+        kind: expect.kind.name().into(),
+        source: expect.source.clone(),
+        verdict: verdict.into(),
+    }
+}

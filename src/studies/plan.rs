@@ -1,0 +1,129 @@
+//! The sweep file: which cells there are.
+//!
+//! ```toml
+//! title = "Methods on two cases"
+//! repeats = { least = 7, most = 200, seconds = 0.05, patience_s = 2.0 }   # the default
+//!
+//! [[cells]]                                    # every combination of what follows; blocks are joined
+//! cases = ["plate_mesh1", "my_case.toml"]      # shipped cases, or files beside this one
+//! # random = { dimension = 2, seed = 1, problems = 20 }     instead: random problems with one crack
+//! # files = ["collection", "problem.hdf5"]     or: FCLIB files and folders of them, beside this file
+//! # bodies = { dimension = 3, seed = 1, points = [100, 1000], of_each = 5 }     or: bodies of about so many contact points
+//! refine = [1, 2]                              # the case's own by default
+//! contact = ["star", "edge-pairs"]             # of all cracks; the case's own by default
+//! friction = [0.1, 0.8]                        # of all cracks; the case's own by default
+//! increments = [1, 10]                         # equal parts of every increment of the case; 1 by default
+//! start = ["warm", "cold"]                     # contact forces of the last increment to begin from, or none; warm by default
+//! methods = ["hybrid", "penalty:normal=1e2,tangential=1e2", "exec:mine.py"]      # all of the registry by default; programs beside this file
+//! # options.r = { from = 1e-3, to = 1e3, per_decade = 1 }   values of an option of the methods, also as a list; see `options`
+//! tolerances = [1e-3, 1e-6, 1e-9]              # bounds on the violation; the default
+//! looks = ["why", "stops"]                     # why runs gave up and what would have solved it; where published stopping tests stop
+//! ```
+
+mod block;
+mod options;
+
+use std::path::Path;
+
+use stickslip_methods::Tier;
+
+use crate::case::error::CaseError;
+use crate::case::parse::{document, read_text};
+use crate::case::reader::Value;
+use crate::run::choice::Choice;
+use crate::run::verdict::Accuracy;
+use crate::studies::axes::named;
+use crate::studies::measure::Repeats;
+use crate::studies::sources::Problem;
+use crate::studies::task::{Looks, Task};
+use block::{Room, block};
+
+/// A sweep: its tasks, sorted by id.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Title.
+    pub title: String,
+    /// How often tasks are repeated for their times.
+    pub repeats: Repeats,
+    /// The tasks.
+    pub tasks: Vec<Task>,
+}
+
+impl Plan {
+    /// Reads a sweep file.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        Self::parse(path, &read_text(path)?)
+    }
+
+    /// The same for the text of a sweep file; cases are looked for beside `file`.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
+    pub fn parse(file: &Path, text: &str) -> Result<Self, CaseError> {
+        let keys = ["title", "repeats", "cells"];
+        let folder = file.parent().unwrap_or(Path::new(""));
+        document(file, text, &keys, |root| {
+            let title = root.required("title")?.label()?;
+            let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
+            let blocks = root.tables("cells")?;
+            if blocks.is_empty() {
+                return Err(root.missing("`[[cells]]`"));
+            }
+            let (mut room, mut tasks) = (Room::default(), Vec::new());
+            for value in blocks {
+                tasks.extend(block(value, folder, &mut room)?);
+            }
+            Ok(Self::of(title, repeats, tasks))
+        })
+    }
+
+    /// Problems as they say themselves, by some methods, at every tier.
+    pub fn of_problems(title: String, problems: &[Problem], choices: &[Choice]) -> Self {
+        let accuracies = Tier::ALL.map(|tier| Accuracy::exactly(tier.tolerance()));
+        let looks = Looks {
+            truth: true,
+            error: true,
+            output: true,
+            ..Looks::default()
+        };
+        let methods = named(choices);
+        let of = |own: &Problem| own.subject.tasks(&own.axes, &methods, &accuracies, looks);
+        let tasks = problems.iter().flat_map(of).collect();
+        Self::of(title, Repeats::DEFAULT, tasks)
+    }
+
+    /// Blocks may overlap.
+    fn of(title: String, repeats: Repeats, tasks: Vec<Task>) -> Self {
+        let mut named: Vec<(String, Task)> = tasks.into_iter().map(|own| (own.id(), own)).collect();
+        named.sort_by(|a, b| a.0.cmp(&b.0));
+        named.dedup_by(|a, b| a.0 == b.0);
+        Self {
+            title,
+            repeats,
+            tasks: named.into_iter().map(|own| own.1).collect(),
+        }
+    }
+}
+
+fn repeats(value: Value<'_>) -> Result<Repeats, CaseError> {
+    let table = value.table(&["least", "most", "seconds", "patience_s"])?;
+    let count = |key: &str, default: usize, least: usize| {
+        let given = table.get(key);
+        given.map_or(Ok(default), |v| v.integer(least..=1_000_000))
+    };
+    let seconds = |key: &str, default: f64| {
+        let given = table.get(key);
+        given.map_or(Ok(default), |v| v.number_if("numbers >= 0", |s| s >= 0.0))
+    };
+    let default = Repeats::DEFAULT;
+    let least = count("least", default.least, 1)?;
+    Ok(Repeats {
+        least,
+        most: count("most", default.most.max(least), least)?,
+        seconds: seconds("seconds", default.seconds)?,
+        patience_s: seconds("patience_s", default.patience_s)?,
+    })
+}

@@ -1,0 +1,73 @@
+//! Contact surfaces of all cracks of a body, without points that no displacement can tell from others.
+
+use crate::contact::pairs::{ContactPoint, ContactSurface, jump_rows};
+use crate::contact::{self, ContactSpace, rank};
+use crate::enrichment::EnrichmentError;
+use crate::mesh::Lengths;
+use crate::stiffness::cell_matrix::CellIntegrator;
+
+use super::DiscretisationError;
+
+/// Contact surfaces of all cracks, without points that no displacement can tell from others. `doubled`: that of a
+/// crack that split the mesh; `scaled`: a row of the jump operator over the free unknowns of the solver, divided by the roots of their
+/// stiffness.
+pub(super) fn faces(
+    spaces: &[ContactSpace],
+    integrator: &CellIntegrator<'_>,
+    lengths: &Lengths,
+    doubled: Option<ContactSurface>,
+    numbers: &[Option<u32>],
+    scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)>,
+) -> Result<ContactSurface, DiscretisationError> {
+    let (dim, cracks) = (integrator.mesh.dim(), integrator.cracks);
+    let held = |unknown: usize| numbers[unknown].is_none();
+    let mut surface = match doubled {
+        Some(own) => own.retain(|point| point.acts(dim, held)),
+        None => ContactSurface::default(),
+    };
+    // Points of the arms whose space is integrated.
+    let mut arms: Vec<std::ops::Range<usize>> = Vec::new();
+    for (number, &space) in spaces.iter().enumerate() {
+        // The arms of a crack one after the other.
+        let own = (0..cracks.len()).filter(|&index| cracks[index].number == number);
+        for index in own {
+            let start = surface.points.len();
+            let own = contact::surface(integrator, index, space, held);
+            surface.append(own.map_err(|e| DiscretisationError::Cell(e, None))?);
+            if space.is_integrated() {
+                arms.push(start..surface.points.len());
+            }
+        }
+    }
+    let rows = |point: &[ContactPoint]| {
+        let rows = jump_rows(dim, point);
+        rows.iter().map(|row| scaled(row)).collect()
+    };
+    let size = lengths.smallest.powi(dim as i32 - 1);
+    for (least, anywhere) in [(rank::HAIR, false), (rank::NOTHING, true)] {
+        let hairs = rank::hairs(&surface, &arms, least * size);
+        arms = rank::merge(&mut surface, &arms, &hairs, anywhere).0;
+    }
+    loop {
+        let weight = |k: usize| surface.points[k].weight;
+        let lost = rank::dependent(&arms, weight, |k| rows(&surface.points[k..=k]));
+        if lost.is_empty() {
+            break;
+        }
+        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost, false);
+        arms = fewer;
+        if merged == 0 {
+            if let Some(&point) = rank::singular(&arms, |k| rows(&surface.points[k..=k])).first() {
+                let crack = surface.points[point].crack;
+                return Err(EnrichmentError::Undetermined(crack).into());
+            }
+            break;
+        }
+    }
+    for number in 0..spaces.len() {
+        if !surface.points.iter().any(|p| p.crack == number) {
+            return Err(EnrichmentError::TooShort(number).into());
+        }
+    }
+    Ok(surface)
+}
