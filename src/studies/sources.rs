@@ -1,4 +1,4 @@
-//! Sources of problems: what a sweep file may name. A new one is its file and a line in [`SOURCES`].
+//! Sources of problems: what a sweep file may name. A new one is its file and a line in `SOURCES`.
 
 pub mod bodies;
 pub mod cases;

@@ -1,4 +1,4 @@
-//! The failure atlas: every cause on a small problem of its own, its cure, and stopping tests that lie.
+//! Why methods give up: every cause on a small problem of its own, its cure, and stopping tests that lie.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -5,7 +5,7 @@ use super::runs::distinct;
 use crate::report::number::fixed;
 use crate::report::plot::{Cell, HeatMap, is_exact, plain, rank};
 use crate::report::{Bundle, ReportError};
-use crate::studies::analysis::success::SuccessRow;
+use crate::studies::analysis::success::{BY_FRICTION, SuccessRow};
 
 /// What it is.
 pub static KIND: Kind = Kind {
@@ -77,14 +77,20 @@ pub fn add(bundle: &mut Bundle, rows: &[SuccessRow], caveat: &str) -> Result<(),
             perfect.join(", ")
         ),
     };
+    // Friction coefficients of a class stand side by side below its name.
+    let parts = |class: &&str| match class.split_once(BY_FRICTION) {
+        Some((class, mu)) => (class.to_owned(), format!("μ {mu}")),
+        None => (String::new(), (*class).to_owned()),
+    };
+    let groups = classes.chunk_by(|a, b| parts(a).0 == parts(b).0);
     let map = HeatMap {
         title,
         caption: format!(
             "solved, or (≈) own laws kept [%] of up to {most} problems by class; ≥: lower end of the 95 % confidence \
              interval{caveat}"
         ),
-        groups: vec![(String::new(), classes.len())],
-        columns: classes.iter().map(|class| (*class).to_owned()).collect(),
+        groups: groups.map(|own| (parts(&own[0]).0, own.len())).collect(),
+        columns: classes.iter().map(|own| parts(own).1).collect(),
         rows: names.iter().map(line).collect(),
     };
     KIND.add(bundle, "", map.svg()?)

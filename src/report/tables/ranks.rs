@@ -38,7 +38,7 @@ impl Row for SuccessRow {
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
-            "class" "" .key() = r.class.clone(), "class of the problems, as their source names it; empty: all problems";
+            "class" "" .key() = r.class.clone(), "class of the problems, as their source names it, with the friction coefficient where a class has several; empty: all problems";
             "method" "" .key() = r.method.clone(), METHOD;
             "exact" "" = r.exact, "whether its limit are the contact laws";
             "defaults" "" = r.defaults, "whether all options have their default";

@@ -64,7 +64,9 @@ pub struct Series<'a> {
 /// value change with it, others tell curves apart.
 pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
     let mut by_method: BTreeMap<&str, Vec<Point<'a>>> = BTreeMap::new();
-    for record in records.iter().filter(|r| r.asked.problem() == *problem) {
+    // Names first: what is asked is copied to compare it.
+    let own = |r: &&Record| r.asked.case == problem.case && r.asked.problem() == *problem;
+    for record in records.iter().filter(own) {
         if let Some(point) = point(record) {
             let own = by_method.entry(record.asked.method.as_str());
             own.or_default().push(point);

@@ -80,17 +80,35 @@ impl SuccessRow {
     }
 }
 
-/// Rates of all methods at the three tiers, those with options too: on all problems, then on those of every class; in the order
-/// of classes, methods, then tiers.
+/// What stands between a class and the friction coefficient of its problems, where it has several.
+pub const BY_FRICTION: &str = " μ=";
+
+/// Rates of all methods at the three tiers, those with options too: on all problems, then on those of every class, and of every
+/// friction coefficient where a class has several; in the order of classes, methods, then tiers.
 pub fn success(records: &[Record]) -> Vec<SuccessRow> {
-    let mut groups: BTreeMap<(&str, usize, &str), Vec<&Record>> = BTreeMap::new();
+    let mut frictions: BTreeMap<&str, BTreeSet<u64>> = BTreeMap::new();
+    for record in records.iter().filter(|own| !own.class.is_empty()) {
+        let own = frictions.entry(record.class.as_str()).or_default();
+        own.insert(record.asked.mu().to_bits());
+    }
+    let class_of = |record: &Record| {
+        let several = frictions
+            .get(record.class.as_str())
+            .map_or(0, BTreeSet::len)
+            > 1;
+        match several {
+            true => format!("{}{BY_FRICTION}{}", record.class, record.asked.mu()),
+            false => record.class.clone(),
+        }
+    };
+    let mut groups: BTreeMap<(String, usize, &str), Vec<&Record>> = BTreeMap::new();
     for record in records {
         let tiers = Tier::ALL.iter();
         let tier = tiers
             .enumerate()
             .find(|(_, t)| t.tolerance() == record.asked.tolerance);
         if let Some((index, _)) = tier {
-            let classes = BTreeSet::from(["", record.class.as_str()]);
+            let classes = BTreeSet::from([String::new(), class_of(record)]);
             for class in classes {
                 let key = (class, index, record.found.method.as_str());
                 groups.entry(key).or_default().push(record);
@@ -181,6 +199,20 @@ mod tests {
         let expected = [0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1];
         assert_eq!(row.failures, expected);
         assert_eq!(row.failures.iter().sum::<usize>() + row.correct, row.cells);
+    }
+
+    #[test]
+    fn a_class_with_several_friction_coefficients_is_rated_by_them() {
+        let own = |class: &str, mu: f64| {
+            let mut own = of_case(record("plate", "latin", 1e-6), &format!("{class} {mu}"));
+            (own.class, own.asked.friction) = (class.into(), vec![mu]);
+            own
+        };
+        let rows = success(&[own("2d", 0.1), own("2d", 0.3), own("3d", 0.3)]);
+        let classes: Vec<(&str, usize)> =
+            rows.iter().map(|r| (r.class.as_str(), r.cells)).collect();
+        let expected = [("", 3), ("2d μ=0.1", 1), ("2d μ=0.3", 1), ("3d", 1)];
+        assert_eq!(classes, expected);
     }
 
     #[test]

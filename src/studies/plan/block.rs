@@ -126,9 +126,10 @@ pub(super) fn block(
             Some(cracks) => given.on(problem, cracks),
             None => {
                 if let Some((key, value)) = axes.iter().find_map(|k| Some((k, table.get(k)?))) {
-                    let allowed =
-                        "no such key beside `files`: a problem file is one increment from rest";
-                    return Err(value.refuse(allowed, key));
+                    let allowed = format!(
+                        "no such key beside `{source}`: its problems are one increment from rest"
+                    );
+                    return Err(value.refuse(&allowed, key));
                 }
                 problem.axes.clone()
             }

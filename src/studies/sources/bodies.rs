@@ -49,6 +49,9 @@ fn parts(case: &str) -> Option<[&str; 2]> {
     Some([dim, rest.split('-').next()?])
 }
 
+/// Most bodies of a size: each draws from a stream of its own.
+const STREAMS: usize = 1000;
+
 /// `bodies = { dimension = 3, seed = 1, points = [100, 1000], of_each = 5 }`.
 ///
 /// # Errors
@@ -59,7 +62,7 @@ pub(crate) fn read(value: Value<'_>, _: &Path) -> Result<Vec<Problem>, CaseError
     let seed = table.get("seed");
     let seed = seed.map_or(Ok(1), |v| v.integer(0..=usize::MAX))? as u64;
     let sizes = entries(table.required("points")?, |v| v.integer(POINTS))?;
-    let of_each = table.required("of_each")?.integer(1..=MOST)?;
+    let of_each = table.required("of_each")?.integer(1..=STREAMS)?;
     if sizes.len().saturating_mul(of_each) > MOST {
         return Err(value.refuse(format!("at most {MOST} bodies"), "too many bodies"));
     }
@@ -107,7 +110,7 @@ impl Sized {
 
     /// The case file.
     pub fn text(&self) -> String {
-        let which = (self.points * 1000 + self.number) * 4 + self.dim;
+        let which = (self.points * STREAMS + self.number) * 4 + self.dim;
         let mut stream = Stream::numbered(self.seed, which as u64);
         let (kind, cells, cracks) = match self.dim {
             2 => self.plate(&mut stream),
