@@ -80,26 +80,24 @@ impl SuccessRow {
     }
 }
 
-/// What stands between a class and the friction coefficient of its problems, where it has several.
+/// What stands between a class and the friction coefficient of its problems, where these have several.
 pub const BY_FRICTION: &str = " μ=";
 
 /// Rates of all methods at the three tiers, those with options too: on all problems, then on those of every class, and of every
 /// friction coefficient where a class has several; in the order of classes, methods, then tiers.
 pub fn success(records: &[Record]) -> Vec<SuccessRow> {
+    // An axis of the sweep: problems of files have each their own coefficients.
     let mut frictions: BTreeMap<&str, BTreeSet<u64>> = BTreeMap::new();
-    for record in records.iter().filter(|own| !own.class.is_empty()) {
-        let own = frictions.entry(record.class.as_str()).or_default();
+    for record in records {
+        let own = frictions.entry(record.asked.case.as_str()).or_default();
         own.insert(record.asked.mu().to_bits());
     }
-    let class_of = |record: &Record| {
-        let several = frictions
-            .get(record.class.as_str())
-            .map_or(0, BTreeSet::len)
-            > 1;
-        match several {
-            true => format!("{}{BY_FRICTION}{}", record.class, record.asked.mu()),
-            false => record.class.clone(),
-        }
+    let several = |record: &&Record| frictions[record.asked.case.as_str()].len() > 1;
+    let swept = records.iter().filter(several).map(|r| r.class.as_str());
+    let swept: BTreeSet<&str> = swept.filter(|class| !class.is_empty()).collect();
+    let class_of = |record: &Record| match swept.contains(record.class.as_str()) {
+        true => format!("{}{BY_FRICTION}{}", record.class, record.asked.mu()),
+        false => record.class.clone(),
     };
     let mut groups: BTreeMap<(String, usize, &str), Vec<&Record>> = BTreeMap::new();
     for record in records {
@@ -204,7 +202,7 @@ mod tests {
     #[test]
     fn a_class_with_several_friction_coefficients_is_rated_by_them() {
         let own = |class: &str, mu: f64| {
-            let mut own = of_case(record("plate", "latin", 1e-6), &format!("{class} {mu}"));
+            let mut own = of_case(record("plate", "latin", 1e-6), class);
             (own.class, own.asked.friction) = (class.into(), vec![mu]);
             own
         };
